@@ -1,0 +1,56 @@
+# The three kinds of target: a library, a program, a test. All carry the same options.
+
+add_library(tess_options INTERFACE)
+target_compile_features(tess_options INTERFACE cxx_std_20)
+target_include_directories(tess_options INTERFACE "${PROJECT_SOURCE_DIR}")
+target_compile_options(tess_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
+  -fno-math-errno -fno-trapping-math -ffp-contract=off)
+if(WARNINGS_AS_ERRORS)
+  target_compile_options(tess_options INTERFACE -Werror)
+endif()
+if(TESS_NATIVE)
+  target_compile_options(tess_options INTERFACE -march=native)
+else()
+  target_compile_options(tess_options INTERFACE -march=x86-64-v3)
+endif()
+if(CHECKS STREQUAL "all")
+  target_compile_definitions(tess_options INTERFACE TESS_CHECKS_ALL=1)
+endif()
+if(SANITIZE)
+  target_compile_options(tess_options INTERFACE -fsanitize=${SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(tess_options INTERFACE -fsanitize=${SANITIZE})
+endif()
+
+# tess_library(NAME SOURCES … HEADERS … DEPENDS …): headers are listed so that a test compiles each alone.
+function(tess_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES} ${ARG_HEADERS})
+    target_link_libraries(${name} PUBLIC tess_options ${ARG_DEPENDS})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE tess_options ${ARG_DEPENDS})
+  endif()
+  list(TRANSFORM ARG_HEADERS PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+  set_property(GLOBAL APPEND PROPERTY TESS_HEADERS ${ARG_HEADERS})
+  set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name})
+endfunction()
+
+# tess_app(NAME SOURCES … DEPENDS …): a program in bin/.
+function(tess_app name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE tess_options ${ARG_DEPENDS})
+endfunction()
+
+# tess_test(NAME SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
+# A test case tagged [.] is hidden: it runs by hand only (soak, seeds, benchmarks).
+function(tess_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE tess_catch_main ${ARG_DEPENDS})
+  target_precompile_headers(${name} REUSE_FROM tess_catch_main)
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
+endfunction()
