@@ -1,5 +1,5 @@
-// Bad input: what a user can put right. Thrown before anything is sent; programs print what() in one line
-// and exit with 2. A bug is not an Error: see check.hpp.
+// Bad input: what a user can put right. Thrown before anything is sent; programs print what() in
+// one line and exit with 2. A bug is not an Error: see check.hpp.
 #pragma once
 
 #include <sstream>

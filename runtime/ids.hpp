@@ -1,0 +1,68 @@
+// Strong identifiers: a PE cannot be passed where a process or an array is meant. All are plain
+// integers in memory, totally ordered, hashable, and travel in messages as they are.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <ostream>
+
+namespace tess {
+
+/// A processing element: 0 … n_pes − 1 over the whole job. PEs of one process are consecutive.
+struct PeId {
+  std::int32_t value = 0;
+  friend constexpr auto operator<=>(const PeId&, const PeId&) = default;
+};
+inline std::ostream& operator<<(std::ostream& out, PeId pe) {
+  return out << "PE " << pe.value;
+}
+
+/// A process of the job (an MPI rank): 0 … n_processes − 1.
+struct ProcessId {
+  std::int32_t value = 0;
+  friend constexpr auto operator<=>(const ProcessId&, const ProcessId&) = default;
+};
+inline std::ostream& operator<<(std::ostream& out, ProcessId p) {
+  return out << "process " << p.value;
+}
+
+/// An array or a group, the same number on every PE.
+struct CollectionId {
+  std::uint64_t value = 0;
+  friend constexpr auto operator<=>(const CollectionId&, const CollectionId&) = default;
+};
+inline std::ostream& operator<<(std::ostream& out, CollectionId id) {
+  return out << "collection " << id.value;
+}
+
+/// A scoped epoch; 0 is the whole run.
+struct EpochId {
+  std::uint64_t value = 0;
+  friend constexpr auto operator<=>(const EpochId&, const EpochId&) = default;
+};
+inline std::ostream& operator<<(std::ostream& out, EpochId id) {
+  return out << "epoch " << id.value;
+}
+
+}  // namespace tess
+
+template <>
+struct std::hash<tess::PeId> {
+  std::size_t operator()(tess::PeId id) const noexcept {
+    return static_cast<std::size_t>(id.value);
+  }
+};
+template <>
+struct std::hash<tess::CollectionId> {
+  std::size_t operator()(tess::CollectionId id) const noexcept {
+    return static_cast<std::size_t>(id.value);
+  }
+};
+template <>
+struct std::hash<tess::EpochId> {
+  std::size_t operator()(tess::EpochId id) const noexcept {
+    return static_cast<std::size_t>(id.value);
+  }
+};

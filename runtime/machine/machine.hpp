@@ -1,0 +1,118 @@
+// The machine a run stands on: how many PEs and processes there are, how a message gets from one to
+// another, who drives each PE, and what time it is. Three implementations: threads, mpi, simulated.
+// The runtime above knows this interface alone, so one program runs unchanged on all of them.
+//
+//     Program (the runtime)   accept / step / idle / receive   called by the machine, on the PE's
+//     thread Machine                 post / send / stop / now         called by the runtime
+//
+// Within a process a message travels as a pointer (post). Between processes it travels as bytes
+// (send): the runtime has packed many messages into one buffer. No order of delivery is promised,
+// by any machine.
+#pragma once
+
+#include "runtime/base/link.hpp"
+#include "runtime/ids.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tess {
+
+/// What a message is for; only the simulated machine looks at it, to delay one kind more than
+/// another.
+enum class Traffic : std::uint8_t { user, location, migration, control };
+
+/// Bytes on their way between processes.
+using Buffer = std::vector<std::byte>;
+
+/// What a machine drives. Every function with a PE runs on that PE's thread, never twice at once
+/// for one PE.
+class Program {
+ public:
+  Program() = default;
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  virtual ~Program() = default;
+
+  /// Called once a PE, on its thread, before anything else of that PE.
+  virtual void start(PeId pe) = 0;
+  /// Takes a list of messages, first to run first, that others posted to this PE.
+  virtual void accept(PeId pe, Link* first) = 0;
+  /// Runs up to `most` messages that are ready; returns how many it ran.
+  virtual std::size_t step(PeId pe, std::size_t most) = 0;
+  /// Nothing is ready: flush what was held back for company. True if that made or sent anything.
+  virtual bool idle(PeId pe) = 0;
+  /// Takes a buffer that another process sent; `pe` is the PE whose thread happened to receive it.
+  virtual void receive(PeId pe, std::span<const std::byte> bytes) = 0;
+  /// Called once a PE, on its thread, after the last step; messages that remain are freed here.
+  virtual void finish(PeId pe) = 0;
+};
+
+/// Time since the machine started: wall clock, or the virtual clock of the PE that asks.
+using Time = std::chrono::nanoseconds;
+
+class Machine {
+ public:
+  Machine() = default;
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+  virtual ~Machine() = default;
+
+  [[nodiscard]] std::int32_t n_pes() const { return n_processes_ * pes_per_process_; }
+  [[nodiscard]] std::int32_t n_processes() const { return n_processes_; }
+  [[nodiscard]] std::int32_t pes_per_process() const { return pes_per_process_; }
+  /// The process this memory belongs to. On the simulated machine all virtual processes share it:
+  /// 0.
+  [[nodiscard]] ProcessId process() const { return process_; }
+  [[nodiscard]] ProcessId process_of(PeId pe) const {
+    return ProcessId{pe.value / pes_per_process_};
+  }
+
+  /// True if a message between the two may travel as a pointer.
+  [[nodiscard]] bool same_process(PeId a, PeId b) const { return process_of(a) == process_of(b); }
+
+  /// True if even a message of a PE to itself has to go through post(): the simulated machine
+  /// orders them all.
+  [[nodiscard]] virtual bool intercepts_local() const { return false; }
+
+  /// Hands a message to a PE of this process; takes ownership of the link. `bytes` is its size for
+  /// the cost model. Any PE thread of this process may call it.
+  virtual void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) = 0;
+
+  /// Sends bytes to another process; never to this one. Any PE thread may call it; it does not
+  /// block.
+  virtual void send(PeId from, ProcessId to, Buffer&& bytes) = 0;
+
+  /// Drives the PEs of this process until stop(); returns on the thread that called it.
+  virtual void run(Program& program) = 0;
+
+  /// Ends run() in this process soon; any PE thread may call it, more than once. What is on its way
+  /// in this process is dropped after finish(); what other processes sent here is received and
+  /// dropped, so that none of them blocks.
+  virtual void stop() = 0;
+
+  /// Ends the whole job now, all processes, with this exit code; does not return. Text was flushed
+  /// by the caller.
+  [[noreturn]] virtual void abort(int exit_code) = 0;
+
+  /// Agreement of all processes before the first message: the same 64 bits everywhere? (Binaries
+  /// that differ.)
+  [[nodiscard]] virtual bool agree(std::uint64_t) { return true; }
+
+  [[nodiscard]] virtual Time now(PeId pe) const = 0;
+
+  /// One line: what the machine is and how its PEs are placed.
+  [[nodiscard]] virtual std::string describe() const = 0;
+
+ protected:
+  std::int32_t n_processes_ = 1;
+  std::int32_t pes_per_process_ = 1;
+  ProcessId process_{0};
+};
+
+}  // namespace tess
