@@ -1,0 +1,114 @@
+#include "runtime/machine/team.hpp"
+
+#include <algorithm>
+#include <thread>
+
+namespace tess {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// Messages a step may run before the inbox and the network are looked at again.
+constexpr std::size_t step_most = 64;
+
+/// A busy PE looks at the network this often; its steps are cut so that they do not last longer.
+constexpr auto network_period = 30us;
+
+/// A network has to be polled, so sleep is short there; an inbox wakes its PE by itself. A woken
+/// thread costs some 5 us, a yield among yielders 0.5 us, so yielding comes first and for longer.
+Patience patience(bool oversubscribed, bool network) {
+  const auto sleep = network ? std::chrono::nanoseconds(50us) : Parker::forever;
+  if (oversubscribed) return {.spin = 0ns, .yield = network ? 200us : 20us, .sleep = sleep};
+  return {.spin = network ? 200us : 50us, .yield = network ? 1ms : 200us, .sleep = sleep};
+}
+
+/// The number of messages in the next step, from how long the last one took.
+class Stride {
+ public:
+  [[nodiscard]] std::size_t most() const noexcept { return most_; }
+
+  /// True if it is time to look at the network.
+  bool due() noexcept {
+    const auto now = Clock::now();
+    const auto took = now - since_;
+    if (took > 2 * network_period)
+      most_ = std::max<std::size_t>(1, most_ / 2);
+    else if (took < network_period)
+      most_ = std::min(step_most, most_ * 2);
+    since_ = now;
+    if (now < next_) return false;
+    next_ = now + network_period;
+    return true;
+  }
+
+ private:
+  std::size_t most_ = step_most;
+  Clock::time_point since_ = Clock::now();
+  Clock::time_point next_ = since_;
+};
+
+}  // namespace
+
+Team::Team(PeId first, std::int32_t n_pes, Placement placement, Network* network)
+    : first_(first),
+      placement_(placement),
+      network_(network),
+      patience_(patience(placement.oversubscribed, network != nullptr)),
+      seats_(static_cast<std::size_t>(n_pes)) {}
+
+void Team::run(Program& program, const Topology& topology) {
+  const auto n = static_cast<std::int32_t>(seats_.size());
+  n_running_ = n;
+  const auto drive_one = [&](std::int32_t local) {
+    if (placement_.pinned) topology.pin(placement_.first_core + local);
+    drive(program, PeId{first_.value + local}, seats_[static_cast<std::size_t>(local)]);
+  };
+  std::vector<std::jthread> others;
+  for (std::int32_t local = 1; local < n; ++local) others.emplace_back(drive_one, local);
+  drive_one(0);
+  others.clear();  // joins
+  if (placement_.pinned) topology.unpin();
+}
+
+void Team::stop() noexcept {
+  if (stopping_.exchange(true)) return;
+  for (Seat& seat : seats_) seat.parker.wake();
+}
+
+// noexcept: an exception in an entry method is the program's affair; one that comes here is a bug.
+void Team::drive(Program& program, PeId pe, Seat& seat) noexcept {
+  program.start(pe);
+  Backoff rest(patience_);
+  Stride stride;
+  // relaxed: nothing is handed over through the flag; the barrier below orders what matters.
+  while (!stopping_.load(std::memory_order_relaxed)) {
+    bool worked = false;
+    if (Link* const first = seat.inbox.take_all()) {
+      program.accept(pe, first);
+      worked = true;
+    }
+    if (program.step(pe, stride.most()) > 0) worked = true;
+    if (network_ != nullptr && (!worked || stride.due()) && network_->progress(program, pe))
+      worked = true;
+    if (worked || program.idle(pe)) {
+      rest.reset();
+      continue;
+    }
+    if (rest.pause())
+      seat.parker.park(rest.sleep(), [&] { return !seat.inbox.empty() || stopping_.load(); });
+  }
+  wait_for_all();
+  if (Link* const first = seat.inbox.take_all()) program.accept(pe, first);
+  program.finish(pe);
+}
+
+void Team::wait_for_all() noexcept {
+  if (n_running_.fetch_sub(1) == 1) {
+    n_running_.notify_all();
+    return;
+  }
+  for (std::int32_t n = n_running_.load(); n != 0; n = n_running_.load()) n_running_.wait(n);
+}
+
+}  // namespace tess
