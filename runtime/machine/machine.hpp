@@ -76,6 +76,12 @@ class Machine {
   /// True if a message between the two may travel as a pointer.
   [[nodiscard]] bool same_process(PeId a, PeId b) const { return process_of(a) == process_of(b); }
 
+  /// How many PEs this memory holds: those of the process, or all simulated ones.
+  [[nodiscard]] virtual std::int32_t n_pes_here() const { return pes_per_process_; }
+
+  /// How many fruitless looks at its queue make a PE tell that it has run dry.
+  [[nodiscard]] virtual unsigned patience() const { return 64; }
+
   /// True if even a message of a PE to itself has to go through post(): the simulated machine
   /// orders them all.
   [[nodiscard]] virtual bool intercepts_local() const { return false; }

@@ -1,0 +1,373 @@
+// Arrays of chares and their proxies. A proxy is a small value: it can be stored, sent, and used on
+// every PE.
+//
+//     auto blocks = tess::create<Block>(tess::range(8, 8), size);   dense: 64 elements, each
+//     Block(size) auto voxels = tess::create<Voxel>(tess::sparse);              sparse: elements as
+//     they are inserted or demanded blocks[{3, 4}].send<&Block::step>(0);
+//     blocks.broadcast<&Block::step>(0);
+#pragma once
+
+#include "runtime/chare.hpp"
+#include "runtime/collections/call.hpp"
+#include "runtime/scheduler/pe_action.hpp"
+
+namespace tess {
+
+/// A chare that can be packed here and made again elsewhere.
+template <class C>
+concept Migratable = std::is_default_constructible_v<C> && serialization::HasSerialize<C>;
+
+template <class C>
+class Array final : public ArrayOf<typename C::Index> {
+ public:
+  using Index = typename C::Index;
+  using Base = ArrayOf<Index>;
+  using Element_ = typename Base::Element_;
+
+  Array(Pe& pe, CollectionId id, const Range& range)
+      : Base(pe, id, plain_name(name_of_type<C>), range) {}
+  ~Array() override { this->destroy_all(); }
+
+  [[nodiscard]] PeId home(const Index& index) const override {
+    const auto n_pes = static_cast<std::uint64_t>(this->pe_.n_pes());
+    if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
+      return C::place(index, this->pe_.n_pes());
+    } else {
+      if constexpr (Coordinates<Index>) {
+        if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
+          return PeId{static_cast<std::int32_t>(static_cast<std::uint64_t>(rank) * n_pes /
+                                                this->range().size())};
+      }
+      // The high bits: the low ones choose the slot in hash tables, which would cluster.
+      return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) % n_pes)};
+    }
+  }
+
+  /// Makes the elements of the initial range whose home is this PE.
+  template <class... Args>
+  void make_initial(const Args&... args) {
+    if constexpr (Coordinates<Index>) {
+      const auto size = static_cast<std::int64_t>(this->range().size());
+      std::int64_t first = 0, last = size;
+      if constexpr (!requires(Index i) { C::place(i, 1); }) {
+        const auto rank = static_cast<std::int64_t>(this->pe_.id().value);
+        const std::int64_t n_pes = this->pe_.n_pes();
+        first = (rank * size + n_pes - 1) / n_pes;
+        last = ((rank + 1) * size + n_pes - 1) / n_pes;
+      }
+      for (std::int64_t rank = first; rank < last; ++rank) {
+        const auto index = index_at<Index>(this->range(), rank);
+        if (home(index) != this->pe_.id()) continue;
+        this->bear(index, Version{1, 1}, [&args...] { return new C(args...); });
+      }
+    }
+  }
+
+  void take_in(Arrival<C>& arrival) {
+    if (arrival.element == nullptr) {
+      if constexpr (Migratable<C>) {
+        Reader ar(arrival.state);
+        const auto index = ar.template take<Index>();
+        this->pe_.set_birth(&index, this);
+        arrival.element = new C();
+        this->pe_.set_birth(nullptr, nullptr);
+        ar(arrival.element->state_);
+        arrival.element->serialize(ar);
+        TESS_CHECK(ar.remaining() == 0,
+                   this->name(),
+                   index_text(index),
+                   ": serialize() read ",
+                   ar.remaining(),
+                   " bytes less than it wrote");
+      }
+    }
+    this->land(std::exchange(arrival.element, nullptr), arrival.from);
+  }
+
+  static void pack_element(C& element, Writer& ar) {
+    if constexpr (Migratable<C>) {
+      ar(element.index_, element.state_);
+      element.serialize(ar);
+    }
+  }
+
+  [[nodiscard]] bool migratable() const override { return Migratable<C>; }
+
+ protected:
+  Element_* construct_default() override {
+    if constexpr (std::is_default_constructible_v<C>) {
+      return new C();
+    } else {
+      TESS_CHECK(
+          false, this->name(), " has no default constructor: it cannot be created on demand");
+      return nullptr;
+    }
+  }
+  void destroy(Element_& element) override { delete &static_cast<C&>(element); }
+  void ship(Element_& element, PeId to) override {
+    TESS_CHECK(Migratable<C>,
+               this->name(),
+               " cannot migrate: it needs a default constructor and serialize()");
+    Pe& pe = this->pe_;
+    auto* arrival = pe.stamp(new Arrival<C>());
+    arrival->action = &Arrival<C>::entry;
+    arrival->collection = this->id();
+    arrival->from = pe.id();
+    arrival->element = &static_cast<C&>(element);
+    pe.send(to, arrival);
+  }
+  [[nodiscard]] DeadLetters dead_letters() const override {
+    if constexpr (requires { C::dead_letters; }) {
+      return C::dead_letters;
+    } else {
+      return DeadLetters::report;
+    }
+  }
+};
+
+template <class C>
+void Arrival<C>::pack(Envelope& envelope, Writer& ar) {
+  auto& arrival = static_cast<Arrival&>(envelope);
+  Buffer state;
+  Writer write(state);
+  Array<C>::pack_element(*arrival.element, write);
+  ar(arrival.collection, arrival.from, state);
+}
+
+/// One element, by its index; it need not exist.
+template <class C>
+class ElementProxy {
+ public:
+  using Index = typename C::Index;
+
+  ElementProxy(CollectionId collection, const Index& index)
+      : collection_(collection), index_(index) {}
+
+  /// Sends a message; it waits at the home of the index while there is no element.
+  template <auto F, class... Args>
+  void send(Args&&... args) const {
+    post<F>(Demand::none, std::forward<Args>(args)...);
+  }
+  /// The same; if there is no element, one is created on this PE. Of many that ask at once exactly
+  /// one creates.
+  template <auto F, class... Args>
+  void send_or_create_here(Args&&... args) const {
+    static_assert(std::is_default_constructible_v<C>,
+                  "a chare that is created on demand needs a default constructor");
+    post<F>(Demand::here, std::forward<Args>(args)...);
+  }
+  /// The same; if there is no element, one is created on the home PE of the index.
+  template <auto F, class... Args>
+  void send_or_create_home(Args&&... args) const {
+    static_assert(std::is_default_constructible_v<C>,
+                  "a chare that is created on demand needs a default constructor");
+    post<F>(Demand::home, std::forward<Args>(args)...);
+  }
+
+  /// Creates the element on this PE with these constructor arguments; misuse if there is one.
+  template <class... Args>
+  void insert(Args&&... args) const {
+    construct(current_pe().id(), Demand::insert, std::forward<Args>(args)...);
+  }
+  /// The same on another PE.
+  template <class... Args>
+  void insert_on(PeId pe, Args&&... args) const {
+    construct(pe, Demand::insert, std::forward<Args>(args)...);
+  }
+  /// Creates the element on this PE unless there is one.
+  template <class... Args>
+  void insert_if_absent(Args&&... args) const {
+    construct(current_pe().id(), Demand::insert_if_absent, std::forward<Args>(args)...);
+  }
+
+  /// Ends the element.
+  void destroy() const { system<Destruction<C>>(); }
+  /// Moves the element to a PE.
+  void migrate_to(PeId pe) const { system<Relocation<C>>(pe); }
+
+  /// A target for results: entry method F of this element.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
+    return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+  }
+
+ private:
+  [[nodiscard]] Array<C>& branch(Pe& pe) const {
+    Collection* collection = pe.find(collection_);
+    TESS_CHECK(collection != nullptr,
+               "the array of this proxy is not known on ",
+               pe.id(),
+               ": it was created by a message that has not arrived");
+    return *static_cast<Array<C>*>(collection);
+  }
+
+  template <auto F, class... Args>
+  void post(Demand demand, Args&&... args) const {
+    static_assert(check_entry<C, F, Args...>());
+    Pe& pe = current_pe();
+    auto* letter = Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
+    letter->demand = demand;
+    letter->ask = demand == Demand::here;
+    post_letter(pe, letter);
+  }
+  void post_letter(Pe& pe, ElementMessage<Index>* letter) const {
+    pe.completion().sent(letter->epoch);
+    if (Collection* collection = pe.find(collection_); collection != nullptr) [[likely]] {
+      static_cast<Array<C>*>(collection)->post(letter);
+    } else {
+      pe.send_here(letter);  // it waits until the array is known here
+    }
+  }
+  template <class... Args>
+  void construct(PeId where, Demand demand, Args&&... args) const {
+    static_assert(std::is_constructible_v<C, std::decay_t<Args>...>,
+                  "the chare has no constructor that takes these arguments");
+    Pe& pe = current_pe();
+    auto* letter = Construction<C, std::decay_t<Args>...>::make(
+        pe, collection_, index_, std::forward<Args>(args)...);
+    letter->demand = demand;
+    letter->ask = true;
+    letter->asker = where;
+    if (where == pe.id()) {
+      post_letter(pe, letter);
+    } else {
+      pe.completion().sent(letter->epoch);
+      pe.send(where, letter);
+    }
+  }
+  template <class Letter, class... Args>
+  void system(Args... args) const {
+    Pe& pe = current_pe();
+    post_letter(pe, Letter::make(pe, collection_, index_, args...));
+  }
+
+  template <auto F, class T>
+  static void call_target(const Callback<T>& callback, T&& value) {
+    const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
+    ElementProxy(collection, index).template send<F>(std::move(value));
+  }
+  template <auto F, class T>
+  static inline const typename Callback<T>::Kind target_kind{
+      naming::value<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>};
+
+  CollectionId collection_;
+  Index index_;
+};
+
+/// A whole array.
+template <class C>
+class ArrayProxy {
+ public:
+  using Index = typename C::Index;
+
+  ArrayProxy() = default;
+  explicit ArrayProxy(CollectionId id) : id_(id) {}
+
+  [[nodiscard]] CollectionId id() const { return id_; }
+  [[nodiscard]] ElementProxy<C> operator[](const Index& index) const {
+    return ElementProxy<C>(id_, index);
+  }
+
+  /// How many elements the array was created with.
+  [[nodiscard]] std::int64_t size() const {
+    return static_cast<std::int64_t>(here().range().size());
+  }
+  [[nodiscard]] const Range& range() const { return here().range(); }
+
+  /// Calls entry method F of every element that exists when the broadcast comes by.
+  template <auto F, class... Args>
+  void broadcast(Args&&... args) const {
+    static_assert(check_entry<C, F, Args...>());
+    using Arguments = typename EntryTraits<F>::Arguments;
+    here().broadcasts().start(
+        std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
+  }
+
+  /// A target for results: entry method F of all elements.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
+    return Callback<T>(target_kind<F, T>, to_bytes(id_));
+  }
+
+  /// The part of the array on this PE: its local elements, for libraries and tests.
+  [[nodiscard]] Array<C>& here() const {
+    Collection* collection = current_pe().find(id_);
+    TESS_CHECK(collection != nullptr,
+               "the array of this proxy is not known on ",
+               current_pe().id(),
+               " yet");
+    return *static_cast<Array<C>*>(collection);
+  }
+
+  friend auto operator<=>(const ArrayProxy&, const ArrayProxy&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_);
+  }
+
+ private:
+  template <auto F, class T>
+  static void call_target(const Callback<T>& callback, T&& value) {
+    ArrayProxy(from_bytes<CollectionId>(callback.where())).template broadcast<F>(std::move(value));
+  }
+  template <auto F, class T>
+  static inline const typename Callback<T>::Kind target_kind{
+      naming::value<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>};
+
+  CollectionId id_{};
+};
+
+namespace detail {
+
+template <class C, class... Args>
+struct CreateArray {
+  CollectionId id;
+  Range range;
+  EpochId epoch;
+  std::tuple<Args...> args;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id, range, epoch, args);
+  }
+};
+
+template <class C, class... Args>
+void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
+  auto made = std::make_unique<Array<C>>(pe, m.id, m.range);
+  Array<C>& array = *made;
+  pe.add(m.id, std::move(made));
+  std::apply([&array](const Args&... args) { array.make_initial(args...); }, m.args);
+  pe.completion().processed(m.epoch);
+}
+
+}  // namespace detail
+
+/// Creates an array on all PEs; each element of the range is made with these arguments on the home
+/// PE of its index. Returns at once: messages to the array wait where it is not known yet.
+template <class C, class... Args>
+ArrayProxy<C> create(const Range& range, Args&&... args) {
+  if (range.n_axes != 0) {
+    static_assert(Coordinates<typename C::Index>,
+                  "an array with this type of index starts sparse: create<C>(tess::sparse)");
+    TESS_CHECK(range.n_axes == n_axes_of<typename C::Index>,
+               "a range of ",
+               range.n_axes,
+               " axes for an index of ",
+               n_axes_of<typename C::Index>);
+  }
+  Pe& pe = current_pe();
+  using Create = detail::CreateArray<C, std::decay_t<Args>...>;
+  Create message{pe.new_collection_id(), range, pe.context().epoch, {std::forward<Args>(args)...}};
+  constexpr auto handler = &detail::create_arrives<C, std::decay_t<Args>...>;
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
+    pe.completion().sent(message.epoch);
+    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
+  }
+  const CollectionId id = message.id;
+  handler(pe, std::move(message));  // here at once: the proxy is good from now on
+  return ArrayProxy<C>(id);
+}
+
+}  // namespace tess

@@ -1,0 +1,63 @@
+// The base of an array's elements: class Block : public tess::Chare<Block, tess::Index2> { … };
+// Any member function that returns void or tess::Task is an entry method. A chare that is to
+// migrate (or is created on demand) has a default constructor; one that is to migrate also has
+// `template <class Ar> void serialize(Ar& ar)`.
+#pragma once
+
+#include "runtime/collections/array_of.hpp"
+#include "runtime/reduction.hpp"
+#include "runtime/task.hpp"
+
+namespace tess {
+
+template <class C>
+class ArrayProxy;
+
+template <class Derived, class IndexType = Index1>
+class Chare : public IndexedElement<IndexType> {
+ public:
+  using Index = IndexType;
+
+  /// Which element this is.
+  [[nodiscard]] const Index& index() const { return this->index_; }
+
+  /// The array it is an element of.
+  [[nodiscard]] ArrayProxy<Derived> array() const {
+    // In the constructor the element is not listed yet.
+    const Collection* mine =
+        this->collection_ != nullptr ? this->collection_ : current_pe().birth_collection();
+    return ArrayProxy<Derived>(mine->id());
+  }
+
+  /// Moves this element to a PE once what runs of it, and what waits, is done.
+  void migrate_to(PeId pe) {
+    TESS_CHECK(pe.value >= 0 && pe.value < current_pe().n_pes(),
+               "there is no ",
+               pe,
+               ": the run has ",
+               current_pe().n_pes());
+    this->migrate_to_ = pe;
+  }
+
+  /// Ends this element once what runs of it, and what waits, is done.
+  void destroy() { this->doomed_ = true; }
+
+  /// Gives this element's value to the next reduction of the array; every element gives one. The
+  /// whole goes to `target`.
+  template <class Op, class T>
+  void contribute(Op /*op*/, T value, Callback<T> target) {
+    this->collection_->contribute(
+        *this, std::make_unique<MergedPartial<T, Op>>(std::move(value), std::move(target)));
+  }
+  /// The same, combined in the order of indices.
+  template <class Op, class T>
+  void contribute(InOrder<Op> /*op*/, T value, Callback<T> target) {
+    std::vector<std::pair<Index, T>> values;
+    values.emplace_back(index(), std::move(value));
+    this->collection_->contribute(
+        *this,
+        std::make_unique<OrderedPartial<T, Op, Index>>(std::move(values), std::move(target)));
+  }
+};
+
+}  // namespace tess

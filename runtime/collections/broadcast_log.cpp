@@ -1,0 +1,113 @@
+#include "runtime/collections/broadcast_log.hpp"
+
+#include "runtime/collections/collection.hpp"
+#include "runtime/collections/collection_action.hpp"
+
+#include <algorithm>
+
+namespace tess {
+namespace {
+
+constexpr std::int32_t fan_out = 4;
+// The root hears of settled broadcasts in portions, so that a broadcast costs no reply.
+constexpr std::uint64_t portion = 16;
+
+void start_arrives(Collection& collection, NumberedCall&& m) {
+  collection.broadcasts().on_start(std::move(m));
+}
+void call_arrives(Collection& collection, NumberedCall&& m) {
+  collection.broadcasts().on_call(std::move(m));
+}
+void settled_arrives(Collection& collection, BroadcastLog::Settled&& m) {
+  collection.broadcasts().on_settled(m);
+}
+void drop_arrives(Collection& collection, BroadcastLog::Drop&& m) {
+  collection.broadcasts().on_drop(m);
+}
+
+}  // namespace
+
+BroadcastLog::BroadcastLog(Pe& pe, Collection& collection) : pe_(pe), collection_(collection) {
+  const std::int32_t n = pe.n_pes();
+  const std::int32_t root = collection.root().value;
+  const std::int32_t rank = (pe.id().value - root + n) % n;
+  for (std::int32_t k = 1; k <= fan_out; ++k) {
+    const std::int64_t child = std::int64_t{rank} * fan_out + k;
+    if (child < n) children_.push_back(PeId{static_cast<std::int32_t>((child + root) % n)});
+  }
+}
+
+void BroadcastLog::start(std::shared_ptr<const BroadcastCall> call) {
+  const EpochId epoch = pe_.context().epoch;
+  pe_.completion().sent(epoch);
+  send_to_collection<&start_arrives>(
+      collection_, collection_.root(), NumberedCall{0, epoch, std::move(call)});
+}
+
+void BroadcastLog::on_start(NumberedCall&& call) {
+  call.number = ++last_number_;
+  on_call(std::move(call));
+}
+
+void BroadcastLog::on_call(NumberedCall&& call) {
+  for (const PeId child : children_) {
+    pe_.completion().sent(call.epoch);
+    send_to_collection<&call_arrives>(collection_, child, call);
+  }
+  early_.emplace(call.number, std::move(call));
+  while (!early_.empty() && early_.begin()->first == applied_ + 1) {
+    copies_.push_back(std::move(early_.begin()->second));
+    early_.erase(early_.begin());
+    ++applied_;
+    const NumberedCall current = copies_.back();
+    collection_.apply(current);
+    settle();
+  }
+}
+
+void BroadcastLog::landed(std::uint64_t seen) {
+  const auto at = in_flight_.find(seen);
+  if (--at->second == 0) in_flight_.erase(at);
+  settle();
+}
+
+void BroadcastLog::settle() {
+  const std::uint64_t now =
+      in_flight_.empty() ? applied_ : std::min(applied_, in_flight_.begin()->first);
+  while (settled_ < now) {
+    ++settled_;
+    pe_.completion().processed(copies_[settled_ - first_kept_].epoch);
+  }
+  if (settled_ - told_ < portion) return;
+  told_ = settled_;
+  send_to_collection<&settled_arrives>(
+      collection_, collection_.root(), Settled{pe_.id(), settled_});
+}
+
+std::vector<NumberedCall> BroadcastLog::missed(std::uint64_t seen) const {
+  std::vector<NumberedCall> calls;
+  for (std::uint64_t number = seen + 1; number <= applied_; ++number)
+    calls.push_back(copies_.at(number - first_kept_));
+  return calls;
+}
+
+void BroadcastLog::on_settled(const Settled& settled) {
+  std::uint64_t& known = settled_by_[settled.from];
+  known = std::max(known, settled.number);
+  if (settled_by_.size() < static_cast<std::size_t>(pe_.n_pes())) return;
+  std::uint64_t all = known;
+  for (const auto& [pe, number] : settled_by_) all = std::min(all, number);
+  if (all == dropped_) return;
+  dropped_ = all;
+  for (std::int32_t pe = 0; pe < pe_.n_pes(); ++pe)
+    send_to_collection<&drop_arrives>(collection_, PeId{pe}, Drop{all});
+}
+
+void BroadcastLog::on_drop(const Drop& drop) {
+  while (first_kept_ <= drop.number) {
+    copies_.pop_front();
+    ++first_kept_;
+  }
+}
+
+}  // namespace tess

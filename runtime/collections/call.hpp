@@ -1,0 +1,205 @@
+// The typed messages of an array: a call of an entry method, a constructor call, an element that
+// moves, and a call of all.
+#pragma once
+
+#include "runtime/collections/array_of.hpp"
+#include "runtime/messages/block.hpp"
+#include "runtime/messages/entry_traits.hpp"
+
+namespace tess {
+
+template <class C>
+class Array;
+
+/// Making, packing and ending of a message type that derives from ElementMessage and has
+/// `arguments`.
+template <class Derived, class C, class Arguments>
+struct TypedLetter : ElementMessage<typename C::Index> {
+  using Index = typename C::Index;
+  Arguments arguments;
+
+  template <class... A>
+  explicit TypedLetter(A&&... a) : arguments(std::forward<A>(a)...) {}
+
+  template <class... A>
+  static Derived* make(Pe& pe, CollectionId collection, const Index& index, A&&... a) {
+    auto* letter = new (allocate_block(pe, sizeof(Derived))) Derived(std::forward<A>(a)...);
+    letter->action = &Derived::entry;
+    letter->collection = collection;
+    letter->index = index;
+    letter->asker = pe.id();
+    return pe.stamp(letter);
+  }
+  static void run(Pe& pe, Envelope* envelope) {
+    auto* letter = static_cast<Derived*>(envelope);
+    Collection* collection = pe.find(letter->collection);
+    if (collection == nullptr) [[unlikely]] {
+      pe.keep_early(letter->collection, envelope);
+      return;
+    }
+    static_cast<Array<C>*>(collection)->arrive(letter);
+  }
+  static void destroy(Envelope* envelope) {
+    auto* letter = static_cast<Derived*>(envelope);
+    letter->~Derived();
+    release_block(letter, sizeof(Derived));
+  }
+  static void pack(Envelope& envelope, Writer& ar) {
+    auto& letter = static_cast<Derived&>(envelope);
+    letter.serialize_head(ar);
+    ar(letter.arguments);
+  }
+  static Envelope* unpack(Pe& pe, Reader& ar) {
+    auto* letter = new (allocate_block(pe, sizeof(Derived))) Derived();
+    letter->serialize_head(ar);
+    ar(letter->arguments);
+    return letter;
+  }
+};
+
+/// A call of entry method F of an element of C.
+template <class C, auto F>
+struct Call final : TypedLetter<Call<C, F>, C, typename EntryTraits<F>::Arguments> {
+  using Base = TypedLetter<Call, C, typename EntryTraits<F>::Arguments>;
+  using Index = typename C::Index;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<Index>& message) {
+    auto& letter = static_cast<Call&>(message);
+    std::apply(
+        [&element](auto&... argument) {
+          (void)(static_cast<C&>(element).*F)(std::move(argument)...);
+        },
+        letter.arguments);
+  }
+  static inline const ElementAction<Index> entry{name_of_type<Call>,
+                                                 &Base::run,
+                                                 &Base::destroy,
+                                                 &Base::pack,
+                                                 &Base::unpack,
+                                                 &Call::invoke,
+                                                 nullptr};
+};
+
+/// A call of the constructor of C with these argument types.
+template <class C, class... Args>
+struct Construction final : TypedLetter<Construction<C, Args...>, C, std::tuple<Args...>> {
+  using Base = TypedLetter<Construction, C, std::tuple<Args...>>;
+  using Index = typename C::Index;
+  using Base::Base;
+
+  static Element* construct(ElementMessage<Index>& message) {
+    return std::apply([](auto&... argument) { return new C(std::move(argument)...); },
+                      static_cast<Construction&>(message).arguments);
+  }
+  static inline const ElementAction<Index> entry{name_of_type<Construction>,
+                                                 &Base::run,
+                                                 &Base::destroy,
+                                                 &Base::pack,
+                                                 &Base::unpack,
+                                                 nullptr,
+                                                 &Construction::construct};
+};
+
+/// Ends an element where it lives.
+template <class C>
+struct Destruction final : TypedLetter<Destruction<C>, C, std::tuple<>> {
+  using Base = TypedLetter<Destruction, C, std::tuple<>>;
+  using Index = typename C::Index;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
+    static_cast<C&>(element).destroy();
+  }
+  static inline const ElementAction<Index> entry{name_of_type<Destruction>,
+                                                 &Base::run,
+                                                 &Base::destroy,
+                                                 &Base::pack,
+                                                 &Base::unpack,
+                                                 &Destruction::invoke,
+                                                 nullptr};
+};
+
+/// Moves an element to a PE.
+template <class C>
+struct Relocation final : TypedLetter<Relocation<C>, C, std::tuple<PeId>> {
+  using Base = TypedLetter<Relocation, C, std::tuple<PeId>>;
+  using Index = typename C::Index;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<Index>& message) {
+    static_cast<C&>(element).migrate_to(std::get<0>(static_cast<Relocation&>(message).arguments));
+  }
+  static inline const ElementAction<Index> entry{name_of_type<Relocation>,
+                                                 &Base::run,
+                                                 &Base::destroy,
+                                                 &Base::pack,
+                                                 &Base::unpack,
+                                                 &Relocation::invoke,
+                                                 nullptr};
+};
+
+/// An element on its way. Within a process the object itself travels; between processes what it
+/// serialises.
+template <class C>
+struct Arrival final : Envelope {
+  CollectionId collection{};
+  PeId from{};
+  C* element = nullptr;
+  Buffer state;  // of an element that came from another process, until its array is known
+
+  static void run(Pe& pe, Envelope* envelope) {
+    auto* arrival = static_cast<Arrival*>(envelope);
+    Collection* collection = pe.find(arrival->collection);
+    if (collection == nullptr) {
+      pe.keep_early(arrival->collection, envelope);
+      return;
+    }
+    static_cast<Array<C>*>(collection)->take_in(*arrival);
+    destroy(envelope);
+  }
+  static void destroy(Envelope* envelope) {
+    auto* arrival = static_cast<Arrival*>(envelope);
+    delete arrival->element;
+    delete arrival;
+  }
+  static void pack(Envelope& envelope, Writer& ar);
+  static Envelope* unpack(Pe& /*pe*/, Reader& ar) {
+    auto arrival = std::make_unique<Arrival>();
+    ar(arrival->collection, arrival->from, arrival->state);
+    return arrival.release();
+  }
+  static inline const Action entry{
+      name_of_type<Arrival>, &run, &destroy, &pack, &unpack, Traffic::migration};
+};
+
+/// A call of entry method F of all elements.
+template <class C, auto F>
+class CallOfAll final : public BroadcastCall {
+ public:
+  using Arguments = typename EntryTraits<F>::Arguments;
+
+  explicit CallOfAll(Arguments arguments) : arguments_(std::move(arguments)) {}
+
+  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
+  [[nodiscard]] const Action& action() const override { return action_; }
+  void invoke(Element& element) const override {
+    std::apply(
+        [&element](const auto&... argument) { (void)(static_cast<C&>(element).*F)(argument...); },
+        arguments_);
+  }
+  void pack(Writer& ar) const override { ar(arguments_); }
+
+ private:
+  static std::shared_ptr<const BroadcastCall> unpack(Reader& ar) {
+    return std::make_shared<CallOfAll>(ar.take<Arguments>());
+  }
+  static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
+  static inline const BroadcastKind kind_{name_of_type<CallOfAll>, &unpack};
+  static inline const Action action_{
+      naming::type<CallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
+
+  Arguments arguments_;
+};
+
+}  // namespace tess

@@ -1,0 +1,86 @@
+#include "runtime/collections/collection.hpp"
+
+#include "runtime/check.hpp"
+
+namespace tess {
+
+std::string element_text(const Element& element) {
+  return element.collection_->name() + element.collection_->index_text_of(element);
+}
+
+Collection::Collection(Pe& pe, CollectionId id, std::string name)
+    : pe_(pe), id_(id), name_(std::move(name)), broadcasts_(pe, *this), reductions_(pe, *this) {}
+
+void Collection::list(Element& element) {
+  element.collection_ = this;
+  element.slot_ = static_cast<std::uint32_t>(elements_.size());
+  elements_.push_back(&element);
+  ++n_local_;
+  reductions_.enter(element.state_.next_reduction);
+}
+
+void Collection::unlist(Element& element) {
+  --n_local_;
+  reductions_.leave(element.state_.next_reduction);
+  if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat one
+    elements_[element.slot_] = nullptr;
+    return;
+  }
+  elements_.back()->slot_ = element.slot_;
+  elements_[element.slot_] = elements_.back();
+  elements_.pop_back();
+}
+
+void Collection::born(Element& element) {
+  element.state_.seen_broadcast = broadcasts_.applied();
+  element.state_.next_reduction = reductions_.joins_at();
+  reductions_.born(element.state_.next_reduction);
+}
+
+void Collection::apply(const NumberedCall& call) {
+  ++applying_;
+  const std::size_t n =
+      elements_.size();  // later ones are born after this broadcast, or came having met it
+  for (std::size_t i = 0; i < n; ++i) {
+    Element* element = elements_[i];
+    if (element == nullptr || element->state_.seen_broadcast >= call.number) continue;
+    element->state_.seen_broadcast = call.number;
+    const ElementScope scope(pe_, *element, &call.call->action(), call.epoch);
+    call.call->invoke(*element);
+  }
+  if (--applying_ != 0) return;
+  std::size_t kept = 0;
+  for (Element* element : elements_) {
+    if (element == nullptr) continue;
+    element->slot_ = static_cast<std::uint32_t>(kept);
+    elements_[kept++] = element;
+  }
+  elements_.resize(kept);
+}
+
+void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
+  reductions_.contribute(element.state_.next_reduction++, std::move(value));
+}
+
+std::string Collection::elements_before(std::uint32_t number) const {
+  std::string out;
+  std::size_t n = 0;
+  for (const Element* element : elements_) {
+    if (element == nullptr || element->state_.next_reduction >= number) continue;
+    if (++n <= 5) out += (n > 1 ? ", " : "") + element_text(*element);
+  }
+  if (n > 5) out += text(" and ", n - 5, " more");
+  return out;
+}
+
+void Collection::describe_waiting(std::vector<std::string>& lines) const {
+  reductions_.describe_waiting(lines);
+}
+
+void ElementScope::take_whim() {
+  if (!element_.collection_->migratable()) return;
+  const PeId to = pe_.whim();
+  if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
+}
+
+}  // namespace tess

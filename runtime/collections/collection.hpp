@@ -1,0 +1,104 @@
+// One collection (array or group) on one PE: its local elements, its part in broadcasts and
+// reductions. What depends on the type of index and chare is in ArrayOf, Array and GroupOf.
+#pragma once
+
+#include "runtime/collections/broadcast_log.hpp"
+#include "runtime/collections/element.hpp"
+#include "runtime/collections/reduction_tree.hpp"
+#include "runtime/scheduler/pe.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tess {
+
+class Collection {
+ public:
+  Collection(Pe& pe, CollectionId id, std::string name);
+  Collection(const Collection&) = delete;
+  Collection& operator=(const Collection&) = delete;
+  virtual ~Collection() = default;
+
+  [[nodiscard]] Pe& pe() { return pe_; }
+  [[nodiscard]] CollectionId id() const { return id_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// The PE that numbers broadcasts and completes reductions.
+  [[nodiscard]] PeId root() const {
+    return PeId{
+        static_cast<std::int32_t>(mix(id_.value) % static_cast<std::uint64_t>(pe_.n_pes()))};
+  }
+
+  [[nodiscard]] BroadcastLog& broadcasts() { return broadcasts_; }
+  [[nodiscard]] ReductionTree& reductions() { return reductions_; }
+
+  /// Local elements; a slot may be empty while elements leave in the middle of a broadcast.
+  [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
+  [[nodiscard]] std::size_t n_local() const { return n_local_; }
+
+  /// Calls all local elements that have not met this broadcast yet.
+  void apply(const NumberedCall& call);
+
+  /// An element of this PE contributes to its next reduction.
+  void contribute(Element& element, std::unique_ptr<Partial> value);
+
+  /// After something of the element ran: it leaves or ends now if that was asked for and nothing of
+  /// it waits.
+  virtual void settle(Element& element) = 0;
+
+  /// True if elements can be packed and made again elsewhere.
+  [[nodiscard]] virtual bool migratable() const = 0;
+  [[nodiscard]] virtual std::string index_text_of(const Element& element) const = 0;
+  /// Appends a line for each thing here that waits for something that never came.
+  virtual void describe_waiting(std::vector<std::string>& lines) const;
+  /// The first few local elements that have not contributed to `number` − 1 and below, as text.
+  [[nodiscard]] std::string elements_before(std::uint32_t number) const;
+
+ protected:
+  void list(Element& element);
+  void unlist(Element& element);
+  /// Registers a new element as born here and now.
+  void born(Element& element);
+
+  Pe& pe_;
+
+ private:
+  const CollectionId id_;
+  const std::string name_;
+  std::vector<Element*> elements_;
+  std::size_t n_local_ = 0;
+  unsigned applying_ = 0;
+  BroadcastLog broadcasts_;
+  ReductionTree reductions_;
+};
+
+/// Marks that code of an element runs: it is the context's element, and it neither leaves nor ends
+/// before the scope does.
+class ElementScope {
+ public:
+  ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch)
+      : pe_(pe), element_(element), before_(pe.context()) {
+    ++element.n_suspended_;
+    pe.context() = Context{&element, action, epoch};
+  }
+  ElementScope(const ElementScope&) = delete;
+  ElementScope& operator=(const ElementScope&) = delete;
+  /// Ends the scope; the element may be gone afterwards.
+  ~ElementScope() noexcept(false) {
+    pe_.context() = before_;
+    if (--element_.n_suspended_ == 0) {
+      if (pe_.intercepts()) [[unlikely]]
+        take_whim();
+      if (element_.migrate_to_.value >= 0 || element_.doomed_) [[unlikely]]
+        element_.collection_->settle(element_);
+    }
+  }
+
+ private:
+  void take_whim();
+  Pe& pe_;
+  Element& element_;
+  Context before_;
+};
+
+}  // namespace tess

@@ -1,0 +1,65 @@
+// Messages to a collection on a PE that no chare sees: a function of (Collection type&, Payload&&),
+// and its payload. One that comes before its collection is known on the PE waits for it.
+#pragma once
+
+#include "runtime/collections/collection.hpp"
+#include "runtime/messages/message.hpp"
+
+namespace tess {
+
+namespace detail {
+template <class F>
+struct CollectionHandler;
+template <class C, class P>
+struct CollectionHandler<void (*)(C&, P&&)> {
+  using Collection = C;
+  using Payload = P;
+};
+template <class P>
+struct ToCollection {
+  CollectionId collection;
+  P payload;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(collection, payload);
+  }
+};
+}  // namespace detail
+
+template <auto Handler, Traffic Kind = Traffic::control>
+struct CollectionAction {
+  using Of = detail::CollectionHandler<decltype(Handler)>;
+  using Payload = typename Of::Payload;
+  using Held = Message<detail::ToCollection<Payload>>;
+
+  static void run(Pe& pe, Envelope* envelope) {
+    auto* message = static_cast<Held*>(envelope);
+    Collection* collection = pe.find(message->payload.collection);
+    if (collection == nullptr) {
+      pe.keep_early(message->payload.collection, envelope);
+      return;
+    }
+    Payload payload = std::move(message->payload.payload);
+    Held::destroy(envelope);
+    Handler(static_cast<typename Of::Collection&>(*collection), std::move(payload));
+  }
+  static inline const Action action{
+      naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};
+};
+
+/// Sends a payload to the part of this collection on a PE; a hop of epoch 0, on no other epoch's
+/// account.
+template <auto Handler, Traffic Kind = Traffic::control>
+void send_to_collection(Collection& collection,
+                        PeId to,
+                        typename CollectionAction<Handler, Kind>::Payload payload) {
+  using A = CollectionAction<Handler, Kind>;
+  Pe& pe = collection.pe();
+  pe.send(to,
+          pe.stamp(A::Held::make(
+              pe,
+              A::action,
+              detail::ToCollection<typename A::Payload>{collection.id(), std::move(payload)})));
+}
+
+}  // namespace tess

@@ -1,0 +1,67 @@
+// What the runtime keeps of a chare: where it is registered, which life and place of its index it
+// is, which broadcasts it has met, which reduction it contributes to next. The user's class derives
+// from it through Chare or Group.
+#pragma once
+
+#include "runtime/ids.hpp"
+
+#include <compare>
+#include <cstdint>
+#include <string>
+
+namespace tess {
+
+class Collection;
+
+/// Which life of an index (incarnation) and which place of that life (epoch, one more for each
+/// migration). Later knowledge has the greater version; {0, 0} is no knowledge.
+struct Version {
+  std::uint32_t incarnation = 0;
+  std::uint32_t epoch = 0;
+  friend constexpr auto operator<=>(const Version&, const Version&) = default;
+};
+
+/// The part of an element that travels with it besides the user's members.
+struct ElementState {
+  Version version{};
+  std::uint32_t next_reduction = 0;
+  std::uint64_t seen_broadcast = 0;
+};
+
+class Element {
+ public:
+  Element(const Element&) = delete;
+  Element& operator=(const Element&) = delete;
+
+ protected:
+  Element() = default;
+  ~Element() = default;
+
+ private:
+  friend class Collection;
+  template <class>
+  friend class ArrayOf;
+  template <class>
+  friend class Array;
+  template <class>
+  friend class GroupOf;
+  friend class ElementScope;
+  template <class, class>
+  friend class Chare;
+  template <class>
+  friend class Group;
+  friend struct TaskAccount;
+  friend std::string element_text(const Element& element);
+
+  Collection* collection_ = nullptr;
+  ElementState state_;
+  std::uint32_t slot_ = 0;         // in the collection's list
+  std::uint32_t n_suspended_ = 0;  // coroutines of this element that wait, and handlers that run
+  PeId migrate_to_{-1};            // where it goes once nothing of it runs or waits
+  bool doomed_ = false;            // destroyed once nothing of it runs or waits
+};
+
+/// "Block[3,4]".
+[[nodiscard]] std::string element_text(const Element& element);
+
+}  // namespace tess

@@ -1,0 +1,60 @@
+// A partial result of a reduction: some contributions, merged. It knows its type, how to merge with
+// another of its type, how to be packed, and what to do once it is whole: it carries the target.
+#pragma once
+
+#include "runtime/ids.hpp"
+#include "runtime/messages/registry.hpp"
+#include "runtime/serialize.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace tess {
+
+class Pe;
+class Partial;
+
+/// How to make a partial result from bytes; one static object for each (value, operation).
+struct PartialKind : Registered {
+  using Unpack = std::unique_ptr<Partial> (*)(Reader&);
+  PartialKind(std::string_view name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
+  Unpack unpack;
+};
+
+class Partial {
+ public:
+  Partial() = default;
+  Partial(const Partial&) = delete;
+  Partial& operator=(const Partial&) = delete;
+  virtual ~Partial() = default;
+
+  [[nodiscard]] virtual const PartialKind& kind() const = 0;
+  /// Takes in another of the same kind; a different kind is misuse.
+  virtual void merge(Partial&& other) = 0;
+  virtual void pack(Writer& ar) const = 0;
+  /// The whole result goes to the target, on this PE.
+  virtual void complete(Pe& pe) = 0;
+};
+
+/// A partial result that may be packed in a message, or absent.
+struct PartialBox {
+  std::unique_ptr<Partial> held;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (Ar::is_reading) {
+      held.reset();
+      if (ar.template take<std::uint8_t>() != 0)
+        held = static_cast<const PartialKind&>(Registry::at(ar.template take<std::uint32_t>()))
+                   .unpack(ar);
+    } else {
+      ar(static_cast<std::uint8_t>(held ? 1 : 0));
+      if (!held) return;
+      ar(held->kind().id());
+      held->pack(ar);
+    }
+  }
+};
+
+}  // namespace tess

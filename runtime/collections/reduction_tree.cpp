@@ -1,0 +1,227 @@
+#include "runtime/collections/reduction_tree.hpp"
+
+#include "runtime/check.hpp"
+#include "runtime/collections/collection.hpp"
+#include "runtime/collections/collection_action.hpp"
+
+namespace tess {
+namespace {
+
+constexpr std::int32_t fan_out = 4;
+
+void report_arrives(Collection& collection, ReductionTree::Report&& m) {
+  collection.reductions().on_report(std::move(m));
+}
+void begin_arrives(Collection& collection, ReductionTree::Begin&& m) {
+  collection.reductions().on_begin(m);
+}
+
+}  // namespace
+
+ReductionTree::ReductionTree(Pe& pe, Collection& collection)
+    : pe_(pe), collection_(collection), root_(collection.root()) {
+  const std::int32_t n = pe.n_pes();
+  const std::int32_t rank = (pe.id().value - root_.value + n) % n;
+  parent_ = PeId{((rank - 1) / fan_out + root_.value) % n};
+  for (std::int32_t k = 1; k <= fan_out; ++k) {
+    const std::int64_t child = std::int64_t{rank} * fan_out + k;
+    if (child < n) children_.push_back(PeId{static_cast<std::int32_t>((child + root_.value) % n)});
+  }
+}
+
+void ReductionTree::merge(Gathering& into,
+                          std::unique_ptr<Partial> value,
+                          const std::vector<EpochShare>& shares) {
+  if (value) {
+    if (into.value) {
+      TESS_CHECK(&into.value->kind() == &value->kind(),
+                 "two elements contribute to one reduction with different types: ",
+                 into.value->kind().name(),
+                 " and ",
+                 value->kind().name());
+      into.value->merge(std::move(*value));
+    } else {
+      into.value = std::move(value);
+    }
+  }
+  for (const EpochShare& share : shares) {
+    bool found = false;
+    for (EpochShare& mine : into.shares) {
+      if (mine.epoch != share.epoch) continue;
+      mine.n += share.n;
+      found = true;
+    }
+    if (!found) into.shares.push_back(share);
+  }
+}
+
+void ReductionTree::died(std::uint32_t next) {
+  if (next >= next_report_) {
+    changes_[next] -= 1;
+    return;
+  }
+  Report late;
+  late.number = next;
+  late.change = -1;
+  late.late = true;
+  send_to_collection<&report_arrives>(collection_, root_, std::move(late));
+}
+
+void ReductionTree::enter(std::uint32_t next) {
+  ++elements_at_[next];
+}
+
+void ReductionTree::leave(std::uint32_t next) {
+  const auto at = elements_at_.find(next);
+  if (--at->second == 0) elements_at_.erase(at);
+}
+
+void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> value) {
+  const EpochId epoch = pe_.context().epoch;
+  pe_.completion().sent(epoch);
+  leave(number);
+  enter(number + 1);
+  if (number < next_report_) {  // this PE has reported: the element came later
+    Report late;
+    late.number = number;
+    late.n = 1;
+    late.late = true;
+    late.value.held = std::move(value);
+    late.shares = {{epoch, 1}};
+    send_to_collection<&report_arrives>(collection_, root_, std::move(late));
+    return;
+  }
+  Gathering& gathering = gathering_[number];
+  gathering.known = true;
+  ++gathering.n;
+  merge(gathering, std::move(value), {{epoch, 1}});
+  advance();
+}
+
+bool ReductionTree::ready(std::uint32_t number) const {
+  return elements_at_.empty() || elements_at_.begin()->first > number;
+}
+
+void ReductionTree::advance() {
+  for (;;) {
+    const auto at = gathering_.find(next_report_);
+    if (at == gathering_.end() || !at->second.known || !ready(next_report_)) return;
+    Gathering& gathering = at->second;
+    if (static_cast<std::size_t>(gathering.children) < children_.size()) {
+      if (!gathering.asked) {
+        gathering.asked = true;
+        for (const PeId child : children_)
+          send_to_collection<&begin_arrives>(collection_, child, Begin{next_report_});
+      }
+      return;
+    }
+    Gathering done = std::move(gathering);
+    gathering_.erase(at);
+    if (const auto change = changes_.find(next_report_); change != changes_.end()) {
+      done.change += change->second;
+      changes_.erase(change);
+    }
+    report(next_report_++, std::move(done));
+  }
+}
+
+void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
+  if (root_ != pe_.id()) {
+    send_to_collection<&report_arrives>(collection_,
+                                        parent_,
+                                        Report{number,
+                                               gathered.n,
+                                               gathered.change,
+                                               false,
+                                               PartialBox{std::move(gathered.value)},
+                                               std::move(gathered.shares)});
+    return;
+  }
+  Whole& whole = whole_[number];
+  whole.all_reported = true;
+  whole.sum.n += gathered.n;
+  whole.sum.change += gathered.change;
+  merge(whole.sum, std::move(gathered.value), gathered.shares);
+  complete_if_whole();
+}
+
+void ReductionTree::on_report(Report&& report) {
+  if (report.late) {
+    // A late death may name a number below those complete: it changes the membership from now on.
+    if (report.n == 0 && report.number < next_complete_) {
+      members_ += report.change;
+    } else {
+      Whole& whole = whole_[report.number];
+      whole.sum.n += report.n;
+      whole.sum.change += report.change;
+      merge(whole.sum, std::move(report.value.held), report.shares);
+    }
+    complete_if_whole();
+    return;
+  }
+  Gathering& gathering = gathering_[report.number];
+  gathering.known = true;
+  ++gathering.children;
+  gathering.n += report.n;
+  gathering.change += report.change;
+  merge(gathering, std::move(report.value.held), report.shares);
+  advance();
+}
+
+void ReductionTree::on_begin(const Begin& begin) {
+  if (begin.number < next_report_) return;
+  gathering_[begin.number].known = true;
+  advance();
+}
+
+void ReductionTree::complete_if_whole() {
+  for (;;) {
+    const auto at = whole_.find(next_complete_);
+    if (at == whole_.end() || !at->second.all_reported) return;
+    Gathering& sum = at->second.sum;
+    if (static_cast<std::int64_t>(sum.n) != members_ + sum.change) return;
+    members_ += sum.change;
+    Gathering done = std::move(sum);
+    whole_.erase(at);
+    ++next_complete_;
+    if (done.value) {
+      const EpochId before = pe_.context().epoch;
+      pe_.context().epoch = done.shares.size() == 1 ? done.shares.front().epoch : EpochId{};
+      done.value->complete(pe_);
+      pe_.context().epoch = before;
+    }
+    // The result has been sent on the same account before the contributions are done with.
+    for (const EpochShare& share : done.shares)
+      for (std::uint64_t k = 0; k < share.n; ++k) pe_.completion().processed(share.epoch);
+  }
+}
+
+void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
+  std::uint64_t n = 0;
+  for (const auto& [number, gathering] : gathering_) {
+    if (gathering.n != 0)
+      lines.push_back(text(collection_.name(),
+                           ": reduction ",
+                           number,
+                           " has ",
+                           gathering.n,
+                           " contributions on ",
+                           pe_.id(),
+                           "; it waits for ",
+                           ready(number) ? "other PEs" : collection_.elements_before(number + 1)));
+    ++n;
+  }
+  for (const auto& [number, whole] : whole_) {
+    if (whole.sum.n != 0)
+      lines.push_back(text(collection_.name(),
+                           ": reduction ",
+                           number,
+                           " has ",
+                           whole.sum.n,
+                           " contributions of ",
+                           members_ + whole.sum.change,
+                           " members"));
+  }
+}
+
+}  // namespace tess

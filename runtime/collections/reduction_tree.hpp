@@ -1,0 +1,119 @@
+// Reductions of one collection, seen from one PE. Contributions are numbered; number r is complete
+// when as many elements have contributed to r as are members of r, wherever they were when they
+// did.
+//
+// The PEs form a tree. A PE reports r to its parent once every local element has contributed to r
+// and every child has reported r; the report carries the merged contributions, how many they are,
+// and the change of membership since r − 1: births that join at r, deaths before r. A contribution
+// of an element that arrived after the report goes to the root by itself, as does a late death. The
+// root completes r once it has all reports and the count equals the membership:
+//
+//     contributions that arrived ≤ contributions made ≤ members ≤ members reported     (births are
+//     never late)
+//
+// An element born on a PE joins at the first number that this PE has not reported yet. A PE without
+// elements reports as soon as it hears of r: from a child, or from a parent that is ready and still
+// waits.
+#pragma once
+
+#include "runtime/collections/partial.hpp"
+#include "runtime/ids.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tess {
+
+class Pe;
+class Collection;
+
+/// Contributions on account of one epoch: the epoch is not done while they are under way.
+struct EpochShare {
+  EpochId epoch;
+  std::uint64_t n = 0;
+};
+
+class ReductionTree {
+ public:
+  ReductionTree(Pe& pe, Collection& collection);
+
+  /// The number at which an element that is born here now joins; the caller has counted it by
+  /// enter().
+  [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
+
+  void born(std::uint32_t at) { changes_[at] += 1; }
+  /// An element died that would have contributed to `next`.
+  void died(std::uint32_t next);
+
+  /// An element with that next number is on this PE from now on, or no more.
+  void enter(std::uint32_t next);
+  void leave(std::uint32_t next);
+
+  /// An element on this PE contributes to `number`; it was entered with it and is now entered with
+  /// the next.
+  void contribute(std::uint32_t number, std::unique_ptr<Partial> value);
+
+  /// Looks whether something can be reported; called after elements came or went.
+  void advance();
+
+  struct Report {
+    std::uint32_t number = 0;
+    std::uint64_t n = 0;
+    std::int64_t change = 0;
+    bool late = false;  // to the root, outside the tree
+    PartialBox value;
+    std::vector<EpochShare> shares;
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(number, n, change, late, value, shares);
+    }
+  };
+  struct Begin {
+    std::uint32_t number = 0;
+  };
+  void on_report(Report&& report);
+  void on_begin(const Begin& begin);
+
+  void describe_waiting(std::vector<std::string>& lines) const;
+
+ private:
+  struct Gathering {
+    std::uint64_t n = 0;
+    std::int64_t change = 0;
+    std::int32_t children = 0;
+    bool known = false;  // somebody contributed, reported or asked
+    bool asked = false;  // the children were told to begin
+    std::unique_ptr<Partial> value;
+    std::vector<EpochShare> shares;
+  };
+
+  static void merge(Gathering& into,
+                    std::unique_ptr<Partial> value,
+                    const std::vector<EpochShare>& shares);
+  [[nodiscard]] bool ready(std::uint32_t number) const;
+  void report(std::uint32_t number, Gathering&& gathered);
+  void complete_if_whole();
+
+  Pe& pe_;
+  Collection& collection_;
+  PeId root_, parent_;
+  std::vector<PeId> children_;
+  std::uint32_t next_report_ = 0;  // this PE has reported all numbers below
+  std::map<std::uint32_t, Gathering> gathering_;
+  std::map<std::uint32_t, std::int64_t> changes_;
+  std::map<std::uint32_t, std::uint64_t> elements_at_;  // local elements by their next number
+
+  // At the root: numbers in the order of completion.
+  struct Whole {
+    Gathering sum;
+    bool all_reported = false;
+  };
+  std::map<std::uint32_t, Whole> whole_;
+  std::uint32_t next_complete_ = 0;
+  std::int64_t members_ = 0;
+};
+
+}  // namespace tess

@@ -1,0 +1,269 @@
+// Groups: one member on each PE, for the whole life of the run. class Manager : public
+// tess::Group<Manager> { … }; Messages go to the member on a PE; the member on this PE is an
+// ordinary object to its neighbours: proxy.local().
+#pragma once
+
+#include "runtime/collections/collection_action.hpp"
+#include "runtime/messages/entry_traits.hpp"
+#include "runtime/reduction.hpp"
+#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/task.hpp"
+
+namespace tess {
+
+template <class G>
+class GroupProxy;
+
+/// The base of a group's members.
+template <class Derived>
+class Group : public Element {
+ public:
+  virtual ~Group() = default;
+
+  [[nodiscard]] PeId pe() const { return pe_; }
+  /// The group this is a member of.
+  [[nodiscard]] GroupProxy<Derived> group() const { return GroupProxy<Derived>(id_); }
+
+  /// Gives this member's value to the next reduction of the group; every member gives one.
+  template <class Op, class T>
+  void contribute(Op /*op*/, T value, Callback<T> target) {
+    this->collection_->contribute(
+        *this, std::make_unique<MergedPartial<T, Op>>(std::move(value), std::move(target)));
+  }
+  /// The same, combined in the order of PEs.
+  template <class Op, class T>
+  void contribute(InOrder<Op> /*op*/, T value, Callback<T> target) {
+    std::vector<std::pair<PeId, T>> values;
+    values.emplace_back(pe_, std::move(value));
+    this->collection_->contribute(
+        *this, std::make_unique<OrderedPartial<T, Op, PeId>>(std::move(values), std::move(target)));
+  }
+
+ protected:
+  Group() : pe_(current_pe().id()), id_(current_pe().birth_collection()->id()) {}
+
+ private:
+  const PeId pe_;
+  const CollectionId id_;
+};
+
+/// A group on one PE: its one member.
+template <class G>
+class GroupOf final : public Collection {
+ public:
+  template <class... Args>
+  GroupOf(Pe& pe, CollectionId id, const Args&... args)
+      : Collection(pe, id, plain_name(name_of_type<G>)) {
+    pe.set_birth(this, this);
+    member_ = std::make_unique<G>(args...);
+    pe.set_birth(nullptr, nullptr);
+    born(*member_);
+    list(*member_);
+  }
+
+  [[nodiscard]] G& member() { return *member_; }
+  void settle(Element& element) override {
+    TESS_CHECK(element.migrate_to_.value < 0 && !element.doomed_,
+               "members of ",
+               name(),
+               " neither migrate nor end");
+  }
+  [[nodiscard]] bool migratable() const override { return false; }
+  [[nodiscard]] std::string index_text_of(const Element& /*element*/) const override {
+    return text("[", pe_.id(), "]");
+  }
+
+ private:
+  std::unique_ptr<G> member_;
+};
+
+/// A call of entry method F of the member of G on a PE.
+template <class G, auto F>
+struct GroupCall final : Envelope {
+  using Arguments = typename EntryTraits<F>::Arguments;
+  CollectionId collection{};
+  Arguments arguments;
+
+  template <class... A>
+  explicit GroupCall(A&&... a) : arguments(std::forward<A>(a)...) {}
+
+  static void run(Pe& pe, Envelope* envelope) {
+    auto* call = static_cast<GroupCall*>(envelope);
+    Collection* collection = pe.find(call->collection);
+    if (collection == nullptr) {
+      pe.keep_early(call->collection, envelope);
+      return;
+    }
+    G& member = static_cast<GroupOf<G>*>(collection)->member();
+    const EpochId epoch = call->epoch;
+    {
+      const ElementScope scope(pe, member, call->action, epoch);
+      std::apply([&member](auto&... argument) { (void)(member.*F)(std::move(argument)...); },
+                 call->arguments);
+      destroy(envelope);
+    }
+    pe.completion().processed(epoch);
+  }
+  static void destroy(Envelope* envelope) {
+    auto* call = static_cast<GroupCall*>(envelope);
+    call->~GroupCall();
+    release_block(call, sizeof(GroupCall));
+  }
+  static void pack(Envelope& envelope, Writer& ar) {
+    auto& call = static_cast<GroupCall&>(envelope);
+    ar(call.collection, call.arguments);
+  }
+  static Envelope* unpack(Pe& pe, Reader& ar) {
+    auto* call = new (allocate_block(pe, sizeof(GroupCall))) GroupCall();
+    ar(call->collection, call->arguments);
+    return call;
+  }
+  static inline const Action entry{
+      name_of_type<GroupCall>, &run, &destroy, &pack, &unpack, Traffic::user};
+};
+
+/// A call of entry method F of all members.
+template <class G, auto F>
+class CallOfMembers final : public BroadcastCall {
+ public:
+  using Arguments = typename EntryTraits<F>::Arguments;
+  explicit CallOfMembers(Arguments arguments) : arguments_(std::move(arguments)) {}
+
+  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
+  [[nodiscard]] const Action& action() const override { return GroupCall<G, F>::entry; }
+  void invoke(Element& element) const override {
+    std::apply(
+        [&element](const auto&... argument) { (void)(static_cast<G&>(element).*F)(argument...); },
+        arguments_);
+  }
+  void pack(Writer& ar) const override { ar(arguments_); }
+
+ private:
+  static std::shared_ptr<const BroadcastCall> unpack(Reader& ar) {
+    return std::make_shared<CallOfMembers>(ar.take<Arguments>());
+  }
+  static inline const BroadcastKind kind_{name_of_type<CallOfMembers>, &unpack};
+  Arguments arguments_;
+};
+
+/// The member of a group on one PE.
+template <class G>
+class MemberProxy {
+ public:
+  MemberProxy(CollectionId id, PeId pe) : id_(id), pe_(pe) {}
+
+  template <auto F, class... Args>
+  void send(Args&&... args) const {
+    static_assert(check_entry<G, F, Args...>());
+    Pe& pe = current_pe();
+    using Held = GroupCall<G, F>;
+    auto* call = new (allocate_block(pe, sizeof(Held))) Held(std::forward<Args>(args)...);
+    call->action = &Held::entry;
+    call->collection = id_;
+    pe.stamp(call);
+    pe.completion().sent(call->epoch);
+    pe.send(pe_, call);
+  }
+
+  /// A target for results: entry method F of this member.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
+    return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(id_, pe_)));
+  }
+
+ private:
+  template <auto F, class T>
+  static void call_target(const Callback<T>& callback, T&& value) {
+    const auto [id, pe] = from_bytes<std::tuple<CollectionId, PeId>>(callback.where());
+    MemberProxy(id, pe).template send<F>(std::move(value));
+  }
+  template <auto F, class T>
+  static inline const typename Callback<T>::Kind target_kind{
+      naming::value<&MemberProxy::call_target<F, T>>(), &MemberProxy::call_target<F, T>};
+  CollectionId id_;
+  PeId pe_;
+};
+
+/// A whole group.
+template <class G>
+class GroupProxy {
+ public:
+  GroupProxy() = default;
+  explicit GroupProxy(CollectionId id) : id_(id) {}
+
+  [[nodiscard]] CollectionId id() const { return id_; }
+  [[nodiscard]] MemberProxy<G> operator[](PeId pe) const { return MemberProxy<G>(id_, pe); }
+
+  /// The member on this PE, or null where the group is not known yet.
+  [[nodiscard]] G* local_or_null() const {
+    Collection* collection = current_pe().find(id_);
+    return collection == nullptr ? nullptr : &static_cast<GroupOf<G>*>(collection)->member();
+  }
+  /// The member on this PE.
+  [[nodiscard]] G& local() const {
+    G* member = local_or_null();
+    TESS_CHECK(member != nullptr, "this group is not known on ", current_pe().id(), " yet");
+    return *member;
+  }
+
+  /// Calls entry method F of every member.
+  template <auto F, class... Args>
+  void broadcast(Args&&... args) const {
+    static_assert(check_entry<G, F, Args...>());
+    using Arguments = typename EntryTraits<F>::Arguments;
+    Collection* collection = current_pe().find(id_);
+    TESS_CHECK(collection != nullptr, "this group is not known on ", current_pe().id(), " yet");
+    collection->broadcasts().start(
+        std::make_shared<CallOfMembers<G, F>>(Arguments(std::forward<Args>(args)...)));
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_);
+  }
+
+ private:
+  CollectionId id_{};
+};
+
+namespace detail {
+
+template <class G, class... Args>
+struct CreateGroup {
+  CollectionId id;
+  EpochId epoch;
+  std::tuple<Args...> args;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id, epoch, args);
+  }
+};
+
+template <class G, class... Args>
+void create_group_arrives(Pe& pe, CreateGroup<G, Args...>&& m) {
+  std::apply(
+      [&](const Args&... args) { pe.add(m.id, std::make_unique<GroupOf<G>>(pe, m.id, args...)); },
+      m.args);
+  pe.completion().processed(m.epoch);
+}
+
+}  // namespace detail
+
+/// Creates a group: one G on each PE, made with these arguments. Returns at once.
+template <class G, class... Args>
+GroupProxy<G> create_group(Args&&... args) {
+  Pe& pe = current_pe();
+  using Create = detail::CreateGroup<G, std::decay_t<Args>...>;
+  Create message{pe.new_collection_id(), pe.context().epoch, {std::forward<Args>(args)...}};
+  constexpr auto handler = &detail::create_group_arrives<G, std::decay_t<Args>...>;
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
+    pe.completion().sent(message.epoch);
+    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
+  }
+  const CollectionId id = message.id;
+  handler(pe, std::move(message));
+  return GroupProxy<G>(id);
+}
+
+}  // namespace tess

@@ -1,0 +1,281 @@
+#include "runtime/machine/simulated.hpp"
+
+#include "runtime/base/mix.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <queue>
+
+namespace tess {
+namespace {
+
+struct Event {
+  std::int64_t time;
+  std::uint64_t order;  // ties: first posted first, or drawn
+  std::int32_t pe;
+  Link* message;  // null: the PE looks at its queue
+  Buffer* bytes;
+  friend bool operator<(const Event& a, const Event& b) {
+    return a.time != b.time ? a.time > b.time : a.order > b.order;
+  }
+};
+
+class SimulatedMachine final : public Machine {
+ public:
+  explicit SimulatedMachine(const SimulatedOptions& options)
+      : options_(options),
+        random_(options.seed.value_or(0)),
+        clocks_(static_cast<std::size_t>(options.n_pes)) {
+    pes_per_process_ = options.pes_per_process;
+    if (pes_per_process_ == 0) {
+      pes_per_process_ = options.n_pes;
+      if (options.seed) {
+        std::array<std::int32_t, 3> choice{1, 1, options.n_pes};
+        if (options.n_pes % 2 == 0) choice[1] = 2;
+        pes_per_process_ = choice[random_.below(3)];
+      }
+    }
+    n_processes_ = options.n_pes / pes_per_process_;
+    for (double& factor : slowness_) {
+      constexpr std::array<double, 5> choices{1, 1, 1, 20, 200};
+      factor = options.seed ? choices[random_.below(5)] : 1;
+    }
+  }
+  ~SimulatedMachine() override {
+    for (; !events_.empty(); events_.pop()) delete events_.top().bytes;
+  }
+  SimulatedMachine(const SimulatedMachine&) = delete;
+  SimulatedMachine& operator=(const SimulatedMachine&) = delete;
+
+  [[nodiscard]] std::int32_t n_pes_here() const override { return options_.n_pes; }
+  [[nodiscard]] bool intercepts_local() const override { return options_.seed.has_value(); }
+  [[nodiscard]] unsigned patience() const override { return 1; }
+
+  void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) override {
+    push(arrival(from, bytes, traffic), to.value, message, nullptr);
+  }
+  void send(PeId from, ProcessId to, Buffer&& bytes) override {
+    const std::int64_t time = arrival(from, bytes.size(), Traffic::user);
+    push(time, to.value * pes_per_process_, nullptr, new Buffer(std::move(bytes)));
+  }
+
+  void run(Program& program) override;
+  void stop() override { stopped_ = true; }
+  [[noreturn]] void abort(int exit_code) override { std::_Exit(exit_code); }
+
+  [[nodiscard]] Time now(PeId pe) const override {
+    return Time(clocks_[static_cast<std::size_t>(pe.value)].now +
+                (running_ == pe.value ? elapsed() : 0));
+  }
+  [[nodiscard]] std::string describe() const override {
+    return text("simulated: ",
+                options_.n_pes,
+                " PEs in ",
+                n_processes_,
+                " processes, latency ",
+                options_.latency.count(),
+                " ns, ",
+                options_.bandwidth / 1e9,
+                " GB/s",
+                options_.seed ? text(", seed ", *options_.seed) : "");
+  }
+
+ private:
+  struct Clock {
+    std::int64_t now = 0;
+    bool looks = false;  // an event to look at the queue is under way
+  };
+
+  void push(std::int64_t time, std::int32_t pe, Link* message, Buffer* bytes) {
+    ++n_posted_;
+    events_.push(Event{time, intercepts_local() ? random_() : n_posted_, pe, message, bytes});
+  }
+  std::int64_t arrival(PeId from, std::size_t bytes, Traffic traffic) {
+    auto delay = static_cast<double>(options_.latency.count()) +
+                 static_cast<double>(bytes) * 1e9 / options_.bandwidth;
+    if (options_.seed) {
+      const double u = random_.unit();
+      const double spread = u < 0.8 ? 4 : u < 0.95 ? 50 : 500;
+      delay *= random_.unit() * spread * slowness_[static_cast<std::size_t>(traffic)];
+    }
+    return now(from).count() + static_cast<std::int64_t>(delay);
+  }
+  [[nodiscard]] std::int64_t elapsed() const {
+    return options_.cost ? 0 : (std::chrono::steady_clock::now() - step_began_).count();
+  }
+  void look(std::int32_t pe) {
+    Clock& clock = clocks_[static_cast<std::size_t>(pe)];
+    if (clock.looks) return;
+    clock.looks = true;
+    push(clock.now, pe, nullptr, nullptr);
+  }
+
+  const SimulatedOptions options_;
+  Random random_;
+  std::vector<Clock> clocks_;
+  std::array<double, 4> slowness_{};
+  std::priority_queue<Event> events_;
+  std::uint64_t n_posted_ = 0;
+  std::int32_t running_ = -1;
+  std::chrono::steady_clock::time_point step_began_;
+  bool stopped_ = false;
+};
+
+void SimulatedMachine::run(Program& program) {
+  for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) {
+    running_ = -1;
+    program.start(PeId{pe});
+    look(pe);
+  }
+  std::uint64_t n_events = 0;
+  while (!stopped_ && !events_.empty()) {
+    if (options_.most_events != 0 && ++n_events > options_.most_events) {
+      std::fprintf(stderr,
+                   "tessera: the simulated run needs more than %llu events: a livelock?\n",
+                   static_cast<unsigned long long>(options_.most_events));
+      break;
+    }
+    const Event event = events_.top();
+    events_.pop();
+    const PeId pe{event.pe};
+    Clock& clock = clocks_[static_cast<std::size_t>(event.pe)];
+    clock.now = std::max(clock.now, event.time);
+    if (event.message != nullptr) {
+      event.message->next = nullptr;
+      program.accept(pe, event.message);
+      look(event.pe);
+    } else if (event.bytes != nullptr) {
+      const std::unique_ptr<Buffer> bytes(event.bytes);
+      program.receive(pe, *bytes);
+      look(event.pe);
+    } else {
+      clock.looks = false;
+      if (options_.seed && random_.chance(0.1)) program.idle(pe);
+      running_ = event.pe;
+      step_began_ = std::chrono::steady_clock::now();
+      const std::size_t ran = program.step(pe, 1);
+      const std::int64_t cost = options_.cost ? options_.cost->count() : elapsed();
+      running_ = -1;
+      if (ran != 0) {
+        clock.now += cost;
+        look(event.pe);
+      } else if (program.idle(pe)) {
+        look(event.pe);
+      }
+    }
+  }
+  for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
+  // What is still under way belongs to the program: it frees it.
+  for (; !events_.empty(); events_.pop()) {
+    const Event& event = events_.top();
+    delete event.bytes;
+    if (event.message == nullptr) continue;
+    event.message->next = nullptr;
+    program.accept(PeId{event.pe}, event.message);
+  }
+  for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
+}
+
+double number_of(const std::string& value, const std::string& part, std::string* unit) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  if (error != std::errc())
+    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value, " is no number");
+  *unit = std::string(end, value.data() + value.size());
+  return number;
+}
+
+Time time_of(const std::string& value, const std::string& part) {
+  std::string unit;
+  const double number = number_of(value, part, &unit);
+  const double factor = unit.empty() || unit == "ns" ? 1
+                        : unit == "us"               ? 1e3
+                        : unit == "ms"               ? 1e6
+                        : unit == "s"                ? 1e9
+                                                     : -1;
+  if (factor < 0 || number < 0)
+    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value, " is no time (ns, us, ms, s)");
+  return Time(static_cast<std::int64_t>(number * factor));
+}
+
+}  // namespace
+
+SimulatedOptions parse_simulated(const std::string& given) {
+  SimulatedOptions options;
+  std::size_t at = 0;
+  while (at < given.size()) {
+    const std::size_t comma = std::min(given.find(',', at), given.size());
+    const std::string part = given.substr(at, comma - at);
+    at = comma + 1;
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos)
+      fail(ErrorCode::bad_argument, "--sim: ", part, " is not of the form key=value");
+    const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
+    std::string unit;
+    const auto whole = [&](double least, double most) {
+      const double number = number_of(value, key, &unit);
+      if (!unit.empty() || number < least || number > most ||
+          number != static_cast<double>(static_cast<std::int64_t>(number)))
+        fail(ErrorCode::bad_argument,
+             "--sim ",
+             key,
+             ": ",
+             value,
+             " is not a whole number of ",
+             least,
+             " … ",
+             most);
+      return static_cast<std::int64_t>(number);
+    };
+    if (key == "pes") {
+      options.n_pes = static_cast<std::int32_t>(whole(1, 1 << 20));
+    } else if (key == "per-process") {
+      options.pes_per_process = static_cast<std::int32_t>(whole(1, 1 << 20));
+    } else if (key == "seed") {
+      options.seed = static_cast<std::uint64_t>(whole(0, 9e15));
+    } else if (key == "latency") {
+      options.latency = time_of(value, key);
+    } else if (key == "cost") {
+      if (value != "measured") options.cost = time_of(value, key);
+    } else if (key == "migrate") {
+      options.migration_chance = number_of(value, key, &unit);
+      if (!unit.empty() || *options.migration_chance < 0 || *options.migration_chance > 1)
+        fail(ErrorCode::bad_argument, "--sim migrate: ", value, " is no probability of 0 … 1");
+    } else if (key == "bandwidth") {
+      const double number = number_of(value, key, &unit);
+      const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : unit.empty() ? 1 : -1;
+      if (factor < 0 || number <= 0)
+        fail(ErrorCode::bad_argument, "--sim bandwidth: ", value, " is no rate (MB/s, GB/s)");
+      options.bandwidth = number * factor;
+    } else {
+      fail(ErrorCode::bad_argument,
+           "--sim: unknown key ",
+           key,
+           " (pes, per-process, latency, bandwidth, cost, seed, migrate)");
+    }
+  }
+  if (options.pes_per_process != 0 && options.n_pes % options.pes_per_process != 0)
+    fail(ErrorCode::bad_argument,
+         "--sim: ",
+         options.n_pes,
+         " PEs do not divide into processes of ",
+         options.pes_per_process);
+  return options;
+}
+
+double migration_chance(const SimulatedOptions& options) {
+  if (options.migration_chance) return *options.migration_chance;
+  if (!options.seed) return 0;
+  constexpr std::array<double, 4> choices{0, 0.01, 0.1, 0.5};
+  return choices[mix(*options.seed ^ 0x6d696772U) % 4];
+}
+
+std::unique_ptr<Machine> make_simulated_machine(const SimulatedOptions& options) {
+  return std::make_unique<SimulatedMachine>(options);
+}
+
+}  // namespace tess

@@ -1,0 +1,65 @@
+// A message: what to do (the action), on whose account (the epoch), from where, and the arguments
+// behind it as the values they are. Within a process the pointer travels; between processes the
+// action packs the arguments.
+//
+//     | Link | action | epoch | source target | typed arguments … |
+//
+// An envelope belongs to one queue or one function at a time. Whoever ends it calls discard().
+#pragma once
+
+#include "runtime/base/link.hpp"
+#include "runtime/ids.hpp"
+#include "runtime/machine/machine.hpp"
+#include "runtime/messages/registry.hpp"
+#include "runtime/serialize.hpp"
+
+#include <cstdint>
+#include <new>
+#include <utility>
+
+namespace tess {
+
+class Pe;
+struct Action;
+
+struct Envelope : Link {
+  const Action* action = nullptr;
+  EpochId epoch{};
+  PeId source{};
+  PeId target{};
+  bool counted = true;  ///< a hop of epoch 0; false for what measures or ends the run
+};
+
+/// What an envelope does when it is its turn. One static object for each kind of message.
+struct Action : Registered {
+  using Run = void (*)(Pe&, Envelope*);
+  using Destroy = void (*)(Envelope*);
+  using Pack = void (*)(Envelope&, Writer&);
+  using Unpack = Envelope* (*)(Pe&, Reader&);
+
+  Action(std::string_view name,
+         Run run_,
+         Destroy destroy_,
+         Pack pack_,
+         Unpack unpack_,
+         Traffic traffic_)
+      : Registered(name),
+        run(run_),
+        destroy(destroy_),
+        pack(pack_),
+        unpack(unpack_),
+        traffic(traffic_) {}
+
+  Run run;          ///< on the target PE's thread; takes ownership of the envelope
+  Destroy destroy;  ///< ends the arguments and frees the block
+  Pack pack;
+  Unpack unpack;
+  Traffic traffic;
+};
+
+/// Ends a message that will not be run again.
+inline void discard(Envelope* message) {
+  message->action->destroy(message);
+}
+
+}  // namespace tess

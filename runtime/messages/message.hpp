@@ -1,0 +1,33 @@
+// An envelope with one payload behind it: how it is made, packed, and ended.
+#pragma once
+
+#include "runtime/messages/block.hpp"
+#include "runtime/messages/envelope.hpp"
+
+namespace tess {
+
+template <class Payload>
+struct Message final : Envelope {
+  Payload payload;
+
+  explicit Message(Payload&& p) : payload(std::move(p)) {}
+
+  static Message* make(Pe& pe, const Action& action, Payload&& payload) {
+    auto* message = new (allocate_block(pe, sizeof(Message))) Message(std::move(payload));
+    message->action = &action;
+    return message;
+  }
+  static void destroy(Envelope* envelope) {
+    auto* message = static_cast<Message*>(envelope);
+    message->~Message();
+    release_block(message, sizeof(Message));
+  }
+  static void pack(Envelope& envelope, Writer& ar) { ar(static_cast<Message&>(envelope).payload); }
+  static Envelope* unpack(Pe& pe, Reader& ar) {
+    Payload payload{};
+    ar(payload);
+    return new (allocate_block(pe, sizeof(Message))) Message(std::move(payload));
+  }
+};
+
+}  // namespace tess

@@ -1,0 +1,73 @@
+// Names of what travels: entry methods, system actions, reduction types. Each is one static object
+// that enters itself here before main(); at start-up the names are sorted and numbered, so that a
+// number means the same in every process. A hash of all names is compared across processes:
+// binaries that differ are found before the first message.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tess {
+
+/// A thing with a name and, once the registry is sealed, a number. Static storage only.
+class Registered {
+ public:
+  explicit Registered(std::string_view name);
+  Registered(const Registered&) = delete;
+  Registered& operator=(const Registered&) = delete;
+
+  [[nodiscard]] std::string_view name() const { return name_; }
+  [[nodiscard]] std::uint32_t id() const { return id_; }
+
+ protected:
+  ~Registered() = default;
+
+ private:
+  friend class Registry;
+  std::string_view name_;
+  std::uint32_t id_ = 0;
+};
+
+class Registry {
+ public:
+  /// Numbers everything that is registered, in the order of names. Idempotent; called before the
+  /// first PE starts.
+  static void seal();
+  /// Equal in two processes exactly when they know the same names (64-bit hash).
+  [[nodiscard]] static std::uint64_t fingerprint();
+  /// The thing of that number; throws tess::Error for a number that is none.
+  [[nodiscard]] static const Registered& at(std::uint32_t id);
+
+ private:
+  friend class Registered;
+  static std::vector<Registered*>& all();
+};
+
+namespace naming {
+// g++ writes "… [with T = Block; std::string_view = …]".
+[[nodiscard]] constexpr std::string_view between(std::string_view name, std::string_view begin) {
+  const auto from = name.find(begin) + begin.size();
+  auto to = name.rfind("; std::string_view");
+  if (to == std::string_view::npos) to = name.size() - 1;
+  return name.substr(from, to - from);
+}
+template <class T>
+[[nodiscard]] constexpr std::string_view type() {
+  return between(__PRETTY_FUNCTION__, "T = ");
+}
+template <auto Value>
+[[nodiscard]] constexpr std::string_view value() {
+  return between(__PRETTY_FUNCTION__, "Value = ");
+}
+}  // namespace naming
+
+/// The name of a type as the compiler spells it: "Block".
+template <class T>
+inline constexpr std::string_view name_of_type = naming::type<T>();
+
+/// A function's or member function's name without the compiler's decoration: "Block::step".
+[[nodiscard]] std::string plain_name(std::string_view compiler_name);
+
+}  // namespace tess

@@ -1,0 +1,120 @@
+#include "runtime/run.hpp"
+
+#include "runtime/machine/mpi.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "runtime/scheduler/pe.hpp"
+
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <string_view>
+
+namespace tess {
+namespace {
+
+std::int32_t whole_number(std::string_view option, std::string_view value, std::int32_t least) {
+  std::int32_t number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  if (error != std::errc() || end != value.data() + value.size() || number < least)
+    fail(
+        ErrorCode::bad_argument, option, ": ", value, " is not a whole number of at least ", least);
+  return number;
+}
+
+}  // namespace
+
+std::string options_help() {
+  return "Runtime:\n"
+         "  --pes N     PEs of each process (default: as many as cores)\n"
+         "  --sim KEYS  run on a simulated machine: "
+         "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
+         "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations)\n"
+         "  --stats     print what each PE did\n";
+}
+
+Setup take_options(int& argc, char** argv) {
+  Setup setup;
+  std::int32_t pes = 0;
+  std::string simulated;
+  bool simulates = false;
+  int kept = 1;
+  for (int i = 1; i < argc; ++i) {
+    std::string_view option = argv[i];
+    std::string_view value;
+    const auto takes_value = [&](std::string_view name) {
+      if (option == name) {
+        if (++i >= argc) fail(ErrorCode::bad_argument, name, " needs a value");
+        value = argv[i];
+        return true;
+      }
+      if (option.starts_with(name) && option.size() > name.size() && option[name.size()] == '=') {
+        value = option.substr(name.size() + 1);
+        return true;
+      }
+      return false;
+    };
+    if (takes_value("--pes")) {
+      pes = whole_number("--pes", value, 1);
+    } else if (takes_value("--sim")) {
+      simulates = true;
+      simulated = value;
+    } else if (option == "--stats") {
+      setup.options.statistics = true;
+    } else {
+      argv[kept++] = argv[i];
+    }
+  }
+  argc = kept;
+  if (simulates) {
+    const SimulatedOptions options = parse_simulated(simulated);
+    setup.machine = make_simulated_machine(options);
+    setup.options.seed = options.seed.value_or(1);
+    setup.options.migration_chance = migration_chance(options);
+  } else if (under_mpirun()) {
+    setup.machine = make_mpi_machine(argc, argv, MpiOptions{.pes_per_process = pes});
+  } else {
+    setup.machine = make_threads_machine(pes);
+  }
+  return setup;
+}
+
+int run_on(Setup& setup, std::function<void()> main) {
+  Runtime runtime(*setup.machine, setup.options, std::move(main));
+  return runtime.run();
+}
+
+int guarded(const char* program, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const Error& error) {
+    const char* slash = std::strrchr(program, '/');
+    std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program, error.what());
+    return 2;
+  }
+}
+
+namespace detail {
+void refuse_rest(int argc, char** argv) {
+  if (argc <= 1) return;
+  const std::string_view option = argv[1];
+  if (option == "--help" || option == "-h") {
+    std::printf("usage: %s [options]\n%s", argv[0], options_help().c_str());
+    std::fflush(stdout);
+    std::exit(0);
+  }
+  fail(ErrorCode::bad_argument, "unknown option ", option, " (--help lists them)");
+}
+}  // namespace detail
+
+void exit(int code) {
+  Pe& pe = current_pe();
+  pe.runtime().exit(pe, code);
+}
+
+void print_text(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace tess

@@ -1,0 +1,252 @@
+#include "runtime/scheduler/pe.hpp"
+
+#include "runtime/check.hpp"
+#include "runtime/collections/collection.hpp"
+#include "runtime/scheduler/runtime.hpp"
+
+namespace tess {
+namespace {
+
+constexpr std::size_t flush_bytes = 32U << 10U;
+constexpr unsigned steps_between_flushes = 4;
+
+/// What stands before each message in a packed buffer.
+struct PackedHeader {
+  std::uint64_t n_bytes;
+  EpochId epoch;
+  std::uint32_t action;
+  PeId source;
+  PeId target;
+  std::uint32_t counted;
+};
+static_assert(Bitwise<PackedHeader>);
+
+}  // namespace
+
+Pe& current_pe() {
+  TESS_CHECK(detail::the_current_pe != nullptr,
+             "this call belongs on a PE: into an entry method or the function given to run()");
+  return *detail::the_current_pe;
+}
+
+Pe::Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed)
+    : id_(id),
+      n_pes_(machine.n_pes()),
+      runtime_(runtime),
+      machine_(machine),
+      intercepts_(machine.intercepts_local()),
+      patience_(machine.patience()),
+      completion_(*this),
+      random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
+      packed_(static_cast<std::size_t>(machine.n_processes())) {}
+
+Pe::~Pe() = default;
+
+void Pe::route(PeId to, Envelope* message) {
+  message->target = to;
+  if (to == id_ && !intercepts_) {
+    ready_.push(message);
+  } else if (machine_.same_process(id_, to)) {
+    ++statistics_.sent_remote;
+    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+  } else {
+    ++statistics_.sent_remote;
+    pack(to, message);
+  }
+}
+
+void Pe::pack(PeId to, Envelope* message) {
+  const auto process = static_cast<std::size_t>(machine_.process_of(to).value);
+  Buffer& out = packed_[process];
+  if (out.capacity() == 0) out.reserve(flush_bytes + 4096);
+  const std::size_t begin = out.size();
+  PackedHeader header{
+      0, message->epoch, message->action->id(), message->source, to, message->counted ? 1U : 0U};
+  Writer write(out);
+  write(header);
+  message->action->pack(*message, write);
+  header.n_bytes = out.size() - begin - sizeof header;
+  std::memcpy(out.data() + begin, &header, sizeof header);
+  statistics_.bytes_sent += out.size() - begin;
+  discard(message);
+  holds_packed_ = true;
+  if (out.size() >= flush_bytes || intercepts_) {
+    machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
+    out = Buffer();
+  }
+}
+
+bool Pe::flush() {
+  steps_since_flush_ = 0;
+  if (!holds_packed_) return false;
+  holds_packed_ = false;
+  for (std::size_t process = 0; process < packed_.size(); ++process) {
+    if (packed_[process].empty()) continue;
+    machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(packed_[process]));
+    packed_[process] = Buffer();
+  }
+  return true;
+}
+
+void Pe::receive(std::span<const std::byte> bytes) {
+  const RunsOn here(*this);
+  Reader read(bytes);
+  while (read.remaining() != 0) {
+    const auto header = read.take<PackedHeader>();
+    Reader body(read.view(header.n_bytes));
+    const auto& action = static_cast<const Action&>(Registry::at(header.action));
+    Envelope* message = action.unpack(*this, body);
+    TESS_CHECK(body.remaining() == 0,
+               plain_name(action.name()),
+               ": the arguments read back leave ",
+               body.remaining(),
+               " of ",
+               header.n_bytes,
+               " bytes; does serialize() read what it writes?");
+    message->action = &action;
+    message->epoch = header.epoch;
+    message->source = header.source;
+    message->target = header.target;
+    message->counted = header.counted != 0;
+    if (header.target == id_) {
+      ready_.push(message);
+    } else {
+      machine_.post(id_, header.target, message, header.n_bytes, action.traffic);
+    }
+  }
+}
+
+void Pe::run(Envelope* message) {
+  const bool counted = message->counted;
+  if (stopped_ && counted) [[unlikely]] {
+    discard(message);
+    return;
+  }
+  context_ = Context{nullptr, message->action, message->epoch};
+  try {
+    message->action->run(*this, message);
+    if (kept_exception_) [[unlikely]]
+      std::rethrow_exception(std::exchange(kept_exception_, nullptr));
+  } catch (const Error& error) {
+    exception(error.what(), 2);
+  } catch (const std::exception& error) {
+    exception(error.what(), 1);
+  } catch (...) {
+    exception("an exception that is no std::exception", 1);
+  }
+  context_ = Context{};
+  if (counted) completion_.hop_processed();
+}
+
+void Pe::exception(const char* what, int exit_code) {
+  // Bad input is the user's to mend: one line, no trace. Everything else is a bug and says where it
+  // was.
+  if (exit_code == 2) {
+    runtime_.error_line(text("error: ", what));
+  } else {
+    runtime_.error_line(
+        text("tessera: uncaught exception: ", what, "\n  ", runtime_.describe(*this)));
+  }
+  runtime_.exit(*this, exit_code);
+}
+
+std::size_t Pe::step(std::size_t most) {
+  const RunsOn here(*this);
+  std::size_t n = 0;
+  for (; n < most && !ready_.empty(); ++n) run(static_cast<Envelope*>(ready_.pop()));
+  if (n == 0) return 0;
+  statistics_.messages += n;
+  idle_calls_ = 0;
+  if (++steps_since_flush_ >= steps_between_flushes) {
+    flush();
+    completion_.tell_epochs();
+  }
+  return n;
+}
+
+bool Pe::idle() {
+  const RunsOn here(*this);
+  bool busy = completion_.tell_epochs();
+  // Not at the first gap: a PE that is idle between two messages of a ping-pong would report each
+  // time.
+  if (++idle_calls_ >= patience_) busy = completion_.tell_run() || busy;
+  return flush() || busy || !ready_.empty();
+}
+
+void Pe::drop_all() {
+  while (!ready_.empty()) discard(static_cast<Envelope*>(ready_.pop()));
+  for (auto& [id, messages] : early_) {
+    for (Envelope* message : messages) discard(message);
+  }
+  early_.clear();
+  // The latest first: a coroutine that called another has suspended after it.
+  while (!suspended_.empty()) {
+    const auto end = suspended_.back().end;
+    suspended_.pop_back();
+    end();
+  }
+}
+
+Collection* Pe::find_slow(CollectionId id) {
+  const auto at = collections_.find(id);
+  if (at == collections_.end()) return nullptr;
+  last_id_ = id;
+  last_ = at->second.get();
+  return last_;
+}
+
+void Pe::add(CollectionId id, std::unique_ptr<Collection> collection) {
+  TESS_CHECK(!collections_.contains(id), id, " exists already on ", id_);
+  collections_.emplace(id, std::move(collection));
+  last_id_ = CollectionId{~std::uint64_t{0}};
+  const auto early = early_.find(id);
+  if (early == early_.end()) return;
+  const std::vector<Envelope*> messages = std::move(early->second);
+  early_.erase(early);
+  for (Envelope* message : messages) send_here(message);
+}
+
+void Pe::keep_early(CollectionId id, Envelope* message) {
+  early_[id].push_back(message);
+}
+
+CollectionId Pe::new_collection_id() {
+  return CollectionId{(++n_collections_made_ << 24U) | static_cast<std::uint64_t>(id_.value)};
+}
+
+std::vector<Collection*> Pe::collections() const {
+  std::vector<Collection*> all;
+  for (const auto& [id, collection] : collections_) all.push_back(collection.get());
+  return all;
+}
+
+void Pe::quiescent() {
+  runtime_.quiescent(*this);
+}
+
+PeId Pe::whim() {
+  if (migration_chance_ == 0 || !random_.chance(migration_chance_)) return id_;
+  return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
+}
+
+std::vector<std::string> Pe::census() const {
+  std::vector<std::string> lines;
+  for (const Suspended& one : suspended_) {
+    lines.push_back(
+        text(one.element != nullptr ? element_text(*one.element) : text("the main program"),
+             " on ",
+             id_,
+             ": ",
+             one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
+             " waits for ",
+             one.waits_for()));
+  }
+  for (const auto& [id, collection] : collections_) collection->describe_waiting(lines);
+  for (const auto& [id, messages] : early_)
+    lines.push_back(
+        text(messages.size(), " messages on ", id_, " wait for ", id, ", which was never created"));
+  completion_.describe_open(lines);
+  return lines;
+}
+
+}  // namespace tess

@@ -1,0 +1,207 @@
+// A processing element: its queue, its collections, its part in completion, and what it is doing
+// right now. The machine drives it (accept, step, idle); everything that runs on the PE reaches the
+// world through it. Nothing here is shared: a PE is touched by the one thread that runs it.
+#pragma once
+
+#include "runtime/base/mix.hpp"
+#include "runtime/completion/completion.hpp"
+#include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/ready_queue.hpp"
+#include "runtime/scheduler/suspended.hpp"
+
+#include <boost/unordered/unordered_flat_map.hpp>
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tess {
+
+class Collection;
+class Element;
+class Runtime;
+
+/// What a PE is doing: whose code runs, on which epoch's account.
+struct Context {
+  Element* element = nullptr;
+  const Action* action = nullptr;
+  EpochId epoch{};
+};
+
+/// What happened on a PE since the start; printed by --stats.
+struct PeStatistics {
+  std::uint64_t messages = 0;      ///< run on this PE
+  std::uint64_t sent_remote = 0;   ///< to another PE
+  std::uint64_t bytes_sent = 0;    ///< packed for another process
+  std::uint64_t forwards = 0;      ///< messages that met an element's former PE
+  std::uint64_t migrations = 0;    ///< elements that left
+  std::uint64_t dead_letters = 0;  ///< messages to elements that are no more
+  Time busy{0};
+};
+
+class Pe {
+ public:
+  Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed);
+  Pe(const Pe&) = delete;
+  Pe& operator=(const Pe&) = delete;
+  ~Pe();
+
+  [[nodiscard]] PeId id() const { return id_; }
+  [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
+  [[nodiscard]] Machine& machine() { return machine_; }
+  [[nodiscard]] Runtime& runtime() { return runtime_; }
+  [[nodiscard]] Completion& completion() { return completion_; }
+  [[nodiscard]] Context& context() { return context_; }
+  [[nodiscard]] PeStatistics& statistics() { return statistics_; }
+  [[nodiscard]] SuspendedList& suspended() { return suspended_; }
+  [[nodiscard]] Random& random() { return random_; }
+  [[nodiscard]] Time now() const { return machine_.now(id_); }
+
+  /// Marks a new message as sent by this PE, on account of the epoch that runs.
+  template <class M>
+  M* stamp(M* message) {
+    message->source = id_;
+    message->epoch = context_.epoch;
+    return message;
+  }
+
+  // Sending and forwarding of stamped messages. All take ownership.
+
+  /// To any PE, also this one.
+  void send(PeId to, Envelope* message) {
+    completion_.hop_sent();
+    route(to, message);
+  }
+  /// To this PE; the fast path of messages to local elements.
+  void send_here(Envelope* message) {
+    completion_.hop_sent();
+    message->target = id_;
+    if (intercepts_) [[unlikely]] {
+      route(id_, message);
+    } else {
+      ready_.push(message);
+    }
+  }
+  /// Outside of epoch 0.
+  void send_uncounted(PeId to, Envelope* message) {
+    message->counted = false;
+    route(to, message);
+  }
+
+  // Collections.
+
+  [[nodiscard]] Collection* find(CollectionId id) {
+    if (last_id_ == id) return last_;
+    return find_slow(id);
+  }
+  /// Enters a collection; messages that came before it are sent on.
+  void add(CollectionId id, std::unique_ptr<Collection> collection);
+  /// Keeps a message whose collection is not known here yet.
+  void keep_early(CollectionId id, Envelope* message);
+  [[nodiscard]] CollectionId new_collection_id();
+  [[nodiscard]] std::vector<Collection*> collections() const;
+
+  // Called by the machine through the runtime.
+
+  void accept(Link* first) { ready_.append(first); }
+  std::size_t step(std::size_t most);
+  bool idle();
+  void receive(std::span<const std::byte> bytes);
+  void drop_all();
+
+  /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
+  void stop_user_code() { stopped_ = true; }
+  [[nodiscard]] bool stopped() const { return stopped_; }
+
+  /// Epoch 0 is done (on PE 0).
+  void quiescent();
+
+  /// What waits on this PE for something that must come from elsewhere, a line each.
+  [[nodiscard]] std::vector<std::string> census() const;
+
+  /// With a simulated machine that forces migrations: the PE an element has to go to now, or this
+  /// one.
+  [[nodiscard]] PeId whim();
+  void set_migration_chance(double chance) { migration_chance_ = chance; }
+
+  /// An exception that a coroutine threw after it had waited; thrown again once its message is at
+  /// its end.
+  void keep_exception(std::exception_ptr error) { kept_exception_ = std::move(error); }
+
+  /// The index (and array) of the element that is constructed right now; null between.
+  [[nodiscard]] const void* birth() const { return birth_index_; }
+  [[nodiscard]] Collection* birth_collection() const { return birth_collection_; }
+  void set_birth(const void* index, Collection* collection) {
+    birth_index_ = index;
+    birth_collection_ = collection;
+  }
+
+  /// Calls that the schedule makes wait until the end of the current message (element surgery).
+  [[nodiscard]] bool intercepts() const { return intercepts_; }
+
+ private:
+  void route(PeId to, Envelope* message);
+  void pack(PeId to, Envelope* message);
+  bool flush();
+  void run(Envelope* message);
+  void exception(const char* what, int exit_code);
+  Collection* find_slow(CollectionId id);
+
+  const PeId id_;
+  const std::int32_t n_pes_;
+  Runtime& runtime_;
+  Machine& machine_;
+  const bool intercepts_;
+  const unsigned patience_;
+  bool stopped_ = false;
+  std::exception_ptr kept_exception_;
+  const void* birth_index_ = nullptr;
+  Collection* birth_collection_ = nullptr;
+  ReadyQueue ready_;
+  Context context_;
+  Completion completion_;
+  SuspendedList suspended_;
+  PeStatistics statistics_;
+  Random random_;
+  double migration_chance_ = 0;
+  unsigned idle_calls_ = 0;
+  unsigned steps_since_flush_ = 0;
+  bool holds_packed_ = false;
+  std::vector<Buffer> packed_;  // one a process
+  CollectionId last_id_{~std::uint64_t{0}};
+  Collection* last_ = nullptr;
+  std::uint64_t n_collections_made_ = 0;
+  boost::unordered_flat_map<CollectionId, std::unique_ptr<Collection>, std::hash<CollectionId>>
+      collections_;
+  boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
+};
+
+namespace detail {
+inline thread_local Pe* the_current_pe = nullptr;
+}
+
+/// The PE that this thread runs right now; null on a thread that runs none.
+[[nodiscard]] inline Pe* current_pe_or_null() {
+  return detail::the_current_pe;
+}
+
+/// The PE that this thread runs right now. Misuse outside of a PE ends the job.
+[[nodiscard]] Pe& current_pe();
+
+/// Makes a PE current for a scope.
+class RunsOn {
+ public:
+  explicit RunsOn(Pe& pe) : before_(detail::the_current_pe) { detail::the_current_pe = &pe; }
+  RunsOn(const RunsOn&) = delete;
+  RunsOn& operator=(const RunsOn&) = delete;
+  ~RunsOn() { detail::the_current_pe = before_; }
+
+ private:
+  Pe* before_;
+};
+
+}  // namespace tess

@@ -1,0 +1,205 @@
+#include "runtime/scheduler/runtime.hpp"
+
+#include "runtime/check.hpp"
+#include "runtime/collections/collection.hpp"
+#include "runtime/scheduler/pe_action.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/core.h>
+
+namespace tess {
+namespace {
+
+struct Code {
+  int value = 0;
+};
+struct Nothing {
+  std::uint8_t none = 0;
+};
+
+void main_arrives(Pe& pe, Nothing&& /*nothing*/) {
+  pe.runtime().run_main(pe);
+}
+void exit_asked_arrives(Pe& pe, Code&& code) {
+  pe.runtime().on_exit_asked(pe, code.value);
+}
+void stop_arrives(Pe& pe, Nothing&& /*nothing*/) {
+  pe.runtime().on_stop(pe);
+}
+void stopped_arrives(Pe& pe, Code&& code) {
+  pe.runtime().on_stopped(pe, code.value);
+}
+void leave_arrives(Pe& pe, Code&& code) {
+  pe.runtime().on_leave(pe, code.value);
+}
+void census_asked_arrives(Pe& pe, Nothing&& /*nothing*/) {
+  pe.runtime().on_census_asked(pe);
+}
+void census_arrives(Pe& pe, Runtime::Census&& census) {
+  pe.runtime().on_census(pe, std::move(census));
+}
+
+template <auto Handler, class Payload>
+void send_to_all(Pe& pe, const Payload& payload) {
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to) send_uncounted<Handler>(pe, PeId{to}, payload);
+}
+
+std::string context_of_this_thread() {
+  Pe* pe = current_pe_or_null();
+  return pe == nullptr ? std::string() : pe->runtime().describe(*pe);
+}
+
+}  // namespace
+
+Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<void()> main)
+    : machine_(machine),
+      options_(options),
+      main_(std::move(main)),
+      first_{machine.process().value * machine.pes_per_process()} {
+  const std::int32_t n_here = machine.n_pes_here();
+  asked_.resize(static_cast<std::size_t>(n_here), -1);
+  for (std::int32_t i = 0; i < n_here; ++i) {
+    pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i}, *this, machine, options.seed));
+    pes_.back()->set_migration_chance(options.migration_chance);
+  }
+  set_check_context(&context_of_this_thread);
+}
+
+Runtime::~Runtime() = default;
+
+int Runtime::run() {
+  Registry::seal();
+  if (!machine_.agree(Registry::fingerprint()))
+    fail(ErrorCode::environment,
+         "the processes of this job run different programs: start the same build everywhere");
+  machine_.run(*this);
+  if (left_) return exit_code_;
+  // Only a simulated machine can notice that nothing at all is under way any more.
+  std::string report =
+      "tessera: the run stands still, and the runtime had not noticed: a bug of the runtime";
+  for (const std::string& line : still_) report += "\n  " + line;
+  error_line(report);
+  return 3;
+}
+
+void Runtime::start(PeId id) {
+  if (id.value != 0) return;
+  Pe& pe0 = pe(id);
+  const RunsOn here(pe0);
+  send_system<&main_arrives>(pe0, id, Nothing{});
+}
+
+void Runtime::run_main(Pe& /*pe*/) {
+  main_();
+}
+
+void Runtime::finish(PeId id) {
+  const RunsOn here(pe(id));
+  if (options_.statistics) {
+    const PeStatistics& s = pe(id).statistics();
+    error_line(fmt::format(
+        "stats: PE {} messages {} sent {} bytes {} forwards {} migrations {} dead letters {}",
+        id.value,
+        s.messages,
+        s.sent_remote,
+        s.bytes_sent,
+        s.forwards,
+        s.migrations,
+        s.dead_letters));
+  }
+  if (!left_) {
+    for (std::string& line : pe(id).census()) still_.push_back(std::move(line));
+  }
+  pe(id).drop_all();
+}
+
+void Runtime::error_line(const std::string& line) {
+  const std::lock_guard lock(output_);
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s\n", line.c_str());
+  std::fflush(stderr);
+}
+
+std::string Runtime::describe(Pe& pe) const {
+  const Context& context = pe.context();
+  std::string out = text("on ", pe.id());
+  if (context.element != nullptr) out += text(", ", element_text(*context.element));
+  if (context.action != nullptr) out += text(", in ", plain_name(context.action->name()));
+  if (context.epoch.value != 0) out += text(", epoch ", context.epoch.value >> 24U);
+  return out;
+}
+
+void Runtime::exit(Pe& pe, int code) {
+  int& asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
+  const bool first = asked < 0;
+  asked = std::max(asked, code);
+  if (first) send_uncounted<&exit_asked_arrives>(pe, PeId{0}, Code{code});
+}
+
+void Runtime::on_exit_asked(Pe& pe, int code) {
+  end_with(pe, code);
+}
+
+void Runtime::end_with(Pe& pe, int code) {
+  exit_code_ = std::max(exit_code_.load(), code);
+  if (stopping_) return;
+  stopping_ = true;
+  n_answers_ = pe.n_pes();
+  send_to_all<&stop_arrives>(pe, Nothing{});
+}
+
+void Runtime::on_stop(Pe& pe) {
+  pe.stop_user_code();
+  const int asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
+  send_uncounted<&stopped_arrives>(pe, PeId{0}, Code{std::max(asked, 0)});
+}
+
+void Runtime::on_stopped(Pe& pe, int code) {
+  exit_code_ = std::max(exit_code_.load(), code);
+  if (--n_answers_ == 0) send_to_all<&leave_arrives>(pe, Code{exit_code_});
+}
+
+void Runtime::on_leave(Pe& /*pe*/, int code) {
+  exit_code_ = code;
+  left_ = true;
+  machine_.stop();
+}
+
+void Runtime::quiescent(Pe& pe) {
+  if (stopping_) return;
+  n_answers_ = pe.n_pes();
+  census_ = Census{};
+  send_to_all<&census_asked_arrives>(pe, Nothing{});
+}
+
+void Runtime::on_census_asked(Pe& pe) {
+  send_uncounted<&census_arrives>(pe, PeId{0}, Census{pe.census(), pe.statistics().dead_letters});
+}
+
+void Runtime::on_census(Pe& pe, Census&& census) {
+  census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
+  census_.dead_letters += census.dead_letters;
+  if (--n_answers_ != 0 || stopping_) return;
+  if (census_.dead_letters != 0)
+    error_line(text("tessera: ",
+                    census_.dead_letters,
+                    " messages to elements that had been destroyed were not delivered"));
+  if (!census_.lines.empty()) {
+    constexpr std::size_t most = 40;
+    std::sort(census_.lines.begin(), census_.lines.end());
+    std::string report = text("tessera: deadlock: nothing runs and nothing is under way, but ",
+                              census_.lines.size(),
+                              " wait:");
+    for (std::size_t i = 0; i < std::min(most, census_.lines.size()); ++i)
+      report += "\n  " + census_.lines[i];
+    if (census_.lines.size() > most)
+      report += text("\n  … and ", census_.lines.size() - most, " more");
+    error_line(report);
+    end_with(pe, 1);
+    return;
+  }
+  end_with(pe, 0);
+}
+
+}  // namespace tess

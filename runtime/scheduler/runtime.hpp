@@ -1,0 +1,91 @@
+// A run on one process: its PEs on a machine, and how the run ends. It ends in one of four ways, on
+// all processes with one exit code: quiescence with nothing waiting (0); quiescence with something
+// waiting, a deadlock, reported as who waits for what (1); exit(code) of the program; an exception
+// (1, or 2 for bad input).
+//
+//     exit asked -> PE 0: Stop to all PEs -> each stops user code, answers with the greatest code
+//     it was given
+//                -> PE 0: Leave(code) to all PEs -> each stops its machine
+#pragma once
+
+#include "runtime/machine/machine.hpp"
+#include "runtime/scheduler/pe.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace tess {
+
+struct RuntimeOptions {
+  std::uint64_t seed = 0;
+  double migration_chance =
+      0;                    ///< after each message an element may be sent away: schedule fuzzing
+  bool statistics = false;  ///< print what each PE did
+};
+
+class Runtime final : public Program {
+ public:
+  Runtime(Machine& machine, const RuntimeOptions& options, std::function<void()> main);
+  ~Runtime() override;
+
+  /// Drives this process until the run ends; returns the exit code.
+  int run();
+
+  [[nodiscard]] Machine& machine() { return machine_; }
+  [[nodiscard]] Pe& pe(PeId id) { return *pes_[static_cast<std::size_t>(id.value - first_.value)]; }
+
+  /// The program asks for the end; the greatest code wins.
+  void exit(Pe& pe, int code);
+  /// Epoch 0 is done: on PE 0.
+  void quiescent(Pe& pe);
+  /// "Block[3], Block::step on PE 2".
+  [[nodiscard]] std::string describe(Pe& pe) const;
+  /// Prints whole lines to standard error, never mixed with those of another thread.
+  void error_line(const std::string& line);
+
+  // Program.
+  void start(PeId pe) override;
+  void accept(PeId id, Link* first) override { pe(id).accept(first); }
+  std::size_t step(PeId id, std::size_t most) override { return pe(id).step(most); }
+  bool idle(PeId id) override { return pe(id).idle(); }
+  void receive(PeId id, std::span<const std::byte> bytes) override { pe(id).receive(bytes); }
+  void finish(PeId id) override;
+
+  // Control messages.
+  struct Census {
+    std::vector<std::string> lines;
+    std::uint64_t dead_letters = 0;
+  };
+  void run_main(Pe& pe);
+  void on_exit_asked(Pe& pe, int code);
+  void on_stop(Pe& pe);
+  void on_stopped(Pe& pe, int code);
+  void on_leave(Pe& pe, int code);
+  void on_census_asked(Pe& pe);
+  void on_census(Pe& pe, Census&& census);
+
+ private:
+  void end_with(Pe& pe, int code);
+
+  Machine& machine_;
+  const RuntimeOptions options_;
+  const std::function<void()> main_;
+  const PeId first_;
+  std::vector<std::unique_ptr<Pe>> pes_;
+  std::mutex output_;
+  std::atomic<int> exit_code_{0};
+  std::atomic<bool> left_{false};
+  std::vector<std::string> still_;  // simulated machine: what waits if the run stands still
+
+  // On PE 0 alone.
+  bool stopping_ = false;
+  std::int32_t n_answers_ = 0;
+  Census census_;
+  // On each PE: the greatest code asked for here.
+  std::vector<int> asked_;
+};
+
+}  // namespace tess

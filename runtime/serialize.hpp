@@ -1,0 +1,330 @@
+// Values to bytes and back, for messages that cross processes and for chares that migrate.
+//
+//   struct Edge { int step; std::vector<double> values; };          an aggregate needs nothing
+//   class Block { template <class Ar> void serialize(Ar& ar) { ar(grid_, tile_, edges_); } };   one
+//   function, both ways
+//
+// Numbers and enums are copied as they are: all processes of a job run the same binary on the same
+// kind of machine. Standard and Boost containers, pair, tuple, optional, variant and unique_ptr
+// work when what they hold does. A raw pointer does not compile. Reading checks every length
+// against what is left and throws tess::Error.
+#pragma once
+
+#include "runtime/error.hpp"
+
+#include <boost/pfr.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tess {
+
+class Writer;
+class Reader;
+
+namespace serialization {
+
+template <class T>
+concept HasSerialize = requires(T& value, Writer& ar) {
+  value.serialize(ar);
+};
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <class T>
+concept TupleLike = requires {
+  std::tuple_size<T>::value;
+}
+&&!std::is_aggregate_v<T>;
+template <class T>
+concept Resizable = requires(T& c, std::size_t n) {
+  c.resize(n);
+  c.data();
+  c.size();
+  typename T::value_type;
+};
+template <class T>
+concept Growable = requires(T& c, typename T::value_type v) {
+  c.clear();
+  c.insert(c.end(), std::move(v));
+  c.size();
+};
+
+template <class T>
+struct IsArray : std::false_type {};
+template <class T, std::size_t N>
+struct IsArray<std::array<T, N>> : std::true_type {};
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+template <class T>
+struct IsVariant : std::false_type {};
+template <class... T>
+struct IsVariant<std::variant<T...>> : std::true_type {};
+template <class T>
+struct IsUnique : std::false_type {};
+template <class T>
+struct IsUnique<std::unique_ptr<T>> : std::true_type {};
+template <class T>
+struct IsPair : std::false_type {};
+template <class A, class B>
+struct IsPair<std::pair<A, B>> : std::true_type {};
+
+template <class T>
+consteval bool is_bitwise();
+
+template <class T, std::size_t... I>
+consteval bool fields_are_bitwise(std::index_sequence<I...> /*fields*/) {
+  return (is_bitwise<boost::pfr::tuple_element_t<I, T>>() && ...) &&
+         (sizeof(boost::pfr::tuple_element_t<I, T>) + ... + 0) == sizeof(T);
+}
+
+/// True if a copy of the bytes is a copy of the value, with no padding between.
+template <class T>
+consteval bool is_bitwise() {
+  if constexpr (Number<T>) {
+    return true;
+  } else if constexpr (IsArray<T>::value) {
+    return is_bitwise<typename T::value_type>();
+  } else if constexpr (std::is_array_v<T>) {
+    return false;
+  } else if constexpr (std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> &&
+                       !HasSerialize<T> && !std::is_union_v<T>) {
+    if constexpr (std::is_empty_v<T>) {
+      return false;
+    } else {
+      return fields_are_bitwise<T>(std::make_index_sequence<boost::pfr::tuple_size_v<T>>());
+    }
+  } else {
+    return false;
+  }
+}
+
+}  // namespace serialization
+
+/// A value whose bytes are the value.
+template <class T>
+concept Bitwise = serialization::is_bitwise<std::remove_cv_t<T>>();
+
+/// Appends values to a byte vector. Never fails but for memory.
+class Writer {
+ public:
+  static constexpr bool is_reading = false;
+
+  explicit Writer(std::vector<std::byte>& out) : out_(out) {}
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+  void bytes(const void* data, std::size_t n) {
+    const auto* first = static_cast<const std::byte*>(data);
+    out_.insert(out_.end(), first, first + n);
+  }
+  [[nodiscard]] std::size_t position() const { return out_.size(); }
+
+ private:
+  template <class T>
+  void put(const T& value);
+
+  std::vector<std::byte>& out_;
+};
+
+/// Takes values from bytes, in the order they were written. Throws tess::Error when the bytes end
+/// too early.
+class Reader {
+ public:
+  static constexpr bool is_reading = true;
+
+  explicit Reader(std::span<const std::byte> in) : in_(in) {}
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+  template <class T>
+  [[nodiscard]] T take() {
+    T value{};
+    get(value);
+    return value;
+  }
+  void bytes(void* data, std::size_t n) {
+    need(n);
+    if (n != 0) std::memcpy(data, in_.data() + at_, n);
+    at_ += n;
+  }
+  /// The next n bytes, without a copy; valid as long as the bytes that are read.
+  [[nodiscard]] std::span<const std::byte> view(std::size_t n) {
+    need(n);
+    at_ += n;
+    return in_.subspan(at_ - n, n);
+  }
+  [[nodiscard]] std::size_t remaining() const { return in_.size() - at_; }
+
+ private:
+  template <class T>
+  void get(T& value);
+  void need(std::size_t n) const {
+    if (n > remaining())
+      fail(ErrorCode::bad_value,
+           "message ends early: ",
+           n,
+           " bytes wanted at byte ",
+           at_,
+           " of ",
+           in_.size());
+  }
+  std::size_t length(std::size_t least_bytes_each) {
+    const auto n = take<std::uint64_t>();
+    if (least_bytes_each != 0 && n > remaining() / least_bytes_each)
+      fail(ErrorCode::bad_value,
+           "message ends early: ",
+           n,
+           " elements announced, ",
+           remaining(),
+           " bytes left");
+    return n;
+  }
+
+  std::span<const std::byte> in_;
+  std::size_t at_ = 0;
+};
+
+template <class T>
+void Writer::put(const T& value) {
+  using namespace serialization;
+  static_assert(!std::is_pointer_v<T> && !std::is_reference_v<T>,
+                "a pointer means nothing in another process: send the value, an index or a proxy");
+  if constexpr (Bitwise<T>) {
+    bytes(&value, sizeof value);
+  } else if constexpr (HasSerialize<T>) {
+    const_cast<T&>(value).serialize(*this);
+  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
+    put(static_cast<std::uint64_t>(value.size()));
+    for (const bool bit : value) put(static_cast<std::uint8_t>(bit));
+  } else if constexpr (IsOptional<T>::value || IsUnique<T>::value) {
+    put(static_cast<std::uint8_t>(value ? 1 : 0));
+    if (value) put(*value);
+  } else if constexpr (IsVariant<T>::value) {
+    put(static_cast<std::uint64_t>(value.index()));
+    std::visit([this](const auto& held) { put(held); }, value);
+  } else if constexpr (Resizable<T>) {
+    put(static_cast<std::uint64_t>(value.size()));
+    if constexpr (Bitwise<typename T::value_type>) {
+      bytes(value.data(), value.size() * sizeof(typename T::value_type));
+    } else {
+      for (const auto& item : value) put(item);
+    }
+  } else if constexpr (Growable<T>) {
+    put(static_cast<std::uint64_t>(value.size()));
+    for (const auto& item : value) put(item);
+  } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
+    for (const auto& item : value) put(item);
+  } else if constexpr (IsPair<T>::value || TupleLike<T>) {
+    std::apply([this](const auto&... item) { (put(item), ...); }, value);
+  } else if constexpr (std::is_empty_v<T>) {
+    // Nothing to write.
+  } else {
+    static_assert(std::is_aggregate_v<T>,
+                  "a type that is no aggregate and no known container needs `template <class Ar> "
+                  "void serialize(Ar& ar)`");
+    boost::pfr::for_each_field(value, [this](const auto& field) { put(field); });
+  }
+}
+
+template <class T>
+void Reader::get(T& value) {
+  using namespace serialization;
+  if constexpr (Bitwise<T>) {
+    bytes(&value, sizeof value);
+  } else if constexpr (HasSerialize<T>) {
+    value.serialize(*this);
+  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
+    value.resize(length(1));
+    for (auto&& bit : value) bit = take<std::uint8_t>() != 0;
+  } else if constexpr (IsOptional<T>::value) {
+    value.reset();
+    if (take<std::uint8_t>() != 0) get(value.emplace());
+  } else if constexpr (IsUnique<T>::value) {
+    value.reset();
+    if (take<std::uint8_t>() != 0) {
+      value = std::make_unique<typename T::element_type>();
+      get(*value);
+    }
+  } else if constexpr (IsVariant<T>::value) {
+    const auto which = take<std::uint64_t>();
+    if (which >= std::variant_size_v<T>)
+      fail(ErrorCode::bad_value,
+           "message holds alternative ",
+           which,
+           " of a variant of ",
+           std::variant_size_v<T>);
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      ((which == I ? get(value.template emplace<I>()) : void()), ...);
+    }
+    (std::make_index_sequence<std::variant_size_v<T>>());
+  } else if constexpr (Resizable<T>) {
+    using Item = typename T::value_type;
+    if constexpr (Bitwise<Item>) {
+      value.resize(length(sizeof(Item)));
+      bytes(value.data(), value.size() * sizeof(Item));
+    } else {
+      value.resize(length(std::is_empty_v<Item> ? 0 : 1));
+      for (auto& item : value) get(item);
+    }
+  } else if constexpr (Growable<T>) {
+    value.clear();
+    for (std::size_t n = length(1); n > 0; --n) {
+      if constexpr (requires { typename T::mapped_type; }) {
+        auto key = take<typename T::key_type>();
+        auto mapped = take<typename T::mapped_type>();
+        value.insert(value.end(), typename T::value_type(std::move(key), std::move(mapped)));
+      } else {
+        value.insert(value.end(), take<typename T::value_type>());
+      }
+    }
+  } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
+    for (auto& item : value) get(item);
+  } else if constexpr (IsPair<T>::value || TupleLike<T>) {
+    std::apply([this](auto&... item) { (get(item), ...); }, value);
+  } else if constexpr (std::is_empty_v<T>) {
+    // Nothing to read.
+  } else {
+    static_assert(std::is_aggregate_v<T>,
+                  "a type that is no aggregate and no known container needs `template <class Ar> "
+                  "void serialize(Ar& ar)`");
+    boost::pfr::for_each_field(value, [this](auto& field) { get(field); });
+  }
+}
+
+/// The bytes of one value.
+template <class T>
+[[nodiscard]] std::vector<std::byte> to_bytes(const T& value) {
+  std::vector<std::byte> out;
+  Writer write(out);
+  write(value);
+  return out;
+}
+
+/// The value of these bytes; throws tess::Error if they end early or are too many.
+template <class T>
+[[nodiscard]] T from_bytes(std::span<const std::byte> bytes) {
+  Reader read(bytes);
+  T value = read.take<T>();
+  if (read.remaining() != 0)
+    fail(ErrorCode::bad_value, "message has ", read.remaining(), " bytes more than its type reads");
+  return value;
+}
+
+}  // namespace tess

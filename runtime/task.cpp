@@ -1,0 +1,112 @@
+#include "runtime/task.hpp"
+
+#include "runtime/check.hpp"
+#include "runtime/collections/collection.hpp"
+#include "runtime/scheduler/pe_action.hpp"
+
+namespace tess {
+namespace {
+
+/// A coroutine handle on its way through the queue of its own PE; it never leaves it.
+struct Resumption {
+  void* frame = nullptr;
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    TESS_CHECK(false, "a suspended coroutine cannot travel");
+  }
+};
+
+void run_resumption(Pe& pe, Resumption&& resumption) {
+  const auto task = Task::Handle::from_address(resumption.frame);
+  TaskAccount& account = task.promise().account;
+  const Context context = account.context;
+  if (context.element == nullptr) {
+    account.release();
+    pe.context() = context;
+    task.resume();
+    return;
+  }
+  const ElementScope scope(pe, *context.element, context.action, context.epoch);
+  account.release();
+  task.resume();
+}
+
+}  // namespace
+
+Task::promise_type::promise_type() {
+  account.pe = &current_pe();
+  account.context = account.pe->context();
+}
+
+void TaskAccount::hold() {
+  if (held) return;
+  held = true;
+  pe->completion().sent(context.epoch);
+  if (context.element != nullptr) pin(*context.element);
+}
+
+void TaskAccount::release() {
+  if (!held) return;
+  held = false;
+  pe->suspended().erase(entry);
+  pe->completion().processed(context.epoch);
+  if (context.element != nullptr) unpin(*context.element);
+}
+
+void TaskAccount::pin(Element& element) {
+  ++element.n_suspended_;
+}
+void TaskAccount::unpin(Element& element) {
+  --element.n_suspended_;
+}
+
+void suspend(Task::Handle task, std::function<std::string()> waits_for) {
+  TaskAccount& account = task.promise().account;
+  account.hold();
+  account.entry = account.pe->suspended().insert(account.pe->suspended().end(),
+                                                 Suspended{account.context.element,
+                                                           account.context.action,
+                                                           account.context.epoch,
+                                                           std::move(waits_for),
+                                                           [task] { task.destroy(); }});
+}
+
+void resume_later(Task::Handle task) {
+  Pe& pe = *task.promise().account.pe;
+  using Held = Message<Resumption>;
+  auto* message =
+      pe.stamp(Held::make(pe, PeAction<&run_resumption>::action, Resumption{task.address()}));
+  message->epoch = task.promise().account.context.epoch;
+  pe.send_here(message);
+}
+
+void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type> self) noexcept {
+  promise_type& promise = self.promise();
+  if (promise.parent) {
+    resume_later(promise.parent);
+  } else if (promise.detached) {
+    const std::exception_ptr error = promise.error;
+    Pe& pe = *promise.account.pe;
+    self.destroy();
+    if (error) pe.keep_exception(error);
+  }
+}
+
+Task::~Task() noexcept(false) {
+  if (!handle_) return;
+  promise_type& promise = handle_.promise();
+  if (!handle_.done()) {
+    promise.detached = true;
+    return;
+  }
+  const std::exception_ptr error = promise.parent ? nullptr : promise.error;
+  handle_.destroy();
+  if (error && std::uncaught_exceptions() == 0) std::rethrow_exception(error);
+}
+
+void Task::await_suspend(Handle parent) {
+  handle_.promise().parent = parent;
+  suspend(parent, [] { return std::string("a task that it called"); });
+}
+
+}  // namespace tess
