@@ -50,20 +50,16 @@ TEST_CASE("a tetrahedron without volume claims nothing but its corners", "[m2m][
 }
 
 TEST_CASE("the sign of a volume is exact where rounding would decide", "[m2m][locate]") {
-  // Points on the plane x + y + z = 3 · 2^k ulp by ulp: the sign is that of the integer
-  // determinant.
-  const Point a{12, 12, 0}, b{24, 0, 0}, c{0, 24, 0.0};
+  // q is off the line a b by some ulps: the sign of the volume is that of the ulps, far below the
+  // rounding of the products.
+  const Point a{12, 12, 0}, b{24, 0, 0}, up{12, 12, 1};
+  const auto sign = [](double x) { return (x > 0) - (x < 0); };
   for (int i = -8; i <= 8; ++i) {
-    const double ulp = std::ldexp(1.0, -50);
-    const Point p{8 + i * ulp, 8, 0};
-    CHECK(orientation(p, a, b, c) == 0);  // all in z = 0
-    const Point q{8 + i * ulp, 16, 0};
-    const Point up{12, 12, 1};
-    // (q, a, b) collinear in z = 0 exactly for i = 0: the sign follows i.
-    const double sign = orientation(q, a, b, up);
-    CHECK((sign > 0) - (sign < 0) == -((i > 0) - (i < 0)));
-    const double exact = orientation_exact(q, a, b, up);
-    CHECK((exact > 0) - (exact < 0) == -((i > 0) - (i < 0)));
+    const Point q{8 + std::ldexp(i, i < 0 ? -50 : -49), 16, 0};
+    CAPTURE(i);
+    CHECK(sign(orientation(q, a, b, up)) == sign(i));
+    CHECK(sign(orientation_exact(q, a, b, up)) == sign(i));
+    CHECK(orientation(q, a, b, {1, 2, 0}) == 0);  // all in z = 0
   }
 }
 
