@@ -206,3 +206,25 @@ TEST_CASE("cut and flipped ExodusII files end in one line of error", "[m2m][io]"
   const auto real = shared_data("mfem/simple-cube-tet4.e");
   if (real) damage_everywhere("real.exo", slurp(*real), 100, 1500);
 }
+
+TEST_CASE("a NetCDF-4 file is read, and a cut one refused", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("four.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER | EX_NETCDF4, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 4> x{0, 1, 0, 0}, y{0, 0, 1, 0}, z{0, 0, 0, 1};
+  const std::array<int, 4> vertices{1, 2, 3, 4};
+  ex_put_init(id, "one", 3, 4, 1, 1, 0, 0);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  ex_put_block(id, EX_ELEM_BLOCK, 7, "TETRA", 1, 4, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 7, vertices.data(), nullptr, nullptr);
+  ex_close(id);
+  CHECK(read_mesh(path).points.at(3)[2] == 1);
+  const std::string bytes = slurp(path);
+  for (const std::size_t kept :
+       {std::size_t{5}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
+    const std::string cut = scratch.write("cut.exo", bytes.substr(0, kept));
+    CHECK_THAT(message_of([&] { (void)read_mesh(cut); }), Catch::Contains("truncated"));
+  }
+}
