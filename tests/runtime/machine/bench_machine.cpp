@@ -77,7 +77,7 @@ class PingPong final : public Program {
   };
 
   void arrived(PeId pe, std::uint64_t number) {
-    TESS_CHECK(number == ++expected_[pe.value == 0 ? 0 : 1] * 2 - (pe.value == 0 ? 0 : 1),
+    TESS_CHECK(number == ++expected_[pe.value == 0 ? 0 : 1].n * 2 - (pe.value == 0 ? 0 : 1),
                "hop ",
                number,
                " came out of turn");
@@ -100,8 +100,11 @@ class PingPong final : public Program {
   Machine& machine_;
   std::uint64_t n_rounds_;
   PeId far_;
-  Ball ball_;
-  std::array<std::uint64_t, 2> expected_{};
+  alignas(64) Ball ball_;
+  struct alignas(64) Counter {
+    std::uint64_t n = 0;
+  };
+  std::array<Counter, 2> expected_{};
   Clock::time_point start_, end_;
 };
 
