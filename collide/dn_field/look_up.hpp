@@ -1,5 +1,6 @@
-// What a field says at many points at once: structure-of-arrays in, structure-of-arrays out, branch-free. Points are in
-// the object's own coordinates. Any thread. g++ 12 does not yet turn the loop into vector gathers: scalar speed.
+// What a field says at many points at once: structure-of-arrays in, structure-of-arrays out,
+// branch-free. Points are in the object's own coordinates. Any thread. g++ 12 does not yet turn the
+// loop into vector gathers: scalar speed.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
