@@ -263,7 +263,8 @@ class ArrayProxy {
   explicit ArrayProxy(CollectionId id) : id_(id) {}
 
   [[nodiscard]] CollectionId id() const { return id_; }
-  /// The element of that index. (A template, so that a proxy may be a member where C is not complete yet.)
+  /// The element of that index. (A template, so that a proxy may be a member where C is not
+  /// complete yet.)
   template <class Of = C>
   [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
     return ElementProxy<C>(id_, index);
