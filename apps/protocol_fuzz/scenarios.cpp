@@ -12,6 +12,13 @@ constexpr std::array all{
     Scenario{"message_first",
              "a message to an absent index waits for its element, however it comes to be",
              &message_first},
+    Scenario{"lives",
+             "create, insert, destroy and insert elsewhere: one life at a time, nothing lost",
+             &lives},
+    Scenario{"broadcasts",
+             "every element meets every broadcast of its life once, in one order, wherever it goes",
+             &broadcasts},
+    Scenario{"tour", "messages find an element that visits every PE", &tour},
 };
 
 }  // namespace
