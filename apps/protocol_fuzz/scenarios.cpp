@@ -18,6 +18,8 @@ constexpr std::array all{
     Scenario{"broadcasts",
              "every element meets every broadcast of its life once, in one order, wherever it goes",
              &broadcasts},
+    Scenario{
+        "rounds", "broadcast and reduction are exact while elements move, come and go", &rounds},
     Scenario{"tour", "messages find an element that visits every PE", &tour},
 };
 
