@@ -18,9 +18,18 @@ namespace {
 using tess::fuzz::Scenario;
 using tess::fuzz::Trial;
 
-// The command that repeats the trial that runs, for an end without return.
-std::string repeat;  // NOLINT: read by a signal handler
+// The trial that runs and the command that repeats it, for an end without return.
+std::string repeat;
+const Trial* running = nullptr;
 
+void print_failures(const Trial& trial) {
+  for (const std::string& failure : trial.failures()) std::printf("  %s\n", failure.c_str());
+  std::fflush(stdout);
+}
+void end_on_check() {
+  std::printf("FAILED %s\n", repeat.c_str());
+  if (running != nullptr) print_failures(*running);
+}
 void print_repeat() {
   const std::string line = "protocol_fuzz: repeat with: " + repeat + "\n";
   [[maybe_unused]] const auto n = ::write(STDERR_FILENO, line.data(), line.size());
@@ -56,11 +65,12 @@ bool passes(const Scenario& scenario, std::uint64_t seed, std::int32_t n_pes) {
   repeat = fmt::format(
       "protocol_fuzz --scenario {} --seeds {}:{} --pes {}", scenario.name, seed, seed, n_pes);
   Trial trial(seed, n_pes, Trial::On::simulated);
+  running = &trial;
   scenario.run(trial);
+  running = nullptr;
   if (trial.failures().empty()) return true;
   std::printf("FAILED %s\n", repeat.c_str());
-  for (const std::string& failure : trial.failures()) std::printf("  %s\n", failure.c_str());
-  std::fflush(stdout);
+  print_failures(trial);
   return false;
 }
 
@@ -85,7 +95,7 @@ int fuzz(int argc, char** argv) {
   const Seeds seeds = parse_seeds(given_seeds);
   if (name != "all") (void)tess::fuzz::scenario(name);
 
-  tess::set_check_abort(&print_repeat);
+  tess::set_check_abort(&end_on_check);
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(signal, &on_crash);
   std::uint64_t n_passed = 0, n_failed = 0;
   for (const Scenario& one : tess::fuzz::scenarios()) {

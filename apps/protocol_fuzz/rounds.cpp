@@ -64,7 +64,7 @@ struct Birth {
 class Player : public Chare<Player, Index1> {
  public:
   Player() = default;
-  explicit Player(GroupProxy<Judge> judge) : judge_(judge) {}
+  explicit Player(GroupProxy<Judge> judge) : judge_(judge), born_(true) {}
 
   void play(int round);
   /// Comes to life within a round: its parent contributes once it knows.
@@ -73,7 +73,7 @@ class Player : public Chare<Player, Index1> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(judge_, last_round_, n_given_);
+    ar(judge_, born_, last_round_);
   }
 
  private:
@@ -84,8 +84,8 @@ class Player : public Chare<Player, Index1> {
   }
 
   GroupProxy<Judge> judge_;
+  bool born_ = false;  // what was created on demand contributes once it was told to
   int last_round_ = -1;
-  int n_given_ = 0;
 };
 
 /// One PE's member is given the results, and calls the next round.
@@ -181,6 +181,7 @@ void Player::play(int round) {
                         " after ",
                         last_round_);
   last_round_ = round;
+  if (!born_) return;
   Random random = records->draws(round, index().x, 0);
   if (index().x != 0 && random.chance(records->death_chance)) {
     const bool gives = random.chance(0.5) && static_cast<int>(next_reduction()) <= round;
@@ -222,6 +223,7 @@ void Player::bear(int round) {
 
 void Player::born(Birth birth) {
   judge_ = birth.judge;
+  born_ = true;
   if (static_cast<int>(next_reduction()) <= birth.round) give(birth.round);
   array()[{birth.parent}].send<&Player::give>(birth.round);
 }
