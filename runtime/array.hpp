@@ -189,7 +189,11 @@ class ElementProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+    if constexpr (Bitwise<Index>) {
+      return Callback<T>(target_kind<F, T>, TargetName::of(collection_, index_));
+    } else {
+      return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+    }
   }
 
  private:
@@ -288,7 +292,7 @@ class ArrayProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, to_bytes(id_));
+    return Callback<T>(target_kind<F, T>, TargetName::of(id_));
   }
 
   /// The part of the array on this PE: its local elements, for libraries and tests.
