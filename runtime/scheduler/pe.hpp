@@ -111,6 +111,8 @@ class Pe {
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
+  /// Sends all that was held back to be packed together. True if there was any.
+  bool flush();
   void drop_all();
 
   /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
@@ -157,7 +159,6 @@ class Pe {
  private:
   void route(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
-  bool flush();
   void run(Envelope* message);
   void exception(const char* what, int exit_code);
   Collection* find_slow(CollectionId id);

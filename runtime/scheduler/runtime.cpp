@@ -164,7 +164,8 @@ void Runtime::on_stopped(Pe& pe, int code) {
   if (--n_answers_ == 0) send_to_all<&leave_arrives>(pe, Code{exit_code_});
 }
 
-void Runtime::on_leave(Pe& /*pe*/, int code) {
+void Runtime::on_leave(Pe& pe, int code) {
+  pe.flush();  // PE 0 holds packed what tells other processes to leave
   exit_code_ = code;
   left_ = true;
   machine_.stop();
