@@ -7,6 +7,7 @@
 #include "collide/hit.hpp"
 #include "collide/serial/territory.hpp"
 
+#include <bit>
 #include <limits>
 #include <memory>
 #ifdef __AVX512VL__
@@ -51,7 +52,25 @@ class Lanes {
     model[i] = static_cast<std::uint32_t>(item.id.model);
     source[i] = number;
   }
-  [[nodiscard]] std::size_t size() const noexcept { return n_; }
+  /// Writes the numbers of the boxes j + b whose bit b is set to `out`, where there must be room
+  /// for eight; returns the end of those written.
+  std::uint32_t* copy_sources(std::size_t j,
+                              std::uint32_t bits,
+                              std::uint32_t* out) const noexcept {
+#ifdef __AVX512VL__
+    const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(source + j));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), all));
+    return out + std::popcount(bits);
+#else
+    for (; bits != 0; bits &= bits - 1)
+      *out++ = source[j + static_cast<std::size_t>(std::countr_zero(bits))];
+    return out;
+#endif
+  }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return n_;
+  }
 
   std::array<double*, 3> lo{}, hi{};
   std::uint32_t* below = nullptr;   ///< axes_below() of each box

@@ -34,7 +34,7 @@ std::vector<PairSearch::Entry> PairSearch::whole(std::span<const Item> items) co
 }
 
 void PairSearch::fill(std::span<const Item> items, const std::vector<Entry>& node) {
-  lanes_.resize(node.size());
+  resize_lanes(node.size());
   for (std::size_t i = 0; i < node.size(); ++i)
     lanes_.set(i, items[node[i].first], node[i].second, node[i].first);
 }

@@ -13,7 +13,6 @@
 #include "collide/serial/voxel_grid.hpp"
 
 #include <array>
-#include <bit>
 #include <optional>
 #include <span>
 #include <utility>
@@ -138,18 +137,28 @@ class PairSearch {
     }
   }
 
+  /// The partners of a probe among the boxes first … end: found without a branch for each hit, then
+  /// reported.
   template <class Probe, class Report>
   void compare(const Probe& probe,
                std::uint32_t number,
                std::size_t first,
                std::size_t end,
                Report& report) {
+    std::uint32_t* const begin = partners_.data();
+    std::uint32_t* next = begin;
     for (std::size_t j = first; j < end; j += Lanes::width) {
-      std::uint32_t hits = probe.overlaps(lanes_, j);
-      if (end - j < Lanes::width) hits &= (1u << (end - j)) - 1;
-      for (; hits != 0; hits &= hits - 1)
-        report(number, lanes_.source[j + static_cast<std::size_t>(std::countr_zero(hits))]);
+      const std::uint32_t hits = probe.overlaps(lanes_, j) & first_lanes(end - j);
+      next = lanes_.copy_sources(j, hits, next);
     }
+    for (const std::uint32_t* partner = begin; partner != next; ++partner) report(number, *partner);
+  }
+  [[nodiscard]] static std::uint32_t first_lanes(std::size_t n) noexcept {
+    return n < Lanes::width ? (1u << n) - 1 : 0xFFu;
+  }
+  void resize_lanes(std::size_t n) {
+    lanes_.resize(n);
+    if (partners_.size() < n + Lanes::width) partners_.resize(2 * n + Lanes::width);
   }
 
   [[nodiscard]] static Models count_models(std::span<const Item> items) noexcept;
@@ -171,7 +180,7 @@ class PairSearch {
       ++n;
     }
     order_.settle();
-    lanes_.resize(n);
+    resize_lanes(n);
     for (std::uint32_t i = 0; i < items.size(); ++i)
       if (in(items[i])) lanes_.set(order_.place(slices.of_lo(items[i])), items[i], below_[i], i);
   }
@@ -181,6 +190,7 @@ class PairSearch {
   Lanes lanes_;
   BucketOrder order_;
   std::vector<std::uint32_t> below_;
+  std::vector<std::uint32_t> partners_;  // of the probe at hand
   std::vector<Item> gathered_;
 };
 
