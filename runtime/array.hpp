@@ -285,8 +285,7 @@ class ArrayProxy {
   void broadcast(Args&&... args) const {
     static_assert(check_entry<C, F, Args...>());
     using Arguments = typename EntryTraits<F>::Arguments;
-    here().broadcasts().start(
-        std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
+    start_broadcast(id_, std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
   }
 
   /// A target for results: entry method F of all elements.
@@ -353,14 +352,15 @@ void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
 /// PE of its index. Returns at once: messages to the array wait where it is not known yet.
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
-  if (range.n_axes != 0) {
-    static_assert(Coordinates<typename C::Index>,
-                  "an array with this type of index starts sparse: create<C>(tess::sparse)");
-    TESS_CHECK(range.n_axes == n_axes_of<typename C::Index>,
+  if constexpr (Coordinates<typename C::Index>) {
+    TESS_CHECK(range.n_axes == 0 || range.n_axes == n_axes_of<typename C::Index>,
                "a range of ",
                range.n_axes,
                " axes for an index of ",
                n_axes_of<typename C::Index>);
+  } else {
+    TESS_CHECK(range.n_axes == 0,
+               "an array with this type of index starts sparse: create<C>(tess::sparse)");
   }
   Pe& pe = current_pe();
   using Create = detail::CreateArray<C, std::decay_t<Args>...>;

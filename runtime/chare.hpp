@@ -42,6 +42,11 @@ class Chare : public IndexedElement<IndexType> {
   /// Ends this element once what runs of it, and what waits, is done.
   void destroy() { this->doomed_ = true; }
 
+  /// The number of the reduction that the next contribution belongs to. An element that is born
+  /// joins at the first that its PE has not reported yet: while others are at number r that is r or
+  /// r + 1.
+  [[nodiscard]] std::uint32_t next_reduction() const { return this->state_.next_reduction; }
+
   /// Gives this element's value to the next reduction of the array; every element gives one. The
   /// whole goes to `target`.
   template <class Op, class T>

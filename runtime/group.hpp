@@ -218,10 +218,8 @@ class GroupProxy {
   void broadcast(Args&&... args) const {
     static_assert(check_entry<G, F, Args...>());
     using Arguments = typename EntryTraits<F>::Arguments;
-    Collection* collection = current_pe().find(id_);
-    TESS_CHECK(collection != nullptr, "this group is not known on ", current_pe().id(), " yet");
-    collection->broadcasts().start(
-        std::make_shared<CallOfMembers<G, F>>(Arguments(std::forward<Args>(args)...)));
+    start_broadcast(id_,
+                    std::make_shared<CallOfMembers<G, F>>(Arguments(std::forward<Args>(args)...)));
   }
 
   template <class Ar>
