@@ -29,11 +29,12 @@ Pe& current_pe() {
   return *detail::the_current_pe;
 }
 
-Pe::Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed)
+Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed)
     : id_(id),
       n_pes_(machine.n_pes()),
       runtime_(runtime),
       machine_(machine),
+      pool_(pool),
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
       completion_(*this),
@@ -169,7 +170,11 @@ bool Pe::idle() {
   bool busy = completion_.tell_epochs();
   // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
   // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
-  if (completion_.run_changed()) busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+  if (completion_.run_changed()) {
+    busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+  } else {
+    pool_.flush();
+  }
   return flush() || busy || !ready_.empty();
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "runtime/base/mix.hpp"
+#include "runtime/base/pool.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
@@ -45,7 +46,8 @@ struct PeStatistics {
 
 class Pe {
  public:
-  Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed);
+  /// The pool outlives all PEs of the process: messages of one are freed by another.
+  Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed);
   Pe(const Pe&) = delete;
   Pe& operator=(const Pe&) = delete;
   ~Pe();
@@ -54,6 +56,7 @@ class Pe {
   [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
   [[nodiscard]] Machine& machine() { return machine_; }
   [[nodiscard]] Runtime& runtime() { return runtime_; }
+  [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
   [[nodiscard]] Context& context() { return context_; }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
@@ -167,6 +170,7 @@ class Pe {
   const std::int32_t n_pes_;
   Runtime& runtime_;
   Machine& machine_;
+  Pool& pool_;
   const bool intercepts_;
   const unsigned patience_;
   bool stopped_ = false;
