@@ -138,6 +138,7 @@ void Runtime::exit(Pe& pe, int code) {
   int& asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
   const bool first = asked < 0;
   asked = std::max(asked, code);
+  pe.stop_user_code();
   if (first) send_uncounted<&exit_asked_arrives>(pe, PeId{0}, Code{code});
 }
 
