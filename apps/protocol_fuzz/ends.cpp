@@ -79,7 +79,8 @@ void expect_end(Trial& trial,
                 const Ending& ending,
                 int code,
                 std::initializer_list<std::string> names) {
-  trial.expect(ending.exit_code == code, "exit code ", ending.exit_code, " not ", code);
+  trial.expect(
+      ending.exit_code == code, "exit code ", ending.exit_code, " not ", code, ": ", ending.report);
   for (const std::string& name : names)
     trial.expect(ending.report.find(name) != std::string::npos,
                  "the report does not name ",

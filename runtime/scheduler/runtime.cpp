@@ -183,9 +183,10 @@ void Runtime::on_census_asked(Pe& pe) {
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
+  if (stopping_) return;  // exit() came meanwhile; it counts answers of its own
   census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
   census_.dead_letters += census.dead_letters;
-  if (--n_answers_ != 0 || stopping_) return;
+  if (--n_answers_ != 0) return;
   if (census_.dead_letters != 0)
     error_line(text("tessera: ",
                     census_.dead_letters,
