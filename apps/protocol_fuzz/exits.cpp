@@ -79,8 +79,8 @@ class Wave : public Chare<Wave, Index1> {
         array()[index()].send<&Wave::splash>(next);
         return;
       case 3:
-        array()[index()].send<&Wave::nest>(next);
-        break;
+        array()[index()].send<&Wave::nest>(next);  // goes on inside
+        return;
       case 4:
         array()[{to.x + 100}].send_or_create_here<&Wave::splash>(next);
         return;
