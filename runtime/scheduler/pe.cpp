@@ -139,14 +139,19 @@ void Pe::run(Envelope* message) {
   if (counted) completion_.hop_processed();
 }
 
+void Pe::note_place() {
+  if (place_.empty()) place_ = runtime_.describe(*this);
+}
+
 void Pe::exception(const char* what, int exit_code) {
+  note_place();
+  const std::string place = std::exchange(place_, {});
   // Bad input is the user's to mend: one line, no trace. Everything else is a bug and says where it
   // was.
   if (exit_code == 2) {
     runtime_.error_line(text("error: ", what));
   } else {
-    runtime_.error_line(
-        text("tessera: uncaught exception: ", what, "\n  ", runtime_.describe(*this)));
+    runtime_.error_line(text("tessera: uncaught exception: ", what, "\n  ", place));
   }
   runtime_.exit(*this, exit_code);
 }
@@ -184,12 +189,8 @@ void Pe::drop_all() {
     for (Envelope* message : messages) discard(message);
   }
   early_.clear();
-  // The latest first: a coroutine that called another has suspended after it.
-  while (!suspended_.empty()) {
-    const auto end = suspended_.back().end;
-    suspended_.pop_back();
-    end();
-  }
+  dropping_ = true;
+  end_all(suspended_);
 }
 
 Collection* Pe::find_slow(CollectionId id) {

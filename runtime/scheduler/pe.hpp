@@ -121,6 +121,8 @@ class Pe {
   /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
   void stop_user_code() { stopped_ = true; }
   [[nodiscard]] bool stopped() const { return stopped_; }
+  /// The run is over, and what waited is freed.
+  [[nodiscard]] bool dropping() const { return dropping_; }
 
   /// Epoch 0 is done (on PE 0).
   void quiescent();
@@ -146,15 +148,36 @@ class Pe {
 
   /// An exception that a coroutine threw after it had waited; thrown again once its message is at
   /// its end.
-  void keep_exception(std::exception_ptr error) { kept_exception_ = std::move(error); }
+  void keep_exception(std::exception_ptr error) {
+    note_place();
+    if (!kept_exception_) kept_exception_ = std::move(error);
+  }
+  /// An exception leaves the code of an element: the report is to say where that was.
+  void note_place();
 
   /// The index (and array) of the element that is constructed right now; null between.
   [[nodiscard]] const void* birth() const { return birth_index_; }
   [[nodiscard]] Collection* birth_collection() const { return birth_collection_; }
-  void set_birth(const void* index, Collection* collection) {
-    birth_index_ = index;
-    birth_collection_ = collection;
-  }
+  /// Marks a constructor's run; they nest where a constructor creates a collection.
+  class Birth {
+   public:
+    Birth(Pe& pe, const void* index, Collection* collection)
+        : pe_(pe), index_(pe.birth_index_), collection_(pe.birth_collection_) {
+      pe.birth_index_ = index;
+      pe.birth_collection_ = collection;
+    }
+    Birth(const Birth&) = delete;
+    Birth& operator=(const Birth&) = delete;
+    ~Birth() {
+      pe_.birth_index_ = index_;
+      pe_.birth_collection_ = collection_;
+    }
+
+   private:
+    Pe& pe_;
+    const void* index_;
+    Collection* collection_;
+  };
 
   /// Calls that the schedule makes wait until the end of the current message (element surgery).
   [[nodiscard]] bool intercepts() const { return intercepts_; }
@@ -174,9 +197,11 @@ class Pe {
   const bool intercepts_;
   const unsigned patience_;
   bool stopped_ = false;
+  bool dropping_ = false;
   std::exception_ptr kept_exception_;
   std::uint64_t n_futures_ = 0;
   boost::unordered_flat_map<std::uint64_t, void*> futures_;
+  std::string place_;  // where the exception on its way was thrown
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;
   ReadyQueue ready_;

@@ -139,6 +139,7 @@ void Runtime::exit(Pe& pe, int code) {
   int& asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
   const bool first = asked < 0;
   asked = std::max(asked, code);
+  pe.stop_user_code();
   if (first) send_uncounted<&exit_asked_arrives>(pe, PeId{0}, Code{code});
 }
 
@@ -184,9 +185,10 @@ void Runtime::on_census_asked(Pe& pe) {
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
+  if (stopping_) return;  // exit() came meanwhile; it counts answers of its own
   census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
   census_.dead_letters += census.dead_letters;
-  if (--n_answers_ != 0 || stopping_) return;
+  if (--n_answers_ != 0) return;
   if (census_.dead_letters != 0)
     error_line(text("tessera: ",
                     census_.dead_letters,
