@@ -259,13 +259,13 @@ class ElementProxy {
 template <class C>
 class ArrayProxy {
  public:
-  using Index = typename C::Index;
-
   ArrayProxy() = default;
   explicit ArrayProxy(CollectionId id) : id_(id) {}
 
   [[nodiscard]] CollectionId id() const { return id_; }
-  [[nodiscard]] ElementProxy<C> operator[](const Index& index) const {
+  /// The element of that index. (A template, so that a proxy may be a member where C is not complete yet.)
+  template <class Of = C>
+  [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
     return ElementProxy<C>(id_, index);
   }
 

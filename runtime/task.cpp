@@ -92,16 +92,15 @@ void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type
   }
 }
 
-Task::~Task() noexcept(false) {
+Task::~Task() {
   if (!handle_) return;
   promise_type& promise = handle_.promise();
   if (!handle_.done()) {
     promise.detached = true;
     return;
   }
-  const std::exception_ptr error = promise.parent ? nullptr : promise.error;
+  if (!promise.parent && promise.error) promise.account.pe->keep_exception(promise.error);
   handle_.destroy();
-  if (error && std::uncaught_exceptions() == 0) std::rethrow_exception(error);
 }
 
 void Task::await_suspend(Handle parent) {

@@ -58,7 +58,8 @@ class [[nodiscard]] Task {
   Task& operator=(const Task&) = delete;
   Task& operator=(Task&&) = delete;
   /// A task that waits goes on by itself, on its element's account.
-  ~Task() noexcept(false);
+  /// Not noexcept(false): g++ 12 cannot compile coroutines with parameters then.
+  ~Task();
 
   // A task may await another: the parent goes on, through the queue, when the child is done.
   [[nodiscard]] bool await_ready() const noexcept { return handle_.done(); }

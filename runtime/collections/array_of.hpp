@@ -32,6 +32,8 @@ class IndexedElement : public Element {
  private:
   template <class>
   friend class ArrayOf;
+  template <class>
+  friend class Array;
   template <class, class>
   friend class Chare;
   [[nodiscard]] static const void* birth() {

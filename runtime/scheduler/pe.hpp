@@ -128,6 +128,17 @@ class Pe {
   [[nodiscard]] PeId whim();
   void set_migration_chance(double chance) { migration_chance_ = chance; }
 
+  /// Futures that were made on this PE, by number; a result for one that is gone is an error.
+  std::uint64_t enter_future(void* future) {
+    futures_.emplace(++n_futures_, future);
+    return n_futures_;
+  }
+  void leave_future(std::uint64_t id) { futures_.erase(id); }
+  [[nodiscard]] void* find_future(std::uint64_t id) const {
+    const auto at = futures_.find(id);
+    return at == futures_.end() ? nullptr : at->second;
+  }
+
   /// An exception that a coroutine threw after it had waited; thrown again once its message is at
   /// its end.
   void keep_exception(std::exception_ptr error) { kept_exception_ = std::move(error); }
@@ -159,6 +170,8 @@ class Pe {
   const unsigned patience_;
   bool stopped_ = false;
   std::exception_ptr kept_exception_;
+  std::uint64_t n_futures_ = 0;
+  boost::unordered_flat_map<std::uint64_t, void*> futures_;
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;
   ReadyQueue ready_;
