@@ -21,7 +21,7 @@ Metrics measure(const Snapshot& s, const Assignment& assignment) {
   Metrics m;
   Loads loads(s);
   for (std::size_t i = 0; i < assignment.size(); ++i) {
-    loads.add(i, static_cast<std::size_t>(assignment[i].value));
+    loads.put(i, slot(assignment[i]));
     if (assignment[i] == s.elements.pe[i]) continue;
     ++m.n_moves;
     m.moved_bytes += s.elements.size_bytes[i];

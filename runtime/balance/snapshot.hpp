@@ -5,6 +5,7 @@
 
 #include "runtime/ids.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,7 +14,7 @@ namespace tess::balance {
 
 /// Who an element is, across rounds.
 struct ElementKey {
-  std::int32_t array = 0;
+  CollectionId array;
   std::uint64_t element = 0;
   friend auto operator<=>(const ElementKey&, const ElementKey&) = default;
 };
@@ -26,13 +27,15 @@ struct Edge {
   std::uint64_t messages = 0;
 };
 
-/// All arrays have one entry an element.
+/// All arrays have one entry an element; `position` may be empty instead, where nobody gave any.
 struct Elements {
   std::vector<ElementKey> key;
   std::vector<PeId> pe;
-  std::vector<double> load;               ///< seconds on a PE of speed 1
-  std::vector<std::uint8_t> migratable;   ///< 0 stays where it is
-  std::vector<std::uint64_t> size_bytes;  ///< packed, and what it counts against a memory limit
+  std::vector<double> load;                     ///< seconds on a PE of speed 1
+  std::vector<std::uint8_t> migratable;         ///< 0 stays where it is
+  std::vector<std::uint64_t> size_bytes;        ///< packed: what a migration sends
+  std::vector<std::uint64_t> memory_bytes;      ///< resident: what counts against a memory limit
+  std::vector<std::array<double, 3>> position;  ///< for rcb and hilbert
   [[nodiscard]] std::size_t size() const { return key.size(); }
 };
 
@@ -52,6 +55,14 @@ struct Snapshot {
 
 /// The PE of every element after a round.
 using Assignment = std::vector<PeId>;
+
+/// A PE as a position in Pes, and back.
+[[nodiscard]] constexpr std::size_t slot(PeId pe) {
+  return static_cast<std::size_t>(pe.value);
+}
+[[nodiscard]] constexpr PeId pe_at(std::size_t slot) {
+  return PeId{static_cast<std::int32_t>(slot)};
+}
 
 /// Throws Error where array lengths differ, a PE is out of range, or a load or speed cannot be.
 void validate(const Snapshot& snapshot);
