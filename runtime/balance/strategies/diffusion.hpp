@@ -1,0 +1,26 @@
+// Diffusion by dimension exchange (Cybenko 1989): a PE evens out with one neighbour after the
+// other. Each has about log2(n_pes) + 1 neighbours, meets one a stage, and sees nothing but that
+// neighbour's summary; no number is known to all.
+//
+//   stage k pairs p with (2^k − 1 − p) mod n_pes: a matching for every number of PEs, so that no
+//   two PEs give to a third at once and a memory limit needs no protocol.
+#pragma once
+
+#include "runtime/balance/local_pe.hpp"
+
+namespace tess::balance {
+
+/// Stages until every PE has met all of its neighbours.
+[[nodiscard]] std::size_t n_stages(std::size_t n_pes);
+/// Whom a PE meets; itself: nobody.
+[[nodiscard]] std::size_t partner(std::size_t pe, std::size_t stage, std::size_t n_pes);
+
+/// The step of one PE: what it gives to its partner, which is less loaded, so that both are done
+/// near the same time. Removed from `self`; empty where `self` is the less loaded one.
+[[nodiscard]] std::vector<Item> diffuse(LocalPe& self, PeSummary other);
+
+/// The steps of all PEs over a snapshot, at most `n_sweeps` times over all stages, or until one
+/// sweep moves nothing.
+[[nodiscard]] Assignment diffusion(const Snapshot& snapshot, std::size_t n_sweeps = 8);
+
+}  // namespace tess::balance
