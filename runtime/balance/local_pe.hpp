@@ -15,7 +15,7 @@ struct PeSummary {
   double work = 0;  ///< seconds at speed 1
   double background = 0;
   double speed = 1;
-  std::uint64_t room_bytes = 0;
+  std::int64_t room_bytes = 0;  ///< negative where it is above its limit already
 
   /// Seconds that it needs, with `more` work besides.
   [[nodiscard]] double time(double more = 0) const { return background + (work + more) / speed; }
@@ -25,7 +25,7 @@ struct PeSummary {
 struct Item {
   double load = 0;
   std::size_t element = 0;  ///< who: opaque to the other PE
-  std::uint64_t memory_bytes = 0;
+  std::int64_t memory_bytes = 0;
   friend auto operator<=>(const Item&, const Item&) = default;
 };
 
@@ -39,18 +39,26 @@ class LocalPe {
   /// An element that is here: it may go on where `migratable`, and it has any load.
   void hold(const Item& item, bool migratable);
   void give(const Item& item);
-  /// Refused, and false, where there is no room for it.
-  [[nodiscard]] bool receive(const Item& item);
+  void receive(const Item& item) { hold(item, true); }
 
-  /// What to give to a PE that should get `wanted` work: the largest element within it that finds
-  /// room there, else the smallest above; nothing where the later of the two PEs would not be done
-  /// sooner.
-  [[nodiscard]] std::optional<Item> item_for(const PeSummary& other, double wanted) const;
+  /// What to offer to a PE that should get `wanted` work: the largest element within it that finds
+  /// room there, else the smallest above, for which the other gives change.
+  [[nodiscard]] std::optional<Item> offer(const PeSummary& other, double wanted) const;
+
+  /// The answer to an offer: elements to give in return, largest first, such that not much more
+  /// than `wanted` work comes in with it. Nothing, a refusal, where memory has no room for the
+  /// trade or the later of the two PEs would not be done sooner.
+  [[nodiscard]] std::optional<std::vector<Item>> change_for(const Item& item,
+                                                            double wanted,
+                                                            const PeSummary& giver) const;
 
  private:
   PeSummary now_;
   std::set<Item> items_;
 };
+
+/// Carries out what was offered and answered.
+void trade(LocalPe& giver, LocalPe& taker, const Item& item, const std::vector<Item>& change);
 
 /// Every PE of a snapshot as it sees itself.
 [[nodiscard]] std::vector<LocalPe> local_pes(const Snapshot& snapshot);

@@ -86,7 +86,7 @@ Snapshot anything(std::uint64_t seed) {
   for (std::size_t p = 0; p < s.pes.size(); ++p) {
     s.pes.speed[p] = 0.5 + static_cast<double>(next.below(4));
     s.pes.background[p] = static_cast<double>(next.below(10));
-    if (next.below(2) == 0) s.pes.memory_limit_bytes[p] = used[p] + 1 + next.below(200);
+    if (next.below(2) == 0) s.pes.memory_limit_bytes[p] = used[p] / 2 + 1 + next.below(300);
   }
   return s;
 }

@@ -1,5 +1,7 @@
 // What each strategy promises, on scenes whose ideal is known.
 #include "runtime/balance/metrics.hpp"
+#include "runtime/balance/strategies/diffusion.hpp"
+#include "runtime/balance/strategies/gossip.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "tests/balance/scenes.hpp"
 #include "tests/support/catch.hpp"
@@ -40,4 +42,32 @@ TEST_CASE("greedy_refine balances as greedy does and moves only the excess", "[b
   const Metrics all = run(s, "greedy");
   CHECK(few.max_over_average <= 1.03);
   CHECK(2 * few.n_moves <= all.n_moves);
+}
+
+TEST_CASE("32 768 heavy-tailed elements on 1 024 PEs are balanced without a global view",
+          "[balance]") {
+  const Snapshot s = heavy_tailed(32768, 1024, 1);
+  REQUIRE(measure(s, s.elements.pe).max_over_average > 10);
+  CHECK(run(s, "gossip").max_over_average <= 1.10);
+  CHECK(run(s, "hierarchical").max_over_average <= 1.10);
+  CHECK(run(s, "diffusion").max_over_average <= 1.10);
+}
+
+TEST_CASE("diffusion pairs PEs without conflict and reaches all, whatever their number",
+          "[balance]") {
+  for (const std::size_t n_pes : {1U, 2U, 3U, 5U, 17U, 64U, 129U}) {
+    INFO(n_pes << " PEs");
+    for (std::size_t stage = 0; stage < n_stages(n_pes); ++stage)
+      for (std::size_t p = 0; p < n_pes; ++p)
+        REQUIRE(partner(partner(p, stage, n_pes), stage, n_pes) == p);
+    Snapshot s = idle_pes(n_pes);
+    for (std::size_t i = 0; i < 64 * n_pes; ++i) add_element(s, n_pes - 1, 1);
+    CHECK(run(s, "diffusion").max_over_average <= 1.10);
+  }
+}
+
+TEST_CASE("a PE of the gossip knows a bounded number of others", "[balance]") {
+  GossipPe pe(LocalPe({}), 0, 1.0, 7);
+  for (std::size_t i = 1; i < 1000; ++i) pe.hear({{i, {}}});
+  CHECK(pe.tell().size() == GossipPe::most_known);
 }

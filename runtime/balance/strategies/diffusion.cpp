@@ -1,7 +1,5 @@
 #include "runtime/balance/strategies/diffusion.hpp"
 
-#include "runtime/check.hpp"
-
 #include <bit>
 
 namespace tess::balance {
@@ -12,12 +10,16 @@ constexpr double worth_moving = 0.01;
 
 /// Returns whether anything moved.
 bool even_out(LocalPe& one, LocalPe& other) {
+  bool moved = false;
   LocalPe& giver = one.summary().time() < other.summary().time() ? other : one;
   LocalPe& taker = &giver == &one ? other : one;
-  const std::vector<Item> gift = diffuse(giver, taker.summary());
-  for (const Item& item : gift)
-    TESS_CHECK(taker.receive(item), "element ", item.element, " was given without room for it");
-  return !gift.empty();
+  while (const auto gift = diffuse(giver, taker.summary())) {
+    const auto change = taker.change_for(gift->item, gift->wanted, giver.summary());
+    if (!change) break;
+    trade(giver, taker, gift->item, *change);
+    moved = true;
+  }
+  return moved;
 }
 
 }  // namespace
@@ -30,19 +32,14 @@ std::size_t partner(std::size_t pe, std::size_t stage, std::size_t n_pes) {
   return ((std::size_t{1} << stage) - 1 + n_pes - pe) % n_pes;
 }
 
-std::vector<Item> diffuse(LocalPe& self, PeSummary other) {
-  std::vector<Item> gift;
-  const double per_second = 1 / (1 / self.summary().speed + 1 / other.speed);
-  for (;;) {
-    const double difference = self.summary().time() - other.time();
-    if (difference <= worth_moving * self.summary().time()) return gift;
-    const auto item = self.item_for(other, difference * per_second);
-    if (!item) return gift;
-    self.give(*item);
-    other.work += item->load;
-    other.room_bytes -= item->memory_bytes;
-    gift.push_back(*item);
-  }
+std::optional<Gift> diffuse(const LocalPe& self, const PeSummary& other) {
+  const double time = self.summary().time();
+  const double difference = time - other.time();
+  if (difference <= worth_moving * time) return std::nullopt;
+  const double wanted = difference / (1 / self.summary().speed + 1 / other.speed);
+  const auto item = self.offer(other, wanted);
+  if (!item) return std::nullopt;
+  return Gift{*item, wanted};
 }
 
 Assignment diffusion(const Snapshot& s, std::size_t n_sweeps) {

@@ -1,6 +1,7 @@
 // Diffusion by dimension exchange (Cybenko 1989): a PE evens out with one neighbour after the
 // other. Each has about log2(n_pes) + 1 neighbours, meets one a stage, and sees nothing but that
-// neighbour's summary; no number is known to all.
+// neighbour's summary; no number is known to all. An element too heavy to be given is
+// given for change.
 //
 //   stage k pairs p with (2^k − 1 − p) mod n_pes: a matching for every number of PEs, so that no
 //   two PEs give to a third at once and a memory limit needs no protocol.
@@ -15,9 +16,13 @@ namespace tess::balance {
 /// Whom a PE meets; itself: nobody.
 [[nodiscard]] std::size_t partner(std::size_t pe, std::size_t stage, std::size_t n_pes);
 
-/// The step of one PE: what it gives to its partner, which is less loaded, so that both are done
-/// near the same time. Removed from `self`; empty where `self` is the less loaded one.
-[[nodiscard]] std::vector<Item> diffuse(LocalPe& self, PeSummary other);
+/// The step of one PE towards its partner: what it offers so that both be done at the same time,
+/// with the work that should go. Nothing where `self` is not worth relieving.
+struct Gift {
+  Item item;
+  double wanted = 0;
+};
+[[nodiscard]] std::optional<Gift> diffuse(const LocalPe& self, const PeSummary& other);
 
 /// The steps of all PEs over a snapshot, at most `n_sweeps` times over all stages, or until one
 /// sweep moves nothing.

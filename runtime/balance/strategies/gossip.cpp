@@ -12,11 +12,6 @@ constexpr double tolerance = 1.02;  // of the average: above it a PE is overload
 constexpr std::size_t fanout = 4;
 constexpr std::size_t n_iterations = 8;
 
-/// The work that would bring a PE to the average.
-double gap(const PeSummary& pe, double average) {
-  return (average - pe.time()) * pe.speed;
-}
-
 /// Word spreads by `fanout` a round until it can have reached every PE.
 void spread_word(std::vector<GossipPe>& pes) {
   const auto n_rounds = static_cast<std::size_t>(std::bit_width(pes.size()) + 1) / 2;
@@ -40,7 +35,9 @@ bool transfer(std::vector<GossipPe>& pes) {
       if (!offer) continue;
       offered = true;
       GossipPe& receiver = pes[offer->to];
-      const bool taken = receiver.answer(*offer);
+      const auto change = receiver.answer(*offer);
+      const bool taken = change.has_value();
+      if (taken) trade(giver.local(), receiver.local(), offer->item, *change);
       giver.learn(*offer, taken, receiver.local().summary());
       any_taken = any_taken || taken;
     }
@@ -66,32 +63,37 @@ void GossipPe::hear(const std::vector<Rumour>& rumours) {
   }
 }
 
+double GossipPe::gap(const PeSummary& pe) const {
+  return std::max(0.0, (tolerance * average_ - pe.time()) * pe.speed);
+}
+
 std::optional<Offer> GossipPe::propose() {
-  const double excess = -gap(local_.summary(), average_);
-  if (local_.summary().time() <= tolerance * average_) return std::nullopt;
+  const PeSummary& now = local_.summary();
+  const double excess = (now.time() - average_) * now.speed;
+  if (now.time() <= tolerance * average_) return std::nullopt;
   while (!known_.empty()) {
     double total = 0;
-    for (const Rumour& rumour : known_) total += std::max(0.0, gap(rumour.summary, average_));
+    for (const Rumour& rumour : known_) total += gap(rumour.summary);
     double left = next_.unit() * total;
     auto chosen = known_.begin();
-    while (chosen + 1 != known_.end() &&
-           (left -= std::max(0.0, gap(chosen->summary, average_))) >= 0)
-      ++chosen;
-    const double wanted = std::min(excess, gap(chosen->summary, average_));
-    if (chosen->pe != self_)
-      if (const auto item = local_.item_for(chosen->summary, wanted))
-        return Offer{chosen->pe, *item, local_.summary().time()};
+    while (chosen + 1 != known_.end() && (left -= gap(chosen->summary)) >= 0) ++chosen;
+    const double wanted = std::min(excess, gap(chosen->summary));
+    if (chosen->pe != self_ && wanted > 0)
+      if (const auto item = local_.offer(chosen->summary, wanted))
+        return Offer{chosen->pe, *item, now};
     known_.erase(chosen);
   }
   return std::nullopt;
 }
 
-bool GossipPe::answer(const Offer& offer) {
-  return local_.summary().time(offer.item.load) < offer.giver_time && local_.receive(offer.item);
+std::optional<std::vector<Item>> GossipPe::answer(const Offer& offer) const {
+  const double excess = (offer.giver.time() - average_) * offer.giver.speed;
+  const double wanted = std::min(excess, gap(local_.summary()));
+  if (!(wanted > 0)) return std::nullopt;
+  return local_.change_for(offer.item, wanted, offer.giver);
 }
 
 void GossipPe::learn(const Offer& offer, bool taken, const PeSummary& receiver) {
-  if (taken) local_.give(offer.item);
   const auto it = std::ranges::find(known_, offer.to, &Rumour::pe);
   if (it == known_.end()) return;
   it->summary = receiver;

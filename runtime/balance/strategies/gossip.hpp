@@ -2,7 +2,9 @@
 // underloaded PEs spread word of themselves, overloaded PEs offer elements to PEs they have heard
 // of, at random, more likely to the emptier. Where it differs from the paper: a PE remembers a
 // bounded number of others (the paper's lists grow to all PEs), and the receiver decides about an
-// offer, so that neither stale word nor two givers at once overload it or break its memory limit.
+// offer, so that neither stale word nor two givers at once overload it or break its memory limit;
+// for an element heavier than it has room for it gives change, without which heavy elements stay
+// stuck among PEs of average load.
 //
 //   one iteration:  tell -> hear (n_rounds times)  ;  propose -> answer -> learn (until nothing)
 //
@@ -24,7 +26,7 @@ struct Rumour {
 struct Offer {
   std::size_t to = 0;
   Item item;
-  double giver_time = 0;  ///< before it gives
+  PeSummary giver;  ///< before it gives
 };
 
 /// One PE of the protocol; each public call is a message to it or from it.
@@ -43,15 +45,19 @@ class GossipPe {
   void hear(const std::vector<Rumour>& rumours);
   /// An element that it would give, if it is overloaded and knows of a PE that may take it.
   [[nodiscard]] std::optional<Offer> propose();
-  /// The receiver's decision: it takes the element where it has room and is then done before the
-  /// giver would have been.
-  [[nodiscard]] bool answer(const Offer& offer);
-  /// The answer, with how the receiver is now.
+  /// The receiver's decision: the elements that it gives in return for the one it takes, or a
+  /// refusal (see LocalPe::change_for).
+  [[nodiscard]] std::optional<std::vector<Item>> answer(const Offer& offer) const;
+  /// How the receiver is after its answer.
   void learn(const Offer& offer, bool taken, const PeSummary& receiver);
 
   [[nodiscard]] const LocalPe& local() const { return local_; }
+  [[nodiscard]] LocalPe& local() { return local_; }
 
  private:
+  /// The work that would bring a PE to the load that it may have.
+  [[nodiscard]] double gap(const PeSummary& pe) const;
+
   LocalPe local_;
   std::size_t self_;
   double average_;
