@@ -6,6 +6,8 @@
 #include "runtime/balance/strategies/greedy.hpp"
 #include "runtime/balance/strategies/greedy_refine.hpp"
 #include "runtime/balance/strategies/hierarchical.hpp"
+#include "runtime/balance/strategies/hilbert.hpp"
+#include "runtime/balance/strategies/rcb.hpp"
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategies/simple.hpp"
 #include "runtime/error.hpp"
@@ -33,6 +35,8 @@ const std::vector<Entry>& entries() {
       {"diffusion", [](const Snapshot& s, std::uint64_t) { return diffusion(s); }},
       {"gossip", [](const Snapshot& s, std::uint64_t seed) { return gossip(s, seed); }},
       {"hierarchical", [](const Snapshot& s, std::uint64_t) { return hierarchical(s); }},
+      {"rcb", [](const Snapshot& s, std::uint64_t) { return rcb(s); }},
+      {"hilbert", [](const Snapshot& s, std::uint64_t) { return hilbert(s); }},
   };
   return all;
 }
