@@ -3,6 +3,7 @@
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/strategies/diffusion.hpp"
 #include "runtime/balance/strategies/gossip.hpp"
+#include "runtime/balance/strategies/graph.hpp"
 #include "runtime/balance/strategies/greedy.hpp"
 #include "runtime/balance/strategies/greedy_refine.hpp"
 #include "runtime/balance/strategies/hierarchical.hpp"
@@ -37,6 +38,7 @@ const std::vector<Entry>& entries() {
       {"hierarchical", [](const Snapshot& s, std::uint64_t) { return hierarchical(s); }},
       {"rcb", [](const Snapshot& s, std::uint64_t) { return rcb(s); }},
       {"hilbert", [](const Snapshot& s, std::uint64_t) { return hilbert(s); }},
+      {"graph", [](const Snapshot& s, std::uint64_t seed) { return graph(s, seed); }},
   };
   return all;
 }

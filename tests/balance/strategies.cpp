@@ -112,3 +112,12 @@ TEST_CASE("strategies by position refuse a snapshot without positions", "[balanc
   for (const char* name : {"rcb", "hilbert"})
     CHECK_THROWS_WITH(run(mod_seven(Start::blocks), name), Catch::Contains("has no positions"));
 }
+
+TEST_CASE("graph cuts at most half of greedy's external bytes of a stencil", "[balance]") {
+  for (const std::size_t n_pes : {4U, 16U}) {
+    const Snapshot s = stencil(32, n_pes, 1);
+    const Metrics m = run(s, "graph");
+    CHECK(m.max_over_average <= 1.10);
+    CHECK(2 * m.external_bytes <= run(s, "greedy").external_bytes);
+  }
+}
