@@ -115,7 +115,8 @@ Assignment map(const Snapshot& s, std::uint64_t seed, double tolerance) {
   Arch arch(SCOTCH_archInit, "SCOTCH_archInit");
   check(SCOTCH_archCmpltw(arch.get(), n_pes, width.data()), "SCOTCH_archCmpltw");
   Strat strategy(SCOTCH_stratInit, "SCOTCH_stratInit");
-  check(SCOTCH_stratGraphMapBuild(strategy.get(), SCOTCH_STRATDEFAULT, n_pes, (tolerance - 1) / 2),
+  check(SCOTCH_stratGraphMapBuild(
+            strategy.get(), SCOTCH_STRATQUALITY | SCOTCH_STRATBALANCE, n_pes, (tolerance - 1) / 2),
         "SCOTCH_stratGraphMapBuild");
 
   std::vector<SCOTCH_Num> part(s.elements.size(), -1);
