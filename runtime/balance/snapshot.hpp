@@ -25,6 +25,7 @@ struct Edge {
   std::size_t to = 0;
   std::uint64_t bytes = 0;
   std::uint64_t messages = 0;
+  friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
 /// All arrays have one entry an element; `position` may be empty instead, where nobody gave any.
