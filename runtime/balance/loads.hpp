@@ -1,7 +1,7 @@
 // Time and memory of every PE while a strategy decides. Memory starts as it is now and follows each
-// decided move, so that an element can always stay: whatever has not been decided yet still
-// occupies its present PE, and the moves can be carried out in any order of rounds without breaking
-// a limit that held before. Work starts empty, or as it is now (present()).
+// decided move: what has not been decided yet still occupies its present PE, so that an element can
+// always stay, and the moves, made in the order decided, never break a limit that held before.
+// Work starts empty, or as it is now (present()).
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"

@@ -108,6 +108,16 @@ TEST_CASE("cuts of space keep a stencil's neighbours together, in balance", "[ba
   }
 }
 
+TEST_CASE("a partition of a partition moves nothing, whatever its parts were called", "[balance]") {
+  for (const char* name : {"rcb", "hilbert", "graph"}) {
+    INFO(name);
+    Snapshot s = stencil(32, 16, 1);
+    s.elements.pe = make_strategy(name, 1)(s);
+    for (PeId& pe : s.elements.pe) pe = pe_at((slot(pe) * 7 + 3) % 16);
+    CHECK(run(s, name).n_moves == 0);
+  }
+}
+
 TEST_CASE("strategies by position refuse a snapshot without positions", "[balance]") {
   for (const char* name : {"rcb", "hilbert"})
     CHECK_THROWS_WITH(run(mod_seven(Start::blocks), name), Catch::Contains("has no positions"));

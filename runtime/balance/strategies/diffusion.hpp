@@ -16,12 +16,14 @@ namespace tess::balance {
 /// Whom a PE meets; itself: nobody.
 [[nodiscard]] std::size_t partner(std::size_t pe, std::size_t stage, std::size_t n_pes);
 
-/// The step of one PE towards its partner: what it offers so that both be done at the same time,
-/// with the work that should go. Nothing where `self` is not worth relieving.
+/// An element that a PE offers to its partner, and the work that should go with it.
 struct Gift {
   Item item;
   double wanted = 0;
 };
+
+/// The step of one PE towards its partner, until both are done near the same time: nothing where
+/// `self` is not, or no longer, worth relieving. The partner answers by LocalPe::change_for.
 [[nodiscard]] std::optional<Gift> diffuse(const LocalPe& self, const PeSummary& other);
 
 /// The steps of all PEs over a snapshot, at most `n_sweeps` times over all stages, or until one

@@ -2,6 +2,7 @@
 
 #include "runtime/balance/capacity.hpp"
 #include "runtime/balance/honour.hpp"
+#include "runtime/balance/relabel.hpp"
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/error.hpp"
 
@@ -140,7 +141,7 @@ Assignment graph(const Snapshot& s, std::uint64_t seed, double tolerance) {
          "strategy graph: ",
          s.edges.size(),
          " edges; Scotch takes 500000000; choose hierarchical");
-  return refine_from(s, honour(s, map(s, seed, tolerance)), tolerance);
+  return refine_from(s, honour(s, relabel(s, map(s, seed, tolerance))), tolerance);
 }
 
 }  // namespace tess::balance

@@ -2,6 +2,7 @@
 
 #include "runtime/balance/capacity.hpp"
 #include "runtime/balance/honour.hpp"
+#include "runtime/balance/relabel.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -84,7 +85,7 @@ Assignment hilbert(const Snapshot& s) {
     done += weight[i];
     wanted[i] = pe_at(pe);
   }
-  return honour(s, wanted);
+  return honour(s, relabel(s, std::move(wanted)));
 }
 
 }  // namespace tess::balance

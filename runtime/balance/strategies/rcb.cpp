@@ -2,6 +2,7 @@
 
 #include "runtime/balance/capacity.hpp"
 #include "runtime/balance/honour.hpp"
+#include "runtime/balance/relabel.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -91,7 +92,7 @@ Assignment rcb(const Snapshot& s) {
   std::vector<std::size_t> elements;
   for (std::size_t i = 0; i < s.elements.size(); ++i)
     if (s.elements.migratable[i]) elements.push_back(i);
-  return honour(s, Bisection(s).run(std::move(elements)));
+  return honour(s, relabel(s, Bisection(s).run(std::move(elements))));
 }
 
 }  // namespace tess::balance
