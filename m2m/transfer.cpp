@@ -37,8 +37,9 @@ Task transfer(DistributedMesh source,
     source.workers.broadcast<&Worker::submit_tets>(setup);
     target.workers.broadcast<&Worker::submit_points>(setup);
   });
-  co_await collide(setup.collider,
-                   {report_to<&Worker::receive_hits>(target.workers), target_model});
+  // Named: g++ 12 destroys an aggregate that is written inside a co_await expression twice.
+  const Report to_target{report_to<&Worker::receive_hits>(target.workers), target_model};
+  co_await collide(setup.collider, to_target);
   const Time broad = pe.now();
   co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(); });
   const Time narrow = pe.now();

@@ -189,7 +189,11 @@ class ElementProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+    if constexpr (Bitwise<Index>) {
+      return Callback<T>(target_kind<F, T>, TargetName::of(collection_, index_));
+    } else {
+      return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+    }
   }
 
  private:
@@ -263,7 +267,8 @@ class ArrayProxy {
   explicit ArrayProxy(CollectionId id) : id_(id) {}
 
   [[nodiscard]] CollectionId id() const { return id_; }
-  /// The element of that index. (A template, so that a proxy may be a member where C is not complete yet.)
+  /// The element of that index. (A template, so that a proxy may be a member where C is not
+  /// complete yet.)
   template <class Of = C>
   [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
     return ElementProxy<C>(id_, index);
@@ -280,15 +285,14 @@ class ArrayProxy {
   void broadcast(Args&&... args) const {
     static_assert(check_entry<C, F, Args...>());
     using Arguments = typename EntryTraits<F>::Arguments;
-    here().broadcasts().start(
-        std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
+    start_broadcast(id_, std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
   }
 
   /// A target for results: entry method F of all elements.
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, to_bytes(id_));
+    return Callback<T>(target_kind<F, T>, TargetName::of(id_));
   }
 
   /// The part of the array on this PE: its local elements, for libraries and tests.
@@ -348,14 +352,15 @@ void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
 /// PE of its index. Returns at once: messages to the array wait where it is not known yet.
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
-  if (range.n_axes != 0) {
-    static_assert(Coordinates<typename C::Index>,
-                  "an array with this type of index starts sparse: create<C>(tess::sparse)");
-    TESS_CHECK(range.n_axes == n_axes_of<typename C::Index>,
+  if constexpr (Coordinates<typename C::Index>) {
+    TESS_CHECK(range.n_axes == 0 || range.n_axes == n_axes_of<typename C::Index>,
                "a range of ",
                range.n_axes,
                " axes for an index of ",
                n_axes_of<typename C::Index>);
+  } else {
+    TESS_CHECK(range.n_axes == 0,
+               "an array with this type of index starts sparse: create<C>(tess::sparse)");
   }
   Pe& pe = current_pe();
   using Create = detail::CreateArray<C, std::decay_t<Args>...>;

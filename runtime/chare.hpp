@@ -42,12 +42,23 @@ class Chare : public IndexedElement<IndexType> {
   /// Ends this element once what runs of it, and what waits, is done.
   void destroy() { this->doomed_ = true; }
 
+  /// The number of the reduction that the next contribution belongs to. An element that is born
+  /// joins at the first that its PE has not reported yet: while others are at number r that is r or
+  /// r + 1.
+  [[nodiscard]] std::uint32_t next_reduction() const { return this->state_.next_reduction; }
+
   /// Gives this element's value to the next reduction of the array; every element gives one. The
   /// whole goes to `target`.
   template <class Op, class T>
   void contribute(Op /*op*/, T value, Callback<T> target) {
-    this->collection_->contribute(
-        *this, std::make_unique<MergedPartial<T, Op>>(std::move(value), std::move(target)));
+    using Merged = MergedPartial<T, Op>;
+    if (Partial* open = this->collection_->open_sum(*this, Merged::its_kind()); open != nullptr) {
+      static_cast<Merged*>(open)->add(value);
+      this->collection_->contributed(*this);
+    } else {
+      this->collection_->contribute(*this,
+                                    std::make_unique<Merged>(std::move(value), std::move(target)));
+    }
   }
   /// The same, combined in the order of indices.
   template <class Op, class T>

@@ -74,8 +74,10 @@ template <class Index>
       if constexpr (requires(std::ostream & o) { o << field; }) {
         out += text(field);
       } else if constexpr (requires { field.begin(); }) {
-        std::size_t n = 0;
-        for (const auto& item : field) out += (n++ != 0 ? "," : "") + text(item);
+        for (bool first = true; const auto& item : field) {
+          if (!std::exchange(first, false)) out += ",";
+          out += text(item);
+        }
       } else {
         out += "?";
       }

@@ -99,7 +99,7 @@ Task::~Task() {
     promise.detached = true;
     return;
   }
-  if (!promise.parent && promise.error) promise.account.pe->keep_exception(promise.error);
+  if (promise.error) promise.account.pe->keep_exception(promise.error);
   handle_.destroy();
 }
 

@@ -58,14 +58,15 @@ class [[nodiscard]] Task {
   Task& operator=(const Task&) = delete;
   Task& operator=(Task&&) = delete;
   /// A task that waits goes on by itself, on its element's account.
-  /// Not noexcept(false): g++ 12 cannot compile coroutines with parameters then.
+  /// (It does not throw: g++ 12 fails on a coroutine whose result does.)
   ~Task();
 
   // A task may await another: the parent goes on, through the queue, when the child is done.
   [[nodiscard]] bool await_ready() const noexcept { return handle_.done(); }
   void await_suspend(Handle parent);
   void await_resume() {
-    if (handle_.promise().error) std::rethrow_exception(handle_.promise().error);
+    if (handle_.promise().error)
+      std::rethrow_exception(std::exchange(handle_.promise().error, nullptr));
   }
 
  private:

@@ -85,7 +85,8 @@ Task transfer_all(Problem& problem) {
   report.seconds.setup = seconds_since(start);
   for (std::int32_t round = 0; round < problem.options.repeat; ++round) {
     TransferTimes times;
-    co_await transfer(source, target, {{0, 0, 0}, problem.voxel, problem.policy}, &times);
+    const TransferOptions options{{0, 0, 0}, problem.voxel, problem.policy};
+    co_await transfer(source, target, options, &times);
     PhaseSeconds& best = report.seconds;
     if (round == 0 || times.broad + times.narrow + times.report < best.transfer()) {
       best.broad = times.broad;

@@ -1,6 +1,6 @@
 #include "collide/parallel/manager.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
+#include "collide/serial/gridding.hpp"
 
 namespace tess {
 
@@ -12,19 +12,16 @@ void Manager::submit(std::span<const Item> items) {
 }
 
 void Manager::deliver() {
-  boost::unordered_flat_map<Cell, std::vector<Item>, std::hash<Cell>> by_voxel;
-  for (const Item& item : items_) {
-    const CellRange range = grid_.cells_of(item.box);
-    for (std::int32_t x = range.lo.x; x <= range.hi.x; ++x)
-      for (std::int32_t y = range.lo.y; y <= range.hi.y; ++y)
-        for (std::int32_t z = range.lo.z; z <= range.hi.z; ++z)
-          by_voxel[Cell{x, y, z}].push_back(item);
-  }
-  items_ = {};
-  for (auto& [cell, items] : by_voxel) {
+  const VoxelGroups groups = group_by_voxel(items_, grid_);
+  for (std::size_t voxel = 0; voxel < groups.size(); ++voxel) {
+    const Cell& cell = groups.cell(voxel);
+    std::vector<Item> items;
+    items.reserve(groups.items(voxel).size());
+    for (const std::uint32_t i : groups.items(voxel)) items.push_back(items_[i]);
     n_delivered_ += items.size();
     voxels_[{cell.x, cell.y, cell.z}].send_or_create_here<&Voxel::add>(std::move(items));
   }
+  items_ = {};
 }
 
 }  // namespace tess

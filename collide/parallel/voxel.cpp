@@ -1,11 +1,9 @@
 #include "collide/parallel/voxel.hpp"
 
-#include "collide/serial/territory.hpp"
+#include "collide/serial/pair_search.hpp"
 #include "collide/serial/voxel_grid.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
-
-#include <algorithm>
 
 namespace tess {
 namespace {
@@ -42,31 +40,6 @@ class Sorter {
   Key last_{};
 };
 
-/// Sweep along x over the lower corners; each overlapping pair that this voxel is responsible for,
-/// once.
-template <class Callback>
-void for_each_pair(const std::vector<Item>& items,
-                   const Cell& here,
-                   const VoxelGrid& grid,
-                   const PairRules& rules,
-                   const Callback& callback) {
-  std::vector<const Item*> order;
-  std::vector<std::uint32_t> below;
-  for (const Item& item : items) order.push_back(&item);
-  std::sort(order.begin(), order.end(), [](const Item* a, const Item* b) {
-    return a->box.lo[0] < b->box.lo[0];
-  });
-  for (const Item* item : order) below.push_back(axes_below(grid.cell_of(item->box.lo), here));
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t j = i + 1; j < order.size() && order[j]->box.lo[0] <= order[i]->box.hi[0];
-         ++j) {
-      const Item &a = *order[i], &b = *order[j];
-      if (rules.within_model == WithinModel::skip && a.id.model == b.id.model) continue;
-      if (reports(below[i], below[j]) && overlap(a.box, b.box, rules.touching)) callback(a, b);
-    }
-  }
-}
-
 }  // namespace
 
 void Voxel::add(std::vector<Item> items) {
@@ -80,15 +53,12 @@ void Voxel::add(std::vector<Item> items) {
 void Voxel::start_collision(const Collision& collision) {
   const std::vector<Item> items = std::exchange(items_, {});
   if (items.empty()) return;
-  const auto of_first = [&](const Item& item) { return item.id.model == items.front().id.model; };
-  if (collision.rules.within_model == WithinModel::skip &&
-      std::all_of(items.begin(), items.end(), of_first))
-    return;
 
   const VoxelGrid grid(collision.origin, collision.size);
   const Cell here{index().x, index().y, index().z};
   Sorter sorter;
-  for_each_pair(items, here, grid, collision.rules, [&](const Item& a, const Item& b) {
+  PairSearch search(collision.rules);
+  search.for_each_pair(items, here, grid, [&](const Item& a, const Item& b) {
     const auto& only = collision.report.only;
     if (!only || a.id.model == *only) sorter.add(a.id, b.id);
     if ((!only && a.id.owner != b.id.owner) || (only && b.id.model == *only))

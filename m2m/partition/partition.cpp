@@ -29,6 +29,9 @@ void need_mpi() {
   MPI_Initialized(&up);
   if (up != 0) return;
   const NotOurLeaks of_init;
+  // A lone process needs no daemon: Open MPI would start one and wait for it, half a second at
+  // best.
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   int provided = 0;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS) {
     fail(ErrorCode::environment, "MPI_Init_thread failed, and Zoltan needs MPI; run with one part");

@@ -1,5 +1,5 @@
-// Blocks of memory for messages: one pool a PE, sixteen-odd size classes, a free list each. Its PE
-// allocates and frees without an atomic. A block that another PE frees goes back to the pool it
+// Blocks of memory for messages: one pool a PE, seventeen size classes with a free list each. Its
+// PE allocates and frees without an atomic. A block that another PE frees goes back to the pool it
 // came from, in batches, over a stack that the owner empties when a list of its own runs out; so a
 // flow in one direction reuses its blocks, and memory is bounded by the most that was in use at
 // once.

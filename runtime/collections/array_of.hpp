@@ -449,6 +449,7 @@ void ArrayOf<Index>::land(Element_* element, PeId from) {
   // It stays until it has met the broadcasts that it missed on its way: only then has it landed.
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
+    if (element->doomed_ || pe_.stopped()) break;
     element->state_.seen_broadcast = call.number;
     const ElementScope scope(pe_, *element, &call.call->action(), call.epoch);
     call.call->invoke(*element);

@@ -37,11 +37,12 @@ BroadcastLog::BroadcastLog(Pe& pe, Collection& collection) : pe_(pe), collection
   }
 }
 
-void BroadcastLog::start(std::shared_ptr<const BroadcastCall> call) {
-  const EpochId epoch = pe_.context().epoch;
-  pe_.completion().sent(epoch);
+void start_broadcast(CollectionId collection, std::shared_ptr<const BroadcastCall> call) {
+  Pe& pe = current_pe();
+  const EpochId epoch = pe.context().epoch;
+  pe.completion().sent(epoch);
   send_to_collection<&start_arrives>(
-      collection_, collection_.root(), NumberedCall{0, epoch, std::move(call)});
+      pe, collection, root_of(collection, pe.n_pes()), NumberedCall{0, epoch, std::move(call)});
 }
 
 void BroadcastLog::on_start(NumberedCall&& call) {

@@ -22,15 +22,15 @@ namespace tess {
 class Collection;
 class Pe;
 
+/// Starts a broadcast from this PE, on which the collection need not be known yet.
+void start_broadcast(CollectionId collection, std::shared_ptr<const BroadcastCall> call);
+
 class BroadcastLog {
  public:
   BroadcastLog(Pe& pe, Collection& collection);
 
   /// The number that an element born here now has met.
   [[nodiscard]] std::uint64_t applied() const { return applied_; }
-
-  /// Starts a broadcast, from any PE.
-  void start(std::shared_ptr<const BroadcastCall> call);
 
   /// Elements leave and, later, have landed.
   void left(std::uint64_t seen) { ++in_flight_[seen]; }

@@ -13,6 +13,11 @@
 
 namespace tess {
 
+/// The PE that numbers the broadcasts and completes the reductions of a collection.
+[[nodiscard]] inline PeId root_of(CollectionId id, std::int32_t n_pes) {
+  return PeId{static_cast<std::int32_t>(mix(id.value) % static_cast<std::uint64_t>(n_pes))};
+}
+
 class Collection {
  public:
   Collection(Pe& pe, CollectionId id, std::string name);
@@ -24,10 +29,7 @@ class Collection {
   [[nodiscard]] CollectionId id() const { return id_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   /// The PE that numbers broadcasts and completes reductions.
-  [[nodiscard]] PeId root() const {
-    return PeId{
-        static_cast<std::int32_t>(mix(id_.value) % static_cast<std::uint64_t>(pe_.n_pes()))};
-  }
+  [[nodiscard]] PeId root() const { return root_of(id_, pe_.n_pes()); }
 
   [[nodiscard]] BroadcastLog& broadcasts() { return broadcasts_; }
   [[nodiscard]] ReductionTree& reductions() { return reductions_; }
@@ -41,6 +43,12 @@ class Collection {
 
   /// An element of this PE contributes to its next reduction.
   void contribute(Element& element, std::unique_ptr<Partial> value);
+  /// Where it can add its value without making a Partial; null if there is no such place. If there
+  /// is, it adds and calls contributed().
+  [[nodiscard]] Partial* open_sum(const Element& element, const PartialKind& kind) {
+    return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
+  }
+  void contributed(Element& element) { reductions_.added(element.state_.next_reduction++); }
 
   /// After something of the element ran: it leaves or ends now if that was asked for and nothing of
   /// it waits.

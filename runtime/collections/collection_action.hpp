@@ -47,19 +47,23 @@ struct CollectionAction {
       naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};
 };
 
-/// Sends a payload to the part of this collection on a PE; a hop of epoch 0, on no other epoch's
-/// account.
+/// Sends a payload to the part of a collection on a PE, which may be yet to come there; a hop of
+/// epoch 0, on no other epoch's account.
+template <auto Handler, Traffic Kind = Traffic::control>
+void send_to_collection(Pe& pe,
+                        CollectionId id,
+                        PeId to,
+                        typename CollectionAction<Handler, Kind>::Payload payload) {
+  using A = CollectionAction<Handler, Kind>;
+  pe.send(to,
+          pe.stamp(A::Held::make(
+              pe, A::action, detail::ToCollection<typename A::Payload>{id, std::move(payload)})));
+}
 template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Collection& collection,
                         PeId to,
                         typename CollectionAction<Handler, Kind>::Payload payload) {
-  using A = CollectionAction<Handler, Kind>;
-  Pe& pe = collection.pe();
-  pe.send(to,
-          pe.stamp(A::Held::make(
-              pe,
-              A::action,
-              detail::ToCollection<typename A::Payload>{collection.id(), std::move(payload)})));
+  send_to_collection<Handler, Kind>(collection.pe(), collection.id(), to, std::move(payload));
 }
 
 }  // namespace tess

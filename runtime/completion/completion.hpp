@@ -67,6 +67,8 @@ class Completion {
 
   /// Tells the coordinators of scoped epochs what changed. True if anything was told.
   bool tell_epochs();
+  /// True if the coordinator of the run has not been told all.
+  [[nodiscard]] bool run_changed() const { return run_ != run_told_; }
   /// Tells the coordinator of the run. True if anything was told.
   bool tell_run();
 

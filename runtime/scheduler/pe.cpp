@@ -167,9 +167,9 @@ std::size_t Pe::step(std::size_t most) {
 bool Pe::idle() {
   const RunsOn here(*this);
   bool busy = completion_.tell_epochs();
-  // Not at the first gap: a PE that is idle between two messages of a ping-pong would report each
-  // time.
-  if (++idle_calls_ >= patience_) busy = completion_.tell_run() || busy;
+  // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
+  // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
+  if (completion_.run_changed()) busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
   return flush() || busy || !ready_.empty();
 }
 

@@ -116,6 +116,10 @@ void Runtime::finish(PeId id) {
 
 void Runtime::error_line(const std::string& line) {
   const std::lock_guard lock(output_);
+  if (options_.report) {
+    options_.report(line);
+    return;
+  }
   std::fflush(stdout);
   std::fprintf(stderr, "%s\n", line.c_str());
   std::fflush(stderr);

@@ -24,6 +24,8 @@ struct RuntimeOptions {
   double migration_chance =
       0;                    ///< after each message an element may be sent away: schedule fuzzing
   bool statistics = false;  ///< print what each PE did
+  /// Who is given the lines of reports (deadlock, exception, statistics); absent: standard error.
+  std::function<void(const std::string&)> report;
 };
 
 class Runtime final : public Program {

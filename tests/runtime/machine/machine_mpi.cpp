@@ -130,6 +130,31 @@ TEST_CASE("different numbers of PEs are refused by every process", "[runtime][ma
   if (n > 1) CHECK_THROWS_AS(make({.pes_per_process = 1 + rank % 2}), Error);
 }
 
+/// Never stops by itself; the last process aborts the job.
+class Aborts final : public Program {
+ public:
+  explicit Aborts(Machine& machine) : machine_(machine) {}
+  void start(PeId) override {}
+  void accept(PeId, Link*) override {}
+  std::size_t step(PeId, std::size_t) override {
+    if (machine_.process().value + 1 == machine_.n_processes()) machine_.abort(7);
+    return 0;
+  }
+  bool idle(PeId) override { return false; }
+  void receive(PeId, std::span<const std::byte>) override {}
+  void finish(PeId) override {}
+
+ private:
+  Machine& machine_;
+};
+
+// Hidden: it ends the job. ctest runs it alone and expects exit code 7.
+TEST_CASE("one process ends the job with its exit code", "[.][abort]") {
+  const auto machine = make({.pes_per_process = 2});
+  Aborts aborts(*machine);
+  machine->run(aborts);
+}
+
 TEST_CASE("a chunk that MPI cannot count is refused", "[runtime][machine][mpi]") {
   CHECK_THROWS_AS(make({.chunk_bytes = std::size_t{1} << 31}), Error);
   CHECK_THROWS_AS(make({.chunk_bytes = 0}), Error);

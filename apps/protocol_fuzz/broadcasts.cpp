@@ -1,0 +1,146 @@
+// Broadcasts from all PEs to elements that move, come and go. The oracle: all elements meet the
+// broadcasts of their life in one order, each once; an element that lives through all meets all.
+#include "apps/protocol_fuzz/scenarios.hpp"
+
+#include <algorithm>
+
+namespace tess::fuzz {
+namespace {
+
+struct Heard {
+  Trial& trial;
+  std::uint64_t seed = 0;
+  int n_first = 0;
+  double birth_chance = 0, death_chance = 0, move_chance = 0;
+  std::mutex mutex{};
+  int n_born = 0;
+  std::vector<std::pair<int, std::vector<int>>> lists{};  // index, broadcasts met
+  std::vector<int> ended{};                               // indices
+
+  void add(int index, const std::vector<int>& met) {
+    const std::lock_guard lock(mutex);
+    lists.emplace_back(index, met);
+  }
+};
+Heard* heard = nullptr;
+
+class Listener : public Chare<Listener, Index1> {
+ public:
+  Listener() = default;
+  explicit Listener(bool born) : born_(born) {}
+
+  /// What was created for this message must not end before it: it would be created again.
+  void born() { born_ = true; }
+
+  void hear(int id) {
+    met_.push_back(id);
+    Random random(mix(heard->seed ^ mix(static_cast<std::uint64_t>(id * 4096 + index().x))));
+    if (random.chance(heard->birth_chance)) give_birth(random);
+    if (random.chance(heard->move_chance)) move(random);
+    if (index().x != 0 && born_ && random.chance(heard->death_chance)) {
+      heard->add(index().x, met_);
+      const std::lock_guard lock(heard->mutex);
+      heard->ended.push_back(index().x);
+      destroy();
+    }
+  }
+  /// The last of all broadcasts.
+  void tell() { heard->add(index().x, met_); }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(born_, met_);
+  }
+
+ private:
+  static PeId draw_pe(Random& random) {
+    return PeId{
+        static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
+  }
+  void move(Random& random) {
+    if (heard->death_chance > 0 || random.chance(0.5)) {  // else it would be a dead letter
+      migrate_to(draw_pe(random));
+    } else {
+      array()[index()].migrate_to(draw_pe(random));
+    }
+  }
+  void give_birth(Random& random) {
+    int index = 0;
+    {
+      const std::lock_guard lock(heard->mutex);
+      index = heard->n_first + heard->n_born++;
+    }
+    if (random.chance(0.3)) {
+      array()[{index}].insert_on(draw_pe(random), true);
+    } else if (random.chance(0.5)) {
+      array()[{index}].send_or_create_here<&Listener::born>();
+    } else {
+      array()[{index}].send_or_create_home<&Listener::born>();
+    }
+  }
+
+  bool born_ = false;
+  std::vector<int> met_;
+};
+
+/// On each PE: a chain of messages that broadcast now and then.
+class Speaker : public Group<Speaker> {
+ public:
+  void speak(ArrayProxy<Listener> array, int n_left) {
+    if (n_left == 0) return;
+    array.broadcast<&Listener::hear>(pe().value * 1000 + n_left);
+    group()[pe()].send<&Speaker::speak>(array, n_left - 1);
+  }
+};
+
+Task drive(Range first, int n_each) {
+  const auto array = tess::create<Listener>(first, true);
+  const auto speakers = create_group<Speaker>();
+  co_await epoch([&] { speakers.broadcast<&Speaker::speak>(array, n_each); });
+  array.broadcast<&Listener::tell>();
+}
+
+}  // namespace
+
+void broadcasts(Trial& trial) {
+  Heard here{trial, trial.random()(), trial.draw(1, 24)};
+  heard = &here;
+  const bool long_run = trial.seed() % 50 == 0;
+  const int n_each = long_run ? 500 / trial.n_pes() : trial.draw(1, 12);
+  // In the long run few are born for each that dies, so that the population stays small.
+  here.birth_chance = long_run ? 0.002 : 0.1 * trial.random().unit();
+  here.death_chance = long_run ? 0.01 : trial.draw(0, 1) * 0.1 * trial.random().unit();
+  here.move_chance = trial.random().unit() * 0.6;
+  trial.run_clean([&]() -> Task { return drive(range(here.n_first), n_each); });
+
+  const auto at_end = [&](int index) {
+    return std::find(here.ended.begin(), here.ended.end(), index) == here.ended.end();
+  };
+  const auto first = std::find_if(
+      here.lists.begin(), here.lists.end(), [](const auto& one) { return one.first == 0; });
+  if (first == here.lists.end()) return trial.expect(false, "element 0 told nothing");
+  const std::vector<int> all = first->second;
+  trial.expect(all.size() == static_cast<std::size_t>(n_each * trial.n_pes()),
+               "element 0 met ",
+               all.size(),
+               " of ",
+               n_each * trial.n_pes(),
+               " broadcasts");
+  for (const auto& [index, met] : here.lists) {
+    const auto begin = met.empty() ? all.end() : std::find(all.begin(), all.end(), met.front());
+    const bool in_order = static_cast<std::size_t>(all.end() - begin) >= met.size() &&
+                          std::equal(met.begin(), met.end(), begin);
+    trial.expect(in_order, "element ", index, " met broadcasts out of order or twice");
+    if (index < here.n_first && !met.empty())
+      trial.expect(begin == all.begin(), "element ", index, " missed the first broadcasts");
+    if (at_end(index) && in_order)
+      trial.expect(static_cast<std::size_t>(all.end() - begin) == met.size(),
+                   "element ",
+                   index,
+                   " missed the last broadcasts");
+  }
+  const auto n_lives = static_cast<std::size_t>(here.n_first + here.n_born);
+  trial.expect(here.lists.size() == n_lives, here.lists.size(), " of ", n_lives, " elements told");
+}
+
+}  // namespace tess::fuzz

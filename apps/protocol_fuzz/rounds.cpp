@@ -1,0 +1,288 @@
+// Rounds of broadcast and reduction while elements move before or after they contribute, end and
+// are born. The oracle: each result is what the contributions to its number, as they were made,
+// combine to; every element that lives through the round is among them.
+#include "apps/protocol_fuzz/scenarios.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace tess::fuzz {
+namespace {
+
+/// What one element gives to a round, and what the whole of it is.
+struct Tally {
+  std::int64_t n = 0;
+  std::int64_t sum = 0;
+  std::vector<std::int32_t> members;
+};
+struct AddTallies {
+  Tally operator()(Tally a, const Tally& b) const {
+    a.n += b.n;
+    a.sum += b.sum;
+    a.members.insert(a.members.end(), b.members.begin(), b.members.end());
+    return a;
+  }
+};
+
+struct Records {
+  Trial& trial;
+  std::uint64_t seed = 0;
+  int n_first = 0, n_rounds = 0;
+  double birth_chance = 0, death_chance = 0, move_chance = 0, late_chance = 0;
+  std::mutex mutex{};
+  std::vector<std::set<int>> given{};  // by round
+  std::map<int, int> ended{};          // index -> round in which it ended
+  int n_born = 0;
+  int n_results = 0;
+
+  void give(int round, int index) {
+    const std::lock_guard lock(mutex);
+    trial.expect(given[static_cast<std::size_t>(round)].insert(index).second,
+                 "element ",
+                 index,
+                 " contributes twice to ",
+                 round);
+  }
+  [[nodiscard]] Random draws(int round, int index, int what) const {
+    return Random(mix(seed ^ mix(static_cast<std::uint64_t>(round * 1000003 + index * 7 + what))));
+  }
+  [[nodiscard]] double value(int round, int index) const {
+    return 1.0 / (1.0 + round * 31 + index * 17);
+  }
+};
+Records* records = nullptr;
+
+class Judge;
+
+struct Birth {
+  GroupProxy<Judge> judge;
+  int round = 0;
+  int parent = 0;
+};
+
+class Player : public Chare<Player, Index1> {
+ public:
+  Player() = default;
+  explicit Player(GroupProxy<Judge> judge) : judge_(judge), born_(true) {}
+
+  void play(int round);
+  /// Comes to life within a round: its parent contributes once it knows.
+  void born(Birth birth);
+  void give(int round);
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(judge_, born_, last_round_);
+  }
+
+ private:
+  void bear(int round);
+  void move(Random& random) {
+    migrate_to(PeId{
+        static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
+  }
+
+  GroupProxy<Judge> judge_;
+  bool born_ = false;  // what was created on demand contributes once it was told to
+  int last_round_ = -1;
+};
+
+/// One PE's member is given the results, and calls the next round.
+class Judge : public Group<Judge> {
+ public:
+  void start(ArrayProxy<Player> players) {
+    players_ = players;
+    players_.broadcast<&Player::play>(0);
+  }
+  void tally(Tally tally) {
+    const auto given = take(round_);
+    std::sort(tally.members.begin(), tally.members.end());
+    records->trial.expect(std::vector<int>(given.begin(), given.end()) == tally.members,
+                          "round ",
+                          round_,
+                          ": the members of the result are not those that contributed");
+    records->trial.expect(tally.n == static_cast<std::int64_t>(given.size()), "round ", round_);
+    next();
+  }
+  void ordered(std::vector<std::int32_t> members) {
+    const auto given = take(round_);
+    records->trial.expect(std::vector<int>(given.begin(), given.end()) == members,
+                          "round ",
+                          round_,
+                          ": not the contributions in order, but ",
+                          members.size(),
+                          " of ",
+                          given.size());
+    next();
+  }
+  void summed(double sum) {
+    double expected = 0;
+    bool first = true;
+    for (const int index : take(round_)) {
+      const double value = records->value(round_, index);
+      expected = std::exchange(first, false) ? value : expected + value;
+    }
+    records->trial.expect(sum == expected, "round ", round_, ": sum ", sum, " not ", expected);
+    next();
+  }
+  void extremes(std::array<std::int64_t, 2> greatest) {
+    const auto given = take(round_);
+    records->trial.expect(greatest[0] == *given.rbegin() && -greatest[1] == *given.begin(),
+                          "round ",
+                          round_,
+                          ": extremes ",
+                          -greatest[1],
+                          " … ",
+                          greatest[0]);
+    next();
+  }
+  void agreed(bool all) {
+    (void)take(round_);
+    records->trial.expect(all == (round_ % 12 < 6), "round ", round_, ": agreed on ", all);
+    next();
+  }
+  void lowest(int least) {
+    const auto given = take(round_);
+    records->trial.expect(least == *given.begin(), "round ", round_, ": least ", least);
+    next();
+  }
+
+ private:
+  static std::set<int> take(int round) {
+    const std::lock_guard lock(records->mutex);
+    ++records->n_results;
+    const std::set<int>& given = records->given[static_cast<std::size_t>(round)];
+    for (int i = 0; i < records->n_first; ++i) {
+      const auto end = records->ended.find(i);
+      records->trial.expect(
+          (end != records->ended.end() && end->second <= round) || given.contains(i),
+          "round ",
+          round,
+          " is complete without element ",
+          i);
+    }
+    return given;
+  }
+  void next() {
+    if (++round_ < records->n_rounds) players_.broadcast<&Player::play>(round_);
+  }
+
+  ArrayProxy<Player> players_;
+  int round_ = 0;
+};
+
+void Player::play(int round) {
+  records->trial.expect(last_round_ < 0 || last_round_ + 1 == round,
+                        "element ",
+                        index().x,
+                        " meets round ",
+                        round,
+                        " after ",
+                        last_round_);
+  last_round_ = round;
+  if (!born_) return;
+  Random random = records->draws(round, index().x, 0);
+  if (index().x != 0 && random.chance(records->death_chance)) {
+    const bool gives = random.chance(0.5) && static_cast<int>(next_reduction()) <= round;
+    if (gives) give(round);
+    {
+      const std::lock_guard lock(records->mutex);
+      records->ended[index().x] = gives ? round + 1 : round;
+    }
+    destroy();
+    return;
+  }
+  if (static_cast<int>(next_reduction()) > round) return;  // born in this round
+  if (random.chance(records->birth_chance)) {
+    bear(round);
+    return;
+  }
+  if (random.chance(records->move_chance)) move(random);
+  if (random.chance(records->late_chance)) {
+    array()[index()].send<&Player::give>(round);
+  } else {
+    give(round);
+    if (random.chance(records->move_chance)) move(random);
+  }
+}
+
+void Player::bear(int round) {
+  int child = 0;
+  {
+    const std::lock_guard lock(records->mutex);
+    child = records->n_first + records->n_born++;
+  }
+  const Birth birth{judge_, round, index().x};
+  if (records->draws(round, index().x, 1).chance(0.5)) {
+    array()[{child}].send_or_create_here<&Player::born>(birth);
+  } else {
+    array()[{child}].send_or_create_home<&Player::born>(birth);
+  }
+}
+
+void Player::born(Birth birth) {
+  judge_ = birth.judge;
+  born_ = true;
+  if (static_cast<int>(next_reduction()) <= birth.round) give(birth.round);
+  array()[{birth.parent}].send<&Player::give>(birth.round);
+}
+
+void Player::give(int round) {
+  const int me = index().x;
+  records->trial.expect(static_cast<int>(next_reduction()) == round,
+                        "element ",
+                        me,
+                        " is at reduction ",
+                        next_reduction(),
+                        " in round ",
+                        round);
+  records->give(round, me);
+  const auto judge = judge_[PeId{0}];
+  const double value = records->value(round, me);
+  switch (round % 6) {
+    case 0:
+      contribute(AddTallies{}, Tally{1, me, {me}}, judge.target<&Judge::tally>());
+      break;
+    case 1:
+      contribute(
+          in_order(concatenate), std::vector<std::int32_t>{me}, judge.target<&Judge::ordered>());
+      break;
+    case 2:
+      contribute(in_order(sum), value, judge.target<&Judge::summed>());
+      break;
+    case 3:
+      contribute(max, std::array<std::int64_t, 2>{me, -me}, judge.target<&Judge::extremes>());
+      break;
+    case 4:
+      contribute(logical_and, round % 12 < 6 || me != 0, judge.target<&Judge::agreed>());
+      break;
+    default:
+      contribute(min, me, judge.target<&Judge::lowest>());
+  }
+  Random random = records->draws(round, me, 2);
+  if (random.chance(records->move_chance)) move(random);
+}
+
+}  // namespace
+
+void rounds(Trial& trial) {
+  Records here{trial, trial.random()(), trial.draw(1, 24)};
+  records = &here;
+  const bool long_run = trial.seed() % 100 == 0 && !trial.on_threads();
+  here.n_rounds = long_run ? 500 : trial.draw(1, 14);
+  const double births = long_run ? 0.01 : 0.1;
+  here.birth_chance = trial.draw(0, 1) * births * trial.random().unit();
+  here.death_chance = trial.draw(0, 1) * (long_run ? 0.015 : 0.1) * trial.random().unit();
+  here.move_chance = trial.draw(0, 2) * 0.3;
+  here.late_chance = trial.draw(0, 2) * 0.4;
+  here.given.resize(static_cast<std::size_t>(here.n_rounds));
+  trial.run_clean([&] {
+    const auto judge = create_group<Judge>();
+    const auto players = tess::create<Player>(range(here.n_first), judge);
+    judge[PeId{0}].send<&Judge::start>(players);
+  });
+  trial.expect(here.n_results == here.n_rounds, here.n_results, " results of ", here.n_rounds);
+}
+
+}  // namespace tess::fuzz

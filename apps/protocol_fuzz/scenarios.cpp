@@ -1,0 +1,41 @@
+#include "apps/protocol_fuzz/scenarios.hpp"
+
+#include <array>
+
+namespace tess::fuzz {
+namespace {
+
+constexpr std::array all{
+    Scenario{"create_at_once",
+             "of all PEs that demand an index at once one creates it, and no message is lost",
+             &create_at_once},
+    Scenario{"message_first",
+             "a message to an absent index waits for its element, however it comes to be",
+             &message_first},
+    Scenario{"lives",
+             "create, insert, destroy and insert elsewhere: one life at a time, nothing lost",
+             &lives},
+    Scenario{"broadcasts",
+             "every element meets every broadcast of its life once, in one order, wherever it goes",
+             &broadcasts},
+    Scenario{
+        "rounds", "broadcast and reduction are exact while elements move, come and go", &rounds},
+    Scenario{"tour", "messages find an element that visits every PE", &tour},
+};
+
+}  // namespace
+
+std::span<const Scenario> scenarios() {
+  return all;
+}
+
+const Scenario& scenario(std::string_view name) {
+  std::string names;
+  for (const Scenario& one : all) {
+    if (one.name == name) return one;
+    names += (names.empty() ? "" : ", ") + std::string(one.name);
+  }
+  fail(ErrorCode::bad_argument, "there is no scenario ", name, " (", names, ")");
+}
+
+}  // namespace tess::fuzz

@@ -1,0 +1,38 @@
+// The protocol scenarios: each runs a program that leans on one part of the runtime, in an order of
+// delivery that the trial's seed draws, and compares what happened with an oracle. Shared by the
+// program protocol_fuzz and by the tests.
+#pragma once
+
+#include "apps/protocol_fuzz/trial.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace tess::fuzz {
+
+void create_at_once(Trial& trial);    // create.cpp
+void message_first(Trial& trial);     // create.cpp
+void lives(Trial& trial);             // lives.cpp
+void broadcasts(Trial& trial);        // broadcasts.cpp
+void rounds(Trial& trial);            // rounds.cpp
+void tour(Trial& trial);              // tour.cpp
+void epochs(Trial& trial);            // epochs.cpp
+void epoch_migrations(Trial& trial);  // epoch_migrations.cpp
+void flood_exit(Trial& trial);        // exits.cpp
+void mailboxes(Trial& trial);         // mailboxes.cpp
+void deadlocks(Trial& trial);         // ends.cpp
+void exceptions(Trial& trial);        // ends.cpp
+void dead_letters(Trial& trial);      // ends.cpp
+void groups(Trial& trial);            // groups.cpp
+
+struct Scenario {
+  std::string_view name;
+  std::string_view claim;
+  void (*run)(Trial&);
+};
+
+[[nodiscard]] std::span<const Scenario> scenarios();
+/// Throws Error for a name that is none; the message lists the names.
+[[nodiscard]] const Scenario& scenario(std::string_view name);
+
+}  // namespace tess::fuzz

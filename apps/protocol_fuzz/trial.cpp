@@ -1,0 +1,50 @@
+#include "apps/protocol_fuzz/trial.hpp"
+
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+
+#include <array>
+
+namespace tess::fuzz {
+namespace {
+// A run of the scenarios takes some 10⁵ events; one that takes this many goes in circles.
+constexpr std::uint64_t most_events = 20'000'000;
+}  // namespace
+
+std::int32_t pes_of_seed(std::uint64_t seed) {
+  constexpr std::array<std::int32_t, 6> choices{1, 2, 3, 4, 7, 8};
+  return choices[mix(seed ^ 0x70657300U) % choices.size()];
+}
+
+Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine)
+    : seed_(seed), n_pes_(n_pes), machine_(machine), random_(mix(seed + 1)) {}
+
+Ending Trial::run_message(std::function<void()> main) {
+  Ending ending;
+  Setup setup;
+  if (machine_ == On::threads) {
+    setup.machine = make_threads_machine(n_pes_);
+    setup.options.seed = seed_;
+  } else {
+    SimulatedOptions options;
+    options.n_pes = n_pes_;
+    options.cost = Time(100);
+    options.seed = mix(seed_ * 16 + n_runs_++) >> 16U;
+    options.most_events = most_events;
+    if (!forced_migration_) options.migration_chance = 0;
+    setup.machine = make_simulated_machine(options);
+    setup.options.seed = *options.seed;
+    setup.options.migration_chance = migration_chance(options);
+  }
+  setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
+  ending.exit_code = run_on(setup, std::move(main));
+  return ending;
+}
+
+void Trial::add_failure(std::string failure) {
+  constexpr std::size_t most = 5;
+  const std::lock_guard lock(mutex_);
+  if (failures_.size() < most) failures_.push_back(std::move(failure));
+}
+
+}  // namespace tess::fuzz

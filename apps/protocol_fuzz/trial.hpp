@@ -1,0 +1,81 @@
+// One trial: one seed, one number of PEs, one machine, and what was expected of it. A scenario
+// draws its size and shape from the trial's random numbers, runs a program or several, and states
+// what must hold; the first few statements that did not are kept as text.
+//
+// The chares of a scenario and its oracle share the memory of one process: an oracle is guarded by
+// a mutex, so that the same scenario runs on the machine of threads.
+#pragma once
+
+#include "runtime/runtime.hpp"
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace tess::fuzz {
+
+/// How a run ended.
+struct Ending {
+  int exit_code = 0;
+  std::string report;  ///< what the runtime printed to standard error, lines
+};
+
+class Trial {
+ public:
+  enum class On { simulated, threads };
+
+  Trial(std::uint64_t seed, std::int32_t n_pes, On machine);
+
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
+  [[nodiscard]] bool on_threads() const { return machine_ == On::threads; }
+  /// Draws of the scenario itself; not for use on a PE.
+  [[nodiscard]] Random& random() { return random_; }
+  /// A number of least … most.
+  [[nodiscard]] int draw(int least, int most) {
+    return least + static_cast<int>(random_.below(static_cast<std::uint64_t>(most - least + 1)));
+  }
+
+  /// No element is sent away but by the scenario.
+  void forbid_forced_migration() { forced_migration_ = false; }
+
+  /// Runs `main` on PE 0 to the end of the run.
+  template <class Main>
+  Ending run(Main main) {
+    return run_message(detail::as_message(std::move(main)));
+  }
+  /// The same; the run has to end with exit code 0 and without a report.
+  template <class Main>
+  void run_clean(Main main) {
+    const Ending ending = run(std::move(main));
+    expect(ending.exit_code == 0, "exit code ", ending.exit_code, "; ", ending.report);
+    expect(ending.report.empty(), "report: ", ending.report);
+  }
+
+  /// States what must hold; any thread.
+  template <class... Parts>
+  void expect(bool holds, const Parts&... parts) {
+    if (!holds) [[unlikely]]
+      add_failure(text(parts...));
+  }
+  [[nodiscard]] const std::vector<std::string>& failures() const { return failures_; }
+
+ private:
+  Ending run_message(std::function<void()> main);
+  void add_failure(std::string failure);
+
+  const std::uint64_t seed_;
+  const std::int32_t n_pes_;
+  const On machine_;
+  Random random_;
+  std::uint64_t n_runs_ = 0;
+  bool forced_migration_ = true;
+  std::mutex mutex_;
+  std::vector<std::string> failures_;
+};
+
+/// The number of PEs that a seed stands for where none is given: 1, 2, 3, 4, 7 or 8.
+[[nodiscard]] std::int32_t pes_of_seed(std::uint64_t seed);
+
+}  // namespace tess::fuzz
