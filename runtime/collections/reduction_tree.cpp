@@ -225,10 +225,10 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
                          ready(number) ? "other PEs" : collection_.elements_before(number + 1)));
   }
   // Elements that came after this PE had reported; what they have yet to give is not complete.
-  if (!elements_at_.empty() && elements_at_.begin()->first < next_report_)
+  if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
     lines.push_back(text(collection_.name(),
                          ": reduction ",
-                         elements_at_.begin()->first,
+                         elements_at_.lowest(),
                          " waits for ",
                          collection_.elements_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
