@@ -71,16 +71,16 @@ Task run_case(const Case& c, Result& result) {
   }
 }
 
-void check_same(const Case& c, std::unique_ptr<Machine> machine, const RuntimeOptions& options) {
-  static const Case* of = nullptr;
-  static Result want;
-  if (of != &c) want = serial(c);
-  of = &c;
+void check_same(const Case& c,
+                const Result& want,
+                std::unique_ptr<Machine> machine,
+                const RuntimeOptions& options) {
   Setup setup{std::move(machine), options};
   Result got;
   const int code = run(setup, [&]() -> Task { return run_case(c, got); });
   REQUIRE(code == 0);
-  REQUIRE(got.status == want.status);
+  const bool same_status = got.status == want.status;  // not the whole lists in a failure's text
+  REQUIRE(same_status);
   for (std::size_t f = 0; f < 2; ++f)
     REQUIRE(std::memcmp(got.values[f].data(),
                         want.values[f].data(),
@@ -88,19 +88,23 @@ void check_same(const Case& c, std::unique_ptr<Machine> machine, const RuntimeOp
 }
 
 void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
+  const Result want = serial(c);
   for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
     SimulatedOptions options;
     options.n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
     options.cost = Time(100);
     options.seed = seed;
     c.n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
+    RuntimeOptions runtime_options;
+    runtime_options.seed = seed;
+    runtime_options.migration_chance = migration_chance(options);
     INFO("--sim pes=" << options.n_pes << ",cost=100ns,seed=" << seed << " with " << c.n_parts
                       << " parts");
-    check_same(c, make_simulated_machine(options), {seed, migration_chance(options), false});
+    check_same(c, want, make_simulated_machine(options), runtime_options);
   }
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    check_same(c, make_threads_machine(pes), {});
+    check_same(c, want, make_threads_machine(pes), {});
   }
 }
 
@@ -115,7 +119,7 @@ TetMesh moved(TetMesh mesh, double scale, double offset) {
 TEST_CASE("a transfer through chares gives the bits of the serial one on every schedule",
           "[m2m][parallel]") {
   const TetMesh coarse = read_mesh("kuhn:4@0.2");
-  const TetMesh fine = read_mesh("kuhn:6@0.3");
+  const TetMesh fine = read_mesh("kuhn:6@0.1");
   for (const OutsidePolicy& policy :
        {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}, OutsidePolicy{Nearest{}}}) {
     Case c = make_case(coarse, moved(fine, 1.1, -0.05), policy);  // some vertices lie outside
@@ -125,13 +129,16 @@ TEST_CASE("a transfer through chares gives the bits of the serial one on every s
 
 TEST_CASE("a mesh transferred onto itself through chares returns its values bit for bit",
           "[m2m][parallel]") {
-  const TetMesh mesh = read_mesh("kuhn:5@0.3");
+  const TetMesh mesh = read_mesh("kuhn:5@0.1");
   Case c = make_case(mesh, mesh, Keep{});
   check_on_all_machines(c, 20);
   Result got;
   Setup setup{make_threads_machine(2), {}};
   REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
-  for (std::size_t f = 0; f < 2; ++f) REQUIRE(got.values[f] == c.source_fields[f].values);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const bool same_values = got.values[f] == c.source_fields[f].values;
+    REQUIRE(same_values);
+  }
   for (const Status status : got.status) REQUIRE(status == Status::boundary);
 }
 
