@@ -15,7 +15,8 @@
 #include "collide/parallel/voxel.hpp"
 #include "runtime/runtime.hpp"
 
-#include <span>
+#include <utility>
+#include <vector>
 
 namespace tess {
 
@@ -33,7 +34,7 @@ struct Collider {
   ColliderOptions options;
 
   /// Hands objects of a client on this PE to the local Manager.
-  void submit(std::span<const Item> items) const { managers.local().submit(items); }
+  void submit(std::vector<Item> items) const { managers.local().submit(std::move(items)); }
 };
 
 /// Makes the (empty) array of voxels and the Managers. Throws Error for a voxel size that is not

@@ -68,9 +68,10 @@ class Array final : public ArrayOf<typename C::Index> {
       if constexpr (Migratable<C>) {
         Reader ar(arrival.state);
         const auto index = ar.template take<Index>();
-        this->pe_.set_birth(&index, this);
-        arrival.element = new C();
-        this->pe_.set_birth(nullptr, nullptr);
+        {
+          const Pe::Birth birth(this->pe_, &index, this);
+          arrival.element = new C();
+        }
         ar(arrival.element->state_);
         arrival.element->serialize(ar);
         TESS_CHECK(ar.remaining() == 0,

@@ -29,7 +29,8 @@ class Chare : public IndexedElement<IndexType> {
     return ArrayProxy<Derived>(mine->id());
   }
 
-  /// Moves this element to a PE once what runs of it, and what waits, is done.
+  /// Moves this element to a PE once what runs of it, and what waits, is done. The epoch that runs
+  /// waits for the move, unless a coroutine puts it off: that may be the one that awaits the epoch.
   void migrate_to(PeId pe) {
     TESS_CHECK(pe.value >= 0 && pe.value < current_pe().n_pes(),
                "there is no ",

@@ -21,14 +21,21 @@ class [[nodiscard]] EpochAwait {
     const EpochId epoch = pe.completion().open(outer, [task] { resume_later(task); });
     suspend(task, [epoch] { return text("epoch ", epoch.value >> 24U, " that it opened"); });
     pe.context().epoch = epoch;
-    body_();
+    try {
+      body_();
+    } catch (...) {
+      error_ = std::current_exception();  // for the coroutine, when what the body began is done
+    }
     pe.context().epoch = outer;
     pe.completion().close(epoch);
   }
-  void await_resume() const noexcept {}
+  void await_resume() const {
+    if (error_) std::rethrow_exception(error_);
+  }
 
  private:
   Body body_;
+  std::exception_ptr error_;
 };
 
 /// Awaited, runs `body` and is done when all that it caused is done.

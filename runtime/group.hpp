@@ -60,9 +60,10 @@ class GroupOf final : public Collection {
   template <class... Args>
   GroupOf(Pe& pe, CollectionId id, const Args&... args)
       : Collection(pe, id, plain_name(name_of_type<G>)) {
-    pe.set_birth(this, this);
-    member_ = std::make_unique<G>(args...);
-    pe.set_birth(nullptr, nullptr);
+    {
+      const Pe::Birth birth(pe, this, this);
+      member_ = std::make_unique<G>(args...);
+    }
     born(*member_);
     list(*member_);
   }
@@ -104,8 +105,14 @@ struct GroupCall final : Envelope {
     const EpochId epoch = call->epoch;
     {
       const ElementScope scope(pe, member, call->action, epoch);
-      std::apply([&member](auto&... argument) { (void)(member.*F)(std::move(argument)...); },
-                 call->arguments);
+      try {
+        std::apply([&member](auto&... argument) { (void)(member.*F)(std::move(argument)...); },
+                   call->arguments);
+      } catch (...) {
+        pe.note_place();
+        destroy(envelope);
+        throw;
+      }
       destroy(envelope);
     }
     pe.completion().processed(epoch);

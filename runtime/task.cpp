@@ -68,7 +68,18 @@ void suspend(Task::Handle task, std::function<std::string()> waits_for) {
                                                            account.context.action,
                                                            account.context.epoch,
                                                            std::move(waits_for),
-                                                           [task] { task.destroy(); }});
+                                                           task.address()});
+}
+
+void end_all(SuspendedList& list) {
+  // Those that no Task holds: with a frame end the tasks that it holds.
+  std::vector<Task::Handle> roots;
+  for (const Suspended& one : list) {
+    const auto task = Task::Handle::from_address(one.frame);
+    if (task.promise().detached) roots.push_back(task);
+  }
+  list.clear();
+  for (const Task::Handle task : roots) task.destroy();
 }
 
 void resume_later(Task::Handle task) {
@@ -96,7 +107,11 @@ Task::~Task() {
   if (!handle_) return;
   promise_type& promise = handle_.promise();
   if (!handle_.done()) {
-    promise.detached = true;
+    if (promise.account.pe->dropping()) {
+      handle_.destroy();
+    } else {
+      promise.detached = true;
+    }
     return;
   }
   if (promise.error) promise.account.pe->keep_exception(promise.error);

@@ -20,6 +20,9 @@ double Samples::median() const {
   std::nth_element(sorted.begin(), middle, sorted.end());
   return *middle;
 }
+double Samples::least() const {
+  return *std::min_element(values_.begin(), values_.end());
+}
 double Samples::spread() const {
   const auto [least, greatest] = std::minmax_element(values_.begin(), values_.end());
   return (*greatest - *least) / median();
@@ -28,7 +31,7 @@ double Samples::spread() const {
 Report::Report(const std::string& machine) : machine_(machine) {}
 
 void Report::header() const {
-  tess::print("name,value,unit,spread,reference,ratio,machine,preset,commit\n");
+  tess::print("name,median,unit,least,spread,reference,ratio,machine,preset,commit\n");
 }
 
 void Report::row(std::string_view name,
@@ -38,10 +41,11 @@ void Report::row(std::string_view name,
   const double value = samples.median();
   const std::string against =
       reference == 0 ? "," : fmt::format("{},{:.3f}", reference, value / reference);
-  tess::print(fmt::format("{},{:.1f},{},{:.2f},{},{},{},{}\n",
+  tess::print(fmt::format("{},{:.1f},{},{:.1f},{:.2f},{},{},{},{}\n",
                           name,
                           value,
                           unit,
+                          samples.least(),
                           samples.spread(),
                           against,
                           machine_,

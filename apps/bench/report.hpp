@@ -25,6 +25,8 @@ class Samples {
  public:
   void add(double value) { values_.push_back(value); }
   [[nodiscard]] double median() const;
+  /// What it takes when nothing else runs on the machine.
+  [[nodiscard]] double least() const;
   /// (largest − smallest) / median
   [[nodiscard]] double spread() const;
 

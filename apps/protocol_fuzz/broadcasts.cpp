@@ -7,6 +7,8 @@
 namespace tess::fuzz {
 namespace {
 
+constexpr int most_births = 100;
+
 struct Heard {
   Trial& trial;
   std::uint64_t seed = 0;
@@ -68,6 +70,7 @@ class Listener : public Chare<Listener, Index1> {
     int index = 0;
     {
       const std::lock_guard lock(heard->mutex);
+      if (heard->n_born >= most_births) return;
       index = heard->n_first + heard->n_born++;
     }
     if (random.chance(0.3)) {

@@ -21,6 +21,15 @@ constexpr std::array all{
     Scenario{
         "rounds", "broadcast and reduction are exact while elements move, come and go", &rounds},
     Scenario{"tour", "messages find an element that visits every PE", &tour},
+    Scenario{"epochs", "an epoch ends after all that it caused, and it ends", &epochs},
+    Scenario{
+        "epoch_migrations", "an epoch ends after the migrations that it caused", &epoch_migrations},
+    Scenario{"flood_exit", "exit in mid flood: the greatest code, nothing leaks", &flood_exit},
+    Scenario{"mailboxes", "coroutines and early messages under migration", &mailboxes},
+    Scenario{"deadlocks", "a run that stands still says who waits for what", &deadlocks},
+    Scenario{"exceptions", "an exception names element, entry method and PE", &exceptions},
+    Scenario{"dead_letters", "messages to the dead are counted", &dead_letters},
+    Scenario{"groups", "one member on each PE, broadcast and reduction over all", &groups},
 };
 
 }  // namespace

@@ -1,27 +1,40 @@
 #include "collide/parallel/manager.hpp"
 
-#include "collide/serial/gridding.hpp"
+#include <utility>
 
 namespace tess {
 
-void Manager::submit(std::span<const Item> items) {
-  check_boxes(items);
-  for (const Item& item : items)
-    (void)grid_.cells_of(item.box);  // refuses what is beyond the grid, before anything is sent
-  items_.insert(items_.end(), items.begin(), items.end());
+void Manager::submit(std::vector<Item> items) {
+  CellBounds bounds = bounds_;
+  for (const Item& item : items) bounds.add(cells_of(item, grid_), item);
+  bounds_ = bounds;
+  if (!items.empty()) lists_.push_back(std::move(items));
 }
 
 void Manager::deliver() {
-  const VoxelGroups groups = group_by_voxel(items_, grid_);
-  for (std::size_t voxel = 0; voxel < groups.size(); ++voxel) {
-    const Cell& cell = groups.cell(voxel);
-    std::vector<Item> items;
-    items.reserve(groups.items(voxel).size());
-    for (const std::uint32_t i : groups.items(voxel)) items.push_back(items_[i]);
-    n_delivered_ += items.size();
-    voxels_[{cell.x, cell.y, cell.z}].send_or_create_here<&Voxel::add>(std::move(items));
+  const auto lists = std::exchange(lists_, {});
+  CellNumbers numbers(std::exchange(bounds_, {}));
+  const auto for_each_entry = [&](auto&& visit) {
+    for (const std::vector<Item>& items : lists)
+      for (const Item& item : items)
+        numbers.for_each(cells_of(item, grid_), [&](std::uint32_t v) { visit(v, item); });
+  };
+
+  std::vector<std::uint32_t> n_items;
+  for_each_entry([&](std::uint32_t v, const Item& /*item*/) {
+    if (v >= n_items.size()) n_items.resize(numbers.size());
+    ++n_items[v];
+  });
+  std::vector<std::vector<Item>> by_voxel(n_items.size());
+  for (std::size_t v = 0; v < by_voxel.size(); ++v) by_voxel[v].reserve(n_items[v]);
+  for_each_entry([&](std::uint32_t v, const Item& item) { by_voxel[v].push_back(item); });
+
+  for (std::uint32_t v = 0; v < by_voxel.size(); ++v) {
+    if (by_voxel[v].empty()) continue;
+    n_delivered_ += by_voxel[v].size();
+    const Cell cell = numbers.cell(v);
+    voxels_[{cell.x, cell.y, cell.z}].send_or_create_here<&Voxel::add>(std::move(by_voxel[v]));
   }
-  items_ = {};
 }
 
 }  // namespace tess

@@ -5,11 +5,11 @@
 
 #include "collide/hit.hpp"
 #include "collide/parallel/voxel.hpp"
+#include "collide/serial/cell_numbers.hpp"
 #include "collide/serial/voxel_grid.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace tess {
@@ -20,8 +20,8 @@ class Manager : public Group<Manager> {
       : grid_(origin, size), voxels_(voxels) {}
 
   /// Takes objects of a client on this PE. Throws Error that names the object for a box that is
-  /// none.
-  void submit(std::span<const Item> items);
+  /// none, and for one that the grid has no cells for: nothing of this list is taken then.
+  void submit(std::vector<Item> items);
 
   /// Sends all that was submitted to the voxels it touches, one message a voxel.
   void deliver();
@@ -32,7 +32,8 @@ class Manager : public Group<Manager> {
  private:
   const VoxelGrid grid_;
   const ArrayProxy<Voxel> voxels_;
-  std::vector<Item> items_;
+  std::vector<std::vector<Item>> lists_;  // as they were submitted
+  CellBounds bounds_;                     // of their cells
   std::uint64_t n_delivered_ = 0;
 };
 

@@ -19,6 +19,10 @@ VoxelGrid::VoxelGrid(const Point& origin, const Point& size)
            " on axis ",
            k,
            " must be positive and finite, and so must its inverse");
+    for (const std::size_t lane : {k, k + 3}) {
+      constants_.origin[lane] = origin[k];
+      constants_.per_voxel[lane] = per_voxel_[k];
+    }
   }
 }
 

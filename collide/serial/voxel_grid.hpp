@@ -9,6 +9,7 @@
 #pragma once
 
 #include "collide/aabb.hpp"
+#include "collide/serial/conversion.hpp"
 
 #include <compare>
 #include <cstdint>
@@ -64,12 +65,21 @@ class VoxelGrid {
     return {cell_of(box.lo), cell_of(box.hi)};
   }
 
+  /// The same without an error: false for a box that is not valid or has no cells.
+  [[nodiscard]] bool find_cells(const Aabb& box, CellRange& range) const noexcept {
+    static_assert(sizeof box == 6 * sizeof(double) && sizeof range == 6 * sizeof(std::int32_t));
+    return conversion::convert(constants_, box.lo.data(), &range.lo.x);
+  }
+  /// What the conversion reads.
+  [[nodiscard]] const conversion::Constants& constants() const noexcept { return constants_; }
+
  private:
   [[nodiscard]] std::int32_t index(double x, std::size_t axis) const;
 
   Point origin_;
   Point size_;
   Point per_voxel_;
+  conversion::Constants constants_{};
 };
 
 }  // namespace tess

@@ -38,7 +38,7 @@ void Worker::submit_tets(const TransferSetup& setup) {
   for (std::size_t t = 0; t < part_.tets.size(); ++t)
     items.push_back(
         item_of(search_box(corners_of(part_.points, part_.tets[t])), index(), t, source_model));
-  setup.collider.submit(items);
+  setup.collider.submit(std::move(items));
 }
 
 void Worker::submit_points(const TransferSetup& setup) {
@@ -52,7 +52,7 @@ void Worker::submit_points(const TransferSetup& setup) {
   items.reserve(n_owned);
   for (std::size_t v = 0; v < n_owned; ++v)
     items.push_back(item_of(Box{part_.points[v], part_.points[v]}, index(), v, target_model));
-  setup.collider.submit(items);
+  setup.collider.submit(std::move(items));
 }
 
 void Worker::receive_hits(Hits hits) {
@@ -62,30 +62,47 @@ void Worker::receive_hits(Hits hits) {
 
 void Worker::ask_sources() {
   std::vector<Hits> all = std::exchange(hits_, {});
-  std::stable_sort(
-      all.begin(), all.end(), [](const Hits& a, const Hits& b) { return a.other < b.other; });
-  std::vector<std::int32_t> place(static_cast<std::size_t>(part_.n_owned),
-                                  -1);  // of a row in this query
-  for (auto first = all.begin(); first != all.end();) {
-    const auto last = std::find_if(
-        first, all.end(), [&](const Hits& hits) { return hits.other != first->other; });
-    Query query;
+  std::vector<Query> queries;
+  std::vector<OwnerId> sources;  // whom each query asks; few, so that they are sought one by one
+  std::vector<std::uint32_t> query_of(all.size());
+  std::vector<std::size_t> n_pairs;
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    const auto known = std::find(sources.begin(), sources.end(), all[h].other);
+    query_of[h] = static_cast<std::uint32_t>(known - sources.begin());
+    if (known == sources.end()) {
+      sources.push_back(all[h].other);
+      n_pairs.push_back(0);
+    }
+    n_pairs[query_of[h]] += all[h].pairs.size();
+  }
+  queries.resize(sources.size());
+  const auto n_owned = static_cast<std::size_t>(part_.n_owned);
+  std::vector<std::int32_t> place(n_owned, -1);  // of a row in the query at hand
+  std::vector<std::vector<std::uint32_t>> hits_of(sources.size());
+  for (std::size_t h = 0; h < all.size(); ++h)
+    hits_of[query_of[h]].push_back(static_cast<std::uint32_t>(h));
+  for (std::size_t q = 0; q < queries.size(); ++q) {
+    Query& query = queries[q];
     query.from = index();
-    for (auto hits = first; hits != last; ++hits) {
-      query.pairs.reserve(query.pairs.size() + hits->pairs.size());
-      for (const LocalPair& pair : hits->pairs) {
+    query.pairs.reserve(n_pairs[q]);
+    query.rows.reserve(std::min(n_owned, n_pairs[q]));
+    for (const std::uint32_t h : hits_of[q]) {
+      for (const LocalPair& pair : all[h].pairs) {
         std::int32_t& at = place[static_cast<std::size_t>(pair.mine)];
         if (at < 0) {
           at = static_cast<std::int32_t>(query.rows.size());
           query.rows.push_back(as_row(pair.mine));
-          query.points.push_back(part_.points[static_cast<std::size_t>(pair.mine)]);
         }
         query.pairs.push_back({as_row(pair.theirs), at});
       }
+      all[h].pairs = {};
     }
-    for (const std::int32_t row : query.rows) place[static_cast<std::size_t>(row)] = -1;
-    setup_.source[index_of(first->other)].send<&Worker::answer>(std::move(query));
-    first = last;
+    query.points.reserve(query.rows.size());
+    for (const std::int32_t row : query.rows) {
+      query.points.push_back(part_.points[static_cast<std::size_t>(row)]);
+      place[static_cast<std::size_t>(row)] = -1;
+    }
+    setup_.source[index_of(sources[q])].send<&Worker::answer>(std::move(query));
   }
 }
 
@@ -105,6 +122,9 @@ void Worker::answer(Query query) {
   }
   Answer answer;
   const std::size_t n = setup_.n_components;
+  answer.rows.reserve(best.size());
+  answer.claims.reserve(best.size());
+  answer.values.reserve(best.size() * n);
   for (std::size_t point = 0; point < best.size(); ++point) {
     if (winner[point] == nullptr) continue;
     const Found& f = *winner[point];

@@ -156,15 +156,17 @@ class ArrayOf : public Collection {
 
   /// Enters an element that is born on this PE.
   template <class Make>
-  Element_& bear(const Index& index, Version version, const Make& make) {
-    pe_.set_birth(&index, this);
-    Element_* element = make();
-    pe_.set_birth(nullptr, nullptr);
+  void bear(const Index& index, Version version, const Make& make) {
+    Element_* element = [&] {
+      const Pe::Birth birth(pe_, &index, this);
+      return make();
+    }();
     element->state_.version = version;
     born(*element);
     list(*element);
     here_.emplace(index, element);
-    return *element;
+    if (element->migrate_to_.value >= 0 || element->doomed_) [[unlikely]]
+      settle(*element);  // its constructor asked for it
   }
 
   /// Takes in an element that comes from another PE.
@@ -242,7 +244,13 @@ void ArrayOf<Index>::execute(Element_& element, Letter* letter) {
     discard(letter);
   } else {
     const ElementScope scope(pe_, element, letter->action, epoch);
-    action.invoke(element, *letter);
+    try {
+      action.invoke(element, *letter);
+    } catch (...) {
+      pe_.note_place();
+      discard(letter);
+      throw;
+    }
     discard(letter);
   }
   pe_.completion().processed(epoch);
@@ -264,6 +272,11 @@ void ArrayOf<Index>::forward(Letter* letter, const Place& place) {
 template <class Index>
 void ArrayOf<Index>::route(Letter* letter) {
   const Index& index = letter->index;
+  if (pe_.birth() != nullptr) [[unlikely]] {
+    // A constructor sent it: it may be to an element that is made next, or to its own.
+    arrive_later(letter);
+    return;
+  }
   if (const auto at = pending_.find(index); at != pending_.end()) {
     at->second.letters.push_back(letter);
     return;
@@ -450,9 +463,9 @@ void ArrayOf<Index>::land(Element_* element, PeId from) {
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
     if (element->doomed_ || pe_.stopped()) break;
-    element->state_.seen_broadcast = call.number;
-    const ElementScope scope(pe_, *element, &call.call->action(), call.epoch);
-    call.call->invoke(*element);
+    this->call(*element, call);
+    // Who asks it to move on waits for that.
+    if (element->migrate_to_.value >= 0) pe_.context().epoch = call.epoch;
   }
   const Landed landed{index, Place{pe_.id(), version}, from, seen};
   if (home(index) == pe_.id()) {

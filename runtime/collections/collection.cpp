@@ -37,17 +37,30 @@ void Collection::born(Element& element) {
   reductions_.born(element.state_.next_reduction);
 }
 
+void Collection::call(Element& element, const NumberedCall& call) {
+  element.state_.seen_broadcast = call.number;
+  const ElementScope scope(pe_, element, &call.call->action(), call.epoch);
+  try {
+    call.call->invoke(element);
+  } catch (...) {
+    pe_.note_place();
+    throw;
+  }
+}
+
 void Collection::apply(const NumberedCall& call) {
   ++applying_;
+  // Where the call makes an element move, the broadcast's epoch waits for it.
+  const EpochId before = std::exchange(pe_.context().epoch, call.epoch);
   const std::size_t n =
       elements_.size();  // later ones are born after this broadcast, or came having met it
   for (std::size_t i = 0; i < n; ++i) {
     Element* element = elements_[i];
     if (element == nullptr || element->state_.seen_broadcast >= call.number) continue;
-    element->state_.seen_broadcast = call.number;
-    const ElementScope scope(pe_, *element, &call.call->action(), call.epoch);
-    call.call->invoke(*element);
+    this->call(*element, call);
+    if (pe_.stopped()) break;
   }
+  pe_.context().epoch = before;
   if (--applying_ != 0) return;
   std::size_t kept = 0;
   for (Element* element : elements_) {

@@ -38,6 +38,9 @@ class Collection {
   [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
   [[nodiscard]] std::size_t n_local() const { return n_local_; }
 
+  /// Calls one element on account of a broadcast.
+  void call(Element& element, const NumberedCall& call);
+
   /// Calls all local elements that have not met this broadcast yet.
   void apply(const NumberedCall& call);
 

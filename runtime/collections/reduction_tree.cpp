@@ -212,20 +212,25 @@ void ReductionTree::complete_if_whole() {
 }
 
 void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
-  std::uint64_t n = 0;
   for (const auto& [number, gathering] : gathering_) {
-    if (gathering.n != 0)
-      lines.push_back(text(collection_.name(),
-                           ": reduction ",
-                           number,
-                           " has ",
-                           gathering.n,
-                           " contributions on ",
-                           pe_.id(),
-                           "; it waits for ",
-                           ready(number) ? "other PEs" : collection_.elements_before(number + 1)));
-    ++n;
+    if (gathering.n == 0 && ready(number)) continue;
+    lines.push_back(text(collection_.name(),
+                         ": reduction ",
+                         number,
+                         " has ",
+                         gathering.n,
+                         " contributions on ",
+                         pe_.id(),
+                         "; it waits for ",
+                         ready(number) ? "other PEs" : collection_.elements_before(number + 1)));
   }
+  // Elements that came after this PE had reported; what they have yet to give is not complete.
+  if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
+    lines.push_back(text(collection_.name(),
+                         ": reduction ",
+                         elements_at_.lowest(),
+                         " waits for ",
+                         collection_.elements_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
     if (whole.sum.n != 0)
       lines.push_back(text(collection_.name(),

@@ -168,7 +168,6 @@ void SimulatedMachine::run(Program& program) {
       }
     }
   }
-  for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
   // What is still under way belongs to the program: it frees it.
   for (; !events_.empty(); events_.pop()) {
     const Event& event = events_.top();

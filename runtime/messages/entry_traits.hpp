@@ -21,6 +21,7 @@ struct MemberTraits<R (C::*)(P...)> {
   using Class = C;
   using Arguments = std::tuple<std::decay_t<P>...>;
   static constexpr std::size_t n_arguments = sizeof...(P);
+  static constexpr bool by_value = (!std::is_reference_v<P> && ...);
   static constexpr bool by_value_or_const =
       ((!std::is_lvalue_reference_v<P> || std::is_const_v<std::remove_reference_t<P>>)&&...);
 };
@@ -52,6 +53,8 @@ consteval bool check_entry() {
                   "an entry method takes at most two arguments: put more into one aggregate");
     static_assert(Traits::by_value_or_const,
                   "an entry method takes its arguments by value or const reference");
+    static_assert(std::is_void_v<typename Traits::Result> || Traits::by_value,
+                  "a coroutine takes its arguments by value: the message is gone once it waits");
     static_assert(std::is_constructible_v<typename Traits::Arguments, Args...> &&
                       sizeof...(Args) == Traits::n_arguments,
                   "these arguments are not what the entry method takes");

@@ -29,11 +29,12 @@ Pe& current_pe() {
   return *detail::the_current_pe;
 }
 
-Pe::Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed)
+Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed)
     : id_(id),
       n_pes_(machine.n_pes()),
       runtime_(runtime),
       machine_(machine),
+      pool_(pool),
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
       completion_(*this),
@@ -138,14 +139,19 @@ void Pe::run(Envelope* message) {
   if (counted) completion_.hop_processed();
 }
 
+void Pe::note_place() {
+  if (place_.empty()) place_ = runtime_.describe(*this);
+}
+
 void Pe::exception(const char* what, int exit_code) {
+  note_place();
+  const std::string place = std::exchange(place_, {});
   // Bad input is the user's to mend: one line, no trace. Everything else is a bug and says where it
   // was.
   if (exit_code == 2) {
     runtime_.error_line(text("error: ", what));
   } else {
-    runtime_.error_line(
-        text("tessera: uncaught exception: ", what, "\n  ", runtime_.describe(*this)));
+    runtime_.error_line(text("tessera: uncaught exception: ", what, "\n  ", place));
   }
   runtime_.exit(*this, exit_code);
 }
@@ -169,7 +175,11 @@ bool Pe::idle() {
   bool busy = completion_.tell_epochs();
   // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
   // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
-  if (completion_.run_changed()) busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+  if (completion_.run_changed()) {
+    busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+  } else {
+    pool_.flush();
+  }
   return flush() || busy || !ready_.empty();
 }
 
@@ -179,12 +189,8 @@ void Pe::drop_all() {
     for (Envelope* message : messages) discard(message);
   }
   early_.clear();
-  // The latest first: a coroutine that called another has suspended after it.
-  while (!suspended_.empty()) {
-    const auto end = suspended_.back().end;
-    suspended_.pop_back();
-    end();
-  }
+  dropping_ = true;
+  end_all(suspended_);
 }
 
 Collection* Pe::find_slow(CollectionId id) {

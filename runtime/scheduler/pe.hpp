@@ -4,6 +4,7 @@
 #pragma once
 
 #include "runtime/base/mix.hpp"
+#include "runtime/base/pool.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
@@ -45,7 +46,8 @@ struct PeStatistics {
 
 class Pe {
  public:
-  Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed);
+  /// The pool outlives all PEs of the process: messages of one are freed by another.
+  Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed);
   Pe(const Pe&) = delete;
   Pe& operator=(const Pe&) = delete;
   ~Pe();
@@ -54,6 +56,7 @@ class Pe {
   [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
   [[nodiscard]] Machine& machine() { return machine_; }
   [[nodiscard]] Runtime& runtime() { return runtime_; }
+  [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
   [[nodiscard]] Context& context() { return context_; }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
@@ -111,11 +114,15 @@ class Pe {
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
+  /// Sends all that was held back to be packed together. True if there was any.
+  bool flush();
   void drop_all();
 
   /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
   void stop_user_code() { stopped_ = true; }
   [[nodiscard]] bool stopped() const { return stopped_; }
+  /// The run is over, and what waited is freed.
+  [[nodiscard]] bool dropping() const { return dropping_; }
 
   /// Epoch 0 is done (on PE 0).
   void quiescent();
@@ -141,15 +148,36 @@ class Pe {
 
   /// An exception that a coroutine threw after it had waited; thrown again once its message is at
   /// its end.
-  void keep_exception(std::exception_ptr error) { kept_exception_ = std::move(error); }
+  void keep_exception(std::exception_ptr error) {
+    note_place();
+    if (!kept_exception_) kept_exception_ = std::move(error);
+  }
+  /// An exception leaves the code of an element: the report is to say where that was.
+  void note_place();
 
   /// The index (and array) of the element that is constructed right now; null between.
   [[nodiscard]] const void* birth() const { return birth_index_; }
   [[nodiscard]] Collection* birth_collection() const { return birth_collection_; }
-  void set_birth(const void* index, Collection* collection) {
-    birth_index_ = index;
-    birth_collection_ = collection;
-  }
+  /// Marks a constructor's run; they nest where a constructor creates a collection.
+  class Birth {
+   public:
+    Birth(Pe& pe, const void* index, Collection* collection)
+        : pe_(pe), index_(pe.birth_index_), collection_(pe.birth_collection_) {
+      pe.birth_index_ = index;
+      pe.birth_collection_ = collection;
+    }
+    Birth(const Birth&) = delete;
+    Birth& operator=(const Birth&) = delete;
+    ~Birth() {
+      pe_.birth_index_ = index_;
+      pe_.birth_collection_ = collection_;
+    }
+
+   private:
+    Pe& pe_;
+    const void* index_;
+    Collection* collection_;
+  };
 
   /// Calls that the schedule makes wait until the end of the current message (element surgery).
   [[nodiscard]] bool intercepts() const { return intercepts_; }
@@ -157,7 +185,6 @@ class Pe {
  private:
   void route(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
-  bool flush();
   void run(Envelope* message);
   void exception(const char* what, int exit_code);
   Collection* find_slow(CollectionId id);
@@ -166,12 +193,15 @@ class Pe {
   const std::int32_t n_pes_;
   Runtime& runtime_;
   Machine& machine_;
+  Pool& pool_;
   const bool intercepts_;
   const unsigned patience_;
   bool stopped_ = false;
+  bool dropping_ = false;
   std::exception_ptr kept_exception_;
   std::uint64_t n_futures_ = 0;
   boost::unordered_flat_map<std::uint64_t, void*> futures_;
+  std::string place_;  // where the exception on its way was thrown
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;
   ReadyQueue ready_;

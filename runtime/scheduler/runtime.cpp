@@ -60,7 +60,8 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);
   for (std::int32_t i = 0; i < n_here; ++i) {
-    pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i}, *this, machine, options.seed));
+    pes_.push_back(std::make_unique<Pe>(
+        PeId{first_.value + i}, *this, machine, pools_.emplace_back(), options.seed));
     pes_.back()->set_migration_chance(options.migration_chance);
   }
   set_check_context(&context_of_this_thread);
@@ -138,6 +139,7 @@ void Runtime::exit(Pe& pe, int code) {
   int& asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
   const bool first = asked < 0;
   asked = std::max(asked, code);
+  pe.stop_user_code();
   if (first) send_uncounted<&exit_asked_arrives>(pe, PeId{0}, Code{code});
 }
 
@@ -164,7 +166,8 @@ void Runtime::on_stopped(Pe& pe, int code) {
   if (--n_answers_ == 0) send_to_all<&leave_arrives>(pe, Code{exit_code_});
 }
 
-void Runtime::on_leave(Pe& /*pe*/, int code) {
+void Runtime::on_leave(Pe& pe, int code) {
+  pe.flush();  // PE 0 holds packed what tells other processes to leave
   exit_code_ = code;
   left_ = true;
   machine_.stop();
@@ -182,9 +185,10 @@ void Runtime::on_census_asked(Pe& pe) {
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
+  if (stopping_) return;  // exit() came meanwhile; it counts answers of its own
   census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
   census_.dead_letters += census.dead_letters;
-  if (--n_answers_ != 0 || stopping_) return;
+  if (--n_answers_ != 0) return;
   if (census_.dead_letters != 0)
     error_line(text("tessera: ",
                     census_.dead_letters,

@@ -19,10 +19,13 @@ struct Suspended {
   const Action* action = nullptr;
   EpochId epoch{};
   std::function<std::string()> waits_for;
-  std::function<void()> end;  ///< frees it, when the run ends before it does
+  void* frame = nullptr;
 };
 
 /// Entries stay where they are until they are taken out.
 using SuspendedList = std::list<Suspended>;
+
+/// Frees them all: the run ends before they do.
+void end_all(SuspendedList& list);
 
 }  // namespace tess

@@ -55,8 +55,10 @@ void check_scene(std::span<const Item> items, std::initializer_list<double> size
       const Pairs expected = oracle(items, rules);
       for (const double size : sizes)
         for (const double origin : {0.0, shift, -3.7 * shift})
-          for (const auto method :
-               {SerialMethod::automatic, SerialMethod::brute_force, SerialMethod::sweep}) {
+          for (const auto method : {SerialMethod::automatic,
+                                    SerialMethod::brute_force,
+                                    SerialMethod::sweep,
+                                    SerialMethod::bisection}) {
             const VoxelGrid grid({origin, -origin, origin}, {size, size, size});
             CAPTURE(size, origin, static_cast<int>(method), static_cast<int>(touching));
             REQUIRE((found(items, grid, rules, method) == expected));
@@ -120,15 +122,14 @@ TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
   for (std::size_t i = 0; i < items.size(); ++i)
     lanes.set(i,
               items[i],
-              {0, 0, 0},
-              {static_cast<int>(i % 2), static_cast<int>(i % 3), 0},
+              axes_below({static_cast<int>(i % 2), static_cast<int>(i % 3), 0}, {0, 0, 0}),
               static_cast<std::uint32_t>(i));
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Probe<Touching::counts, WithinModel::skip> closed(lanes, i);
     const Probe<Touching::does_not_count, WithinModel::test> open(lanes, i);
     for (std::size_t j = 0; j < items.size(); ++j) {
-      REQUIRE(closed.overlaps(j) == closed.overlaps_plain(j));
-      REQUIRE(open.overlaps(j) == open.overlaps_plain(j));
+      REQUIRE(closed.overlaps(lanes, j) == closed.overlaps_plain(lanes, j));
+      REQUIRE(open.overlaps(lanes, j) == open.overlaps_plain(lanes, j));
     }
   }
 }
