@@ -20,3 +20,11 @@ find_library(ZOLTAN_LIBRARY NAMES trilinos_zoltan zoltan REQUIRED)
 add_library(tess_zoltan INTERFACE)
 target_include_directories(tess_zoltan SYSTEM INTERFACE "${ZOLTAN_INCLUDE}")
 target_link_libraries(tess_zoltan INTERFACE "${ZOLTAN_LIBRARY}" MPI::MPI_C)
+
+# The sequential library: partitions without MPI.
+find_path(SCOTCH_INCLUDE scotch.h PATH_SUFFIXES scotch REQUIRED)
+find_library(SCOTCH_LIBRARY NAMES scotch REQUIRED)
+find_library(SCOTCHERR_LIBRARY NAMES scotcherr REQUIRED)
+add_library(tess_scotch INTERFACE)
+target_include_directories(tess_scotch SYSTEM INTERFACE "${SCOTCH_INCLUDE}")
+target_link_libraries(tess_scotch INTERFACE "${SCOTCH_LIBRARY}" "${SCOTCHERR_LIBRARY}")

@@ -6,7 +6,7 @@ packages=(
   g++-12 cmake ninja-build git pkg-config clang-format clang-tidy
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
   libfmt-dev libcli11-dev nlohmann-json3-dev catch2
-  libexodusii-dev libtrilinos-zoltan-dev
+  libexodusii-dev libtrilinos-zoltan-dev libscotch-dev
   gmsh gnuplot-nox
 )
 

@@ -37,17 +37,24 @@ function(tess_library name)
   set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name})
 endfunction()
 
-# tess_app(NAME SOURCES … DEPENDS …): a program in bin/.
+# tess_app(NAME SOURCES … DEPENDS …): a program in bin/. Sanitizer builds leave programs out.
 function(tess_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tess_options ${ARG_DEPENDS})
+  if(SANITIZE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
 endfunction()
 
-# tess_test(NAME SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
+# tess_test(NAME [TSAN] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
 # A test case tagged [.] is hidden: it runs by hand only (soak, seeds, benchmarks).
+# TSAN: it has threads, so the thread sanitizer has something to say about it.
 function(tess_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "TSAN" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  if(SANITIZE STREQUAL "thread" AND NOT ARG_TSAN)
+    return()
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tess_catch_main ${ARG_DEPENDS})
   target_precompile_headers(${name} REUSE_FROM tess_catch_main)

@@ -190,7 +190,11 @@ class ElementProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+    if constexpr (Bitwise<Index>) {
+      return Callback<T>(target_kind<F, T>, TargetName::of(collection_, index_));
+    } else {
+      return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+    }
   }
 
  private:
@@ -260,13 +264,14 @@ class ElementProxy {
 template <class C>
 class ArrayProxy {
  public:
-  using Index = typename C::Index;
-
   ArrayProxy() = default;
   explicit ArrayProxy(CollectionId id) : id_(id) {}
 
   [[nodiscard]] CollectionId id() const { return id_; }
-  [[nodiscard]] ElementProxy<C> operator[](const Index& index) const {
+  /// The element of that index. (A template, so that a proxy may be a member where C is not
+  /// complete yet.)
+  template <class Of = C>
+  [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
     return ElementProxy<C>(id_, index);
   }
 
@@ -288,7 +293,7 @@ class ArrayProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, to_bytes(id_));
+    return Callback<T>(target_kind<F, T>, TargetName::of(id_));
   }
 
   /// The part of the array on this PE: its local elements, for libraries and tests.

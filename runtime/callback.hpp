@@ -5,11 +5,56 @@
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace tess {
+
+/// The bytes that name a target: an array and an index, say. Few, never changed, often copied:
+/// short ones are kept in place, long ones are shared.
+class TargetName {
+ public:
+  TargetName() = default;
+  explicit TargetName(std::span<const std::byte> bytes) : n_(bytes.size()) {
+    if (n_ <= short_.size()) {
+      std::copy(bytes.begin(), bytes.end(), short_.begin());
+    } else {
+      long_ = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
+    }
+  }
+  /// Names made of values that are their bytes; packed as a tuple of them would be.
+  template <Bitwise... Values>
+  [[nodiscard]] static TargetName of(const Values&... values) {
+    std::array<std::byte, (sizeof(Values) + ...)> bytes;
+    std::byte* at = bytes.data();
+    ((std::memcpy(at, &values, sizeof values), at += sizeof values), ...);
+    return TargetName(bytes);
+  }
+
+  [[nodiscard]] std::span<const std::byte> view() const {
+    return long_ ? std::span<const std::byte>(*long_) : std::span(short_).first(n_);
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (Ar::is_reading) {
+      *this = TargetName(ar.template take<std::vector<std::byte>>());
+    } else {
+      const auto bytes = view();
+      ar(std::vector<std::byte>(bytes.begin(), bytes.end()));
+    }
+  }
+
+ private:
+  std::size_t n_ = 0;
+  std::array<std::byte, 24> short_{};
+  std::shared_ptr<const std::vector<std::byte>> long_;
+};
 
 template <class T>
 class Callback {
@@ -23,11 +68,11 @@ class Callback {
 
   Callback() = default;
   /// For the proxies: `where` is what the kind's function reads.
-  Callback(const Kind& kind, std::vector<std::byte> where)
-      : kind_(&kind), where_(std::move(where)) {}
+  Callback(const Kind& kind, const std::vector<std::byte>& where) : kind_(&kind), where_(where) {}
+  Callback(const Kind& kind, TargetName where) : kind_(&kind), where_(std::move(where)) {}
 
   [[nodiscard]] explicit operator bool() const { return kind_ != nullptr; }
-  [[nodiscard]] const std::vector<std::byte>& where() const { return where_; }
+  [[nodiscard]] std::span<const std::byte> where() const { return where_.view(); }
 
   void operator()(T value) const { kind_->call(*this, std::move(value)); }
 
@@ -44,7 +89,7 @@ class Callback {
 
  private:
   const Kind* kind_ = nullptr;
-  std::vector<std::byte> where_;
+  TargetName where_;
 };
 
 }  // namespace tess

@@ -27,8 +27,14 @@ class Group : public Element {
   /// Gives this member's value to the next reduction of the group; every member gives one.
   template <class Op, class T>
   void contribute(Op /*op*/, T value, Callback<T> target) {
-    this->collection_->contribute(
-        *this, std::make_unique<MergedPartial<T, Op>>(std::move(value), std::move(target)));
+    using Merged = MergedPartial<T, Op>;
+    if (Partial* open = this->collection_->open_sum(*this, Merged::its_kind()); open != nullptr) {
+      static_cast<Merged*>(open)->add(value);
+      this->collection_->contributed(*this);
+    } else {
+      this->collection_->contribute(*this,
+                                    std::make_unique<Merged>(std::move(value), std::move(target)));
+    }
   }
   /// The same, combined in the order of PEs.
   template <class Op, class T>

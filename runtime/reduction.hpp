@@ -98,7 +98,9 @@ class MergedPartial final : public Partial {
   MergedPartial(T value, Callback<T> target)
       : value_(std::move(value)), target_(std::move(target)) {}
 
+  static const PartialKind& its_kind() { return kind_; }
   [[nodiscard]] const PartialKind& kind() const override { return kind_; }
+  void add(const T& value) { value_ = Op()(std::move(value_), value); }
   void merge(Partial&& other) override {
     value_ = Op()(std::move(value_), static_cast<MergedPartial&>(other).value_);
   }

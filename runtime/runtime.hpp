@@ -7,6 +7,7 @@
 #include "runtime/check.hpp"
 #include "runtime/epoch.hpp"
 #include "runtime/error.hpp"
+#include "runtime/future.hpp"
 #include "runtime/group.hpp"
 #include "runtime/ids.hpp"
 #include "runtime/index.hpp"

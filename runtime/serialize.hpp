@@ -275,12 +275,12 @@ void Reader::get(T& value) {
     }
     (std::make_index_sequence<std::variant_size_v<T>>());
   } else if constexpr (Resizable<T>) {
-    using Item = typename T::value_type;
-    if constexpr (Bitwise<Item>) {
-      value.resize(length(sizeof(Item)));
-      bytes(value.data(), value.size() * sizeof(Item));
+    using Each = typename T::value_type;
+    if constexpr (Bitwise<Each>) {
+      value.resize(length(sizeof(Each)));
+      bytes(value.data(), value.size() * sizeof(Each));
     } else {
-      value.resize(length(std::is_empty_v<Item> ? 0 : 1));
+      value.resize(length(std::is_empty_v<Each> ? 0 : 1));
       for (auto& item : value) get(item);
     }
   } else if constexpr (Growable<T>) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
-#include "runtime/messages/block.hpp"
+#include "runtime/scheduler/block.hpp"
 #include "runtime/messages/entry_traits.hpp"
 
 namespace tess {

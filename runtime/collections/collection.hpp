@@ -46,6 +46,12 @@ class Collection {
 
   /// An element of this PE contributes to its next reduction.
   void contribute(Element& element, std::unique_ptr<Partial> value);
+  /// Where it can add its value without making a Partial; null if there is no such place. If there
+  /// is, it adds and calls contributed().
+  [[nodiscard]] Partial* open_sum(const Element& element, const PartialKind& kind) {
+    return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
+  }
+  void contributed(Element& element) { reductions_.added(element.state_.next_reduction++); }
 
   /// After something of the element ran: it leaves or ends now if that was asked for and nothing of
   /// it waits.

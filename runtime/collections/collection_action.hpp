@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/collections/collection.hpp"
-#include "runtime/messages/message.hpp"
+#include "runtime/scheduler/message.hpp"
 
 namespace tess {
 

@@ -29,30 +29,28 @@ ReductionTree::ReductionTree(Pe& pe, Collection& collection)
   }
 }
 
-void ReductionTree::merge(Gathering& into,
-                          std::unique_ptr<Partial> value,
-                          const std::vector<EpochShare>& shares) {
-  if (value) {
-    if (into.value) {
-      TESS_CHECK(&into.value->kind() == &value->kind(),
-                 "two elements contribute to one reduction with different types: ",
-                 into.value->kind().name(),
-                 " and ",
-                 value->kind().name());
-      into.value->merge(std::move(*value));
-    } else {
-      into.value = std::move(value);
-    }
+void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {
+  if (!value) return;
+  if (!into.value) {
+    into.kind = &value->kind();
+    into.value = std::move(value);
+    return;
   }
-  for (const EpochShare& share : shares) {
-    bool found = false;
-    for (EpochShare& mine : into.shares) {
-      if (mine.epoch != share.epoch) continue;
-      mine.n += share.n;
-      found = true;
-    }
-    if (!found) into.shares.push_back(share);
+  TESS_CHECK(into.kind == &value->kind(),
+             "two elements contribute to one reduction with different types: ",
+             into.kind->name(),
+             " and ",
+             value->kind().name());
+  into.value->merge(std::move(*value));
+}
+
+void ReductionTree::merge(Gathering& into, const EpochShare& share) {
+  for (EpochShare& mine : into.shares) {
+    if (mine.epoch != share.epoch) continue;
+    mine.n += share.n;
+    return;
   }
+  into.shares.push_back(share);
 }
 
 void ReductionTree::died(std::uint32_t next) {
@@ -68,12 +66,22 @@ void ReductionTree::died(std::uint32_t next) {
 }
 
 void ReductionTree::enter(std::uint32_t next) {
-  ++elements_at_[next];
+  elements_at_.add(next);
 }
 
 void ReductionTree::leave(std::uint32_t next) {
-  const auto at = elements_at_.find(next);
-  if (--at->second == 0) elements_at_.erase(at);
+  elements_at_.remove(next);
+}
+
+void ReductionTree::added(std::uint32_t number) {
+  Gathering& gathering = *current_;
+  const EpochId epoch = gathering.shares.front().epoch;
+  pe_.completion().sent(epoch);
+  ++gathering.shares.front().n;
+  ++gathering.n;
+  leave(number);
+  enter(number + 1);
+  if (ready(next_report_)) advance();
 }
 
 void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> value) {
@@ -94,12 +102,15 @@ void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> va
   Gathering& gathering = gathering_[number];
   gathering.known = true;
   ++gathering.n;
-  merge(gathering, std::move(value), {{epoch, 1}});
+  merge(gathering, std::move(value));
+  merge(gathering, EpochShare{epoch, 1});
+  current_ = &gathering;
+  current_number_ = number;
   advance();
 }
 
 bool ReductionTree::ready(std::uint32_t number) const {
-  return elements_at_.empty() || elements_at_.begin()->first > number;
+  return elements_at_.empty() || elements_at_.lowest() > number;
 }
 
 void ReductionTree::advance() {
@@ -116,6 +127,7 @@ void ReductionTree::advance() {
       return;
     }
     Gathering done = std::move(gathering);
+    if (current_ == &gathering) current_ = nullptr;
     gathering_.erase(at);
     if (const auto change = changes_.find(next_report_); change != changes_.end()) {
       done.change += change->second;
@@ -141,7 +153,8 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   whole.all_reported = true;
   whole.sum.n += gathered.n;
   whole.sum.change += gathered.change;
-  merge(whole.sum, std::move(gathered.value), gathered.shares);
+  merge(whole.sum, std::move(gathered.value));
+  merge(whole.sum, gathered.shares);
   complete_if_whole();
 }
 
@@ -154,7 +167,8 @@ void ReductionTree::on_report(Report&& report) {
       Whole& whole = whole_[report.number];
       whole.sum.n += report.n;
       whole.sum.change += report.change;
-      merge(whole.sum, std::move(report.value.held), report.shares);
+      merge(whole.sum, std::move(report.value.held));
+      merge(whole.sum, report.shares);
     }
     complete_if_whole();
     return;
@@ -164,7 +178,8 @@ void ReductionTree::on_report(Report&& report) {
   ++gathering.children;
   gathering.n += report.n;
   gathering.change += report.change;
-  merge(gathering, std::move(report.value.held), report.shares);
+  merge(gathering, std::move(report.value.held));
+  merge(gathering, report.shares);
   advance();
 }
 
@@ -210,10 +225,10 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
                          ready(number) ? "other PEs" : collection_.elements_before(number + 1)));
   }
   // Elements that came after this PE had reported; what they have yet to give is not complete.
-  if (!elements_at_.empty() && elements_at_.begin()->first < next_report_)
+  if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
     lines.push_back(text(collection_.name(),
                          ": reduction ",
-                         elements_at_.begin()->first,
+                         elements_at_.lowest(),
                          " waits for ",
                          collection_.elements_before(next_report_)));
   for (const auto& [number, whole] : whole_) {

@@ -16,6 +16,7 @@
 // waits.
 #pragma once
 
+#include "runtime/collections/number_counts.hpp"
 #include "runtime/collections/partial.hpp"
 #include "runtime/ids.hpp"
 
@@ -56,6 +57,17 @@ class ReductionTree {
   /// the next.
   void contribute(std::uint32_t number, std::unique_ptr<Partial> value);
 
+  /// The contributions to `number` gathered here, if one of this kind and epoch can be added to
+  /// them where they are; null otherwise: then contribute(). Whoever adds calls added().
+  [[nodiscard]] Partial* open_sum(std::uint32_t number, const PartialKind& kind, EpochId epoch) {
+    if (current_ == nullptr || current_number_ != number || !current_->value ||
+        current_->kind != &kind || current_->shares.front().epoch != epoch)
+      return nullptr;
+    return current_->value.get();
+  }
+  /// A contribution was added to open_sum().
+  void added(std::uint32_t number);
+
   /// Looks whether something can be reported; called after elements came or went.
   void advance();
 
@@ -87,12 +99,15 @@ class ReductionTree {
     bool known = false;  // somebody contributed, reported or asked
     bool asked = false;  // the children were told to begin
     std::unique_ptr<Partial> value;
+    const PartialKind* kind = nullptr;  // of the value
     std::vector<EpochShare> shares;
   };
 
-  static void merge(Gathering& into,
-                    std::unique_ptr<Partial> value,
-                    const std::vector<EpochShare>& shares);
+  static void merge(Gathering& into, std::unique_ptr<Partial> value);
+  static void merge(Gathering& into, const EpochShare& share);
+  static void merge(Gathering& into, const std::vector<EpochShare>& shares) {
+    for (const EpochShare& share : shares) merge(into, share);
+  }
   [[nodiscard]] bool ready(std::uint32_t number) const;
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();
@@ -104,7 +119,9 @@ class ReductionTree {
   std::uint32_t next_report_ = 0;  // this PE has reported all numbers below
   std::map<std::uint32_t, Gathering> gathering_;
   std::map<std::uint32_t, std::int64_t> changes_;
-  std::map<std::uint32_t, std::uint64_t> elements_at_;  // local elements by their next number
+  NumberCounts elements_at_;      // local elements by their next number
+  Gathering* current_ = nullptr;  // in gathering_, to which an element contributed last
+  std::uint32_t current_number_ = 0;
 
   // At the root: numbers in the order of completion.
   struct Whole {

@@ -38,14 +38,14 @@ Completion::Completion(Pe& pe) : pe_(pe) {
   if (pe.id().value == 0) coordinated_[EpochId{}].closed = true;
 }
 
-void Completion::count(EpochId epoch, std::uint64_t sent, std::uint64_t processed) {
+void Completion::find_local(EpochId epoch) {
   Local& local = local_[epoch];
-  local.now.sent += sent;
-  local.now.processed += processed;
   if (!local.listed) {
     local.listed = true;
     changed_.push_back(epoch);
   }
+  last_epoch_ = epoch;
+  last_ = &local.now;
 }
 
 EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
@@ -60,11 +60,12 @@ EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
 void Completion::close(EpochId epoch) {
   Coordinated& of = coordinated_.at(epoch);
   of.closed = true;
-  count(epoch, 0, 0);  // an empty body is told of, too
+  find_local(epoch);  // an empty body is told of, too
 }
 
 bool Completion::tell_epochs() {
   if (changed_.empty()) return false;
+  forget_last();
   std::vector<EpochId> changed;
   changed.swap(changed_);
   for (const EpochId epoch : changed) {
@@ -186,6 +187,7 @@ void Completion::echo(Relay& relay) {
   }
   const EpochId parent = of.parent;
   const auto on_done = std::move(of.on_done);
+  forget_last();
   local_.erase(epoch);
   coordinated_.erase(epoch);
   on_done();
@@ -193,6 +195,7 @@ void Completion::echo(Relay& relay) {
 }
 
 void Completion::on_end(const End& end) {
+  forget_last();
   local_.erase(end.epoch);
 }
 

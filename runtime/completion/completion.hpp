@@ -52,12 +52,10 @@ class Completion {
 
   /// Another epoch: a message of a user, once at its sending and once when all it does is done.
   void sent(EpochId epoch) {
-    if (epoch.value != 0) [[unlikely]]
-      count(epoch, 1, 0);
+    if (epoch.value != 0) ++local(epoch).sent;
   }
   void processed(EpochId epoch) {
-    if (epoch.value != 0) [[unlikely]]
-      count(epoch, 0, 1);
+    if (epoch.value != 0) ++local(epoch).processed;
   }
 
   /// Opens an epoch that this PE coordinates; `on_done` runs on this PE once all is done. What is
@@ -67,6 +65,8 @@ class Completion {
 
   /// Tells the coordinators of scoped epochs what changed. True if anything was told.
   bool tell_epochs();
+  /// True if the coordinator of the run has not been told all.
+  [[nodiscard]] bool run_changed() const { return run_ != run_told_; }
   /// Tells the coordinator of the run. True if anything was told.
   bool tell_run();
 
@@ -118,7 +118,15 @@ class Completion {
     std::int32_t waiting = 0;
   };
 
-  void count(EpochId epoch, std::uint64_t sent, std::uint64_t processed);
+  /// The counters of an epoch, to be changed now. The last one is at hand: runs of messages are of
+  /// one epoch.
+  [[nodiscard]] Counters& local(EpochId epoch) {
+    if (epoch != last_epoch_) [[unlikely]]
+      find_local(epoch);
+    return *last_;
+  }
+  void find_local(EpochId epoch);
+  void forget_last() { last_epoch_ = EpochId{}; }
   void tell(EpochId epoch, const Counters& counters);
   void check(EpochId epoch, Coordinated& of);
   void echo(Relay& relay);
@@ -128,6 +136,8 @@ class Completion {
   Counters run_, run_told_;
   boost::unordered_flat_map<EpochId, Local, std::hash<EpochId>> local_;
   std::vector<EpochId> changed_;
+  EpochId last_epoch_{};  // 0: none. It is listed in changed_, and local_ has not changed since.
+  Counters* last_ = nullptr;
   boost::unordered_flat_map<EpochId, Coordinated, std::hash<EpochId>> coordinated_;
   boost::unordered_flat_map<EpochId, Relay, std::hash<EpochId>> relays_;
   std::uint64_t n_opened_ = 0;

@@ -29,11 +29,12 @@ Pe& current_pe() {
   return *detail::the_current_pe;
 }
 
-Pe::Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed)
+Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed)
     : id_(id),
       n_pes_(machine.n_pes()),
       runtime_(runtime),
       machine_(machine),
+      pool_(pool),
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
       completion_(*this),
@@ -172,9 +173,13 @@ std::size_t Pe::step(std::size_t most) {
 bool Pe::idle() {
   const RunsOn here(*this);
   bool busy = completion_.tell_epochs();
-  // Not at the first gap: a PE that is idle between two messages of a ping-pong would report each
-  // time.
-  if (++idle_calls_ >= patience_) busy = completion_.tell_run() || busy;
+  // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
+  // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
+  if (completion_.run_changed()) {
+    busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+  } else {
+    pool_.flush();
+  }
   return flush() || busy || !ready_.empty();
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "runtime/base/mix.hpp"
+#include "runtime/base/pool.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
@@ -45,7 +46,8 @@ struct PeStatistics {
 
 class Pe {
  public:
-  Pe(PeId id, Runtime& runtime, Machine& machine, std::uint64_t seed);
+  /// The pool outlives all PEs of the process: messages of one are freed by another.
+  Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed);
   Pe(const Pe&) = delete;
   Pe& operator=(const Pe&) = delete;
   ~Pe();
@@ -54,6 +56,7 @@ class Pe {
   [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
   [[nodiscard]] Machine& machine() { return machine_; }
   [[nodiscard]] Runtime& runtime() { return runtime_; }
+  [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
   [[nodiscard]] Context& context() { return context_; }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
@@ -111,6 +114,8 @@ class Pe {
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
+  /// Sends all that was held back to be packed together. True if there was any.
+  bool flush();
   void drop_all();
 
   /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
@@ -129,6 +134,17 @@ class Pe {
   /// one.
   [[nodiscard]] PeId whim();
   void set_migration_chance(double chance) { migration_chance_ = chance; }
+
+  /// Futures that were made on this PE, by number; a result for one that is gone is an error.
+  std::uint64_t enter_future(void* future) {
+    futures_.emplace(++n_futures_, future);
+    return n_futures_;
+  }
+  void leave_future(std::uint64_t id) { futures_.erase(id); }
+  [[nodiscard]] void* find_future(std::uint64_t id) const {
+    const auto at = futures_.find(id);
+    return at == futures_.end() ? nullptr : at->second;
+  }
 
   /// An exception that a coroutine threw after it had waited; thrown again once its message is at
   /// its end.
@@ -169,7 +185,6 @@ class Pe {
  private:
   void route(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
-  bool flush();
   void run(Envelope* message);
   void exception(const char* what, int exit_code);
   Collection* find_slow(CollectionId id);
@@ -178,11 +193,14 @@ class Pe {
   const std::int32_t n_pes_;
   Runtime& runtime_;
   Machine& machine_;
+  Pool& pool_;
   const bool intercepts_;
   const unsigned patience_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
+  std::uint64_t n_futures_ = 0;
+  boost::unordered_flat_map<std::uint64_t, void*> futures_;
   std::string place_;  // where the exception on its way was thrown
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;

@@ -2,7 +2,7 @@
 // payload.
 #pragma once
 
-#include "runtime/messages/message.hpp"
+#include "runtime/scheduler/message.hpp"
 #include "runtime/scheduler/pe.hpp"
 
 namespace tess {

@@ -60,7 +60,8 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);
   for (std::int32_t i = 0; i < n_here; ++i) {
-    pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i}, *this, machine, options.seed));
+    pes_.push_back(std::make_unique<Pe>(
+        PeId{first_.value + i}, *this, machine, pools_.emplace_back(), options.seed));
     pes_.back()->set_migration_chance(options.migration_chance);
   }
   set_check_context(&context_of_this_thread);
@@ -165,7 +166,8 @@ void Runtime::on_stopped(Pe& pe, int code) {
   if (--n_answers_ == 0) send_to_all<&leave_arrives>(pe, Code{exit_code_});
 }
 
-void Runtime::on_leave(Pe& /*pe*/, int code) {
+void Runtime::on_leave(Pe& pe, int code) {
+  pe.flush();  // PE 0 holds packed what tells other processes to leave
   exit_code_ = code;
   left_ = true;
   machine_.stop();

@@ -12,6 +12,7 @@
 #include "runtime/scheduler/pe.hpp"
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -77,6 +78,7 @@ class Runtime final : public Program {
   const RuntimeOptions options_;
   const std::function<void()> main_;
   const PeId first_;
+  std::deque<Pool> pools_;  // before the PEs: one may free what another allocated
   std::vector<std::unique_ptr<Pe>> pes_;
   std::mutex output_;
   std::atomic<int> exit_code_{0};

@@ -1,8 +1,8 @@
 // An envelope with one payload behind it: how it is made, packed, and ended.
 #pragma once
 
-#include "runtime/messages/block.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/block.hpp"
 
 namespace tess {
 

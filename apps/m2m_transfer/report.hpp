@@ -1,0 +1,45 @@
+// What a transfer has to show: a table for people, JSON for programs.
+#pragma once
+
+#include "m2m/field.hpp"
+#include "m2m/mesh.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tess::m2m {
+
+/// Seconds of the phases.
+struct PhaseSeconds {
+  double setup = 0, broad = 0, narrow = 0, report = 0;
+  [[nodiscard]] double transfer() const { return broad + narrow + report; }
+};
+
+/// One field's distance from the truth.
+struct FieldError {
+  std::string name;
+  ErrorNorms norms;
+};
+
+struct TransferReport {
+  std::string source, target, machine;
+  std::int32_t pes = 0, processes = 0, chares = 0;
+  std::size_t source_tets = 0, targets = 0;
+  std::array<std::uint64_t, 4> counts{};  ///< by Status
+  std::vector<FieldError> fields;
+  Point worst_at{};  ///< of the first field
+  std::uint64_t n_candidates = 0;
+  double voxel = 0;
+  PhaseSeconds seconds;
+  std::uint64_t peak_memory_bytes = 0;
+  std::uint64_t bytes_sent = 0;
+  std::uint64_t result_hash = 0;
+};
+
+[[nodiscard]] std::string table(const TransferReport& report);
+/// {"pairs": [{…}]}
+[[nodiscard]] std::string json(const TransferReport& report);
+
+}  // namespace tess::m2m

@@ -1,0 +1,36 @@
+// A distance/normal field: for each voxel of a grid the signed distance to the surface (negative
+// inside) and the unit normal. Built once, then read-only and shared by all PEs of a process.
+// Distances and normals lie in arrays of their own, so that a scene that asks for distances alone
+// stores no normals.
+#pragma once
+
+#include "collide/dn_field/grid.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace tess::dn {
+
+enum class Method : std::uint32_t { exact, normals, potential };
+
+/// Whether distances are negative behind the surface, or count from either side (thin shells,
+/// plates).
+enum class Sides : std::uint32_t { one, two };
+
+/// What a field stores.
+enum class Content : std::uint32_t { distance, distance_and_normal };
+
+struct Field {
+  Grid grid;
+  Method method = Method::exact;
+  Sides sides = Sides::one;
+  double thickness = 0;  ///< |distance| is cut off here; a lower bound of the true distance beyond
+  std::vector<float> distance;        ///< grid.size()
+  std::vector<std::uint32_t> normal;  ///< grid.size() codes of normal_code.hpp, or empty
+
+  [[nodiscard]] std::size_t bytes() const {
+    return distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
+  }
+};
+
+}  // namespace tess::dn

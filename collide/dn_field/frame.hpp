@@ -1,0 +1,49 @@
+// How an object stands and moves in the world: rotation, translation and uniform scale take its own
+// coordinates there. Shear is refused: distances would no longer scale by one number.
+#pragma once
+
+#include "collide/dn_field/vec3.hpp"
+
+#include <array>
+
+namespace tess::dn {
+
+struct Frame {
+  std::array<Vec3, 3> axes{
+      {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< images of the unit vectors; orthonormal
+  Vec3 position;                           ///< of the object's origin
+  double scale = 1;                        ///< world units per unit of the object
+  Vec3 velocity;                           ///< of the object's origin
+  Vec3 angular_velocity;                   ///< radians a second, about the object's origin
+
+  [[nodiscard]] bool is_moving() const {
+    return !(velocity == Vec3{}) || !(angular_velocity == Vec3{});
+  }
+  [[nodiscard]] bool is_turned() const {
+    return !(axes[0] == Vec3{1, 0, 0} && axes[1] == Vec3{0, 1, 0} && axes[2] == Vec3{0, 0, 1});
+  }
+  [[nodiscard]] Vec3 rotate(Vec3 v) const { return v.x * axes[0] + v.y * axes[1] + v.z * axes[2]; }
+  [[nodiscard]] Vec3 to_world(Vec3 p) const { return position + scale * rotate(p); }
+  [[nodiscard]] Vec3 to_object(Vec3 p) const {
+    const Vec3 q = p - position;
+    return (1 / scale) * Vec3{dot(axes[0], q), dot(axes[1], q), dot(axes[2], q)};
+  }
+  /// Velocity of the surface where it passes the world's point `p`.
+  [[nodiscard]] Vec3 velocity_at(Vec3 p) const {
+    return velocity + cross(angular_velocity, p - position);
+  }
+
+  /// Moves and turns the frame over `step` by its velocities; exact for constant ones, axes stay
+  /// orthonormal.
+  void advance(double step);
+};
+
+/// The frame of a 3 × 3 matrix (columns: images of the axes) and a translation.
+/// Throws Error(bad_value) for shear, unequal or zero scale, reflection, or entries that are not
+/// finite.
+[[nodiscard]] Frame frame_from(const std::array<Vec3, 3>& columns, Vec3 translation);
+
+/// The rotation by |v| radians about v.
+[[nodiscard]] std::array<Vec3, 3> rotation(Vec3 v);
+
+}  // namespace tess::dn

@@ -1,0 +1,153 @@
+#include "collide/dn_field/surface.hpp"
+
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <tuple>
+
+namespace tess::dn {
+namespace {
+
+/// Reads "17", "17/3", "17//4" or "-1/…" and moves past it; negative counts from the last vertex.
+std::uint32_t face_vertex(const char*& at, std::size_t n_vertices, const std::string& place) {
+  char* end = nullptr;
+  const long long written = std::strtoll(at, &end, 10);
+  if (end == at)
+    fail(ErrorCode::bad_file, place, ": expected a vertex number in a face, found '", at, "'");
+  while (*end != '\0' && *end != ' ' && *end != '\t') ++end;
+  at = end;
+  const auto count = static_cast<long long>(n_vertices);
+  const long long index = written < 0 ? count + written : written - 1;
+  if (index < 0 || index >= count)
+    fail(ErrorCode::bad_file,
+         place,
+         ": face names vertex ",
+         written,
+         ", but ",
+         n_vertices,
+         " stand before it");
+  return static_cast<std::uint32_t>(index);
+}
+
+Vec3 vertex(const char* at, const std::string& place) {
+  std::array<double, 3> value{};
+  for (double& v : value) {
+    char* end = nullptr;
+    v = std::strtod(at, &end);
+    if (end == at)
+      fail(ErrorCode::bad_file, place, ": a vertex needs three numbers, found '", at, "'");
+    at = end;
+  }
+  return {value[0], value[1], value[2]};
+}
+
+}  // namespace
+
+Bounds bounds(const Surface& surface) {
+  Bounds box;
+  for (const auto& triangle : surface.triangles)
+    for (const auto v : triangle) box.extend(surface.vertices[v]);
+  return box;
+}
+
+void validate(const Surface& surface) {
+  if (surface.triangles.empty())
+    fail(ErrorCode::bad_mesh, "surface has no triangles; a field needs at least one");
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (const auto v : surface.triangles[t]) {
+      if (v >= surface.vertices.size())
+        fail(ErrorCode::bad_mesh,
+             "triangle ",
+             t,
+             " names vertex ",
+             v,
+             " of ",
+             surface.vertices.size());
+      const Vec3 p = surface.vertices[v];
+      if (!is_finite(p))
+        fail(ErrorCode::bad_mesh,
+             "vertex ",
+             v,
+             " of triangle ",
+             t,
+             " is (",
+             p.x,
+             ", ",
+             p.y,
+             ", ",
+             p.z,
+             "); remove it or give it a finite position");
+    }
+  const Vec3 size = bounds(surface).size();
+  if (!(norm(size) > 0) || !is_finite(size))
+    fail(
+        ErrorCode::bad_mesh, "surface has extent ", norm(size), "; it must be positive and finite");
+}
+
+bool is_closed(const Surface& surface) {
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::vector<std::pair<Edge, int>> edges;
+  edges.reserve(3 * surface.triangles.size());
+  for (const auto& t : surface.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto a = t[i], b = t[(i + 1) % 3];
+      if (a != b) edges.push_back({std::minmax(a, b), a < b ? 1 : -1});
+    }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    int balance = 0;
+    const Edge edge = edges[i].first;
+    for (; i < edges.size() && edges[i].first == edge; ++i) balance += edges[i].second;
+    if (balance != 0) return false;
+  }
+  return true;
+}
+
+Surface welded(const Surface& surface) {
+  std::map<std::tuple<double, double, double>, std::uint32_t> known;
+  Surface result;
+  const auto merged = [&](std::uint32_t v) {
+    const Vec3 p = surface.vertices[v];
+    const auto [at, added] =
+        known.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(result.vertices.size()));
+    if (added) result.vertices.push_back(p);
+    return at->second;
+  };
+  result.triangles.reserve(surface.triangles.size());
+  for (const auto& t : surface.triangles)
+    result.triangles.push_back({merged(t[0]), merged(t[1]), merged(t[2])});
+  return result;
+}
+
+Surface read_obj(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) fail(ErrorCode::bad_file, path, ": cannot be opened; give the path of an OBJ file");
+  Surface surface;
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    const auto place = [&] { return text(path, ":", number); };
+    if (line.starts_with("v ")) {
+      surface.vertices.push_back(vertex(line.c_str() + 2, place()));
+    } else if (line.starts_with("f ")) {
+      const char* at = line.c_str() + 2;
+      std::vector<std::uint32_t> polygon;
+      const auto skip = [&] {
+        while (*at == ' ' || *at == '\t') ++at;
+      };
+      for (skip(); *at != '\0'; skip())
+        polygon.push_back(face_vertex(at, surface.vertices.size(), place()));
+      if (polygon.size() < 3) fail(ErrorCode::bad_file, place(), ": a face needs three vertices");
+      for (std::size_t i = 2; i < polygon.size(); ++i)
+        surface.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+    }
+  }
+  if (surface.triangles.empty()) fail(ErrorCode::bad_file, path, ": holds no faces");
+  validate(surface);
+  return surface;
+}
+
+}  // namespace tess::dn

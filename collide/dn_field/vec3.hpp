@@ -1,0 +1,65 @@
+// A point or vector in double precision: the type of everything that is built once (surfaces,
+// frames, distances). What runs a million times a step is float and structure-of-arrays: see
+// particles.hpp.
+#pragma once
+
+#include <cmath>
+
+namespace tess::dn {
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+
+  friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+  constexpr Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
+  friend constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+  friend constexpr Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+constexpr double dot(Vec3 a, Vec3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+constexpr Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double norm(Vec3 a) {
+  return std::sqrt(dot(a, a));
+}
+inline bool is_finite(Vec3 a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
+/// The unit vector along `a`, or zero where `a` has no direction.
+inline Vec3 direction(Vec3 a) {
+  const double length = norm(a);
+  return length > 0 ? (1 / length) * a : Vec3{};
+}
+
+constexpr double component(Vec3 a, int axis) {
+  return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+
+/// An axis-aligned box, empty until it has been extended.
+struct Bounds {
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+  void extend(Vec3 p) {
+    low = {std::fmin(low.x, p.x), std::fmin(low.y, p.y), std::fmin(low.z, p.z)};
+    high = {std::fmax(high.x, p.x), std::fmax(high.y, p.y), std::fmax(high.z, p.z)};
+  }
+  [[nodiscard]] Vec3 size() const { return high - low; }
+  [[nodiscard]] Vec3 centre() const { return 0.5 * (low + high); }
+
+  /// Squared distance from `p` to the box; zero inside.
+  [[nodiscard]] double distance2(Vec3 p) const {
+    const double dx = std::fmax(0.0, std::fmax(low.x - p.x, p.x - high.x));
+    const double dy = std::fmax(0.0, std::fmax(low.y - p.y, p.y - high.y));
+    const double dz = std::fmax(0.0, std::fmax(low.z - p.z, p.z - high.z));
+    return dx * dx + dy * dy + dz * dz;
+  }
+};
+
+}  // namespace tess::dn

@@ -1,0 +1,113 @@
+// Cells of a collision, numbered 0, 1, 2 … so that voxels can be counted and filled in plain
+// arrays. Where the cells in use fill their bounding range well, the number is the place in that
+// range, z fastest, and costs two multiplications; otherwise a hash table numbers the cells as they
+// first appear, and empty space costs nothing. Which of the two is chosen depends on the input
+// alone.
+#pragma once
+
+#include "collide/hit.hpp"
+#include "collide/serial/voxel_grid.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace tess {
+
+/// The cells that the box of an item touches. Errors that name the item: a box that is none, a
+/// coordinate that has no cell.
+[[nodiscard]] inline CellRange cells_of(const Item& item, const VoxelGrid& grid) {
+  CellRange range;
+  if (!grid.find_cells(item.box, range)) [[unlikely]] {
+    check_boxes({&item, 1});
+    range = grid.cells_of(item.box);  // refuses it
+  }
+  return range;
+}
+
+/// The range that holds all cells added, and how many cells were.
+struct CellBounds {
+  CellRange range{{std::numeric_limits<std::int32_t>::max(),
+                   std::numeric_limits<std::int32_t>::max(),
+                   std::numeric_limits<std::int32_t>::max()},
+                  {std::numeric_limits<std::int32_t>::min(),
+                   std::numeric_limits<std::int32_t>::min(),
+                   std::numeric_limits<std::int32_t>::min()}};
+  double n_entries = 0;
+
+  /// Errors: an item of more than 2^24 cells, or 2^32 entries in all.
+  void add(const CellRange& cells, const Item& item) {
+    const double n_cells = cells.n_cells();
+    n_entries += n_cells;
+    if (n_cells > 0x1p24 || n_entries >= 0x1p32) [[unlikely]]
+      refuse(n_cells, item);
+    range.lo = {std::min(range.lo.x, cells.lo.x),
+                std::min(range.lo.y, cells.lo.y),
+                std::min(range.lo.z, cells.lo.z)};
+    range.hi = {std::max(range.hi.x, cells.hi.x),
+                std::max(range.hi.y, cells.hi.y),
+                std::max(range.hi.z, cells.hi.z)};
+  }
+
+ private:
+  [[noreturn]] static void refuse(double n_cells, const Item& item);
+};
+
+class CellNumbers {
+ public:
+  /// For cells within these bounds.
+  explicit CellNumbers(const CellBounds& bounds);
+
+  /// Numbers are below this. In a dense numbering it is the number of cells of the range.
+  [[nodiscard]] std::size_t size() const noexcept {
+    return slots_.empty() ? n_dense_ : cells_.size();
+  }
+  [[nodiscard]] Cell cell(std::uint32_t number) const noexcept;
+
+  /// Calls visit(number) for each cell of `range`, x slowest. Cells without a number get one.
+  template <class Visit>
+  void for_each(const CellRange& range, Visit&& visit) {
+    for (std::int64_t x = range.lo.x; x <= range.hi.x; ++x)
+      for (std::int64_t y = range.lo.y; y <= range.hi.y; ++y) {
+        if (slots_.empty()) {
+          const std::int64_t row = ((x - low_.x) * n_y_ + (y - low_.y)) * n_z_ - low_.z;
+          for (std::int64_t z = range.lo.z; z <= range.hi.z; ++z)
+            visit(static_cast<std::uint32_t>(row + z));
+        } else {
+          for (std::int64_t z = range.lo.z; z <= range.hi.z; ++z)
+            visit(number(Cell{static_cast<std::int32_t>(x),
+                              static_cast<std::int32_t>(y),
+                              static_cast<std::int32_t>(z)}));
+        }
+      }
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  std::uint32_t number(const Cell& cell) {
+    if (2 * cells_.size() >= slots_.size()) grow();
+    std::uint32_t& slot = find(cell);
+    if (slot == kNone) {
+      slot = static_cast<std::uint32_t>(cells_.size());
+      cells_.push_back(cell);
+    }
+    return slot;
+  }
+  std::uint32_t& find(const Cell& cell) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = std::hash<Cell>{}(cell)&mask;
+    while (slots_[at] != kNone && cells_[slots_[at]] != cell) at = (at + 1) & mask;
+    return slots_[at];
+  }
+  void grow();
+
+  Cell low_;
+  std::int64_t n_y_ = 0, n_z_ = 0;
+  std::size_t n_dense_ = 0;
+  std::vector<std::uint32_t> slots_;  // open addressing, at most half full; empty where dense
+  std::vector<Cell> cells_;           // by number, where not dense
+};
+
+}  // namespace tess

@@ -1,0 +1,112 @@
+#include "m2m/field.hpp"
+
+#include "m2m/fields/expression.hpp"
+#include "runtime/check.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace tess::m2m {
+
+Formula make_formula(const std::string& name, const Box& domain) {
+  double side = 0;
+  Point centre{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    side = std::max(side, domain.high[axis] - domain.low[axis]);
+    centre[axis] = domain.low[axis] + 0.5 * (domain.high[axis] - domain.low[axis]);
+  }
+  if (!(side > 0)) side = 1;
+  if (name == "gaussian") {
+    return [centre, scale = 4 / side](const Point& p) {
+      double squared = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        squared += std::pow((p[axis] - centre[axis]) * scale, 2);
+      return std::exp(-squared);
+    };
+  }
+  if (name == "linear") {
+    return [](const Point& p) { return 1 + 2 * p[0] - 3 * p[1] + 5 * p[2]; };
+  }
+  if (name == "sin") {
+    return [low = domain.low, k = 2 * std::numbers::pi / side](const Point& p) {
+      return std::sin(k * (p[0] - low[0])) * std::sin(k * (p[1] - low[1])) *
+             std::sin(k * (p[2] - low[2]));
+    };
+  }
+  return [expression = Expression(name)](const Point& p) { return expression(p); };
+}
+
+Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula) {
+  Field field{name, 1, std::vector<double>(mesh.n_points())};
+  for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+    field.values[v] = formula(mesh.points[v]);
+    if (!std::isfinite(field.values[v])) {
+      const Point& p = mesh.points[v];
+      fail(ErrorCode::bad_value,
+           "field ",
+           name,
+           " is ",
+           field.values[v],
+           " at vertex ",
+           v,
+           " of ",
+           mesh.name,
+           " (",
+           p[0],
+           ", ",
+           p[1],
+           ", ",
+           p[2],
+           "); choose a formula that is finite there");
+    }
+  }
+  return field;
+}
+
+ErrorNorms error_norms(const TetMesh& mesh,
+                       std::span<const double> values,
+                       std::span<const double> truth) {
+  TESS_CHECK(values.size() == mesh.n_points() && truth.size() == mesh.n_points(),
+             "expected ",
+             mesh.n_points(),
+             " values, got ",
+             values.size(),
+             " and ",
+             truth.size());
+  std::vector<double> mass(mesh.n_points(), 0.0);
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    const double quarter = std::abs(signed_volume(mesh, t)) / 4;
+    for (const VertexId v : mesh.tets[t]) mass[static_cast<std::size_t>(v)] += quarter;
+  }
+  ErrorNorms norms;
+  double weighted = 0, plain = 0, reference = 0;
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    const double error = std::abs(values[v] - truth[v]);
+    weighted += mass[v] * error * error;
+    reference += mass[v] * truth[v] * truth[v];
+    plain += error * error;
+    // A NaN is the worst of errors, not the least.
+    if (error > norms.linf || (std::isnan(error) && !std::isnan(norms.linf))) {
+      norms.linf = error;
+      norms.worst = static_cast<GlobalId>(v);
+    }
+  }
+  norms.l2 = std::sqrt(weighted);
+  norms.l2_relative = reference > 0 ? norms.l2 / std::sqrt(reference) : norms.l2;
+  norms.rms = values.empty() ? 0 : std::sqrt(plain / static_cast<double>(values.size()));
+  return norms;
+}
+
+std::uint64_t result_hash(std::span<const double> values, std::uint64_t start) noexcept {
+  std::uint64_t hash = start;
+  for (const double value : values) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (unsigned byte = 0; byte < 8; ++byte)
+      hash = (hash ^ (bits >> (8 * byte) & 0xffU)) * 0x100000001b3U;
+  }
+  return hash;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,228 @@
+#include "m2m/interpolate/locate.hpp"
+
+#include "m2m/interpolate/orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tess::m2m {
+namespace {
+
+/// The faces opposite to the corners, turned so that all four volumes have the sign of the
+/// tetrahedron for a point inside.
+constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+/// Bounds the sum of absolute products in a volume: six products, each at most the product of the
+/// reaches along x, y, z.
+constexpr double volume_bound = 6 * orientation_bound;
+/// Where the sum of volumes exceeds this times the product of the reaches, rounding moves no weight
+/// by 1e-12.
+constexpr double flat_limit = 4 * volume_bound * 1e12;
+
+double largest_coordinate(const Point& p) {
+  return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+}
+
+double longest_edge(const std::array<Point, 4>& c) {
+  double squared = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      const double x = c[i][0] - c[j][0], y = c[i][1] - c[j][1], z = c[i][2] - c[j][2];
+      squared = std::max(squared, x * x + y * y + z * z);
+    }
+  }
+  return std::sqrt(squared);
+}
+
+double twice_area(const Point& a, const Point& b, const Point& c) {
+  const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+  const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
+  const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+/// How far outside a face a point snaps.
+double tolerance(const std::array<Point, 4>& corners) {
+  double largest = 0;
+  for (const Point& p : corners) largest = std::max(largest, largest_coordinate(p));
+  return snap_edges * longest_edge(corners) + snap_ulps * largest;
+}
+
+bool contains(const Box& box, const Point& p) {
+  bool in = true;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    in = in && box.low[axis] <= p[axis] && p[axis] <= box.high[axis];
+  return in;
+}
+
+/// A point outside: near enough to every face that it is outside of, and inside the padded box (at
+/// a sharp edge the planes of two faces are near long after the tetrahedron has ended).
+bool snaps(const Point& p,
+           const std::array<Point, 4>& corners,
+           const Weights& volume,
+           double total) {
+  const double reach = tolerance(corners);
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (volume[i] == 0 || (volume[i] < 0) == (total < 0)) continue;
+    const double area =
+        twice_area(corners[faces[i][0]], corners[faces[i][1]], corners[faces[i][2]]);
+    if (!(std::abs(volume[i]) <= reach * area)) return false;
+  }
+  return contains(search_box(corners), p);
+}
+
+}  // namespace
+
+std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corners) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (p == corners[i]) {
+      Location vertex{{}, 0, Status::boundary};
+      vertex.weights[i] = 1;
+      return vertex;
+    }
+  }
+  Weights volume;
+  double total = 0;
+  const auto volumes = [&](auto&& orient) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      volume[i] = orient(p, corners[faces[i][0]], corners[faces[i][1]], corners[faces[i][2]]);
+    }
+    total = (volume[0] + volume[1]) + (volume[2] + volume[3]);
+  };
+  volumes(orientation);
+  Point reach{};
+  for (const Point& corner : corners) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      reach[axis] = std::max(reach[axis], std::abs(corner[axis] - p[axis]));
+  }
+  if (!(std::abs(total) > flat_limit * (reach[0] * reach[1] * reach[2])))
+    volumes(orientation_exact);
+  const auto [low, high] = std::minmax_element(volume.begin(), volume.end());
+  if (total == 0) return std::nullopt;
+  Location location{};
+  for (std::size_t i = 0; i < 4; ++i) location.weights[i] = volume[i] / total;
+  if (*low >= 0 || *high <= 0) {
+    location.status = *low == 0 || *high == 0 ? Status::boundary : Status::inside;
+    return location;
+  }
+  if (!snaps(p, corners, volume, total)) return std::nullopt;
+  location.violation = -*std::min_element(location.weights.begin(), location.weights.end());
+  location.status = Status::snapped;
+  return location;
+}
+
+Box search_box(const std::array<Point, 4>& corners) {
+  Box box{corners[0], corners[0]};
+  const double pad = 2 * tolerance(corners);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const Point& p : corners) {
+      box.low[axis] = std::min(box.low[axis], p[axis]);
+      box.high[axis] = std::max(box.high[axis], p[axis]);
+    }
+    box.low[axis] -= pad;
+    box.high[axis] += pad;
+  }
+  return box;
+}
+
+namespace {
+
+/// Pairs handled together: two registers of eight doubles.
+constexpr std::size_t width = 16;
+
+struct alignas(64) Lanes {
+  double corner[12][width];  ///< corner - point, x y z of the four corners
+  double size[width];        ///< largest coordinate of the point
+  double volume[4][width];   ///< of the point with the four faces
+  double total[width];       ///< their sum
+  double verdict[width];     ///< -1 outside, 0 to be looked at exactly, 1 inside
+};
+
+void classify(Lanes& lanes) {
+  for (std::size_t l = 0; l < width; ++l) {
+    const auto c = [&](std::size_t corner, std::size_t axis) {
+      return lanes.corner[3 * corner + axis][l];
+    };
+    // Exactly the operations of orientation(), so that the weights have the same bits.
+    const auto volume = [&](std::size_t i, std::size_t j, std::size_t k) {
+      const double bycz = c(j, 1) * c(k, 2), bzcy = c(j, 2) * c(k, 1), bzcx = c(j, 2) * c(k, 0);
+      const double bxcz = c(j, 0) * c(k, 2), bxcy = c(j, 0) * c(k, 1), bycx = c(j, 1) * c(k, 0);
+      return c(i, 0) * (bycz - bzcy) + c(i, 1) * (bzcx - bxcz) + c(i, 2) * (bxcy - bycx);
+    };
+    const auto largest = [](double a, double b) { return a > b ? a : b; };
+    const auto least = [](double a, double b) { return a < b ? a : b; };
+    const auto reach = [&](std::size_t axis) {
+      return largest(largest(std::abs(c(0, axis)), std::abs(c(1, axis))),
+                     largest(std::abs(c(2, axis)), std::abs(c(3, axis))));
+    };
+    const double v0 = volume(1, 2, 3), v1 = volume(0, 3, 2), v2 = volume(0, 1, 3),
+                 v3 = volume(0, 2, 1);
+    const double total = (v0 + v1) + (v2 + v3);
+    const double x = reach(0), y = reach(1), z = reach(2);
+    const double r = largest(largest(x, y), z);
+    const double product = x * y * z;
+    const double error = 1.01 * volume_bound * product;
+    // An edge is at most sqrt(12) r, twice an area at most its square; the corners' coordinates at
+    // most size + r.
+    const double snap =
+        error + 12.01 * (r * r) * (snap_edges * 3.5 * r + snap_ulps * (lanes.size[l] + r));
+    const double low = least(least(v0, v1), least(v2, v3));
+    const double high = largest(largest(v0, v1), largest(v2, v3));
+    const double volume_found = std::abs(total);
+    const double within = largest(low, -high);  // least volume, turned to positive orientation
+    const double sure = least(within - error, volume_found - flat_limit * product);
+    const double far = least(-low, high) - snap;
+    lanes.verdict[l] = far > 0 ? -1.0 : (sure > 0 ? 1.0 : 0.0);
+    lanes.volume[0][l] = v0;
+    lanes.volume[1][l] = v1;
+    lanes.volume[2][l] = v2;
+    lanes.volume[3][l] = v3;
+    lanes.total[l] = total;
+  }
+}
+
+}  // namespace
+
+void locate_pairs(std::span<const Point> points,
+                  std::span<const Tet> tets,
+                  std::span<const Point> queries,
+                  std::span<const PointPair> pairs,
+                  std::vector<Found>& found) {
+  Lanes lanes{};
+  for (std::size_t first = 0; first < pairs.size(); first += width) {
+    const std::size_t n = std::min(width, pairs.size() - first);
+#pragma GCC unroll 1
+    for (std::size_t l = 0; l < n; ++l) {
+      asm volatile("" ::: "memory");  // lane by lane: vectorised, g++ 12 shuffles for 5 ns a pair
+      const PointPair& pair = pairs[first + l];
+      const Point& p = queries[static_cast<std::size_t>(pair.point)];
+      const Tet& tet = tets[static_cast<std::size_t>(pair.tet)];
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const Point& at = points[static_cast<std::size_t>(tet[corner])];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          lanes.corner[3 * corner + axis][l] = at[axis] - p[axis];
+      }
+      lanes.size[l] = largest_coordinate(p);
+    }
+    classify(lanes);
+    for (std::size_t l = 0; l < n; ++l) {
+      if (lanes.verdict[l] < 0) continue;
+      const auto index = static_cast<std::int32_t>(first + l);
+      if (lanes.verdict[l] > 0) {
+        const double total = lanes.total[l];
+        const Weights weights{lanes.volume[0][l] / total,
+                              lanes.volume[1][l] / total,
+                              lanes.volume[2][l] / total,
+                              lanes.volume[3][l] / total};
+        found.push_back({index, {weights, 0, Status::inside}});
+        continue;
+      }
+      const PointPair& pair = pairs[first + l];
+      const auto location = locate(queries[static_cast<std::size_t>(pair.point)],
+                                   corners_of(points, tets[static_cast<std::size_t>(pair.tet)]));
+      if (location) found.push_back({index, *location});
+    }
+  }
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,26 @@
+// The bytes of a file, mapped for reading while this object lives. Used by the readers alone.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace tess::m2m {
+
+class FileBytes {
+ public:
+  /// Maps the file; throws Error (bad_file) where it is missing, unreadable, not a regular file, or
+  /// empty.
+  explicit FileBytes(const std::string& path);
+  ~FileBytes();
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+
+  [[nodiscard]] std::string_view view() const noexcept { return {begin_, size_}; }
+
+ private:
+  const char* begin_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace tess::m2m

@@ -1,0 +1,41 @@
+// The element types of gmsh's MSH format: number, name, dimension, vertices (gmsh reference manual,
+// section 10.1).
+#pragma once
+
+#include <string_view>
+
+namespace tess::m2m {
+
+struct GmshElement {
+  int number;
+  std::string_view name;
+  int dimension;
+  int n_vertices;
+};
+
+inline constexpr int gmsh_tet4 = 4;
+
+inline constexpr GmshElement gmsh_elements[] = {
+    {1, "line2", 1, 2},        {2, "triangle3", 2, 3},    {3, "quad4", 2, 4},
+    {4, "tet4", 3, 4},         {5, "hex8", 3, 8},         {6, "prism6", 3, 6},
+    {7, "pyramid5", 3, 5},     {8, "line3", 1, 3},        {9, "triangle6", 2, 6},
+    {10, "quad9", 2, 9},       {11, "tet10", 3, 10},      {12, "hex27", 3, 27},
+    {13, "prism18", 3, 18},    {14, "pyramid14", 3, 14},  {15, "point", 0, 1},
+    {16, "quad8", 2, 8},       {17, "hex20", 3, 20},      {18, "prism15", 3, 15},
+    {19, "pyramid13", 3, 13},  {20, "triangle9", 2, 9},   {21, "triangle10", 2, 10},
+    {22, "triangle12", 2, 12}, {23, "triangle15", 2, 15}, {24, "triangle15i", 2, 15},
+    {25, "triangle21", 2, 21}, {26, "line4", 1, 4},       {27, "line5", 1, 5},
+    {28, "line6", 1, 6},       {29, "tet20", 3, 20},      {30, "tet35", 3, 35},
+    {31, "tet56", 3, 56},      {36, "quad16", 2, 16},     {37, "quad25", 2, 25},
+    {38, "quad36", 2, 36},     {92, "hex64", 3, 64},      {93, "hex125", 3, 125},
+};
+
+/// The type of that number, or null.
+constexpr const GmshElement* gmsh_element(int number) {
+  for (const GmshElement& element : gmsh_elements) {
+    if (element.number == number) return &element;
+  }
+  return nullptr;
+}
+
+}  // namespace tess::m2m

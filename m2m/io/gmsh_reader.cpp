@@ -1,0 +1,277 @@
+#include "m2m/io/gmsh_reader.hpp"
+
+#include "m2m/io/gmsh_elements.hpp"
+#include "m2m/io/gmsh_scanner.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace tess::m2m {
+namespace {
+
+/// From node tags, which may have gaps of any size, to places in the list of points.
+class TagMap {
+ public:
+  void build(const std::vector<std::uint64_t>& tags, const GmshScanner& file) {
+    const std::uint64_t last = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+    dense_ = last / 4 <= tags.size() + 1024;
+    if (dense_) {
+      place_.assign(static_cast<std::size_t>(last) + 1, -1);
+      for (std::size_t i = 0; i < tags.size(); ++i) {
+        VertexId& place = place_[tags[i]];
+        if (place >= 0) twice(tags[i], file);
+        place = static_cast<VertexId>(i);
+      }
+      return;
+    }
+    sorted_.reserve(tags.size());
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      sorted_.emplace_back(tags[i], static_cast<VertexId>(i));
+    std::sort(sorted_.begin(), sorted_.end());
+    for (std::size_t i = 1; i < sorted_.size(); ++i) {
+      if (sorted_[i].first == sorted_[i - 1].first) twice(sorted_[i].first, file);
+    }
+  }
+
+  /// -1 where no node has the tag.
+  [[nodiscard]] VertexId find(std::uint64_t tag) const {
+    if (dense_) return tag < place_.size() ? place_[tag] : -1;
+    const auto found = std::lower_bound(
+        sorted_.begin(), sorted_.end(), std::pair<std::uint64_t, VertexId>(tag, -1));
+    return found != sorted_.end() && found->first == tag ? found->second : -1;
+  }
+
+ private:
+  static void twice(std::uint64_t tag, const GmshScanner& file) {
+    file.refuse("node tag ", tag, " occurs twice; write the mesh again");
+  }
+  bool dense_ = true;
+  std::vector<VertexId> place_;
+  std::vector<std::pair<std::uint64_t, VertexId>> sorted_;
+};
+
+class GmshReader {
+ public:
+  GmshReader(const std::string& path, std::string_view bytes) : file_(path, bytes) {
+    mesh_.name = path;
+  }
+
+  TetMesh read() {
+    bool have_nodes = false;
+    bool have_elements = false;
+    for (file_.skip_blanks(); !file_.at_end(); file_.skip_blanks()) {
+      const std::string section(file_.word());
+      if (section == "$MeshFormat") {
+        format();
+      } else if (section == "$Nodes" && !have_nodes) {
+        need_format();
+        file_.set_binary(binary_);
+        legacy_ ? nodes_22() : nodes_41();
+        file_.set_binary(false);
+        file_.close("$EndNodes");
+        tags_.build(node_tags_, file_);
+        have_nodes = true;
+      } else if (section == "$Elements" && !have_elements) {
+        need_format();
+        if (!have_nodes) file_.damaged("$Elements before $Nodes");
+        file_.set_binary(binary_);
+        legacy_ ? elements_22() : elements_41();
+        file_.set_binary(false);
+        file_.close("$EndElements");
+        have_elements = true;
+      } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
+        file_.skip_to("$End" + section.substr(1));
+      } else {
+        file_.damaged("a section such as $Nodes expected");
+      }
+    }
+    if (!have_nodes) file_.damaged("$Nodes is missing");
+    if (!have_elements) file_.damaged("$Elements is missing");
+    return std::move(mesh_);
+  }
+
+ private:
+  void need_format() const {
+    if (!have_format_) file_.damaged("$MeshFormat is missing");
+  }
+
+  void format() {
+    const auto version = file_.number_as_text<double>();
+    const int kind = file_.number_as_text<int>();
+    const int word_bytes = file_.number_as_text<int>();
+    if (version != 2.2 && version != 4.1) {
+      file_.refuse(
+          "is MSH ", version, "; only 2.2 and 4.1 are read: save it with gmsh -save -format msh41");
+    }
+    if (kind != 0 && kind != 1) file_.damaged("file type ", kind);
+    if (word_bytes != 8)
+      file_.refuse(
+          "has numbers of ", word_bytes, " bytes; only 8 are read: save it again with gmsh");
+    legacy_ = version == 2.2;
+    binary_ = kind == 1;
+    if (binary_) {
+      file_.end_of_line();
+      file_.set_binary(true);
+      const int one = file_.number<int>();
+      file_.set_binary(false);
+      if (one == 0x01000000) file_.refuse("was written in another byte order; save it as ASCII");
+      if (one != 1) file_.damaged("the byte-order mark is ", one);
+    }
+    file_.close("$EndMeshFormat");
+    have_format_ = true;
+  }
+
+  void start_nodes(std::size_t n) {
+    if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
+      file_.refuse("has ", n, " vertices; at most 2147483647 fit in one mesh, split it");
+    }
+    mesh_.points.reserve(n);
+    node_tags_.reserve(n);
+  }
+
+  Point point() {
+    const auto x = file_.number<double>();
+    const auto y = file_.number<double>();
+    const auto z = file_.number<double>();
+    return {x, y, z};
+  }
+
+  /// Version 2.2 writes the count as text also in binary files.
+  std::size_t count_22(std::string_view what, std::size_t bytes_each) {
+    const auto n = file_.number_as_text<std::uint64_t>();
+    if (binary_) file_.end_of_line();
+    return file_.checked_count(n, what, bytes_each);
+  }
+
+  void nodes_22() {
+    const std::size_t n = count_22("nodes", 28);
+    start_nodes(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const int tag = file_.number<int>();
+      if (tag < 0) file_.damaged("node tag ", tag);
+      node_tags_.push_back(static_cast<std::uint64_t>(tag));
+      mesh_.points.push_back(point());
+    }
+  }
+
+  void nodes_41() {
+    if (binary_) file_.end_of_line();
+    const auto n_blocks = file_.count<std::uint64_t>("blocks of nodes", 20);
+    const auto n = file_.count<std::uint64_t>("nodes", 32);
+    file_.skip<std::uint64_t>(2);  // least and greatest tag
+    start_nodes(n);
+    for (std::size_t block = 0; block < n_blocks; ++block) {
+      const int dimension = file_.number<int>();
+      file_.skip<int>(1);  // entity
+      const int parametric = file_.number<int>();
+      const auto m = file_.count<std::uint64_t>("nodes in a block", 32);
+      if (dimension < 0 || dimension > 3 || (parametric != 0 && parametric != 1)) {
+        file_.damaged("a block of nodes of dimension ", dimension, ", parametric ", parametric);
+      }
+      if (m > n - mesh_.points.size()) file_.damaged("more nodes than the ", n, " announced");
+      for (std::size_t i = 0; i < m; ++i) node_tags_.push_back(file_.number<std::uint64_t>());
+      for (std::size_t i = 0; i < m; ++i) {
+        mesh_.points.push_back(point());
+        if (parametric == 1) file_.skip<double>(static_cast<std::size_t>(dimension));
+      }
+    }
+    if (mesh_.points.size() != n)
+      file_.damaged(n, " nodes announced, ", mesh_.points.size(), " found");
+  }
+
+  /// The type with that number; volume elements other than tet4 and unknown ones end here.
+  const GmshElement& element_type(int number) const {
+    const GmshElement* const type = gmsh_element(number);
+    if (type == nullptr)
+      file_.refuse("has elements of unknown gmsh type ", number, "; only tet4 volumes are read");
+    if (type->dimension == 3 && number != gmsh_tet4) {
+      file_.refuse("has elements of type ",
+                   type->name,
+                   "; only tet4 volumes are read: mesh it with linear tetrahedra");
+    }
+    return *type;
+  }
+
+  template <class Tag>
+  void vertices(const GmshElement& type) {
+    if (type.number != gmsh_tet4) return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
+    Tet tet;
+    for (VertexId& vertex : tet) {
+      const Tag tag = file_.number<Tag>();
+      vertex = tag < Tag{0} ? -1 : tags_.find(static_cast<std::uint64_t>(tag));
+      if (vertex < 0) {
+        file_.refuse("tetrahedron ",
+                     mesh_.n_tets(),
+                     " names node ",
+                     tag,
+                     ", which is not there; write the mesh again");
+      }
+    }
+    mesh_.tets.push_back(tet);
+  }
+
+  void elements_22() {
+    const std::size_t n = count_22("elements", 8);
+    for (std::size_t i = 0; i < n;) {
+      std::size_t group = 1;
+      int number = 0;
+      int n_labels = 0;
+      if (binary_) {
+        number = file_.number<int>();
+        group = file_.count<int>("elements in a block", 8);
+        n_labels = file_.number<int>();
+        if (group == 0 || group > n - i) file_.damaged("a block of ", group, " elements");
+      } else {
+        file_.skip<int>(1);  // tag
+        number = file_.number<int>();
+        n_labels = file_.number<int>();
+      }
+      const GmshElement& type = element_type(number);
+      if (n_labels < 0) file_.damaged(n_labels, " labels");
+      for (std::size_t k = 0; k < group; ++k) {
+        file_.skip<int>(static_cast<std::size_t>(n_labels) + (binary_ ? 1U : 0U));
+        vertices<int>(type);
+      }
+      i += group;
+    }
+  }
+
+  void elements_41() {
+    if (binary_) file_.end_of_line();
+    const auto n_blocks = file_.count<std::uint64_t>("blocks of elements", 20);
+    const auto n = file_.count<std::uint64_t>("elements", 16);
+    file_.skip<std::uint64_t>(2);  // least and greatest tag
+    std::size_t found = 0;
+    for (std::size_t block = 0; block < n_blocks; ++block) {
+      file_.skip<int>(2);  // dimension and entity
+      const GmshElement& type = element_type(file_.number<int>());
+      const auto m = file_.count<std::uint64_t>("elements in a block", 16);
+      if (type.number == gmsh_tet4) mesh_.tets.reserve(mesh_.n_tets() + m);
+      for (std::size_t i = 0; i < m; ++i) {
+        file_.skip<std::uint64_t>(1);  // tag
+        vertices<std::uint64_t>(type);
+      }
+      found += m;
+    }
+    if (found != n) file_.damaged(n, " elements announced, ", found, " found");
+  }
+
+  GmshScanner file_;
+  TetMesh mesh_;
+  std::vector<std::uint64_t> node_tags_;
+  TagMap tags_;
+  bool have_format_ = false;
+  bool legacy_ = false;
+  bool binary_ = false;
+};
+
+}  // namespace
+
+TetMesh read_gmsh(const std::string& path, std::string_view bytes) {
+  return GmshReader(path, bytes).read();
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,207 @@
+#include "m2m/io/netcdf_header.hpp"
+
+#include "runtime/error.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tess::m2m {
+namespace {
+
+struct Dimension {
+  std::string name;
+  std::uint64_t length;  ///< 0: the record dimension
+};
+
+class Header {
+ public:
+  Header(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+
+  void check() {
+    version_ = at_ + 4 <= bytes_.size() ? static_cast<unsigned char>(bytes_[3]) : 0;
+    if (version_ != 1 && version_ != 2 && version_ != 5)
+      damaged("unknown NetCDF version ", version_);
+    at_ = 4;
+    n_records_ = count();
+    if (n_records_ == (wide() ? UINT64_MAX : UINT32_MAX))
+      n_records_ = 0;  // being written: take no record for granted
+    dimensions();
+    attributes(true);
+    variables();
+  }
+
+ private:
+  [[nodiscard]] bool wide() const { return version_ == 5; }
+
+  template <class... Parts>
+  [[noreturn]] void damaged(const Parts&... parts) const {
+    fail(ErrorCode::bad_file,
+         path_,
+         ": is truncated or damaged (NetCDF header, byte ",
+         at_,
+         ": ",
+         parts...,
+         "); write the mesh again");
+  }
+
+  void need(std::uint64_t n) const {
+    if (n > bytes_.size() - at_) damaged(n, " bytes expected, ", bytes_.size() - at_, " left");
+  }
+
+  std::uint64_t integer(std::size_t n_bytes) {
+    need(n_bytes);
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < n_bytes; ++i)
+      value = value << 8U | static_cast<unsigned char>(bytes_[at_ + i]);
+    at_ += n_bytes;
+    return value;
+  }
+  std::uint64_t count() { return integer(wide() ? 8 : 4); }
+  std::uint64_t word() { return integer(4); }
+
+  std::string name() {
+    const std::uint64_t length = count();
+    need(length);
+    std::string text(bytes_.substr(at_, length));
+    skip(length);
+    return text;
+  }
+
+  /// Over n bytes and their padding to a multiple of four.
+  void skip(std::uint64_t n) {
+    need(n);
+    const std::uint64_t padded = n + (4 - n % 4) % 4;
+    need(padded);
+    at_ += padded;
+  }
+
+  /// The length of a list: a tag, or twice zero where there is none.
+  std::uint64_t list(std::uint64_t tag, std::uint64_t bytes_an_item) {
+    const std::uint64_t found = word();
+    const std::uint64_t n = count();
+    if (found != tag && !(found == 0 && n == 0))
+      damaged("list ", tag, " expected, ", found, " found");
+    if (n > (bytes_.size() - at_) / bytes_an_item)
+      damaged("a list of ", n, " items does not fit in the file");
+    return n;
+  }
+
+  std::uint64_t size_of_type(std::uint64_t type) const {
+    constexpr std::array<std::uint64_t, 12> sizes{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    if (type == 0 || type >= sizes.size() || (!wide() && type > 6)) damaged("unknown type ", type);
+    return sizes[type];
+  }
+
+  void dimensions() {
+    const std::uint64_t n = list(10, 8);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      std::string called = name();
+      const std::uint64_t length = count();
+      if (length > UINT64_MAX / 2) damaged("dimension ", called, " of length ", length);
+      dimensions_.push_back({std::move(called), length});
+    }
+  }
+
+  void attributes(bool global) {
+    const std::uint64_t n = list(12, 12);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const std::string called = name();
+      const std::uint64_t size = size_of_type(word());
+      const std::uint64_t length = count();
+      if (length > bytes_.size()) damaged("attribute ", called, " of length ", length);
+      // What ex_open reads into single variables.
+      constexpr std::array<std::string_view, 7> scalars{"version",
+                                                        "api_version",
+                                                        "floating_point_word_size",
+                                                        "floating point word size",
+                                                        "file_size",
+                                                        "int64_status",
+                                                        "maximum_name_length"};
+      for (const std::string_view scalar : scalars) {
+        if (global && called == scalar && length != 1)
+          damaged("attribute ", called, " has ", length, " values");
+      }
+      skip(length * size);
+    }
+  }
+
+  void variables() {
+    const std::uint64_t n = list(11, 20);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const std::string called = name();
+      const std::uint64_t rank = count();
+      if (rank > 1024 || rank > dimensions_.size() + 8)
+        damaged("variable ", called, " of ", rank, " dimensions");
+      std::vector<std::size_t> shape;
+      for (std::uint64_t d = 0; d < rank; ++d) {
+        const std::uint64_t id = count();
+        if (id >= dimensions_.size())
+          damaged("variable ", called, " has dimension ", id, " of ", dimensions_.size());
+        shape.push_back(id);
+      }
+      attributes(false);
+      const std::uint64_t size = size_of_type(word());
+      count();  // the declared size saturates in large files: computed from the shape instead
+      const std::uint64_t begin = integer(version_ == 1 ? 4 : 8);
+      inside(called, shape, size, begin);
+      expected_shape(called, shape);
+    }
+  }
+
+  void inside(const std::string& called,
+              const std::vector<std::size_t>& shape,
+              std::uint64_t size,
+              std::uint64_t begin) const {
+    std::uint64_t n_bytes = size;
+    for (std::size_t d = 0; d < shape.size(); ++d) {
+      std::uint64_t length = dimensions_[shape[d]].length;
+      if (length == 0) {
+        if (d != 0) damaged("variable ", called, " has the record dimension in place ", d);
+        if (n_records_ == 0) return;
+        length = 1;  // one record at least
+      }
+      if (__builtin_mul_overflow(n_bytes, length, &n_bytes))
+        damaged("variable ", called, " is too large");
+    }
+    if (begin > bytes_.size() || n_bytes > bytes_.size() - begin) {
+      damaged("variable ", called, " ends at byte ", begin, " + ", n_bytes, " of ", bytes_.size());
+    }
+  }
+
+  void expected_shape(const std::string& called, const std::vector<std::size_t>& shape) const {
+    std::vector<std::string> wanted;
+    const std::string_view all = called;
+    if (all == "coordx" || all == "coordy" || all == "coordz") {
+      wanted = {"num_nodes"};
+    } else if (all == "coord") {
+      wanted = {"num_dim", "num_nodes"};
+    } else if (all == "eb_prop1" || all == "eb_status") {
+      wanted = {"num_el_blk"};
+    } else if (all.starts_with("connect")) {
+      const std::string block(all.substr(7));
+      wanted = {"num_el_in_blk" + block, "num_nod_per_el" + block};
+    } else {
+      return;
+    }
+    bool right = wanted.size() == shape.size();
+    for (std::size_t d = 0; right && d < shape.size(); ++d)
+      right = dimensions_[shape[d]].name == wanted[d];
+    if (!right) damaged("variable ", called, " has other dimensions than ExodusII defines");
+  }
+
+  const std::string& path_;
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+  unsigned version_ = 0;
+  std::uint64_t n_records_ = 0;
+  std::vector<Dimension> dimensions_;
+};
+
+}  // namespace
+
+void check_netcdf_header(const std::string& path, std::string_view bytes) {
+  Header(path, bytes).check();
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,58 @@
+// A tetrahedral mesh as every part of the transfer sees it: points and tetrahedra in file order.
+// Made by the readers (io/read_mesh.hpp) or by the calling application, checked once by validate(),
+// immutable after that. The place of a vertex or tetrahedron in these lists is its global id:
+// hashes, tie rules and output follow it. Counts are 64 bits; vertex ids inside a mesh are 32 bits,
+// so one mesh holds at most 2^31 - 1 vertices.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tess::m2m {
+
+using Point = std::array<double, 3>;
+/// A vertex within one mesh or one part.
+using VertexId = std::int32_t;
+/// A vertex or tetrahedron in the numbering of the whole mesh.
+using GlobalId = std::int64_t;
+/// The four vertices of a tetrahedron; its orientation may be of either sign.
+using Tet = std::array<VertexId, 4>;
+
+/// A closed axis-parallel box; empty while low > high.
+struct Box {
+  Point low, high;
+};
+
+struct TetMesh {
+  std::string name;  ///< where it came from: a path, "kuhn:8", or what the application says
+  std::vector<Point> points;  ///< n_points × 3
+  std::vector<Tet> tets;      ///< n_tets × 4, indices into points
+
+  [[nodiscard]] std::size_t n_points() const noexcept { return points.size(); }
+  [[nodiscard]] std::size_t n_tets() const noexcept { return tets.size(); }
+};
+
+/// What validate() found that is allowed but worth saying.
+struct MeshCensus {
+  std::size_t n_flat = 0;      ///< tetrahedra without volume, or with two equal vertices
+  std::size_t n_inverted = 0;  ///< tetrahedra of negative orientation
+  std::size_t n_unused = 0;    ///< vertices that no tetrahedron uses
+  Box bounds{};                ///< of all points
+};
+
+/// Throws Error (bad_mesh), naming the mesh, the element and the remedy, on no tetrahedra, a
+/// coordinate that is not finite, or an index out of range. Flat and inverted tetrahedra pass and
+/// are counted.
+MeshCensus validate(const TetMesh& mesh);
+
+/// The box around all points.
+[[nodiscard]] Box bounds(const TetMesh& mesh);
+
+/// Volume with sign, from edges relative to the first vertex (absolute coordinates would cancel far
+/// from the origin).
+[[nodiscard]] double signed_volume(const TetMesh& mesh, std::size_t tet);
+
+}  // namespace tess::m2m

@@ -1,0 +1,176 @@
+#include "m2m/partition/partition.hpp"
+
+#include "runtime/error.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <zoltan.h>
+
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
+namespace tess::m2m {
+namespace {
+
+/// While one lives, the leak checker passes over what Open MPI allocates and keeps. Its plug-ins
+/// are unloaded before the checker runs, so that no suppression by name would match.
+#ifdef __SANITIZE_ADDRESS__
+using NotOurLeaks = __lsan::ScopedDisabler;
+#else
+struct NotOurLeaks {
+  NotOurLeaks() noexcept {}
+};
+#endif
+
+/// Initialises MPI as a singleton where nobody has; who initialises it finalises it.
+void need_mpi() {
+  int up = 0;
+  MPI_Initialized(&up);
+  if (up != 0) return;
+  const NotOurLeaks of_init;
+  // A lone process needs no daemon: Open MPI would start one and wait for it, half a second at
+  // best.
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  int provided = 0;
+  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS) {
+    fail(ErrorCode::environment, "MPI_Init_thread failed, and Zoltan needs MPI; run with one part");
+  }
+  std::atexit([] {
+    const NotOurLeaks of_finalize;
+    int down = 0;
+    MPI_Finalized(&down);
+    if (down == 0) MPI_Finalize();
+  });
+}
+
+void check(int code, const char* call) {
+  if (code != ZOLTAN_OK && code != ZOLTAN_WARN)
+    fail(ErrorCode::environment, "Zoltan: ", call, " gives ", code);
+}
+
+std::vector<Point> centroids(const TetMesh& mesh) {
+  std::vector<Point> result(mesh.n_tets());
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    for (const VertexId v : mesh.tets[t]) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        result[t][axis] += 0.25 * mesh.points[static_cast<std::size_t>(v)][axis];
+    }
+  }
+  return result;
+}
+
+const std::vector<Point>& objects(void* centres) {
+  return *static_cast<const std::vector<Point>*>(centres);
+}
+
+/// Zoltan's context, freed with everything in it.
+class Zoltan {
+ public:
+  Zoltan() : context_(Zoltan_Create(MPI_COMM_SELF)) {
+    if (context_ == nullptr) fail(ErrorCode::environment, "Zoltan: Zoltan_Create fails");
+  }
+  ~Zoltan() { Zoltan_Destroy(&context_); }
+  Zoltan(const Zoltan&) = delete;
+  Zoltan& operator=(const Zoltan&) = delete;
+
+  void set(const char* name, const std::string& value) {
+    check(Zoltan_Set_Param(context_, name, value.c_str()), name);
+  }
+  [[nodiscard]] Zoltan_Struct* get() { return context_; }
+
+ private:
+  Zoltan_Struct* context_;
+};
+
+void give_objects(Zoltan& zoltan, std::vector<Point>& centres) {
+  Zoltan_Set_Num_Obj_Fn(
+      zoltan.get(),
+      [](void* data, int*) { return static_cast<int>(objects(data).size()); },
+      &centres);
+  Zoltan_Set_Obj_List_Fn(
+      zoltan.get(),
+      [](void* data, int, int, ZOLTAN_ID_PTR ids, ZOLTAN_ID_PTR, int, float*, int*) {
+        for (std::size_t i = 0; i < objects(data).size(); ++i)
+          ids[i] = static_cast<ZOLTAN_ID_TYPE>(i);
+      },
+      &centres);
+  Zoltan_Set_Num_Geom_Fn(
+      zoltan.get(), [](void*, int*) { return 3; }, nullptr);
+  Zoltan_Set_Geom_Multi_Fn(
+      zoltan.get(),
+      [](void* data, int, int, int n, ZOLTAN_ID_PTR ids, ZOLTAN_ID_PTR, int, double* out, int*) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            out[3 * i + axis] = objects(data)[ids[i]][axis];
+        }
+      },
+      &centres);
+}
+
+}  // namespace
+
+PartitionMethod parse_partition_method(const std::string& name) {
+  if (name == "rcb") return PartitionMethod::rcb;
+  if (name == "hsfc") return PartitionMethod::hsfc;
+  fail(ErrorCode::bad_argument, "partition method '", name, "': expected rcb or hsfc");
+}
+
+std::vector<std::int32_t> partition(const TetMesh& mesh,
+                                    std::int32_t n_parts,
+                                    PartitionMethod method) {
+  if (n_parts < 1)
+    fail(ErrorCode::bad_argument, "a partition into ", n_parts, " parts: give at least 1");
+  if (mesh.n_tets() > INT32_MAX) {
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": has ",
+         mesh.n_tets(),
+         " tetrahedra; Zoltan takes 2147483647 from one process");
+  }
+  std::vector<std::int32_t> parts(mesh.n_tets(), 0);
+  if (n_parts == 1) return parts;
+  need_mpi();
+  float version = 0;
+  check(Zoltan_Initialize(0, nullptr, &version), "Zoltan_Initialize");
+  std::vector<Point> centres = centroids(mesh);
+  Zoltan zoltan;
+  zoltan.set("DEBUG_LEVEL", "0");
+  zoltan.set("LB_METHOD", method == PartitionMethod::rcb ? "RCB" : "HSFC");
+  zoltan.set("NUM_GLOBAL_PARTS", std::to_string(n_parts));
+  zoltan.set("NUM_GID_ENTRIES", "1");
+  zoltan.set("NUM_LID_ENTRIES", "0");
+  zoltan.set("OBJ_WEIGHT_DIM", "0");
+  zoltan.set("RETURN_LISTS", "PARTS");
+  give_objects(zoltan, centres);
+
+  int changes = 0, n_gid = 0, n_lid = 0, n_import = 0, n_export = 0;
+  ZOLTAN_ID_PTR import_gids = nullptr, import_lids = nullptr, export_gids = nullptr,
+                export_lids = nullptr;
+  int *import_procs = nullptr, *import_parts = nullptr, *export_procs = nullptr,
+      *export_parts = nullptr;
+  const int code = Zoltan_LB_Partition(zoltan.get(),
+                                       &changes,
+                                       &n_gid,
+                                       &n_lid,
+                                       &n_import,
+                                       &import_gids,
+                                       &import_lids,
+                                       &import_procs,
+                                       &import_parts,
+                                       &n_export,
+                                       &export_gids,
+                                       &export_lids,
+                                       &export_procs,
+                                       &export_parts);
+  for (int i = 0; i < n_export; ++i) parts[export_gids[i]] = export_parts[i];
+  Zoltan_LB_Free_Part(&import_gids, &import_lids, &import_procs, &import_parts);
+  Zoltan_LB_Free_Part(&export_gids, &export_lids, &export_procs, &export_parts);
+  check(code, "Zoltan_LB_Partition");
+  if (n_export != static_cast<int>(mesh.n_tets())) {
+    fail(ErrorCode::environment, "Zoltan placed ", n_export, " of ", mesh.n_tets(), " tetrahedra");
+  }
+  return parts;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,78 @@
+#include "m2m/partition/split.hpp"
+
+#include "runtime/check.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tess::m2m {
+
+std::vector<MeshPart> split(const TetMesh& mesh,
+                            std::span<const std::int32_t> parts,
+                            std::int32_t n_parts) {
+  TESS_CHECK(
+      parts.size() == mesh.n_tets(), "expected ", mesh.n_tets(), " parts, got ", parts.size());
+  constexpr std::int32_t nobody = std::numeric_limits<std::int32_t>::max();
+  const std::size_t n = mesh.n_points();
+  std::vector<MeshPart> result(static_cast<std::size_t>(n_parts));
+  std::vector<std::int32_t> owner(n, nobody);
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    TESS_CHECK(parts[t] >= 0 && parts[t] < n_parts,
+               "tetrahedron ",
+               t,
+               " in part ",
+               parts[t],
+               " of ",
+               n_parts);
+    result[static_cast<std::size_t>(parts[t])].tet_ids.push_back(static_cast<GlobalId>(t));
+    for (const VertexId v : mesh.tets[t]) {
+      std::int32_t& least = owner[static_cast<std::size_t>(v)];
+      least = std::min(least, parts[t]);
+    }
+  }
+  for (std::size_t v = 0; v < n; ++v) {
+    if (owner[v] != nobody) continue;  // used by no tetrahedron: spread over the parts
+    owner[v] = static_cast<std::int32_t>(v * static_cast<std::size_t>(n_parts) / n);
+    result[static_cast<std::size_t>(owner[v])].point_ids.push_back(static_cast<GlobalId>(v));
+  }
+  std::vector<VertexId> local(n, -1);
+  for (std::int32_t p = 0; p < n_parts; ++p) {
+    MeshPart& part = result[static_cast<std::size_t>(p)];
+    for (const GlobalId t : part.tet_ids) {
+      for (const VertexId v : mesh.tets[static_cast<std::size_t>(t)]) {
+        VertexId& seen = local[static_cast<std::size_t>(v)];
+        if (seen < 0) part.point_ids.push_back(v);
+        seen = 0;
+      }
+    }
+    std::sort(part.point_ids.begin(), part.point_ids.end());
+    const auto owned = [&](GlobalId v) { return owner[static_cast<std::size_t>(v)] == p; };
+    const auto middle = std::stable_partition(part.point_ids.begin(), part.point_ids.end(), owned);
+    part.n_owned = middle - part.point_ids.begin();
+    part.points.reserve(part.point_ids.size());
+    for (const GlobalId v : part.point_ids) {
+      local[static_cast<std::size_t>(v)] = static_cast<VertexId>(part.points.size());
+      part.points.push_back(mesh.points[static_cast<std::size_t>(v)]);
+    }
+    part.tets.reserve(part.tet_ids.size());
+    for (const GlobalId t : part.tet_ids) {
+      Tet tet = mesh.tets[static_cast<std::size_t>(t)];
+      for (VertexId& v : tet) v = local[static_cast<std::size_t>(v)];
+      part.tets.push_back(tet);
+    }
+    for (const GlobalId v : part.point_ids) local[static_cast<std::size_t>(v)] = -1;
+  }
+  return result;
+}
+
+std::vector<double> values_of(const MeshPart& part, const Field& field) {
+  std::vector<double> values;
+  values.reserve(part.point_ids.size() * field.n_components);
+  for (const GlobalId v : part.point_ids) {
+    const auto row = field.values.begin() + v * static_cast<std::ptrdiff_t>(field.n_components);
+    values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(field.n_components));
+  }
+  return values;
+}
+
+}  // namespace tess::m2m

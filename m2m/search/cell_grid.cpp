@@ -1,0 +1,88 @@
+#include "m2m/search/cell_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tess::m2m {
+
+CellGrid::CellGrid(const Box& domain, std::size_t n_cells, std::span<const Box> items)
+    : low_(domain.low) {
+  Point side{};
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    side[axis] = domain.high[axis] - domain.low[axis];
+    longest = std::max(longest, side[axis]);
+  }
+  // Thin directions count as one cell, so that the others keep the cells.
+  double product = 1;
+  for (double& s : side) product *= std::max(s / longest, 1e-3);
+  const double cell =
+      longest > 0
+          ? longest * std::cbrt(product / static_cast<double>(std::max<std::size_t>(n_cells, 1)))
+          : 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(side[axis] > 0)) continue;
+    shape_[axis] =
+        static_cast<std::int32_t>(std::clamp(std::floor(side[axis] / cell), 1.0, 1024.0));
+    cells_a_length_[axis] = shape_[axis] / side[axis];
+  }
+  begin_.assign(static_cast<std::size_t>(shape_[0]) * static_cast<std::size_t>(shape_[1]) *
+                        static_cast<std::size_t>(shape_[2]) +
+                    1,
+                0);
+  const auto for_each_cell = [&](const Box& box, auto&& visit) {
+    const Cell first = cell_of(box.low);
+    const Cell last = cell_of(box.high);
+    for (std::int32_t z = first[2]; z <= last[2]; ++z) {
+      for (std::int32_t y = first[1]; y <= last[1]; ++y) {
+        for (std::int32_t x = first[0]; x <= last[0]; ++x) visit(index({x, y, z}));
+      }
+    }
+  };
+  for (const Box& box : items) {
+    for_each_cell(box, [&](std::size_t c) { ++begin_[c + 1]; });
+  }
+  for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
+  items_.resize(static_cast<std::size_t>(begin_.back()));
+  std::vector<std::int64_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    for_each_cell(items[i], [&](std::size_t c) {
+      items_[static_cast<std::size_t>(next[c]++)] = static_cast<std::int32_t>(i);
+    });
+  }
+}
+
+CellGrid::Cell CellGrid::cell_of(const Point& p) const {
+  Cell cell;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = (p[axis] - low_[axis]) *
+                      cells_a_length_[axis];  // monotonic: a point in a box is in its cells
+    cell[axis] =
+        static_cast<std::int32_t>(std::clamp(at, 0.0, static_cast<double>(shape_[axis] - 1)));
+  }
+  return cell;
+}
+
+std::span<const std::int32_t> CellGrid::items(const Cell& cell) const {
+  const std::size_t c = index(cell);
+  return std::span(items_).subspan(static_cast<std::size_t>(begin_[c]),
+                                   static_cast<std::size_t>(begin_[c + 1] - begin_[c]));
+}
+
+double CellGrid::least_side() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (shape_[axis] > 1) least = std::min(least, 1 / cells_a_length_[axis]);
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+std::size_t CellGrid::index(const Cell& cell) const {
+  return static_cast<std::size_t>(cell[0]) +
+         static_cast<std::size_t>(shape_[0]) *
+             (static_cast<std::size_t>(cell[1]) +
+              static_cast<std::size_t>(shape_[1]) * static_cast<std::size_t>(cell[2]));
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,76 @@
+#include "m2m/transfer.hpp"
+
+#include "runtime/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tess::m2m {
+namespace {
+
+double seconds(Time time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
+
+Task transfer(DistributedMesh source,
+              DistributedMesh target,
+              TransferOptions options,
+              TransferTimes* times) {
+  TESS_CHECK(source.n_components == target.n_components,
+             "the source has ",
+             source.n_components,
+             " components a vertex, the target ",
+             target.n_components);
+  Pe& pe = current_pe();
+  const Time start = pe.now();
+  TransferSetup setup;
+  co_await epoch([&] {
+    setup.collider = make_collider({options.voxel_origin, options.voxel_size, {}});
+    setup.source = source.workers;
+    setup.target = target.workers;
+    setup.n_source_parts = source.n_parts;
+    setup.n_components = source.n_components;
+  });
+  co_await epoch([&] {
+    source.workers.broadcast<&Worker::submit_tets>(setup);
+    target.workers.broadcast<&Worker::submit_points>(setup);
+  });
+  // Named: g++ 12 destroys an aggregate that is written inside a co_await expression twice.
+  const Report to_target{report_to<&Worker::receive_hits>(target.workers), target_model};
+  co_await collide(setup.collider, to_target);
+  const Time broad = pe.now();
+  co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(); });
+  const Time narrow = pe.now();
+  co_await epoch([&] { target.workers.broadcast<&Worker::settle>(options.policy); });
+  const Time report = pe.now();
+  if (times != nullptr)
+    *times = {seconds(broad - start), seconds(narrow - broad), seconds(report - narrow)};
+}
+
+Point suggest_voxel_size(const TetMesh& source, const TetMesh& target) {
+  constexpr double tets_per_voxel = 30;
+  const Box box = bounds(source), other = bounds(target);
+  double volume = 1;
+  double longest = 0, farthest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, box.high[axis] - box.low[axis]);
+    farthest = std::max({farthest,
+                         std::abs(box.low[axis]),
+                         std::abs(box.high[axis]),
+                         std::abs(other.low[axis]),
+                         std::abs(other.high[axis])});
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume *= std::max((box.high[axis] - box.low[axis]) / longest,
+                       1e-3);  // a flat mesh has some thickness
+  const double by_density =
+      longest * std::cbrt(volume * tets_per_voxel / static_cast<double>(source.n_tets()));
+  const double least =
+      std::max(farthest * 0x1p-29, std::abs(longest) * 0x1p-20);  // indices are 32 bits
+  const double size = std::max({by_density, least, std::numeric_limits<double>::min()});
+  return {size, size, size};
+}
+
+}  // namespace tess::m2m

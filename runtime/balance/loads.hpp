@@ -1,0 +1,54 @@
+// Time and memory of every PE while a strategy decides. Memory starts as it is now and follows each
+// decided move: what has not been decided yet still occupies its present PE, so that an element can
+// always stay, and the moves, made in the order decided, never break a limit that held before.
+// Work starts empty, or as it is now (present()).
+#pragma once
+
+#include "runtime/balance/snapshot.hpp"
+
+namespace tess::balance {
+
+class Loads {
+ public:
+  /// Memory of the present placement; work is background alone.
+  explicit Loads(const Snapshot& s)
+      : snapshot_(s), work_(s.pes.size(), 0.0), memory_bytes_(s.pes.size(), 0) {
+    for (std::size_t i = 0; i < s.elements.size(); ++i)
+      memory_bytes_[slot(s.elements.pe[i])] += s.elements.memory_bytes[i];
+  }
+  /// Memory and work of the present placement.
+  [[nodiscard]] static Loads present(const Snapshot& s) {
+    Loads loads(s);
+    for (std::size_t i = 0; i < s.elements.size(); ++i) loads.put(i, slot(s.elements.pe[i]));
+    return loads;
+  }
+
+  void put(std::size_t element, std::size_t pe) { work_[pe] += snapshot_.elements.load[element]; }
+  void move_memory(std::size_t element, std::size_t from, std::size_t to) {
+    memory_bytes_[from] -= snapshot_.elements.memory_bytes[element];
+    memory_bytes_[to] += snapshot_.elements.memory_bytes[element];
+  }
+  /// Work and memory.
+  void move(std::size_t element, std::size_t from, std::size_t to) {
+    work_[from] -= snapshot_.elements.load[element];
+    put(element, to);
+    move_memory(element, from, to);
+  }
+  /// Whether an element that occupies `from` may go to `to`; it may always stay.
+  [[nodiscard]] bool fits(std::size_t element, std::size_t from, std::size_t to) const {
+    const auto limit = snapshot_.pes.memory_limit_bytes[to];
+    return from == to || limit == 0 ||
+           memory_bytes_[to] + snapshot_.elements.memory_bytes[element] <= limit;
+  }
+  /// Seconds that a PE needs, with `more` seconds of work besides.
+  [[nodiscard]] double time(std::size_t pe, double more = 0) const {
+    return snapshot_.pes.background[pe] + (work_[pe] + more) / snapshot_.pes.speed[pe];
+  }
+
+ private:
+  const Snapshot& snapshot_;
+  std::vector<double> work_;
+  std::vector<std::uint64_t> memory_bytes_;
+};
+
+}  // namespace tess::balance

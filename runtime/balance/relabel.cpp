@@ -1,0 +1,72 @@
+#include "runtime/balance/relabel.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace tess::balance {
+namespace {
+
+/// The same number for PEs that can change parts.
+std::vector<std::size_t> kinds(const Snapshot& s) {
+  std::vector<std::size_t> alone(s.pes.size(), 0);  // above 0: like no other
+  for (std::size_t i = 0; i < s.elements.size(); ++i)
+    if (!s.elements.migratable[i]) alone[slot(s.elements.pe[i])] = 1 + slot(s.elements.pe[i]);
+  std::map<std::tuple<double, double, std::uint64_t, std::size_t>, std::size_t> known;
+  std::vector<std::size_t> result;
+  for (std::size_t p = 0; p < s.pes.size(); ++p)
+    result.push_back(
+        known
+            .try_emplace(
+                {s.pes.speed[p], s.pes.background[p], s.pes.memory_limit_bytes[p], alone[p]},
+                known.size())
+            .first->second);
+  return result;
+}
+
+struct Overlap {
+  std::uint64_t bytes = 0;
+  std::size_t part = 0;
+  std::size_t pe = 0;
+};
+
+/// What each part has on each PE of its kind already, most first.
+std::vector<Overlap> overlaps(const Snapshot& s,
+                              const Assignment& wanted,
+                              const std::vector<std::size_t>& kind) {
+  std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> bytes;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const std::size_t part = slot(wanted[i]), pe = slot(s.elements.pe[i]);
+    if (kind[part] == kind[pe]) bytes[{part, pe}] += s.elements.size_bytes[i] + 1;
+  }
+  std::vector<Overlap> result;
+  for (const auto& [who, much] : bytes) result.push_back({much, who.first, who.second});
+  std::ranges::stable_sort(result, std::greater{}, &Overlap::bytes);
+  return result;
+}
+
+}  // namespace
+
+Assignment relabel(const Snapshot& s, Assignment wanted) {
+  const std::vector<std::size_t> kind = kinds(s);
+  const std::size_t none = s.pes.size();
+  std::vector<std::size_t> pe_of(s.pes.size(), none);
+  std::vector<bool> taken(s.pes.size(), false);
+  for (const Overlap& overlap : overlaps(s, wanted, kind)) {
+    if (pe_of[overlap.part] != none || taken[overlap.pe]) continue;
+    pe_of[overlap.part] = overlap.pe;
+    taken[overlap.pe] = true;
+  }
+  std::map<std::size_t, std::vector<std::size_t>> left;  // PEs by kind, highest first
+  for (std::size_t p = s.pes.size(); p-- > 0;)
+    if (!taken[p]) left[kind[p]].push_back(p);
+  for (std::size_t part = 0; part < s.pes.size(); ++part) {
+    if (pe_of[part] != none) continue;
+    pe_of[part] = left[kind[part]].back();
+    left[kind[part]].pop_back();
+  }
+  for (PeId& pe : wanted) pe = pe_at(pe_of[slot(pe)]);
+  return wanted;
+}
+
+}  // namespace tess::balance

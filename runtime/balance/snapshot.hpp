@@ -1,0 +1,71 @@
+// What was measured before a balance round: loads of elements, speeds and limits of PEs, messages
+// between elements. The balancer fills it, a strategy reads it. Structure of arrays; an element is
+// its position in them.
+#pragma once
+
+#include "runtime/ids.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tess::balance {
+
+/// Who an element is, across rounds.
+struct ElementKey {
+  CollectionId array;
+  std::uint64_t element = 0;
+  friend auto operator<=>(const ElementKey&, const ElementKey&) = default;
+};
+
+/// Messages from one element to another since the last round; ends are positions in Elements.
+struct Edge {
+  std::size_t from = 0;
+  std::size_t to = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t messages = 0;
+  friend auto operator<=>(const Edge&, const Edge&) = default;
+};
+
+/// All arrays have one entry an element; `position` may be empty instead, where nobody gave any.
+struct Elements {
+  std::vector<ElementKey> key;
+  std::vector<PeId> pe;
+  std::vector<double> load;                     ///< seconds on a PE of speed 1
+  std::vector<std::uint8_t> migratable;         ///< 0 stays where it is
+  std::vector<std::uint64_t> size_bytes;        ///< packed: what a migration sends
+  std::vector<std::uint64_t> memory_bytes;      ///< resident: what counts against a memory limit
+  std::vector<std::array<double, 3>> position;  ///< for rcb and hilbert
+  [[nodiscard]] std::size_t size() const { return key.size(); }
+};
+
+/// All arrays have one entry a PE.
+struct Pes {
+  std::vector<double> background;                 ///< seconds of wall time not spent in elements
+  std::vector<double> speed;                      ///< relative, above 0
+  std::vector<std::uint64_t> memory_limit_bytes;  ///< of elements together; 0: none
+  [[nodiscard]] std::size_t size() const { return speed.size(); }
+};
+
+struct Snapshot {
+  Elements elements;
+  Pes pes;
+  std::vector<Edge> edges;
+};
+
+/// The PE of every element after a round.
+using Assignment = std::vector<PeId>;
+
+/// A PE as a position in Pes, and back.
+[[nodiscard]] constexpr std::size_t slot(PeId pe) {
+  return static_cast<std::size_t>(pe.value);
+}
+[[nodiscard]] constexpr PeId pe_at(std::size_t slot) {
+  return PeId{static_cast<std::int32_t>(slot)};
+}
+
+/// Throws Error where array lengths differ, a PE is out of range, or a load or speed cannot be.
+void validate(const Snapshot& snapshot);
+
+}  // namespace tess::balance

@@ -1,0 +1,47 @@
+#include "runtime/balance/strategies/greedy_refine.hpp"
+
+#include "runtime/balance/loads.hpp"
+#include "runtime/balance/metrics.hpp"
+#include "runtime/balance/strategies/greedy.hpp"
+#include "runtime/balance/strategies/refine.hpp"
+
+#include <algorithm>
+
+namespace tess::balance {
+namespace {
+
+/// Elements that leave their PEs, heaviest first: of each PE the largest that its excess contains,
+/// again and again, and at last the smallest that exceeds what is left of the excess.
+std::vector<std::size_t> shed(const Snapshot& s, double limit) {
+  const Loads now = Loads::present(s);
+  std::vector<double> excess;
+  for (std::size_t p = 0; p < s.pes.size(); ++p)
+    excess.push_back((now.time(p) - limit) * s.pes.speed[p]);
+  std::vector<bool> leaves(s.elements.size(), false);
+  const std::vector<std::size_t> order = heaviest_first(s);
+  const auto leave = [&](std::size_t i) {
+    leaves[i] = true;
+    excess[slot(s.elements.pe[i])] -= s.elements.load[i];
+  };
+  for (const std::size_t i : order)
+    if (s.elements.load[i] > 0 && s.elements.load[i] <= excess[slot(s.elements.pe[i])]) leave(i);
+  for (auto i = order.rbegin(); i != order.rend(); ++i) {
+    const double rest = excess[slot(s.elements.pe[*i])];
+    if (!leaves[*i] && rest > 0 && s.elements.load[*i] >= rest) leave(*i);
+  }
+  std::vector<std::size_t> result;
+  std::ranges::copy_if(order, std::back_inserter(result), [&](auto i) { return leaves[i]; });
+  return result;
+}
+
+}  // namespace
+
+Assignment greedy_refine(const Snapshot& s, double tolerance) {
+  const double limit = tolerance * average_time(s);
+  Assignment few = refine_from(s, place_soonest(s, shed(s, limit)), tolerance);
+  Assignment all = greedy(s);
+  const double best = std::max(1.0, measure(s, all).max_over_average);
+  return measure(s, few).max_over_average <= tolerance * best ? few : all;
+}
+
+}  // namespace tess::balance

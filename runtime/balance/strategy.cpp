@@ -1,0 +1,70 @@
+#include "runtime/balance/strategy.hpp"
+
+#include "runtime/balance/honour.hpp"
+#include "runtime/balance/strategies/diffusion.hpp"
+#include "runtime/balance/strategies/gossip.hpp"
+#include "runtime/balance/strategies/graph.hpp"
+#include "runtime/balance/strategies/greedy.hpp"
+#include "runtime/balance/strategies/greedy_refine.hpp"
+#include "runtime/balance/strategies/hierarchical.hpp"
+#include "runtime/balance/strategies/hilbert.hpp"
+#include "runtime/balance/strategies/rcb.hpp"
+#include "runtime/balance/strategies/refine.hpp"
+#include "runtime/balance/strategies/simple.hpp"
+#include "runtime/error.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tess::balance {
+namespace {
+
+struct Entry {
+  std::string name;
+  Assignment (*run)(const Snapshot&, std::uint64_t seed);
+};
+
+/// Named once; what is not told a seed does not look at it.
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = {
+      {"none", [](const Snapshot& s, std::uint64_t) { return none(s); }},
+      {"rotate", [](const Snapshot& s, std::uint64_t) { return rotate(s); }},
+      {"random", [](const Snapshot& s, std::uint64_t seed) { return random(s, seed); }},
+      {"greedy", [](const Snapshot& s, std::uint64_t) { return greedy(s); }},
+      {"greedy_refine", [](const Snapshot& s, std::uint64_t) { return greedy_refine(s); }},
+      {"refine", [](const Snapshot& s, std::uint64_t) { return refine(s); }},
+      {"diffusion", [](const Snapshot& s, std::uint64_t) { return diffusion(s); }},
+      {"gossip", [](const Snapshot& s, std::uint64_t seed) { return gossip(s, seed); }},
+      {"hierarchical", [](const Snapshot& s, std::uint64_t) { return hierarchical(s); }},
+      {"rcb", [](const Snapshot& s, std::uint64_t) { return rcb(s); }},
+      {"hilbert", [](const Snapshot& s, std::uint64_t) { return hilbert(s); }},
+      {"graph", [](const Snapshot& s, std::uint64_t seed) { return graph(s, seed); }},
+  };
+  return all;
+}
+
+}  // namespace
+
+const std::vector<std::string>& strategy_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result;
+    for (const Entry& entry : entries()) result.push_back(entry.name);
+    return result;
+  }();
+  return names;
+}
+
+Strategy make_strategy(std::string_view name, std::uint64_t seed) {
+  for (const Entry& entry : entries())
+    if (entry.name == name)
+      return [run = entry.run, seed](const Snapshot& s) { return run(s, seed); };
+  fail(ErrorCode::bad_argument,
+       fmt::format(
+           "no balance strategy '{}'; choose one of {}", name, fmt::join(strategy_names(), ", ")));
+}
+
+Strategy make_strategy(Strategy users) {
+  return [users = std::move(users)](const Snapshot& s) { return honour(s, users(s)); };
+}
+
+}  // namespace tess::balance

@@ -1,0 +1,70 @@
+// How many local elements are at each number of a reduction: nearly all are at one or two numbers
+// in a row, so a window of counters serves, and no number below its first has any.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tess {
+
+/// Counts by number, with the lowest at hand.
+class NumberCounts {
+ public:
+  [[nodiscard]] bool empty() const { return head_ == counts_.size(); }
+  /// The lowest number that has any; there must be one.
+  [[nodiscard]] std::uint32_t lowest() const { return first_; }
+
+  void add(std::uint32_t number) {
+    if (empty()) {
+      clear();
+      first_ = number;
+    }
+    if (number < first_) [[unlikely]]
+      extend_down(number);
+    if (head_ + (number - first_) >= counts_.size()) [[unlikely]]
+      extend_up(number);
+    ++counts_[head_ + (number - first_)];
+  }
+
+  /// One that was added.
+  void remove(std::uint32_t number) {
+    --counts_[head_ + (number - first_)];
+    while (!empty() && counts_[head_] == 0) {
+      ++head_;
+      ++first_;
+    }
+  }
+
+ private:
+  void clear() {
+    counts_.clear();
+    head_ = 0;
+  }
+  void extend_up(std::uint32_t number) {
+    if (head_ >= most_below) {
+      counts_.erase(counts_.begin(), counts_.begin() + static_cast<std::ptrdiff_t>(head_));
+      head_ = 0;
+    }
+    counts_.resize(head_ + (number - first_) + 1);
+  }
+  void extend_down(std::uint32_t number) {
+    const std::size_t more = first_ - number;
+    if (head_ >= more) {
+      head_ -= more;  // the counters below the head are zero
+    } else {
+      counts_.insert(counts_.begin(), more - head_, 0);
+      head_ = 0;
+    }
+    first_ = number;
+  }
+
+  static constexpr std::size_t most_below = 32;
+
+  // counts_[head_ + k] are at number first_ + k; those below head_ are zero.
+  std::vector<std::uint64_t> counts_;
+  std::size_t head_ = 0;
+  std::uint32_t first_ = 0;
+};
+
+}  // namespace tess

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Bad input: one line that names it, exit code 2, nothing written.
+set -uo pipefail
+bin=$1
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed=0
+passed=0
+
+# refuses WORD COMMAND…: the command exits with 2 and prints one line to standard error that has WORD in it.
+refuses() {
+  local word=$1
+  shift
+  "$@" >"$scratch/out" 2>"$scratch/err" </dev/null
+  local code=$?
+  if [[ $code -eq 2 && $(wc -l <"$scratch/err") -eq 1 && ! -e $scratch/result.exo && ! -e $scratch/result.json ]] &&
+    grep -q -- "$word" "$scratch/err"; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $* (exit $code, wanted 2 and one line with '$word'):"
+    cat "$scratch/err"
+  fi
+}
+
+transfer=("$bin/m2m_transfer" --out "$scratch/result.exo" --json "$scratch/result.json")
+: >"$scratch/empty.exo"
+printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 nan 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n1 4 2 0 0 1 2 3 4\n$EndElements\n' >"$scratch/nan.msh"
+printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n0\n$EndElements\n' >"$scratch/none.msh"
+printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n' >"$scratch/short.msh"
+
+refuses missing.exo "${transfer[@]}" "$scratch/missing.exo" kuhn:2
+refuses empty.exo "${transfer[@]}" kuhn:2 "$scratch/empty.exo"
+refuses nan.msh "${transfer[@]}" kuhn:2 "$scratch/nan.msh"
+refuses none.msh "${transfer[@]}" "$scratch/none.msh" kuhn:2
+refuses short.msh "${transfer[@]}" "$scratch/short.msh" kuhn:2
+refuses kuhn:0 "${transfer[@]}" kuhn:0 kuhn:2
+refuses --pes "${transfer[@]}" kuhn:2 kuhn:2 --pes 0
+refuses --nonsense "${transfer[@]}" kuhn:2 kuhn:2 --nonsense
+refuses TARGET "${transfer[@]}" kuhn:2
+refuses policy "${transfer[@]}" kuhn:2 kuhn:2 --policy perhaps
+refuses partition "${transfer[@]}" kuhn:2 kuhn:2 --partition perhaps
+refuses perhaps "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)'
+refuses --voxel "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
+refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
+refuses --pes "$bin/hello" --pes 0
+refuses --nonsense "$bin/hello" --nonsense
+
+data=${TESS_DATA:-$(dirname "$0")/../../../shared/data}
+if [[ -d $data/nalu ]]; then
+  refuses HEX "${transfer[@]}" "$data/nalu/3d_hex8_pipe.exo" kuhn:2
+  head -c 100000 "$data/nalu/3d_tet4_pipe.exo" >"$scratch/cut.exo"
+  refuses cut.exo "${transfer[@]}" "$scratch/cut.exo" kuhn:2
+else
+  echo "skipped: $data is not on this machine: no hexahedra, no truncated ExodusII file"
+fi
+
+echo "$passed passed, $failed failed"
+((failed == 0))

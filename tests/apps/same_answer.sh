@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# The answer of a transfer is the same bit for bit for every number of PEs, processes and chares, every voxel size, and
+# every adversarial schedule.
+set -uo pipefail
+bin=$1
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed=0
+passed=0
+mpirun=(mpirun --allow-run-as-root --oversubscribe)
+
+data=${TESS_DATA:-$(dirname "$0")/../../../shared/data}
+meshes=(kuhn:8@0.2 kuhn:13@0.2)
+if [[ -d $data/nalu ]]; then
+  meshes=("$data/nalu/3d_tet4_taylor_green_0p4.exo" "$data/nalu/3d_tet4_taylor_green_0p2.exo")
+else
+  echo "skipped: $data is not on this machine: generated meshes instead of real ones"
+fi
+transfer=("$bin/m2m_transfer" "${meshes[@]}" --field gaussian --field sin --policy nearest)
+
+hash_of() { grep -o '"result_hash": "[0-9a-f]*"' "$1"; }
+
+"${transfer[@]}" --pes 1 --chares 1 --json "$scratch/first.json" >/dev/null || exit 1
+want=$(hash_of "$scratch/first.json")
+echo "one PE, one chare a mesh: $want"
+
+# same COMMAND…: gives the same hash.
+same() {
+  rm -f "$scratch/again.json"
+  timeout 60 "$@" --json "$scratch/again.json" >"$scratch/out" 2>&1
+  local code=$?
+  if [[ $code -eq 0 && $(hash_of "$scratch/again.json") == "$want" ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED (exit $code): $*"
+    tail -5 "$scratch/out"
+  fi
+}
+
+for pes in 1 2 4; do same "${transfer[@]}" --pes $pes; done
+for chares in 2 7 64; do same "${transfer[@]}" --pes 2 --chares $chares; done
+for voxel in 0.05 0.1 0.3 0.5; do same "${transfer[@]}" --pes 2 --voxel $voxel; done
+same "${transfer[@]}" --pes 2 --partition hsfc
+for ranks in 1 2 4; do same "${mpirun[@]}" -n $ranks "${transfer[@]}" --pes 1; done
+same "${mpirun[@]}" -n 2 "${transfer[@]}" --pes 2
+same "${transfer[@]}" --sim pes=16
+for seed in 1 2 3; do same "${transfer[@]}" --sim pes=5,seed=$seed; done
+
+echo "$passed passed, $failed failed"
+((failed == 0))

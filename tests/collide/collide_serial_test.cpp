@@ -1,0 +1,175 @@
+// The serial collision against all pairs by overlap() alone.
+#include "collide/serial/collide_serial.hpp"
+
+#include "collide/serial/voxel_size.hpp"
+#include "runtime/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace tess;
+
+namespace {
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Item item(const Aabb& box, std::size_t n, std::uint32_t model) {
+  return {box, {OwnerId{7}, LocalId{static_cast<std::uint32_t>(n)}, ModelId{model}}};
+}
+
+void add(Pairs& pairs, const Item& a, const Item& b) {
+  pairs.push_back(
+      std::minmax(static_cast<std::uint32_t>(a.id.local), static_cast<std::uint32_t>(b.id.local)));
+}
+
+Pairs oracle(std::span<const Item> items, PairRules rules) {
+  Pairs out;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    for (std::size_t j = i + 1; j < items.size(); ++j)
+      if ((rules.within_model == WithinModel::test || items[i].id.model != items[j].id.model) &&
+          overlap(items[i].box, items[j].box, rules.touching))
+        add(out, items[i], items[j]);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Pairs found(std::span<const Item> items,
+            const VoxelGrid& grid,
+            PairRules rules,
+            SerialMethod method = SerialMethod::automatic) {
+  Pairs out;
+  collide_serial(
+      items, grid, rules, [&](const Item& a, const Item& b) { add(out, a, b); }, method);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Compares every method, rule, origin and size; doubles in `found` would show as unequal lists.
+void check_scene(std::span<const Item> items, std::initializer_list<double> sizes, double shift) {
+  for (const auto touching : {Touching::counts, Touching::does_not_count})
+    for (const auto within : {WithinModel::skip, WithinModel::test}) {
+      const PairRules rules{touching, within};
+      const Pairs expected = oracle(items, rules);
+      for (const double size : sizes)
+        for (const double origin : {0.0, shift, -3.7 * shift})
+          for (const auto method : {SerialMethod::automatic,
+                                    SerialMethod::brute_force,
+                                    SerialMethod::sweep,
+                                    SerialMethod::bisection}) {
+            const VoxelGrid grid({origin, -origin, origin}, {size, size, size});
+            CAPTURE(size, origin, static_cast<int>(method), static_cast<int>(touching));
+            REQUIRE((found(items, grid, rules, method) == expected));
+          }
+    }
+}
+
+std::vector<Item> random_scene(
+    unsigned seed, std::size_t n, double offset, double scale, bool on_lattice) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-5, 5), logarithm(-3, 0.5);
+  std::vector<Item> items;
+  for (std::size_t i = 0; i < n; ++i) {
+    Aabb box{};
+    const double extent = i % 5 == 0 ? 0 : std::pow(10, logarithm(random));
+    for (std::size_t k = 0; k < 3; ++k) {
+      double x = uniform(random), w = extent;
+      if (on_lattice) x = std::round(x), w = std::round(w);
+      box.lo[k] = offset + scale * x;
+      box.hi[k] = std::max(box.lo[k], offset + scale * (x + w));
+    }
+    items.push_back(item(box, i, static_cast<std::uint32_t>(i % 3)));
+  }
+  return items;
+}
+
+}  // namespace
+
+TEST_CASE("random boxes of all sizes: each pair once for every voxel size and origin",
+          "[collide]") {
+  check_scene(random_scene(1, 300, 0, 1, false), {0.2, 0.7, 1, 20, 1e9}, 0.3);
+}
+
+TEST_CASE("boxes and points exactly on voxel faces: each pair once", "[collide]") {
+  check_scene(random_scene(2, 300, 0, 1, true), {0.5, 1, 2, 3}, 0.5);
+}
+
+TEST_CASE("offsets and scales from 1e-310 to 1e30 lose nothing", "[collide]") {
+  check_scene(random_scene(3, 200, 1e9, 1, false), {0.5, 1.7}, 0.9);
+  check_scene(random_scene(4, 200, 0, 1e30, false), {1e30, 3e29}, 1e29);
+  check_scene(random_scene(5, 200, 0, 1e-9, false), {1e-9, 1}, 1e-9);
+  check_scene(random_scene(6, 200, 0, 1e-310, false), {1e-300, 1}, 1e-310);
+}
+
+TEST_CASE("the lattice that other libraries lose pairs of has 93 556", "[collide]") {
+  std::vector<Item> items;
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y)
+      for (int z = 0; z < 20; ++z) {
+        const Point lo{0.1 * x, 0.1 * y, 0.1 * z};
+        items.push_back(item({lo, {lo[0] + 0.15, lo[1] + 0.15, lo[2] + 0.15}}, items.size(), 0));
+      }
+  for (const double size : {0.3, 0.1, 0.05, 0.77, 5.0})
+    CHECK(found(items, VoxelGrid(size), {Touching::counts, WithinModel::test}).size() == 93'556);
+}
+
+TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
+  const auto items = random_scene(8, 64, 0, 1, true);
+  Lanes lanes;
+  lanes.resize(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i)
+    lanes.set(i,
+              items[i],
+              axes_below({static_cast<int>(i % 2), static_cast<int>(i % 3), 0}, {0, 0, 0}),
+              static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Probe<Touching::counts, WithinModel::skip> closed(lanes, i);
+    const Probe<Touching::does_not_count, WithinModel::test> open(lanes, i);
+    for (std::size_t j = 0; j < items.size(); ++j) {
+      REQUIRE(closed.overlaps(lanes, j) == closed.overlaps_plain(lanes, j));
+      REQUIRE(open.overlaps(lanes, j) == open.overlaps_plain(lanes, j));
+    }
+  }
+}
+
+TEST_CASE("bad boxes, coordinates and voxel sizes are refused by name", "[collide]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const Aabb& box :
+       {Aabb{{0, nan, 0}, {1, 1, 1}}, Aabb{{0, 0, 0}, {inf, 1, 1}}, Aabb{{2, 0, 0}, {1, 1, 1}}}) {
+    const std::vector<Item> items{item(box, 42, 0)};
+    REQUIRE_THROWS_WITH(group_by_voxel(items, VoxelGrid(1)),
+                        Catch::Contains("object 42 of owner 7"));
+  }
+  REQUIRE_THROWS_WITH(VoxelGrid(1).cell_of({1, -3e9, 0}), Catch::Contains("-3e+09"));
+  REQUIRE_THROWS_AS(VoxelGrid(1).cell_of({nan, 0, 0}), Error);
+  REQUIRE(VoxelGrid(1).cell_of({2147483647.5, -2147483648.0, -5e-324}) ==
+          Cell{2147483647, -2147483647 - 1, -1});
+  REQUIRE_THROWS_AS(VoxelGrid(0), Error);
+  REQUIRE_THROWS_AS(VoxelGrid(nan), Error);
+  REQUIRE_THROWS_AS(VoxelGrid(1e-310), Error);
+  const std::vector<Item> huge{item({{0, 0, 0}, {1e6, 1e6, 1e6}}, 3, 0)};
+  REQUIRE_THROWS_WITH(group_by_voxel(huge, VoxelGrid(1)), Catch::Contains("take larger voxels"));
+}
+
+TEST_CASE("the responsible voxel received both objects", "[collide]") {
+  const auto items = random_scene(9, 200, 0.1, 0.37, false);
+  const VoxelGrid grid({0.05, 0, -0.3}, {0.1, 0.3, 0.7});
+  for (const Item& a : items)
+    for (const Item& b : items) {
+      if (!overlap(a.box, b.box, Touching::counts)) continue;
+      const CellRange at = grid.cells_of(a.box), bt = grid.cells_of(b.box);
+      REQUIRE(at.contains(responsible(at.lo, bt.lo)));
+      REQUIRE(bt.contains(responsible(at.lo, bt.lo)));
+    }
+}
+
+TEST_CASE("the suggested voxel size is twice the median extent", "[collide]") {
+  std::vector<Item> items;
+  REQUIRE(suggested_voxel_size(items) == 1);
+  for (std::size_t i = 0; i < 9; ++i)
+    items.push_back(item({{0, 0, 0}, {1, 0.5, 1.0 + static_cast<double>(i)}}, i, 0));
+  REQUIRE(suggested_voxel_size(items) == 10);
+}

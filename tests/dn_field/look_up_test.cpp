@@ -1,0 +1,42 @@
+#include "collide/dn_field/look_up.hpp"
+
+#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/shapes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <random>
+
+namespace {
+
+using namespace tess::dn;
+
+TEST_CASE(
+    "the nearest look-up returns the voxel's distance, and is out of reach outside and for NaN",
+    "[dn_field]") {
+  const Surface box = make_box({0.5, 0.5, 0.5});
+  const Field field = build_exact(box, grid_around(bounds(box), 20, 0.3));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> anywhere(-1.2F, 1.2F);
+  std::vector<float> x(1001), y(1001), z(1001), found(1001);
+  for (std::size_t p = 0; p < 1000; ++p)
+    x[p] = anywhere(random), y[p] = anywhere(random), z[p] = anywhere(random);
+  x[1000] = std::nanf("");
+  nearest_distance(field, {x, y, z}, found);
+  CHECK(found[1000] == out_of_reach);
+  int inside = 0;
+  for (std::size_t p = 0; p < 1000; ++p) {
+    const Vec3 g =
+        (1 / field.grid.cell) *
+        (Vec3{static_cast<double>(x[p]), static_cast<double>(y[p]), static_cast<double>(z[p])} -
+         field.grid.origin);
+    const int i = static_cast<int>(std::floor(g.x + 0.5)),
+              j = static_cast<int>(std::floor(g.y + 0.5)),
+              k = static_cast<int>(std::floor(g.z + 0.5));
+    const bool in = i >= 0 && j >= 0 && k >= 0 && i < 20 && j < 20 && k < 20;
+    inside += in;
+    CHECK(found[p] == (in ? field.distance[field.grid.index(i, j, k)] : out_of_reach));
+  }
+  CHECK(inside > 100);
+}
+
+}  // namespace

@@ -1,0 +1,230 @@
+#include "m2m/io/exodus_writer.hpp"
+#include "m2m/io/gmsh_reader.hpp"
+#include "m2m/io/kuhn.hpp"
+#include "m2m/io/read_mesh.hpp"
+#include "tests/m2m/scratch.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shared_data.hpp"
+
+#include <array>
+#include <cstdio>
+#include <exodusII.h>
+#include <random>
+
+using namespace tess::m2m;
+using tess::test::message_of;
+using tess::test::Scratch;
+using tess::test::shared_data;
+using tess::test::slurp;
+
+namespace {
+
+template <class T>
+void put(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+/// The mesh as gmsh would write it; the node tags have gaps.
+std::string as_gmsh(const TetMesh& mesh, bool legacy, bool binary, std::uint64_t gap) {
+  std::string out =
+      std::string("$MeshFormat\n") + (legacy ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n");
+  if (binary) put(out, 1);
+  if (binary) out += "\n";
+  out += "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"box\"\n$EndPhysicalNames\n$Nodes\n";
+  const auto number = [&](auto value, const char* end = " ") {
+    if (binary) return put(out, value);
+    if constexpr (std::is_floating_point_v<decltype(value)>) {
+      std::array<char, 40> text;
+      std::snprintf(text.data(), text.size(), "%.17g", value);
+      out += text.data();
+    } else {
+      out += std::to_string(value);
+    }
+    out += end;
+  };
+  const auto n = mesh.n_points();
+  const auto tag = [&](VertexId v) { return static_cast<std::uint64_t>(v) * gap + 3; };
+  const auto point = [&](const Point& p) {
+    number(p[0]);
+    number(p[1]);
+    number(p[2], "\n");
+  };
+  if (legacy) {
+    out += std::to_string(n) + "\n";
+    for (std::size_t v = 0; v < n; ++v) {
+      number(static_cast<int>(tag(static_cast<VertexId>(v))));
+      point(mesh.points[v]);
+    }
+  } else {
+    for (const std::uint64_t x :
+         {std::uint64_t{1}, n, std::uint64_t{3}, tag(static_cast<VertexId>(n))})
+      number(x);
+    number(3);
+    number(1);
+    number(0);
+    number(std::uint64_t{n}, "\n");
+    for (std::size_t v = 0; v < n; ++v) number(tag(static_cast<VertexId>(v)), "\n");
+    for (const Point& p : mesh.points) point(p);
+  }
+  out += "\n$EndNodes\n$Elements\n";
+  const auto m = mesh.n_tets();
+  if (legacy) {
+    out += std::to_string(m + 1) + "\n";
+    if (binary) {
+      for (const int x : {15, 1, 2}) put(out, x);
+      for (const int x : {1, 1, 1, static_cast<int>(tag(0))}) put(out, x);
+      for (const int x : {4, static_cast<int>(m), 2}) put(out, x);
+    } else {
+      out += "1 15 2 1 1 " + std::to_string(tag(0)) + "\n";
+    }
+    for (std::size_t t = 0; t < m; ++t) {
+      number(static_cast<int>(t + 2));
+      if (!binary) number(4);
+      if (!binary) number(2);
+      number(1);
+      number(1);
+      for (const VertexId v : mesh.tets[t]) number(static_cast<int>(tag(v)));
+    }
+  } else {
+    for (const std::uint64_t x : {std::uint64_t{2}, m + 1, std::uint64_t{1}, m + 1}) number(x);
+    for (const int x : {0, 1, 15}) number(x);
+    for (const std::uint64_t x : {std::uint64_t{1}, std::uint64_t{1}, tag(0)}) number(x);
+    for (const int x : {3, 1, 4}) number(x);
+    number(std::uint64_t{m}, "\n");
+    for (std::size_t t = 0; t < m; ++t) {
+      number(std::uint64_t{t + 2});
+      for (const VertexId v : mesh.tets[t]) number(tag(v));
+    }
+  }
+  return out + "\n$EndElements\n";
+}
+
+/// Reads damaged bytes: a mesh that validates or one line of Error are right, all else is a bug.
+void read_damaged(const Scratch& scratch, const std::string& name, const std::string& bytes) {
+  const std::string path = scratch.write(name, bytes);
+  const std::string message = message_of([&] { (void)read_mesh(path); });
+  if (message.find('\n') != std::string::npos) FAIL("more than one line: " << message);
+  if (!message.empty() && message.find(path) == std::string::npos)
+    FAIL("the file is not named: " << message);
+}
+
+void damage_everywhere(const std::string& name,
+                       const std::string& bytes,
+                       std::size_t n_cuts,
+                       std::size_t n_flips) {
+  const Scratch scratch;
+  for (std::size_t i = 0; i < n_cuts; ++i) {
+    const std::string cut = bytes.substr(0, bytes.size() * i / n_cuts);
+    const std::string path = scratch.write(name, cut);
+    CAPTURE(name, cut.size());
+    CHECK_FALSE(message_of([&] { (void)read_mesh(path); }).empty());
+  }
+  std::mt19937_64 random(7);
+  for (std::size_t i = 0; i < n_flips; ++i) {
+    std::string flipped = bytes;
+    // Half of the damage to the first bytes, where counts stand.
+    const std::size_t range = i % 2 == 0 ? std::min<std::size_t>(bytes.size(), 3000) : bytes.size();
+    for (std::size_t k = 0; k <= i % 3; ++k)
+      flipped[random() % range] ^= static_cast<char>(1U << random() % 8);
+    read_damaged(scratch, name, flipped);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("gmsh files of both versions and modes give the same mesh, also with gaps between tags",
+          "[m2m][io]") {
+  const TetMesh mesh = kuhn_mesh({2, 0.1});
+  for (const bool legacy : {false, true}) {
+    for (const bool binary : {false, true}) {
+      for (const std::uint64_t gap : {1U, 1000U, 30000000U}) {
+        CAPTURE(legacy, binary, gap);
+        const TetMesh read = read_gmsh("test", as_gmsh(mesh, legacy, binary, gap));
+        CHECK(read.points == mesh.points);
+        CHECK(read.tets == mesh.tets);
+      }
+    }
+  }
+}
+
+TEST_CASE("a written mesh is read back with its fields, and nothing else is left", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({3, 0.2});
+  const Field scalar =
+      sample(mesh, "temperature_of_the_whole_fluid_domain", make_formula("sin", bounds(mesh)));
+  Field vector{"velocity", 3, std::vector<double>(3 * mesh.n_points(), 0.5)};
+  vector.values[4] = -2;
+  const Field part{"part", 1, std::vector<double>(mesh.n_tets(), 3)};
+  const std::string path = scratch.path("out.exo");
+  write_exodus(path, mesh, std::array{scalar, vector}, std::array{part});
+  write_exodus(path, mesh, std::array{scalar, vector}, std::array{part});  // over itself
+  CHECK(scratch.n_files() == 1);
+  const TetMesh read = read_mesh(path);
+  CHECK(read.points == mesh.points);
+  CHECK(read.tets == mesh.tets);
+
+  int compute = 8, stored = 0;
+  float version = 0;
+  const int id = ex_open(path.c_str(), EX_READ, &compute, &stored, &version);
+  REQUIRE(id >= 0);
+  ex_set_max_name_length(id, 64);
+  CHECK(ex_inquire_int(id, EX_INQ_TIME) == 1);
+  int n_variables = 0;
+  ex_get_variable_param(id, EX_NODAL, &n_variables);
+  CHECK(n_variables == 4);
+  std::array<char, 256> name{};
+  ex_get_variable_name(id, EX_NODAL, 1, name.data());
+  CHECK(name.data() == scalar.name);
+  ex_get_variable_name(id, EX_NODAL, 3, name.data());
+  CHECK(std::string(name.data()) == "velocity_y");
+  std::vector<double> values(mesh.n_points());
+  ex_get_var(id, 1, EX_NODAL, 1, 1, static_cast<std::int64_t>(values.size()), values.data());
+  CHECK(values == scalar.values);
+  ex_get_var(id, 1, EX_NODAL, 3, 1, static_cast<std::int64_t>(values.size()), values.data());
+  CHECK(values[1] == -2);
+  ex_close(id);
+
+  CHECK_THAT(message_of([&] { write_exodus(scratch.path("no/such/folder.exo"), mesh, {}); }),
+             Catch::Contains("no/such/folder.exo: cannot be written"));
+  CHECK(scratch.n_files() == 1);
+}
+
+TEST_CASE("cut and flipped gmsh files end in one line of error", "[m2m][io]") {
+  const TetMesh mesh = kuhn_mesh({2});
+  for (const bool legacy : {false, true}) {
+    for (const bool binary : {false, true})
+      damage_everywhere("cut.msh", as_gmsh(mesh, legacy, binary, 3), 200, 400);
+  }
+}
+
+TEST_CASE("cut and flipped ExodusII files end in one line of error", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2});
+  const std::string path = scratch.path("whole.exo");
+  write_exodus(path, mesh, std::array{sample(mesh, "f", make_formula("sin", bounds(mesh)))});
+  damage_everywhere("cut.exo", slurp(path), 200, 1500);
+  const auto real = shared_data("mfem/simple-cube-tet4.e");
+  if (real) damage_everywhere("real.exo", slurp(*real), 100, 1500);
+}
+
+TEST_CASE("a NetCDF-4 file is read, and a cut one refused", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("four.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER | EX_NETCDF4, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 4> x{0, 1, 0, 0}, y{0, 0, 1, 0}, z{0, 0, 0, 1};
+  const std::array<int, 4> vertices{1, 2, 3, 4};
+  ex_put_init(id, "one", 3, 4, 1, 1, 0, 0);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  ex_put_block(id, EX_ELEM_BLOCK, 7, "TETRA", 1, 4, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 7, vertices.data(), nullptr, nullptr);
+  ex_close(id);
+  CHECK(read_mesh(path).points.at(3)[2] == 1);
+  const std::string bytes = slurp(path);
+  for (const std::size_t kept :
+       {std::size_t{5}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
+    const std::string cut = scratch.write("cut.exo", bytes.substr(0, kept));
+    CHECK_THAT(message_of([&] { (void)read_mesh(cut); }), Catch::Contains("truncated"));
+  }
+}

@@ -1,0 +1,160 @@
+// The transfer through chares against the transfer in one thread: the same bits on every machine
+// and schedule.
+#include "m2m/io/read_mesh.hpp"
+#include "m2m/search/serial_transfer.hpp"
+#include "m2m/transfer.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shared_data.hpp"
+
+#include <array>
+#include <cstring>
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+struct Case {
+  TetMesh source, target;
+  std::vector<Field> source_fields, target_fields;
+  OutsidePolicy policy;
+  std::int32_t n_parts = 4;
+  Point voxel{};
+};
+
+Case make_case(TetMesh source, TetMesh target, OutsidePolicy policy) {
+  Case c{std::move(source), std::move(target), {}, {}, policy, 4, {}};
+  const Box domain = bounds(c.source);
+  for (const char* name : {"gaussian", "linear"}) {
+    const Formula formula = make_formula(name, domain);
+    c.source_fields.push_back(sample(c.source, name, formula));
+    c.target_fields.push_back({name, 1, std::vector<double>(c.target.n_points(), -7.0)});
+  }
+  c.voxel = suggest_voxel_size(c.source, c.target);
+  return c;
+}
+
+struct Result {
+  std::vector<Status> status;
+  std::vector<std::vector<double>> values;  // of each field
+};
+
+Result serial(const Case& c) {
+  std::vector<Field> fields = c.target_fields;
+  const SerialReport report =
+      transfer_serial(c.source, c.source_fields, c.target, fields, c.policy);
+  Result result{report.status, {}};
+  for (const Field& field : fields) result.values.push_back(field.values);
+  return result;
+}
+
+Task run_case(const Case& c, Result& result) {
+  DistributedMesh source, target;
+  co_await epoch([&] {
+    source = scatter(c.source, c.source_fields, c.n_parts, PartitionMethod::rcb);
+    target = scatter(c.target, c.target_fields, c.n_parts + 1, PartitionMethod::hsfc);
+  });
+  const TransferOptions options{{0.1, 0, 0}, c.voxel, c.policy};
+  co_await transfer(source, target, options, nullptr);
+  Future<Outcome> outcome;
+  target.workers.broadcast<&Worker::gather>(outcome.callback());
+  const Outcome all = co_await outcome;
+  result.status.assign(c.target.n_points(), Status::outside);
+  result.values.assign(2, std::vector<double>(c.target.n_points()));
+  REQUIRE(all.points.size() == c.target.n_points());
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const auto vertex = static_cast<std::size_t>(all.points[i]);
+    result.status[vertex] = all.status[i];
+    for (std::size_t f = 0; f < 2; ++f) result.values[f][vertex] = all.values[i * 2 + f];
+  }
+}
+
+void check_same(const Case& c, std::unique_ptr<Machine> machine, const RuntimeOptions& options) {
+  static const Case* of = nullptr;
+  static Result want;
+  if (of != &c) want = serial(c);
+  of = &c;
+  Setup setup{std::move(machine), options};
+  Result got;
+  const int code = run(setup, [&]() -> Task { return run_case(c, got); });
+  REQUIRE(code == 0);
+  REQUIRE(got.status == want.status);
+  for (std::size_t f = 0; f < 2; ++f)
+    REQUIRE(std::memcmp(got.values[f].data(),
+                        want.values[f].data(),
+                        want.values[f].size() * sizeof(double)) == 0);
+}
+
+void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
+  for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
+    SimulatedOptions options;
+    options.n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
+    options.cost = Time(100);
+    options.seed = seed;
+    c.n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
+    INFO("--sim pes=" << options.n_pes << ",cost=100ns,seed=" << seed << " with " << c.n_parts
+                      << " parts");
+    check_same(c, make_simulated_machine(options), {seed, migration_chance(options), false});
+  }
+  for (const std::int32_t pes : {1, 2, 4}) {
+    INFO("threads, " << pes << " PEs");
+    check_same(c, make_threads_machine(pes), {});
+  }
+}
+
+TetMesh moved(TetMesh mesh, double scale, double offset) {
+  for (Point& p : mesh.points)
+    for (double& x : p) x = x * scale + offset;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a transfer through chares gives the bits of the serial one on every schedule",
+          "[m2m][parallel]") {
+  const TetMesh coarse = read_mesh("kuhn:4@0.2");
+  const TetMesh fine = read_mesh("kuhn:6@0.3");
+  for (const OutsidePolicy& policy :
+       {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}, OutsidePolicy{Nearest{}}}) {
+    Case c = make_case(coarse, moved(fine, 1.1, -0.05), policy);  // some vertices lie outside
+    check_on_all_machines(c, 60);
+  }
+}
+
+TEST_CASE("a mesh transferred onto itself through chares returns its values bit for bit",
+          "[m2m][parallel]") {
+  const TetMesh mesh = read_mesh("kuhn:5@0.3");
+  Case c = make_case(mesh, mesh, Keep{});
+  check_on_all_machines(c, 20);
+  Result got;
+  Setup setup{make_threads_machine(2), {}};
+  REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
+  for (std::size_t f = 0; f < 2; ++f) REQUIRE(got.values[f] == c.source_fields[f].values);
+  for (const Status status : got.status) REQUIRE(status == Status::boundary);
+}
+
+TEST_CASE("offsets and scales lose no vertex through chares", "[m2m][parallel]") {
+  const TetMesh coarse = read_mesh("kuhn:4@0.2");
+  const TetMesh fine = read_mesh("kuhn:5");
+  for (const auto& [scale, offset] :
+       {std::pair{1.0, 1e9}, std::pair{1e-9, 0.0}, std::pair{1e9, 0.0}}) {
+    INFO("scale " << scale << ", offset " << offset);
+    Case c = make_case(moved(coarse, scale, offset), moved(fine, scale, offset), Keep{});
+    check_on_all_machines(c, 6);
+    for (const Status status : serial(c).status) REQUIRE(status != Status::outside);
+  }
+}
+
+TEST_CASE("every vertex of the real meshes is found through chares, both ways", "[m2m][parallel]") {
+  const auto coarse = test::shared_data("nalu/3d_tet4_taylor_green_0p4.exo");
+  const auto fine = test::shared_data("nalu/3d_tet4_taylor_green_0p2.exo");
+  if (!coarse || !fine) return;
+  for (const bool there : {true, false}) {
+    Case c =
+        make_case(read_mesh(there ? *coarse : *fine), read_mesh(there ? *fine : *coarse), Keep{});
+    check_on_all_machines(c, 2);
+    for (const Status status : serial(c).status) REQUIRE(status != Status::outside);
+  }
+}

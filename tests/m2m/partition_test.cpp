@@ -1,0 +1,87 @@
+#include "m2m/partition/partition.hpp"
+
+#include "m2m/io/kuhn.hpp"
+#include "m2m/partition/split.hpp"
+#include "tests/m2m/scratch.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+
+using namespace tess::m2m;
+using tess::test::message_of;
+
+TEST_CASE("parts are balanced, the same each time, and cover the mesh", "[m2m][partition]") {
+  const TetMesh mesh = kuhn_mesh({6, 0.2});
+  for (const PartitionMethod method : {PartitionMethod::rcb, PartitionMethod::hsfc}) {
+    for (const std::int32_t n_parts : {1, 2, 3, 8, 64}) {
+      const auto parts = partition(mesh, n_parts, method);
+      CHECK(parts == partition(mesh, n_parts, method));
+      std::vector<std::size_t> sizes(static_cast<std::size_t>(n_parts));
+      for (const std::int32_t part : parts) ++sizes.at(static_cast<std::size_t>(part));
+      const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+      const double mean = static_cast<double>(mesh.n_tets()) / n_parts;
+      CAPTURE(n_parts);
+      CHECK(static_cast<double>(*least) > 0.8 * mean);
+      CHECK(static_cast<double>(*most) < 1.2 * mean);
+    }
+  }
+  CHECK_NOTHROW(partition(kuhn_mesh({1}), 20, PartitionMethod::rcb));
+  CHECK_THAT(message_of([&] { (void)partition(mesh, 0, PartitionMethod::rcb); }),
+             Catch::Contains("into 0 parts"));
+  CHECK_THAT(message_of([&] { (void)parse_partition_method("metis"); }),
+             Catch::Contains("'metis'"));
+}
+
+TEST_CASE("a split holds every tetrahedron once and every vertex with one owner",
+          "[m2m][partition]") {
+  TetMesh mesh = kuhn_mesh({4});
+  mesh.points.push_back({7, 7, 7});  // used by nothing
+  mesh.points.insert(mesh.points.begin(), Point{8, 8, 8});
+  for (Tet& tet : mesh.tets) {
+    for (VertexId& v : tet) ++v;
+  }
+  for (const std::int32_t n_parts : {1, 5, 500}) {
+    const auto parts = partition(mesh, n_parts, PartitionMethod::hsfc);
+    const std::vector<MeshPart> split_parts = split(mesh, parts, n_parts);
+    std::vector<int> tets(mesh.n_tets()), owners(mesh.n_points()), owner(mesh.n_points(), -1);
+    for (std::size_t p = 0; p < split_parts.size(); ++p) {
+      const MeshPart& part = split_parts[p];
+      REQUIRE(part.points.size() == part.point_ids.size());
+      for (std::size_t i = 0; i < part.points.size(); ++i) {
+        const auto v = static_cast<std::size_t>(part.point_ids[i]);
+        CHECK(part.points[i] == mesh.points[v]);
+        if (i >= static_cast<std::size_t>(part.n_owned)) continue;
+        ++owners[v];
+        owner[v] = static_cast<int>(p);
+      }
+      for (std::size_t t = 0; t < part.tets.size(); ++t) {
+        ++tets[static_cast<std::size_t>(part.tet_ids[t])];
+        for (std::size_t k = 0; k < 4; ++k) {
+          const VertexId global = mesh.tets[static_cast<std::size_t>(part.tet_ids[t])][k];
+          if (part.point_ids[static_cast<std::size_t>(part.tets[t][k])] != global)
+            FAIL("tetrahedron " << t);
+        }
+      }
+      const Field ids{"ids", 2, [&] {
+                        std::vector<double> values;
+                        for (std::size_t v = 0; v < 2 * mesh.n_points(); ++v)
+                          values.push_back(static_cast<double>(v));
+                        return values;
+                      }()};
+      const auto values = values_of(part, ids);
+      for (std::size_t i = 0; i < part.points.size(); ++i) {
+        if (values[2 * i + 1] != static_cast<double>(2 * part.point_ids[i] + 1))
+          FAIL("point " << i);
+      }
+    }
+    CHECK(std::count(tets.begin(), tets.end(), 1) == static_cast<std::ptrdiff_t>(mesh.n_tets()));
+    CHECK(std::count(owners.begin(), owners.end(), 1) ==
+          static_cast<std::ptrdiff_t>(mesh.n_points()));
+    for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+      for (const VertexId v : mesh.tets[t]) {
+        if (owner[static_cast<std::size_t>(v)] > parts[t])
+          FAIL("vertex " << v << " is not owned by its lowest part");
+      }
+    }
+  }
+}

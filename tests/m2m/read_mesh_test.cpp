@@ -1,0 +1,162 @@
+#include "m2m/io/read_mesh.hpp"
+
+#include "m2m/io/kuhn.hpp"
+#include "runtime/error.hpp"
+#include "tests/m2m/scratch.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shared_data.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+using namespace tess::m2m;
+using tess::test::message_of;
+using tess::test::Scratch;
+using tess::test::shared_data;
+
+namespace {
+
+double total_volume(const TetMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) sum += std::abs(signed_volume(mesh, t));
+  return sum;
+}
+
+bool one_line(const std::string& text) {
+  return !text.empty() && text.find('\n') == std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a Kuhn box fills the unit cube with 6 n cubed positive tetrahedra", "[m2m][io]") {
+  for (const char* name : {"kuhn:1", "kuhn:5", "kuhn:4@0.2"}) {
+    const TetMesh mesh = read_mesh(name);
+    const MeshCensus census = validate(mesh);
+    CHECK(mesh.name == name);
+    CHECK(census.n_flat == 0);
+    CHECK(census.n_inverted == 0);
+    CHECK(census.n_unused == 0);
+    CHECK(total_volume(mesh) == Approx(1).epsilon(1e-12));
+  }
+  CHECK(read_mesh("kuhn:5").n_tets() == 750);
+  CHECK(read_mesh("kuhn:5").n_points() == 216);
+}
+
+TEST_CASE("the real ExodusII meshes have the counts and the volume they are said to have",
+          "[m2m][io]") {
+  struct Known {
+    const char* name;
+    std::size_t points, tets;
+    double volume;
+  };
+  constexpr double box = 6.28318 * 6.28318 * 6.28318;  // the files round pi
+  for (const Known& known : {Known{"nalu/3d_tet4_taylor_green_0p4.exo", 2650, 10548, box},
+                             Known{"nalu/3d_tet4_taylor_green_0p2.exo", 11205, 46673, box},
+                             Known{"nalu/3d_tet4_pipe.exo", 14905, 77952, 0}}) {
+    const auto path = shared_data(known.name);
+    if (!path) return;
+    const TetMesh mesh = read_mesh(*path);
+    CHECK(mesh.n_points() == known.points);
+    CHECK(mesh.n_tets() == known.tets);
+    if (known.volume > 0) CHECK(total_volume(mesh) == Approx(known.volume).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("the real gmsh meshes are read in both versions and modes", "[m2m][io]") {
+  for (const char* name : {"mfem/indheat.asc.v22.msh",
+                           "mfem/indheat.bin.v41.msh",
+                           "mfem/homology.asc.v41.msh",
+                           "skfem/cuubat.msh"}) {
+    const auto path = shared_data(name);
+    if (!path) return;
+    CAPTURE(name);
+    const TetMesh mesh = read_mesh(*path);
+    CHECK(mesh.n_tets() > 1000);
+    CHECK(total_volume(mesh) > 0);
+  }
+  const auto ascii = shared_data("mfem/indheat.asc.v22.msh");
+  const auto binary = shared_data("mfem/indheat.bin.v41.msh");
+  if (!ascii || !binary) return;
+  CHECK(total_volume(read_mesh(*ascii)) == Approx(total_volume(read_mesh(*binary))));
+}
+
+TEST_CASE("elements that are not linear tetrahedra are refused by name", "[m2m][io]") {
+  struct Known {
+    const char* file;
+    const char* word;
+  };
+  for (const Known& known : {Known{"mfem/simple-cube-hex8.e", "HEX"},
+                             Known{"mfem/simple-cube-hex27.e", "HEX"},
+                             Known{"mfem/simple-cube-wedge6.e", "WEDGE"},
+                             Known{"mfem/simple-cube-pyramid5.e", "PYRAMID"},
+                             Known{"mfem/simple-cube-tet10.e", "TET"},
+                             Known{"mfem/simple-cube-multi-element-order1.e", "only TET4"},
+                             Known{"nalu/3d_hex8_pipe.exo", "HEX8"},
+                             Known{"nalu/3d_hex8_taylor_green_0p2.exo", "type HEX with 8"},
+                             Known{"skfem/quadratic_sphere_tet.msh", "tet10"}}) {
+    const auto path = shared_data(known.file);
+    if (!path) return;
+    const std::string message = message_of([&] { (void)read_mesh(*path); });
+    CHECK(one_line(message));
+    CHECK_THAT(message, Catch::Contains(known.word) && Catch::Contains(known.file));
+  }
+  const auto tets = shared_data("mfem/simple-cube-tet4.e");
+  if (tets) CHECK(total_volume(read_mesh(*tets)) > 0);
+}
+
+TEST_CASE("a mesh without tetrahedra, a missing, empty or foreign file is one line that names it",
+          "[m2m][io]") {
+  Scratch scratch;
+  const std::string empty = scratch.write("empty.msh", "");
+  const std::string foreign = scratch.write("foreign.exo", "hello, I am not a mesh\n");
+  const std::string short_cdf = scratch.write("short.exo", "CDF");
+  const std::string short_hdf = scratch.write("short4.exo", "\x89HDF\r\n");
+  for (const std::string& path :
+       {empty, foreign, short_cdf, short_hdf, scratch.path("missing.exo"), scratch.path("")}) {
+    const std::string message = message_of([&] { (void)read_mesh(path); });
+    CAPTURE(path);
+    CHECK(one_line(message));
+    CHECK_THAT(message, Catch::Contains(path));
+  }
+  for (const char* name : {"kuhn:",
+                           "kuhn:0",
+                           "kuhn:-1",
+                           "kuhn:x",
+                           "kuhn:3x",
+                           "kuhn:3@",
+                           "kuhn:3@1",
+                           "kuhn:99999999999"}) {
+    CHECK_THAT(message_of([&] { (void)read_mesh(name); }), Catch::Contains(name));
+  }
+  const auto surface = shared_data("skfem/cylinder_stokes.msh");
+  if (surface) CHECK_THROWS_AS(read_mesh(*surface), tess::Error);
+}
+
+TEST_CASE("validate names the element and passes flat and inverted tetrahedra", "[m2m]") {
+  TetMesh mesh = kuhn_mesh({2});
+  mesh.name = "the mesh";
+  std::swap(mesh.tets[3][0], mesh.tets[3][1]);
+  mesh.tets[7] = {0, 1, 2, 1};
+  mesh.points.push_back({9, 9, 9});
+  const MeshCensus census = validate(mesh);
+  CHECK(census.n_inverted == 1);
+  CHECK(census.n_flat == 1);
+  CHECK(census.n_unused == 1);
+  CHECK(census.bounds.high[0] == 9);
+
+  TetMesh bad = mesh;
+  bad.points[5][1] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("the mesh: vertex 5 has y = "));
+  bad = mesh;
+  bad.points[5][2] = -std::numeric_limits<double>::infinity();
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("vertex 5 has z = "));
+  bad = mesh;
+  bad.tets[4][2] = 28;
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("tetrahedron 4 names vertex 28"));
+  bad = mesh;
+  bad.tets.clear();
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("no tetrahedra"));
+}

@@ -1,0 +1,302 @@
+#include "m2m/interpolate/locate.hpp"
+#include "m2m/io/kuhn.hpp"
+#include "m2m/io/read_mesh.hpp"
+#include "m2m/search/nearest_vertex.hpp"
+#include "m2m/search/serial_transfer.hpp"
+#include "runtime/error.hpp"
+#include "tests/m2m/scratch.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shared_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+
+using namespace tess::m2m;
+using tess::test::message_of;
+using tess::test::Scratch;
+using tess::test::shared_data;
+
+namespace {
+
+struct Moved {
+  SerialReport report;
+  std::vector<double> values;
+  ErrorNorms norms;
+};
+
+/// The formula, sampled on the source, moved to the target, compared with the formula there.
+Moved move_formula(const TetMesh& source,
+                   const TetMesh& target,
+                   const std::string& formula,
+                   const OutsidePolicy& policy = UseValue{-7}) {
+  const Formula truth = make_formula(formula, bounds(source));
+  const std::vector<Field> from{sample(source, "f", truth)};
+  std::vector<Field> to{{"f", 1, std::vector<double>(target.n_points(), 99)}};
+  Moved moved{transfer_serial(source, from, target, to, policy), {}, {}};
+  moved.values = to[0].values;
+  moved.norms = error_norms(target, moved.values, sample(target, "f", truth).values);
+  return moved;
+}
+
+std::uint64_t outside(const Moved& moved) {
+  return moved.report.counts[static_cast<std::size_t>(Status::outside)];
+}
+
+TetMesh moved_by(TetMesh mesh, double scale, double offset) {
+  for (Point& p : mesh.points) {
+    for (double& x : p) x = x * scale + offset;
+  }
+  return mesh;
+}
+
+/// A gmsh cube of that edge length, or nothing, with the reason printed.
+std::optional<TetMesh> gmsh_cube(const Scratch& scratch,
+                                 double h,
+                                 const std::string& options = {}) {
+  const auto geometry = shared_data("geo/cube_pair.geo");
+  if (!geometry) return std::nullopt;
+  if (std::system("gmsh --version >/dev/null 2>&1") != 0) {
+    std::cout << "skipped: gmsh is not installed\n";
+    return std::nullopt;
+  }
+  const std::string path = scratch.path("cube.msh");
+  const std::string command = "gmsh -3 -v 0 -setnumber h " + std::to_string(h) + " " + options +
+                              " " + *geometry + " -o " + path + " >/dev/null 2>&1";
+  if (std::system(command.c_str()) != 0) {
+    std::cout << "skipped: gmsh fails: " << command << "\n";
+    return std::nullopt;
+  }
+  return read_mesh(path);
+}
+
+}  // namespace
+
+TEST_CASE("a mesh onto itself loses nothing and returns the values bit for bit",
+          "[m2m][transfer]") {
+  std::vector<TetMesh> meshes{kuhn_mesh({6}),
+                              kuhn_mesh({5, 0.2}),
+                              moved_by(kuhn_mesh({5, 0.2}), 1, 1e9),
+                              moved_by(kuhn_mesh({6}), 1e-9, 0),
+                              moved_by(kuhn_mesh({6}), 1e9, 0)};
+  for (const char* name : {"nalu/3d_tet4_taylor_green_0p4.exo", "nalu/3d_tet4_pipe.exo"}) {
+    if (const auto path = shared_data(name)) meshes.push_back(read_mesh(*path));
+  }
+  for (const TetMesh& mesh : meshes) {
+    CAPTURE(mesh.name);
+    const Moved moved = move_formula(mesh, mesh, "gaussian");
+    CHECK(outside(moved) == 0);
+    CHECK(moved.report.counts[static_cast<std::size_t>(Status::boundary)] == mesh.n_points());
+    CHECK(moved.values == sample(mesh, "f", make_formula("gaussian", bounds(mesh))).values);
+  }
+}
+
+TEST_CASE(
+    "the two Taylor-Green meshes find all vertices of each other, and a linear field is exact",
+    "[m2m][transfer]") {
+  const auto coarse_path = shared_data("nalu/3d_tet4_taylor_green_0p4.exo");
+  const auto fine_path = shared_data("nalu/3d_tet4_taylor_green_0p2.exo");
+  if (!coarse_path || !fine_path) return;
+  const TetMesh coarse = read_mesh(*coarse_path);
+  const TetMesh fine = read_mesh(*fine_path);
+  for (const auto& [source, target] : {std::pair(&coarse, &fine), std::pair(&fine, &coarse)}) {
+    const Moved moved = move_formula(*source, *target, "linear");
+    CHECK(outside(moved) == 0);
+    CHECK(moved.norms.linf < 1e-12 * 32);  // the field reaches 32 in this box
+  }
+}
+
+TEST_CASE("an offset of 1e9 and scales of 1e-9 and 1e9 lose nothing", "[m2m][transfer]") {
+  const TetMesh source = kuhn_mesh({7, 0.2});
+  const TetMesh target = kuhn_mesh({9, 0.2});
+  const Moved plain = move_formula(source, target, "linear");
+  CHECK(outside(plain) == 0);
+  CHECK(plain.norms.linf < 1e-12);
+  for (const auto& [scale, offset] :
+       {std::pair(1e-9, 0.0), std::pair(1e9, 0.0), std::pair(1.0, 1e9), std::pair(1e9, 1e9)}) {
+    CAPTURE(scale, offset);
+    const TetMesh far_source = moved_by(source, scale, offset);
+    const TetMesh far_target = moved_by(target, scale, offset);
+    CHECK(far_source.n_points() == source.n_points());
+    const std::string x = "(x - " + std::to_string(offset) + ") / " +
+                          (scale == 1  ? "1"
+                           : scale < 1 ? "1e-9"
+                                       : "1e9");
+    const Moved moved = move_formula(far_source, far_target, "3 - 2*" + x);
+    CHECK(outside(moved) == 0);
+    CHECK(moved.norms.linf < 2e-12);
+  }
+}
+
+TEST_CASE(
+    "every vertex of a jittered box on Kuhn faces, edges and corners has one owner, the same as "
+    "brute force",
+    "[m2m][transfer]") {
+  const TetMesh source = kuhn_mesh({4});
+  TetMesh target =
+      kuhn_mesh({8});  // half of its vertices lie on faces, edges and vertices of the source
+  target.points.push_back({0.5, 0.5, 1 + 1e-13});
+  target.points.push_back({0.5, 0.5, 1.001});
+  const Moved moved = move_formula(source, target, "linear");
+  const auto& counts = moved.report.counts;
+  CHECK(counts[static_cast<std::size_t>(Status::snapped)] == 1);
+  CHECK(counts[static_cast<std::size_t>(Status::outside)] == 1);
+  for (std::size_t v = 0; v < target.n_points(); ++v) {
+    GlobalId first = -1;
+    double least = INFINITY;
+    for (std::size_t t = 0; t < source.n_tets(); ++t) {
+      const auto found = locate(target.points[v], corners_of(source.points, source.tets[t]));
+      if (!found || found->violation >= least) continue;
+      least = found->violation;
+      first = static_cast<GlobalId>(t);
+    }
+    if (first != moved.report.tet[v])
+      FAIL("vertex " << v << ": " << first << " and " << moved.report.tet[v]);
+  }
+}
+
+TEST_CASE("the order of the source's tetrahedra decides ties, their orientation nothing",
+          "[m2m][transfer]") {
+  const TetMesh source = kuhn_mesh({5, 0.2});
+  TetMesh inverted = source;
+  for (Tet& tet : inverted.tets) std::swap(tet[0], tet[1]);
+  const TetMesh target = kuhn_mesh({6, 0.1});
+  const Moved one = move_formula(source, target, "sin");
+  const Moved other = move_formula(inverted, target, "sin");
+  CHECK(one.report.status == other.report.status);
+  CHECK(one.report.tet == other.report.tet);
+  for (std::size_t v = 0; v < target.n_points(); ++v) {
+    if (!(std::abs(one.values[v] - other.values[v]) < 1e-14)) FAIL("vertex " << v);
+  }
+}
+
+TEST_CASE("the sine field converges with order 2", "[m2m][transfer]") {
+  const Scratch scratch;
+  const TetMesh target = kuhn_mesh({31, 0.2});
+  std::vector<double> errors;
+  for (const std::int32_t n : {8, 16, 32, 64})
+    errors.push_back(move_formula(kuhn_mesh({n}), target, "sin").norms.l2);
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    CAPTURE(i, errors);
+    CHECK(std::log2(errors[i - 1] / errors[i]) == Approx(2).margin(0.1));
+  }
+}
+
+TEST_CASE("the sine field converges with order 2 over four gmsh cubes", "[m2m][transfer]") {
+  const Scratch scratch;
+  const TetMesh target = kuhn_mesh({23, 0.2});
+  std::vector<double> h, errors;
+  for (const double edge : {0.16, 0.113, 0.08, 0.0566}) {
+    const auto source = gmsh_cube(scratch, edge);
+    if (!source) return;
+    h.push_back(std::cbrt(1.0 / static_cast<double>(source->n_tets())));
+    errors.push_back(move_formula(*source, target, "sin").norms.l2);
+  }
+  CAPTURE(errors);
+  CHECK(std::log(errors[0] / errors[3]) / std::log(h[0] / h[3]) == Approx(2).margin(0.1));
+}
+
+TEST_CASE("flat tetrahedra of aspect 1e4 lose nothing and keep a linear field", "[m2m][transfer]") {
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (const double height : {1e-4, 1e-7, 1e-10}) {
+    for (const bool turned : {false, true}) {
+      CAPTURE(height, turned);
+      const auto flatten = [&](TetMesh mesh) {
+        for (Point& p : mesh.points) {
+          p[2] *= height;
+          if (turned) p = {p[0], c * p[1] - s * p[2], s * p[1] + c * p[2]};
+        }
+        return mesh;
+      };
+      const TetMesh source = flatten(kuhn_mesh({6, 0.2}));
+      const TetMesh target = flatten(kuhn_mesh({7, 0.2}));
+      const Moved moved = move_formula(source, target, "linear");
+      CHECK(outside(moved) == 0);
+      CHECK(moved.norms.linf < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do no harm", "[m2m][transfer]") {
+  TetMesh source = kuhn_mesh({4, 0.2});
+  const std::size_t n = source.n_points();
+  for (std::size_t v = 0; v < n; ++v) source.points.push_back(source.points[v]);
+  for (std::size_t t = 0; t < source.n_tets(); t += 2) {
+    for (VertexId& v : source.tets[t])
+      v += static_cast<VertexId>(n);  // half of the mesh hangs on the doubles
+  }
+  source.tets.push_back({0, 1, 2, 1});
+  source.tets.push_back({0, 1, 2, 3});  // four in a row
+  source.tets.insert(source.tets.begin(),
+                     Tet{0, 1, static_cast<VertexId>(n), 5});  // flat and first: claims its corners
+  source.points.push_back({0.3, 0.3, 0.3});
+  validate(source);
+  const TetMesh target = kuhn_mesh({5, 0.2});
+  const Moved moved = move_formula(source, target, "linear");
+  CHECK(outside(moved) == 0);
+  CHECK(moved.norms.linf < 1e-12);
+  CHECK(outside(move_formula(source, source, "linear")) == 0);
+}
+
+TEST_CASE("points outside are counted and get what the policy says", "[m2m][transfer]") {
+  const TetMesh source = kuhn_mesh({4});
+  const TetMesh target = moved_by(kuhn_mesh({4}), 1, 0.5);
+  const Formula truth = make_formula("x + 10*y + 100*z", bounds(source));
+  const Field values = sample(source, "f", truth);
+  for (const char* text : {"keep", "value:0.25", "nearest"}) {
+    const Moved moved = move_formula(source, target, "x + 10*y + 100*z", parse_policy(text));
+    CHECK(outside(moved) == 125 - 27);
+    for (std::size_t v = 0; v < target.n_points(); ++v) {
+      Point clamped = target.points[v];
+      for (double& x : clamped) x = std::min(x, 1.0);
+      const bool out = clamped != target.points[v];
+      CHECK((moved.report.status[v] == Status::outside) == out);
+      const double wanted = !out             ? truth(clamped)
+                            : text[0] == 'k' ? 99
+                            : text[0] == 'v' ? 0.25
+                                             : truth(clamped);
+      CHECK(moved.values[v] == Approx(wanted));
+    }
+  }
+  for (const char* text : {"", "value:", "value:x", "value:nan", "value:1 ", "drop"}) {
+    CHECK_THAT(message_of([&] { (void)parse_policy(text); }),
+               Catch::Contains("expected keep, nearest or value:NUMBER"));
+  }
+}
+
+TEST_CASE("the nearest vertex is that of brute force, also far away", "[m2m][search]") {
+  const TetMesh mesh = kuhn_mesh({6, 0.2});
+  const NearestVertex nearest(mesh.points);
+  TetMesh queries = moved_by(kuhn_mesh({5, 0.2}), 3, -1);
+  queries.points.push_back({1e9, 3, -1e9});
+  for (const Point& p : queries.points) {
+    NearestVertex::Answer best{-1, INFINITY};
+    for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+      const Point& q = mesh.points[v];
+      const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
+      const double squared = x * x + y * y + z * z;
+      if (squared < best.squared_distance) best = {static_cast<std::int32_t>(v), squared};
+    }
+    CHECK(nearest.find(p).vertex == best.vertex);
+  }
+}
+
+TEST_CASE("several fields of several components move at once", "[m2m][transfer]") {
+  const TetMesh source = kuhn_mesh({3});
+  const TetMesh target = kuhn_mesh({5, 0.1});
+  Field velocity{"velocity", 3, {}};
+  for (const Point& p : source.points)
+    velocity.values.insert(velocity.values.end(), {p[0], 2 * p[1], p[2] - p[0]});
+  const std::vector<Field> from{velocity,
+                                sample(source, "linear", make_formula("linear", bounds(source)))};
+  std::vector<Field> to{{"velocity", 3, std::vector<double>(3 * target.n_points())},
+                        {"linear", 1, std::vector<double>(target.n_points())}};
+  (void)transfer_serial(source, from, target, to, Keep{});
+  for (std::size_t v = 0; v < target.n_points(); ++v) {
+    const Point& p = target.points[v];
+    CHECK(to[0].values[3 * v + 2] == Approx(p[2] - p[0]).margin(1e-13));
+    CHECK(to[1].values[v] == Approx(1 + 2 * p[0] - 3 * p[1] + 5 * p[2]).margin(1e-13));
+  }
+}

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs all tests: release, then address and undefined-behaviour sanitizers, then the
+# thread sanitizer (without mpi). `tests/run.sh release` runs one preset alone.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+presets=("$@")
+if ((${#presets[@]} == 0)); then presets=(release asan tsan); fi
+
+bash cmake/setup.sh
+bash cmake/lint.sh
+
+mkdir -p build
+
+jobs=$(nproc)
+for preset in "${presets[@]}"; do
+  echo "== $preset: build"
+  cmake --preset "$preset" >build/"$preset".log 2>&1 || { cat build/"$preset".log; exit 1; }
+  targets=(all)
+  if [[ $preset == release ]]; then targets+=(headers_alone); fi
+  cmake --build --preset "$preset" --target "${targets[@]}" -j "$jobs" >build/"$preset".log 2>&1 || { tail -60 build/"$preset".log; exit 1; }
+  echo "== $preset: test"
+  ctest --preset "$preset" -j "$jobs"
+done

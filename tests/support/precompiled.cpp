@@ -1,0 +1,1 @@
+// Carries the precompiled header; catch_main.cpp cannot, since it defines what Catch reads first.
