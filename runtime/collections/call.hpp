@@ -3,8 +3,8 @@
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
-#include "runtime/scheduler/block.hpp"
 #include "runtime/messages/entry_traits.hpp"
+#include "runtime/scheduler/block.hpp"
 
 namespace tess {
 

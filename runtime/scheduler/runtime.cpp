@@ -181,14 +181,16 @@ void Runtime::quiescent(Pe& pe) {
 }
 
 void Runtime::on_census_asked(Pe& pe) {
-  send_uncounted<&census_arrives>(pe, PeId{0}, Census{pe.census(), pe.statistics().dead_letters});
+  send_uncounted<&census_arrives>(
+      pe, PeId{0}, Census{pe.census(), pe.statistics().dead_letters, pe.stopped()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
   if (stopping_) return;  // exit() came meanwhile; it counts answers of its own
   census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
   census_.dead_letters += census.dead_letters;
-  if (--n_answers_ != 0) return;
+  census_.exits = census_.exits || census.exits;
+  if (--n_answers_ != 0 || census_.exits) return;
   if (census_.dead_letters != 0)
     error_line(text("tessera: ",
                     census_.dead_letters,

@@ -61,6 +61,7 @@ class Runtime final : public Program {
   struct Census {
     std::vector<std::string> lines;
     std::uint64_t dead_letters = 0;
+    bool exits = false;  // exit() was called: that message is on its way, outside of epoch 0
   };
   void run_main(Pe& pe);
   void on_exit_asked(Pe& pe, int code);

@@ -1,0 +1,101 @@
+// The protocol scenarios of apps/protocol_fuzz as tests: on the simulated machine over many seeds,
+// and on the machine of threads. TESS_SEEDS chooses how many seeds (a sanitised build runs few).
+#include "apps/protocol_fuzz/scenarios.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cstdlib>
+
+namespace {
+
+using tess::fuzz::Trial;
+
+std::uint64_t n_seeds() {
+  if (const char* given = std::getenv("TESS_SEEDS")) return std::strtoull(given, nullptr, 10);
+#ifdef TESS_CHECKS_ALL
+  return 30;
+#else
+  return 1000;
+#endif
+}
+
+void run_seeds(std::string_view name) {
+  const auto& scenario = tess::fuzz::scenario(name);
+  for (std::uint64_t seed = 0; seed < n_seeds(); ++seed) {
+    Trial trial(seed, tess::fuzz::pes_of_seed(seed), Trial::On::simulated);
+    scenario.run(trial);
+    if (trial.failures().empty()) continue;
+    FAIL_CHECK("protocol_fuzz --scenario " << name << " --seeds " << seed << ":" << seed << "\n"
+                                           << trial.failures().front());
+    return;
+  }
+  SUCCEED();
+}
+
+}  // namespace
+
+TEST_CASE("an index that all PEs demand at once is created once", "[runtime][protocol]") {
+  run_seeds("create_at_once");
+}
+TEST_CASE("a message to an absent index waits for its element", "[runtime][protocol]") {
+  run_seeds("message_first");
+}
+TEST_CASE("an index has one life at a time", "[runtime][protocol]") {
+  run_seeds("lives");
+}
+TEST_CASE("every element meets every broadcast of its life once", "[runtime][protocol]") {
+  run_seeds("broadcasts");
+}
+TEST_CASE("reductions are exact while elements move, come and go", "[runtime][protocol]") {
+  run_seeds("rounds");
+}
+TEST_CASE("messages find an element that visits every PE", "[runtime][protocol]") {
+  run_seeds("tour");
+}
+TEST_CASE("an epoch ends after all that it caused", "[runtime][protocol]") {
+  run_seeds("epochs");
+}
+TEST_CASE("an epoch ends after the migrations that it caused", "[runtime][protocol]") {
+  run_seeds("epoch_migrations");
+}
+TEST_CASE("exit in mid flood gives the greatest code and leaks nothing", "[runtime][protocol]") {
+  run_seeds("flood_exit");
+}
+TEST_CASE("early messages migrate with their mailbox", "[runtime][protocol]") {
+  run_seeds("mailboxes");
+}
+TEST_CASE("a deadlock says who waits for what", "[runtime][protocol]") {
+  run_seeds("deadlocks");
+}
+TEST_CASE("an exception names the element, the entry method and the PE", "[runtime][protocol]") {
+  run_seeds("exceptions");
+}
+TEST_CASE("messages to the dead are counted", "[runtime][protocol]") {
+  run_seeds("dead_letters");
+}
+TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
+  run_seeds("groups");
+}
+
+TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
+  // Not those whose report depends on one order of events.
+  for (const char* name : {"create_at_once",
+                           "message_first",
+                           "lives",
+                           "broadcasts",
+                           "rounds",
+                           "tour",
+                           "epochs",
+                           "epoch_migrations",
+                           "flood_exit",
+                           "mailboxes",
+                           "groups"}) {
+    for (const std::int32_t n_pes : {1, 2, 4}) {
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Trial trial(seed, n_pes, Trial::On::threads);
+        tess::fuzz::scenario(name).run(trial);
+        INFO(name << " on " << n_pes << " PEs, seed " << seed);
+        for (const std::string& failure : trial.failures()) FAIL_CHECK(failure);
+      }
+    }
+  }
+}

@@ -1,0 +1,134 @@
+// The parts of the runtime that need no run: serialisation, indices, names, reduction operations.
+#include "runtime/runtime.hpp"
+#include "runtime/scheduler/ready_queue.hpp"
+#include "tests/support/catch.hpp"
+
+#include <boost/container/small_vector.hpp>
+
+#include <deque>
+#include <limits>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+namespace {
+
+struct Plain {
+  int a = 0;
+  double b = 0;
+  friend bool operator==(const Plain&, const Plain&) = default;
+};
+struct Nested {
+  Plain plain;
+  std::string name;
+  std::vector<Plain> plains;
+  std::map<std::string, std::vector<int>> map;
+  friend bool operator==(const Nested&, const Nested&) = default;
+};
+class Symmetric {
+ public:
+  Symmetric() = default;
+  explicit Symmetric(int value) : value_(value), text_("value") {}
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(value_, text_);
+  }
+  friend bool operator==(const Symmetric&, const Symmetric&) = default;
+
+ private:
+  int value_ = 0;
+  std::string text_;
+};
+
+template <class T>
+void check_round_trip(const T& value) {
+  const auto bytes = tess::to_bytes(value);
+  const T back = tess::from_bytes<T>(bytes);
+  CHECK(back == value);
+  CHECK(tess::to_bytes(back) == bytes);
+  // Every truncation is found.
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    CHECK_THROWS_AS(tess::from_bytes<T>(std::span(bytes).first(n)), tess::Error);
+}
+
+}  // namespace
+
+TEST_CASE("values come back from their bytes, and truncated bytes are refused", "[runtime]") {
+  check_round_trip(42);
+  check_round_trip(Plain{1, 2.5});
+  check_round_trip(Nested{{1, 2}, "name", {{3, 4}, {5, 6}}, {{"k", {1, 2, 3}}, {"", {}}}});
+  check_round_trip(Symmetric(7));
+  check_round_trip(std::vector<Symmetric>{Symmetric(1), Symmetric(2)});
+  check_round_trip(std::vector<bool>{true, false, true});
+  check_round_trip(std::deque<std::string>{"a", "", "ccc"});
+  check_round_trip(std::set<int>{3, 1, 2});
+  check_round_trip(std::unordered_map<int, std::string>{{1, "one"}});
+  check_round_trip(std::optional<int>{});
+  check_round_trip(std::optional<std::string>{"given"});
+  check_round_trip(std::variant<int, std::string>{"second"});
+  check_round_trip(std::tuple<int, std::string, Plain>{1, "2", {3, 4}});
+  check_round_trip(std::pair<std::string, int>{"first", 2});
+  check_round_trip(std::array<std::string, 2>{"a", "b"});
+  check_round_trip(boost::container::small_vector<int, 4>{1, 2, 3, 4, 5, 6});
+}
+
+TEST_CASE("an announced length beyond the bytes is refused before memory is taken", "[runtime]") {
+  const auto bytes = tess::to_bytes(std::numeric_limits<std::uint64_t>::max() / 2);
+  CHECK_THROWS_AS(tess::from_bytes<std::vector<double>>(bytes), tess::Error);
+  CHECK_THROWS_AS(tess::from_bytes<std::string>(bytes), tess::Error);
+  CHECK_THROWS_AS((tess::from_bytes<std::map<int, int>>(bytes)), tess::Error);
+}
+
+TEST_CASE("bytes that are left over are refused", "[runtime]") {
+  CHECK_THROWS_AS(tess::from_bytes<std::int32_t>(tess::to_bytes(std::int64_t{1})), tess::Error);
+}
+
+TEST_CASE("rank and index of a range are inverse in row-major order", "[runtime]") {
+  const tess::Range range = tess::range(3, 4, 5);
+  CHECK(range.size() == 60);
+  std::int64_t rank = 0;
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 4; ++y)
+      for (int z = 0; z < 5; ++z, ++rank) {
+        CHECK(tess::rank_in(range, tess::Index3{x, y, z}) == rank);
+        CHECK(tess::index_at<tess::Index3>(range, rank) == tess::Index3{x, y, z});
+      }
+  CHECK(tess::rank_in(range, tess::Index3{3, 0, 0}) == -1);
+  CHECK(tess::rank_in(range, tess::Index3{0, -1, 0}) == -1);
+  CHECK_THROWS_AS(tess::range(-1), tess::Error);
+}
+
+TEST_CASE("an index prints as a user writes it", "[runtime]") {
+  CHECK(tess::index_text(tess::Index1{3}) == "[3]");
+  CHECK(tess::index_text(tess::Index3{1, -2, 3}) == "[1,-2,3]");
+  CHECK(tess::index_text(std::string("name")) == "[\"name\"]");
+  CHECK(tess::index_text(tess::Index6{{1, 2, 3, 4, 5, 6}}) == "[1,2,3,4,5,6]");
+}
+
+TEST_CASE("names are those of the source", "[runtime]") {
+  CHECK(tess::plain_name("tess::Call<Block, &Block::step>") == "Block::step");
+  CHECK(tess::plain_name("tess::fuzz::Block") == "fuzz::Block");
+}
+
+TEST_CASE("reduction operations combine numbers, and lists element by element", "[runtime]") {
+  CHECK(tess::sum(2, 3) == 5);
+  CHECK(tess::min(2, 3) == 2);
+  CHECK(tess::max(2, 3) == 3);
+  CHECK(tess::sum(std::vector<int>{1, 2}, {10, 20}) == std::vector<int>{11, 22});
+  CHECK(tess::max(std::array<int, 2>{1, 9}, {5, 5}) == std::array<int, 2>{5, 9});
+  CHECK(tess::concatenate(std::string("ab"), std::string("c")) == "abc");
+  CHECK_FALSE(tess::logical_and(true, false));
+  CHECK(tess::logical_or(true, false));
+}
+
+TEST_CASE("the ready queue gives messages in their order", "[runtime]") {
+  tess::ReadyQueue queue;
+  std::array<tess::Link, 4> links;
+  CHECK(queue.empty());
+  queue.push(&links[0]);
+  links[1].next = &links[2];
+  queue.append(&links[1]);
+  queue.push(&links[3]);
+  for (tess::Link& link : links) CHECK(queue.pop() == &link);
+  CHECK(queue.empty());
+}
