@@ -50,7 +50,7 @@ Task transfer(DistributedMesh source,
 }
 
 Point suggest_voxel_size(const TetMesh& source, const TetMesh& target) {
-  constexpr double tets_per_voxel = 30;
+  constexpr double tets_per_voxel = 100;
   const Box box = bounds(source), other = bounds(target);
   double volume = 1;
   double longest = 0, farthest = 0;

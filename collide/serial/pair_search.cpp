@@ -43,33 +43,36 @@ std::optional<std::array<std::vector<PairSearch::Entry>, 2>> PairSearch::halves(
     std::span<const Item> items, const std::vector<Entry>& node) {
   constexpr std::size_t kLeaf = 32;
   if (node.size() <= kLeaf) return std::nullopt;
-  std::size_t axis = 0;
-  double widest = -1;
+  Point spread{};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto lower = [&](const Entry& e) { return items[e.first].box.lo[k]; };
     const auto less = [&](const Entry& a, const Entry& b) { return lower(a) < lower(b); };
     const auto [least, most] = std::minmax_element(node.begin(), node.end(), less);
-    if (lower(*most) - lower(*least) > widest) {
-      widest = lower(*most) - lower(*least);
-      axis = k;
+    spread[k] = lower(*most) - lower(*least);
+  }
+  std::array<std::size_t, 3> axes{0, 1, 2};
+  std::sort(axes.begin(), axes.end(), [&](auto a, auto b) { return spread[a] > spread[b]; });
+  std::vector<double> lower(node.size());
+  for (const std::size_t axis : axes) {
+    for (std::size_t i = 0; i < node.size(); ++i) lower[i] = items[node[i].first].box.lo[axis];
+    const auto middle = lower.begin() + static_cast<std::ptrdiff_t>(lower.size() / 2);
+    std::nth_element(lower.begin(), middle, lower.end());
+    const double plane = *middle;
+    std::array<std::vector<Entry>, 2> out;
+    for (const Entry& e : node) {
+      const Aabb& box = items[e.first].box;
+      const bool starts_before = box.lo[axis] < plane;
+      if (starts_before) out[0].push_back(e);
+      if (box.hi[axis] >= plane)
+        out[1].emplace_back(e.first, e.second | (starts_before ? 1u << axis : 0u));
     }
+    // Each half must be a good deal smaller, or the recursion would go deep for nothing: where many
+    // boxes touch the plane, one half can be the whole node again.
+    const std::size_t larger = std::max(out[0].size(), out[1].size());
+    if (10 * larger <= 9 * node.size() && 2 * (out[0].size() + out[1].size()) <= 3 * node.size())
+      return out;
   }
-  std::vector<double> lower;
-  lower.reserve(node.size());
-  for (const Entry& e : node) lower.push_back(items[e.first].box.lo[axis]);
-  const auto middle = lower.begin() + static_cast<std::ptrdiff_t>(lower.size() / 2);
-  std::nth_element(lower.begin(), middle, lower.end());
-  const double plane = *middle;
-  std::array<std::vector<Entry>, 2> out;
-  for (const Entry& e : node) {
-    const Aabb& box = items[e.first].box;
-    const bool starts_before = box.lo[axis] < plane;
-    if (starts_before) out[0].push_back(e);
-    if (box.hi[axis] >= plane)
-      out[1].emplace_back(e.first, e.second | (starts_before ? 1u << axis : 0u));
-  }
-  if (2 * (out[0].size() + out[1].size()) > 3 * node.size() || out[0].empty()) return std::nullopt;
-  return out;
+  return std::nullopt;
 }
 
 }  // namespace tess

@@ -112,7 +112,9 @@ TEST_CASE("the lattice that other libraries lose pairs of has 93 556", "[collide
         items.push_back(item({lo, {lo[0] + 0.15, lo[1] + 0.15, lo[2] + 0.15}}, items.size(), 0));
       }
   for (const double size : {0.3, 0.1, 0.05, 0.77, 5.0})
-    CHECK(found(items, VoxelGrid(size), {Touching::counts, WithinModel::test}).size() == 93'556);
+    for (const auto method : {SerialMethod::automatic, SerialMethod::bisection})
+      CHECK(found(items, VoxelGrid(size), {Touching::counts, WithinModel::test}, method).size() ==
+            93'556);
 }
 
 TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
@@ -132,6 +134,67 @@ TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
       REQUIRE(open.overlaps(lanes, j) == open.overlaps_plain(lanes, j));
     }
   }
+}
+
+TEST_CASE("bisection ends where all boxes of a node touch the plane", "[collide]") {
+  std::vector<Item> items;
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 3; ++y) {
+      const double at = x < 4 ? 0 : 1;
+      items.push_back(item({{at, at, at}, {at + 1, at + 1, at + 1}}, items.size(), 0));
+    }
+  const PairRules rules{Touching::counts, WithinModel::test};
+  REQUIRE((found(items, VoxelGrid(10), rules, SerialMethod::bisection) == oracle(items, rules)));
+}
+
+TEST_CASE("conversions of all widths agree bit for bit, also on what they refuse", "[collide]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const VoxelGrid grid({0.1, -1e9, 0}, {0.3, 1e-7, 1});
+  std::vector<double> values{0, -0.0, 1, -1, 0.1, -5e-324, 5e-324, nan, inf, -inf, 1e300, -1e300};
+  values.insert(values.end(),
+                {2147483647, 2147483647.9999998, 2147483648, -2147483648, -2147483649});
+  std::mt19937_64 random(10);
+  std::uniform_real_distribution<double> uniform(-100, 100);
+  for (int i = 0; i < 200; ++i) values.push_back(0.3 * std::round(uniform(random)) + 0.1);
+  for (int i = 0; i < 200; ++i) values.push_back(uniform(random));
+  std::array<double, 6> box{};
+  std::size_t n_good = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    for (double& x : box) x = values[random() % values.size()];
+    if (i % 2 == 0)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (box[k] > box[k + 3]) std::swap(box[k], box[k + 3]);
+    if (i % 4 == 0) box[1] = box[4] = -1e9 + 1e-7 * uniform(random);
+    std::array<std::int32_t, 6> plain{}, wide{};
+    const bool good = conversion::convert_plain(grid.constants(), box.data(), plain.data());
+    n_good += good ? 1u : 0u;
+    REQUIRE(conversion::convert(grid.constants(), box.data(), wide.data()) == good);
+    REQUIRE(wide == plain);
+#ifdef __AVX2__
+    REQUIRE(conversion::convert_avx2(grid.constants(), box.data(), wide.data()) == good);
+    REQUIRE(wide == plain);
+#endif
+    if (good) {
+      const CellRange cells = grid.cells_of({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
+      REQUIRE(cells == CellRange{{plain[0], plain[1], plain[2]}, {plain[3], plain[4], plain[5]}});
+    }
+  }
+  REQUIRE(n_good > 1000);
+}
+
+TEST_CASE("a crowded voxel of two models: each pair across once, none within", "[collide]") {
+  auto items = random_scene(11, 1500, 0, 1, false);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    items[i].id.model = static_cast<ModelId>(i % 5 == 0 ? 1 : 0);
+    if (i % 5 == 0) items[i].box.hi = items[i].box.lo;
+  }
+  const PairRules rules{};
+  const Pairs expected = oracle(items, rules);
+  REQUIRE(expected.size() > 300);
+  for (const double size : {100.0, 3.0, 1.0})
+    for (const auto method : {SerialMethod::automatic, SerialMethod::bisection})
+      REQUIRE((found(items, VoxelGrid(size), rules, method) == expected));
 }
 
 TEST_CASE("bad boxes, coordinates and voxel sizes are refused by name", "[collide]") {

@@ -1,0 +1,251 @@
+// Whole collisions on the runtime against all pairs: clients that own boxes, Voxels and Managers on
+// the simulated machine under adversarial order and forced migration, and on threads. Each pair is
+// told once to each of its two owners (once, where one owns both), in every one of several
+// collisions in a row, between which the boxes move.
+#include "collide/collider.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+using namespace tess;
+
+namespace {
+
+struct Scene {
+  std::uint64_t seed = 0;
+  std::int32_t n_clients = 1;
+  std::int32_t n_boxes = 0;  ///< of each client
+  std::int32_t n_models = 1;
+  std::int32_t round = 0;  ///< boxes move from round to round
+};
+
+/// The boxes of a client: a function of the scene, so that the oracle knows them, too. On a coarse
+/// lattice half of the time, where boxes touch each other and the faces of voxels.
+std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
+  std::seed_seq seeds{
+      scene.seed, static_cast<std::uint64_t>(scene.round), static_cast<std::uint64_t>(client)};
+  std::mt19937_64 random(seeds);
+  std::uniform_real_distribution<double> place(-2, 2), extent(0, 0.8);
+  const bool on_lattice = scene.seed % 2 == 0;
+  std::vector<Item> items;
+  for (std::int32_t i = 0; i < scene.n_boxes; ++i) {
+    Item item{{},
+              {owner_of(Index1{client}),
+               static_cast<LocalId>(i),
+               static_cast<ModelId>(random() % static_cast<std::uint64_t>(scene.n_models))}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      double lo = place(random), width = i % 4 == 0 ? 0 : extent(random);
+      if (on_lattice) lo = std::round(4 * lo) / 4, width = std::round(4 * width) / 4;
+      item.box.lo[k] = lo;
+      item.box.hi[k] = lo + width;
+    }
+    items.push_back(item);
+  }
+  return items;
+}
+
+/// Who was told what.
+struct Told {
+  std::uint64_t owner = 0, other = 0;
+  LocalPair pair;
+  friend auto operator<=>(const Told&, const Told&) = default;
+};
+using AllTold = std::vector<Told>;
+
+struct Join {
+  AllTold operator()(AllTold a, const AllTold& b) const {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+};
+
+Told told(const ObjectId& mine, const ObjectId& theirs) {
+  return {static_cast<std::uint64_t>(mine.owner),
+          static_cast<std::uint64_t>(theirs.owner),
+          {mine.local, theirs.local}};
+}
+
+/// What a pair within one owner is called: which of the two is first says nothing.
+AllTold in_order(AllTold list) {
+  for (Told& t : list)
+    if (t.owner == t.other && t.pair.theirs < t.pair.mine) std::swap(t.pair.mine, t.pair.theirs);
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+AllTold oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only) {
+  std::vector<Item> all;
+  for (std::int32_t c = 0; c < scene.n_clients; ++c) {
+    const auto items = boxes_of(scene, c);
+    all.insert(all.end(), items.begin(), items.end());
+  }
+  AllTold out;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      const ObjectId &a = all[i].id, &b = all[j].id;
+      if (rules.within_model == WithinModel::skip && a.model == b.model) continue;
+      if (!overlap(all[i].box, all[j].box, rules.touching)) continue;
+      if (!only || a.model == *only) out.push_back(told(a, b));
+      if (only ? b.model == *only : a.owner != b.owner) out.push_back(told(b, a));
+    }
+  return in_order(std::move(out));
+}
+
+class Client : public Chare<Client, Index1> {
+ public:
+  void submit(const Collider& collider, const Scene& scene) {
+    told_.clear();
+    n_refused_ = 0;
+    collider.submit(boxes_of(scene, index().x));
+  }
+  /// The same boxes with a NaN in the last: all of them are refused.
+  void submit_bad(const Collider& collider, const Scene& scene) {
+    std::vector<Item> items = boxes_of(scene, index().x);
+    items.back().box.hi[1] = std::numeric_limits<double>::quiet_NaN();
+    const std::uint64_t sent_before = collider.managers.local().n_delivered();
+    try {
+      collider.submit(std::move(items));
+    } catch (const Error& error) {
+      const std::string name = text("object ", scene.n_boxes - 1, " of owner ", index().x);
+      const bool names_it = std::string_view(error.what()).find(name) != std::string_view::npos;
+      if (names_it && collider.managers.local().n_delivered() == sent_before) ++n_refused_;
+    }
+  }
+  void receive(const Hits& hits) {
+    TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
+    for (const LocalPair& pair : hits.pairs)
+      told_.push_back(
+          {static_cast<std::uint64_t>(hits.owner), static_cast<std::uint64_t>(hits.other), pair});
+  }
+  void gather(Callback<AllTold> target) { contribute(Join{}, told_, std::move(target)); }
+  void count_refused(Callback<std::int64_t> target) {
+    contribute(sum, n_refused_, std::move(target));
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(told_, n_refused_);
+  }
+
+ private:
+  AllTold told_;
+  std::int64_t n_refused_ = 0;
+};
+
+struct Problem {
+  Scene scene;
+  ColliderOptions options;
+  std::optional<ModelId> only;
+  std::vector<AllTold> rounds;  ///< what was told in each collision
+  std::int64_t n_refused = 0;
+};
+
+constexpr std::int32_t kRounds = 2;
+
+Task collide_rounds(Problem& problem) {
+  Scene scene = problem.scene;
+  Collider collider;
+  ArrayProxy<Client> clients;
+  co_await epoch([&] {
+    collider = make_collider(problem.options);
+    clients = create<Client>(range(scene.n_clients));
+  });
+  const Report report{report_to<&Client::receive>(clients), problem.only};
+  for (scene.round = 0; scene.round < kRounds; ++scene.round) {
+    co_await epoch([&] { clients.broadcast<&Client::submit>(collider, scene); });
+    co_await collide(collider, report);
+    Future<AllTold> all;
+    clients.broadcast<&Client::gather>(all.callback());
+    problem.rounds.push_back(in_order(co_await all));
+  }
+}
+
+Task collide_bad(Problem& problem) {
+  Collider collider;
+  ArrayProxy<Client> clients;
+  co_await epoch([&] {
+    collider = make_collider(problem.options);
+    clients = create<Client>(range(problem.scene.n_clients));
+  });
+  co_await epoch([&] { clients.broadcast<&Client::submit_bad>(collider, problem.scene); });
+  const Report report{report_to<&Client::receive>(clients), {}};
+  co_await collide(collider, report);
+  Future<std::int64_t> refused;
+  clients.broadcast<&Client::count_refused>(refused.callback());
+  problem.n_refused = co_await refused;
+  Future<AllTold> all;
+  clients.broadcast<&Client::gather>(all.callback());
+  problem.rounds.push_back(co_await all);
+}
+
+int run_with(const std::string& option, Problem& problem, Task (*program)(Problem&)) {
+  std::string name = "test", argument = option;
+  std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
+  int argc = 2;
+  Setup setup = take_options(argc, argv.data());
+  return run(setup, [&problem, program]() -> Task { return program(problem); });
+}
+
+/// A problem of every kind: numbers of clients and models, rules, voxel sizes, drawn from the seed.
+Problem problem_of(std::uint64_t seed) {
+  Problem problem;
+  problem.scene = {seed,
+                   static_cast<std::int32_t>(1 + seed % 7),
+                   static_cast<std::int32_t>(20 + seed % 3 * 10),
+                   static_cast<std::int32_t>(1 + seed % 3),
+                   0};
+  const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0}[seed % 5];
+  problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
+  problem.options.size = {size, size, 2 * size};
+  problem.options.rules.touching = seed % 11 < 7 ? Touching::counts : Touching::does_not_count;
+  problem.options.rules.within_model =
+      problem.scene.n_models == 1 || seed % 13 < 4 ? WithinModel::test : WithinModel::skip;
+  if (seed % 6 == 5) problem.only = ModelId{0};
+  return problem;
+}
+
+void check_told(const std::string& option, std::uint64_t seed) {
+  Problem problem = problem_of(seed);
+  CAPTURE(option, seed);
+  REQUIRE(run_with(option, problem, &collide_rounds) == 0);
+  REQUIRE(problem.rounds.size() == kRounds);
+  for (std::int32_t round = 0; round < kRounds; ++round) {
+    Scene scene = problem.scene;
+    scene.round = round;
+    const AllTold expected = oracle(scene, problem.options.rules, problem.only);
+    CAPTURE(round);
+    REQUIRE(problem.rounds[static_cast<std::size_t>(round)].size() == expected.size());
+    REQUIRE((problem.rounds[static_cast<std::size_t>(round)] == expected));
+  }
+}
+
+std::string simulated(std::uint64_t seed) {
+  const std::uint64_t pes = std::array<std::uint64_t, 5>{1, 2, 3, 4, 8}[seed % 5];
+  return text("--sim=pes=", pes, ",cost=100ns,migrate=0.1,seed=", seed);
+}
+
+}  // namespace
+
+TEST_CASE("each pair is told once to each owner in any order of delivery and under migration",
+          "[collide][parallel]") {
+  for (std::uint64_t seed = 1; seed <= 250; ++seed) check_told(simulated(seed), seed);
+}
+
+TEST_CASE("each pair is told once to each owner on threads", "[collide][parallel]") {
+  for (const int pes : {1, 2, 4})
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) check_told(text("--pes=", pes), seed);
+}
+
+TEST_CASE("a list with a NaN box is refused whole, before anything is sent",
+          "[collide][parallel]") {
+  for (const std::string option : {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
+    Problem problem = problem_of(5);
+    CAPTURE(option);
+    REQUIRE(run_with(option, problem, &collide_bad) == 0);
+    REQUIRE(problem.n_refused == problem.scene.n_clients);
+    REQUIRE(problem.rounds.front().empty());
+  }
+}
