@@ -1,9 +1,8 @@
 // m2m_transfer SOURCE TARGET: moves fields between two tetrahedral meshes and says how far the
 // result is from the truth and what each phase cost.
+#include "apps/command_line.hpp"
 #include "apps/m2m_transfer/driver.hpp"
 #include "runtime/runtime.hpp"
-
-#include <CLI/CLI.hpp>
 
 namespace {
 
@@ -12,7 +11,6 @@ int run(int argc, char** argv) {
   tess::m2m::DriverOptions options;
   CLI::App app("Moves fields between two tetrahedral meshes, and prints the error beside the time.",
                "m2m_transfer");
-  app.footer(tess::options_help());
   app.add_option("SOURCE", options.source, "mesh: ExodusII, gmsh 2.2 or 4.1, or kuhn:N")
       ->required();
   app.add_option("TARGET", options.target, "mesh: the same kinds")->required();
@@ -33,13 +31,7 @@ int run(int argc, char** argv) {
   app.add_option("--out", options.out, "write the target mesh with fields and status as ExodusII");
   app.add_option("--json", options.json, "write the report as JSON");
   app.add_flag("--explain", options.explain, "say what this transfer uses and what it left out");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    tess::fail(tess::ErrorCode::bad_argument, error.what(), " (--help lists the options)");
-  }
+  if (!apps::parse(app, argc, argv)) return 0;
   return tess::m2m::drive(setup, options);
 }
 
