@@ -57,6 +57,11 @@ void Pool::give_back(Pool* owner, Link* link) noexcept {
 }
 
 void Pool::flush() noexcept {
+  for (Link*& hot : borrowed_) {
+    if (hot == nullptr) continue;
+    give_back(header_of(hot)->owner, hot);
+    hot = nullptr;
+  }
   for (Batch& batch : batches_) send(batch);
 }
 

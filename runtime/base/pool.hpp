@@ -40,6 +40,11 @@ class Pool {
   [[nodiscard]] void* allocate(std::size_t bytes) {
     const std::size_t size_class = (bytes + sizeof(Header) - 1) / granule;
     if (!reuses_blocks || size_class >= n_classes) return allocate_unpooled(bytes);
+    // The last block that came from another PE is in this core's cache: an answer goes out in it.
+    if (Link* const hot = borrowed_[size_class]; hot != nullptr) {
+      borrowed_[size_class] = nullptr;
+      return hot;
+    }
     Link* const link = free_[size_class];
     if (link == nullptr) [[unlikely]]
       return refill(size_class);
@@ -61,9 +66,11 @@ class Pool {
     else if (header->owner == mine) {
       link->next = mine->free_[header->size_class];
       mine->free_[header->size_class] = link;
-    } else if (mine != nullptr)
-      mine->give_back(header->owner, link);
-    else
+    } else if (mine != nullptr) {
+      Link*& hot = mine->borrowed_[header->size_class];
+      if (hot != nullptr) mine->give_back(header_of(hot)->owner, hot);
+      hot = link;
+    } else
       header->owner->returned_.push(link);
   }
 
@@ -112,6 +119,7 @@ class Pool {
   static void send(Batch& batch) noexcept;
 
   std::array<Link*, n_classes> free_{};
+  std::array<Link*, n_classes> borrowed_{};        // of another pool, at most one a class
   std::array<std::uint8_t, n_classes> n_slabs_{};  // a class's doublings so far
   std::array<Batch, n_batches> batches_{};
   std::vector<std::unique_ptr<std::byte, Free>> slabs_;
