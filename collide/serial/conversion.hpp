@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #if defined(__AVX2__) || defined(__AVX512VL__)
 #include <immintrin.h>
 #endif
@@ -72,7 +73,10 @@ inline constexpr double kLeast = -2147483648.0, kMost = 2147483647.0;
   const __m512d hi = _mm512_castsi512_pd(
       _mm512_maskz_alignr_epi64(0x07, _mm512_castpd_si512(x), _mm512_castpd_si512(x), 3));
   const __mmask8 ordered = _mm512_mask_cmp_pd_mask(0x07, x, hi, _CMP_LE_OQ);
-  _mm256_mask_storeu_epi32(cells, 0x3F, _mm512_maskz_cvttpd_epi32(fits, cell));
+  // Through a whole register: the six loads that follow cannot be served from a masked store.
+  alignas(32) std::int32_t whole[8];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(whole), _mm512_maskz_cvttpd_epi32(fits, cell));
+  std::memcpy(cells, whole, 6 * sizeof(std::int32_t));
   return fits == 0x3F && ordered == 0x07;
 }
 #endif

@@ -23,7 +23,12 @@ class ModelsSeen {
 
 VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid, KeepVoxels keep) {
   CellBounds bounds;
-  for (const Item& item : items) bounds.add(cells_of(item, grid), item);
+  ModelsSeen all;
+  for (const Item& item : items) {
+    bounds.add(cells_of(item, grid), item);
+    all.add(item.id.model);
+  }
+  if (keep == KeepVoxels::of_several_models && !all.several()) return {};
   CellNumbers numbers(bounds);
   std::vector<std::uint32_t> n_items(numbers.size());
   std::vector<ModelsSeen> models(numbers.size());

@@ -34,14 +34,14 @@ void add_wave(Items& items, int nx, int ny, const Point& shift, std::uint32_t mo
   for (int y = 0; y < ny; ++y)
     for (int x = 0; x < nx; ++x) {
       const Point a = at(x, y), b = at(x + 1, y), c = at(x + 1, y + 1), d = at(x, y + 1);
-      add(items, box_of(Triangle{{a, b, c}}), model);
-      add(items, box_of(Triangle{{a, c, d}}), model);
+      add(items, box_of(Triangle{{a, b, d}}), model);
+      add(items, box_of(Triangle{{b, c, d}}), model);
     }
 }
 
 Items wave() {
   Items items;
-  add_wave(items, 1024, 512, {0, 0, 0}, 0);
+  add_wave(items, 512, 1024, {0, 0, 0}, 0);
   return items;
 }
 Items two_planes() {
