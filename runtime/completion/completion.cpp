@@ -65,13 +65,13 @@ void Completion::close(EpochId epoch) {
 
 bool Completion::tell_epochs() {
   if (changed_.empty()) return false;
-  forget_last();
   std::vector<EpochId> changed;
   changed.swap(changed_);
   for (const EpochId epoch : changed) {
     const auto at = local_.find(epoch);
     if (at == local_.end()) continue;
     at->second.listed = false;
+    forget_last();  // each time: telling one epoch may have counted for the next of this list
     at->second.told = at->second.now;
     const Counters now = at->second.now;
     tell(epoch, now);
