@@ -4,12 +4,24 @@
 
 #include "runtime/collections/array_of.hpp"
 #include "runtime/messages/entry_traits.hpp"
+#include "runtime/round_trip.hpp"
 #include "runtime/scheduler/block.hpp"
 
 namespace tess {
 
 template <class C>
 class Array;
+
+/// The first argument that does not come back from its bytes as it was; empty if all do.
+template <class... T>
+[[nodiscard]] std::string arguments_difference(const std::tuple<T...>& arguments) {
+  std::string found;
+  const auto look = [&found](const auto& argument) {
+    if (found.empty()) found = round_trip_difference(argument);
+  };
+  std::apply([&look](const auto&... argument) { (look(argument), ...); }, arguments);
+  return found;
+}
 
 /// Making, packing and ending of a message type that derives from ElementMessage and has
 /// `arguments`.
@@ -28,6 +40,10 @@ struct TypedLetter : ElementMessage<typename C::Index> {
     letter->collection = collection;
     letter->index = index;
     letter->asker = pe.id();
+#ifdef TESS_CHECKS_ALL
+    const std::string difference = arguments_difference(letter->arguments);
+    TESS_CHECK(difference.empty(), difference);
+#endif
     return pe.stamp(letter);
   }
   static void run(Pe& pe, Envelope* envelope) {

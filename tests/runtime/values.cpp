@@ -1,4 +1,5 @@
 // The parts of the runtime that need no run: serialisation, indices, names, reduction operations.
+#include "runtime/round_trip.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "tests/support/catch.hpp"
@@ -131,4 +132,42 @@ TEST_CASE("the ready queue gives messages in their order", "[runtime]") {
   queue.push(&links[3]);
   for (tess::Link& link : links) CHECK(queue.pop() == &link);
   CHECK(queue.empty());
+}
+
+namespace {
+
+struct Forgets {
+  std::int32_t kept = 1;
+  double lost = 2;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    double other = Ar::is_reading ? 0 : lost;
+    ar(kept, other);  // reads into nowhere
+  }
+};
+
+struct Remembers {
+  std::int32_t kept = 1;
+  std::vector<std::string> names;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(kept, names);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a member that does not come back is named by its place and type",
+          "[runtime][serialize]") {
+  Forgets forgets;
+  forgets.lost = 7;
+  const std::string found = tess::round_trip_difference(forgets);
+  INFO(found);
+  REQUIRE(found.find("Forgets: member 2 of 2 (double)") != std::string::npos);
+  REQUIRE(tess::round_trip_difference(Remembers{3, {"a", "b"}}).empty());
+
+  std::vector<std::byte> packed = tess::to_bytes(Remembers{3, {"a"}});
+  REQUIRE(
+      tess::first_lost_member(Remembers{3, {"b"}}, packed, packed.size()).find("member 2 of 2") !=
+      std::string::npos);
 }

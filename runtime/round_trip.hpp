@@ -1,0 +1,126 @@
+// Does a type read what it writes? Packs a value, unpacks it, packs again, and compares; what
+// differs is named by its place in serialize() (or in the aggregate) and its type. Builds with
+// CHECKS=all ask this of the arguments of every message and of every element that migrates; tests
+// may ask it of any type.
+#pragma once
+
+#include "runtime/messages/registry.hpp"
+#include "runtime/serialize.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace tess {
+
+namespace detail {
+
+/// An archive that keeps the bytes and the type of each member by itself.
+class MemberWriter {
+ public:
+  static constexpr bool is_reading = false;
+  struct Member {
+    std::string_view type;
+    std::vector<std::byte> bytes;
+  };
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (members.push_back({name_of_type<T>, to_bytes(values)}), ...);
+  }
+  std::vector<Member> members;
+};
+
+/// Equal up to order: a hashed container may hold the same in another order.
+[[nodiscard]] inline bool same_bytes(std::vector<std::byte> a, std::vector<std::byte> b) {
+  if (a == b) return true;
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  return a == b;
+}
+
+template <class T>
+[[nodiscard]] std::vector<MemberWriter::Member> members_of(const T& value) {
+  MemberWriter members;
+  if constexpr (serialization::HasSerialize<T>) {
+    const_cast<T&>(value).serialize(members);
+  } else if constexpr (serialization::TupleLike<T>) {
+    std::apply(members, value);
+  } else {
+    members(value);
+  }
+  return std::move(members.members);
+}
+
+}  // namespace detail
+
+/// The first member of a value whose bytes are not those at its place in `packed`, which ends with
+/// the value's members and began with what else was packed.
+template <class T>
+[[nodiscard]] std::string first_lost_member(const T& value,
+                                            const std::vector<std::byte>& packed,
+                                            std::size_t n_again) {
+  const auto members = detail::members_of(value);
+  std::size_t n_bytes = 0;
+  for (const auto& member : members) n_bytes += member.bytes.size();
+  std::size_t at = n_again - n_bytes;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const auto& bytes = members[i].bytes;
+    if (at + bytes.size() > packed.size() ||
+        !std::equal(bytes.begin(), bytes.end(), packed.begin() + static_cast<std::ptrdiff_t>(at)))
+      return text(plain_name(name_of_type<T>),
+                  ": member ",
+                  i + 1,
+                  " of ",
+                  members.size(),
+                  " (",
+                  members[i].type,
+                  ") does not come back as it was sent");
+    at += bytes.size();
+  }
+  return text(plain_name(name_of_type<T>),
+              ": packs to ",
+              n_again,
+              " bytes after it packed to ",
+              packed.size());
+}
+
+/// Empty if the copy packs like the original; otherwise one line that names the first member that
+/// does not.
+template <class T>
+[[nodiscard]] std::string difference(const T& original, const T& copy) {
+  const auto before = detail::members_of(original), after = detail::members_of(copy);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (i < after.size() && detail::same_bytes(before[i].bytes, after[i].bytes)) continue;
+    return text(plain_name(name_of_type<T>),
+                ": member ",
+                i + 1,
+                " of ",
+                before.size(),
+                " (",
+                before[i].type,
+                ") does not come back as it was sent: ",
+                before[i].bytes.size(),
+                " bytes before, ",
+                i < after.size() ? after[i].bytes.size() : 0,
+                " after");
+  }
+  return {};
+}
+
+/// The same for a value and what is read from its own bytes.
+template <class T>
+[[nodiscard]] std::string round_trip_difference(const T& value) {
+  const std::vector<std::byte> bytes = to_bytes(value);
+  Reader read(bytes);
+  T copy{};
+  read(copy);
+  if (read.remaining() != 0)
+    return text(plain_name(name_of_type<T>),
+                ": serialize() reads ",
+                read.remaining(),
+                " bytes less than it writes");
+  return difference(value, copy);
+}
+
+}  // namespace tess

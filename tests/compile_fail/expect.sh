@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# expect.sh COMPILER ROOT FILE: the file must not compile, and the sentence after "expect:" must be in an error.
+set -uo pipefail
+sentence=$(sed -n '1s|^// expect: ||p' "$3")
+if output=$("$1" -std=gnu++20 -fsyntax-only "-I$2" "$3" 2>&1); then
+  echo "$3 compiles, but should not"
+  exit 1
+fi
+if ! grep -E "error: static assertion failed" <<<"$output" | grep -qF -- "$sentence"; then
+  echo "$3 does not fail with: $sentence"
+  echo "$output" | head -20
+  exit 1
+fi

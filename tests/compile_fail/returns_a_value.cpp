@@ -1,0 +1,11 @@
+// expect: an entry method returns void or tess::Task
+#include "runtime/runtime.hpp"
+
+class Block : public tess::Chare<Block> {
+ public:
+  int size() { return 1; }
+};
+
+void misuse(tess::ArrayProxy<Block> blocks) {
+  blocks[{0}].send<&Block::size>();
+}
