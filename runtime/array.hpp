@@ -80,13 +80,6 @@ class Array final : public ArrayOf<typename C::Index> {
                    ": serialize() read ",
                    ar.remaining(),
                    " bytes less than it wrote");
-#ifdef TESS_CHECKS_ALL
-        Buffer again;
-        Writer write(again);
-        pack_element(*arrival.element, write);
-        TESS_CHECK(detail::same_bytes(again, arrival.state),
-                   first_lost_member(*arrival.element, arrival.state, again.size()));
-#endif
       }
     }
     this->land(std::exchange(arrival.element, nullptr), arrival.from);
@@ -99,9 +92,7 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
 
-  [[nodiscard]] bool migratable() const override {
-    return Migratable<C>;
-  }
+  [[nodiscard]] bool migratable() const override { return Migratable<C>; }
 
  protected:
   Element_* construct_default() override {
@@ -113,9 +104,7 @@ class Array final : public ArrayOf<typename C::Index> {
       return nullptr;
     }
   }
-  void destroy(Element_& element) override {
-    delete &static_cast<C&>(element);
-  }
+  void destroy(Element_& element) override { delete &static_cast<C&>(element); }
   void ship(Element_& element, PeId to) override {
     TESS_CHECK(Migratable<C>,
                this->name(),

@@ -54,37 +54,6 @@ template <class T>
 
 }  // namespace detail
 
-/// The first member of a value whose bytes are not those at its place in `packed`, which ends with
-/// the value's members and began with what else was packed.
-template <class T>
-[[nodiscard]] std::string first_lost_member(const T& value,
-                                            const std::vector<std::byte>& packed,
-                                            std::size_t n_again) {
-  const auto members = detail::members_of(value);
-  std::size_t n_bytes = 0;
-  for (const auto& member : members) n_bytes += member.bytes.size();
-  std::size_t at = n_again - n_bytes;
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    const auto& bytes = members[i].bytes;
-    if (at + bytes.size() > packed.size() ||
-        !std::equal(bytes.begin(), bytes.end(), packed.begin() + static_cast<std::ptrdiff_t>(at)))
-      return text(plain_name(name_of_type<T>),
-                  ": member ",
-                  i + 1,
-                  " of ",
-                  members.size(),
-                  " (",
-                  members[i].type,
-                  ") does not come back as it was sent");
-    at += bytes.size();
-  }
-  return text(plain_name(name_of_type<T>),
-              ": packs to ",
-              n_again,
-              " bytes after it packed to ",
-              packed.size());
-}
-
 /// Empty if the copy packs like the original; otherwise one line that names the first member that
 /// does not.
 template <class T>
