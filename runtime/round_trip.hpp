@@ -1,7 +1,7 @@
 // Does a type read what it writes? Packs a value, unpacks it, packs again, and compares; what
 // differs is named by its place in serialize() (or in the aggregate) and its type. Builds with
-// CHECKS=all ask this of the arguments of every message and of every element that migrates; tests
-// may ask it of any type.
+// CHECKS=all ask this of the arguments of every message; tests may ask it of any type. Not of
+// elements that migrate: their serialize() may have effects, and would be called once more.
 #pragma once
 
 #include "runtime/messages/registry.hpp"
