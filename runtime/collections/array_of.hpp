@@ -392,31 +392,38 @@ void ArrayOf<Index>::on_request(const Request& request) {
 template <class Index>
 void ArrayOf<Index>::grant(const Index& granted, Version version) {
   const Index index = granted;
+  // What waits stays in pending_ until the constructor is through: if it throws, nothing is lost.
+  Letter* insert = nullptr;
+  if (const auto at = pending_.find(index); at != pending_.end()) {
+    for (Letter* letter : at->second.letters) {
+      const bool inserts =
+          letter->demand == Demand::insert || letter->demand == Demand::insert_if_absent;
+      if (insert == nullptr && inserts) insert = letter;
+    }
+  }
+  cache_.forget(index);
+  departed_.erase(index);
+  if (home(index) == pe_.id()) registry_.erase(index);
+  if (insert == nullptr) {
+    bear(index, version, [this] { return construct_default(); });
+  } else {
+    const EpochId before = pe_.context().epoch;
+    pe_.context().epoch = insert->epoch;
+    bear(index, version, [insert] {
+      return static_cast<Element_*>(
+          static_cast<const ElementAction<Index>&>(*insert->action).construct(*insert));
+    });
+    pe_.context().epoch = before;
+  }
   std::vector<Letter*> letters;
   if (const auto at = pending_.find(index); at != pending_.end()) {
     letters = std::move(at->second.letters);
     pending_.erase(at);
   }
-  const auto insert = std::find_if(letters.begin(), letters.end(), [](const Letter* letter) {
-    return letter->demand == Demand::insert || letter->demand == Demand::insert_if_absent;
-  });
-  cache_.forget(index);
-  departed_.erase(index);
-  if (home(index) == pe_.id()) registry_.erase(index);
-  if (insert == letters.end()) {
-    bear(index, version, [this] { return construct_default(); });
-  } else {
-    Letter* letter = *insert;
-    letters.erase(insert);
-    const EpochId epoch = letter->epoch;
-    const EpochId before = pe_.context().epoch;
-    pe_.context().epoch = epoch;
-    bear(index, version, [letter] {
-      return static_cast<Element_*>(
-          static_cast<const ElementAction<Index>&>(*letter->action).construct(*letter));
-    });
-    pe_.context().epoch = before;
-    discard(letter);
+  if (insert != nullptr) {
+    std::erase(letters, insert);
+    const EpochId epoch = insert->epoch;
+    discard(insert);
     pe_.completion().processed(epoch);
   }
   reroute(std::move(letters));
