@@ -1,5 +1,6 @@
 #include "runtime/collections/broadcast_log.hpp"
 
+#include "runtime/base/spanning_tree.hpp"
 #include "runtime/collections/collection.hpp"
 #include "runtime/collections/collection_action.hpp"
 
@@ -8,7 +9,6 @@
 namespace tess {
 namespace {
 
-constexpr std::int32_t fan_out = 4;
 // The root hears of settled broadcasts in portions, so that a broadcast costs no reply.
 constexpr std::uint64_t portion = 16;
 
@@ -27,15 +27,10 @@ void drop_arrives(Collection& collection, BroadcastLog::Drop&& m) {
 
 }  // namespace
 
-BroadcastLog::BroadcastLog(Pe& pe, Collection& collection) : pe_(pe), collection_(collection) {
-  const std::int32_t n = pe.n_pes();
-  const std::int32_t root = collection.root().value;
-  const std::int32_t rank = (pe.id().value - root + n) % n;
-  for (std::int32_t k = 1; k <= fan_out; ++k) {
-    const std::int64_t child = std::int64_t{rank} * fan_out + k;
-    if (child < n) children_.push_back(PeId{static_cast<std::int32_t>((child + root) % n)});
-  }
-}
+BroadcastLog::BroadcastLog(Pe& pe, Collection& collection)
+    : pe_(pe),
+      collection_(collection),
+      children_(SpanningTree(pe.id(), collection.root(), pe.n_pes()).children()) {}
 
 void start_broadcast(CollectionId collection, std::shared_ptr<const BroadcastCall> call) {
   Pe& pe = current_pe();

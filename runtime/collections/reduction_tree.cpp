@@ -1,13 +1,12 @@
 #include "runtime/collections/reduction_tree.hpp"
 
+#include "runtime/base/spanning_tree.hpp"
 #include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
 #include "runtime/collections/collection_action.hpp"
 
 namespace tess {
 namespace {
-
-constexpr std::int32_t fan_out = 4;
 
 void report_arrives(Collection& collection, ReductionTree::Report&& m) {
   collection.reductions().on_report(std::move(m));
@@ -20,13 +19,9 @@ void begin_arrives(Collection& collection, ReductionTree::Begin&& m) {
 
 ReductionTree::ReductionTree(Pe& pe, Collection& collection)
     : pe_(pe), collection_(collection), root_(collection.root()) {
-  const std::int32_t n = pe.n_pes();
-  const std::int32_t rank = (pe.id().value - root_.value + n) % n;
-  parent_ = PeId{((rank - 1) / fan_out + root_.value) % n};
-  for (std::int32_t k = 1; k <= fan_out; ++k) {
-    const std::int64_t child = std::int64_t{rank} * fan_out + k;
-    if (child < n) children_.push_back(PeId{static_cast<std::int32_t>((child + root_.value) % n)});
-  }
+  const SpanningTree tree(pe.id(), root_, pe.n_pes());
+  parent_ = tree.parent();
+  children_ = tree.children();
 }
 
 void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {

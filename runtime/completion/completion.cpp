@@ -1,5 +1,6 @@
 #include "runtime/completion/completion.hpp"
 
+#include "runtime/base/spanning_tree.hpp"
 #include "runtime/check.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/pe_action.hpp"
@@ -29,8 +30,6 @@ void send_control(Pe& pe, PeId to, const Payload& payload) {
     send_system<Handler>(pe, to, payload);
   }
 }
-
-constexpr std::int32_t fan_out = 4;
 
 }  // namespace
 
@@ -129,14 +128,9 @@ Counters Completion::reading(EpochId epoch) const {
 
 void Completion::on_wave(const Wave& wave) {
   Relay relay{wave, reading(wave.epoch), 0};
-  const std::int32_t n = pe_.n_pes();
-  const std::int32_t rank = (pe_.id().value - wave.root.value + n) % n;
-  for (std::int32_t k = 1; k <= fan_out; ++k) {
-    const std::int64_t child = std::int64_t{rank} * fan_out + k;
-    if (child >= n) break;
+  for (const PeId child : SpanningTree(pe_.id(), wave.root, pe_.n_pes()).children()) {
     ++relay.waiting;
-    send_control<&wave_arrives>(
-        pe_, PeId{static_cast<std::int32_t>((child + wave.root.value) % n)}, wave);
+    send_control<&wave_arrives>(pe_, child, wave);
   }
   if (relay.waiting == 0) {
     echo(relay);
@@ -166,9 +160,7 @@ void Completion::on_echo(const Echo& message) {
 void Completion::echo(Relay& relay) {
   const EpochId epoch = relay.wave.epoch;
   if (relay.wave.root != pe_.id()) {
-    const std::int32_t n = pe_.n_pes();
-    const std::int32_t rank = (pe_.id().value - relay.wave.root.value + n) % n;
-    const PeId parent{((rank - 1) / fan_out + relay.wave.root.value) % n};
+    const PeId parent = SpanningTree(pe_.id(), relay.wave.root, pe_.n_pes()).parent();
     send_control<&echo_arrives>(pe_, parent, Echo{epoch, relay.wave.number, relay.sum});
     return;
   }
