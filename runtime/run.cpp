@@ -30,7 +30,9 @@ std::string options_help() {
          "  --sim KEYS  run on a simulated machine: "
          "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
          "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations)\n"
-         "  --stats     print what each PE did\n";
+         "  --stats     print what each PE did: messages, bytes, busy and idle seconds, chares\n"
+         "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
+         "              chrome://tracing (process p of several writes F.p)\n";
 }
 
 Setup take_options(int& argc, char** argv) {
@@ -59,6 +61,8 @@ Setup take_options(int& argc, char** argv) {
     } else if (takes_value("--sim")) {
       simulates = true;
       simulated = value;
+    } else if (takes_value("--trace")) {
+      setup.options.trace = value;
     } else if (option == "--stats") {
       setup.options.statistics = true;
     } else {

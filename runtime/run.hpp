@@ -6,6 +6,7 @@
 //     was given)
 //     --sim KEYS   the simulated machine: pes=8,latency=2us,bandwidth=10GB/s,cost=100ns,seed=7
 //     --stats      what each PE did, at the end
+//     --trace F    what each PE ran when, as JSON for Perfetto
 #pragma once
 
 #include "runtime/error.hpp"
