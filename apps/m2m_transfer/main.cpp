@@ -6,8 +6,7 @@
 
 namespace {
 
-int run(int argc, char** argv) {
-  tess::Setup setup = tess::take_options(argc, argv);
+int run(tess::Setup& setup, int argc, char** argv) {
   tess::m2m::DriverOptions options;
   tess::m2m::Request& request = options.request;
   CLI::App app("Moves fields between two tetrahedral meshes, and prints the error beside the time.",
@@ -55,5 +54,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] { return run(argc, argv); });
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return run(setup, argc, argv); });
 }
