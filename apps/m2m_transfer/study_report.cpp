@@ -69,6 +69,10 @@ plot::Chart chart_of(const Study& study, Against against) {
     chart.series.push_back(std::move(linf));
   }
   if (against == Against::edge) {
+    for (const TransferReport& r : study.reports) chart.x_ticks.push_back(r.source_edge);
+    std::sort(chart.x_ticks.begin(), chart.x_ticks.end());
+    chart.x_ticks.erase(std::unique(chart.x_ticks.begin(), chart.x_ticks.end()),
+                        chart.x_ticks.end());
     if (plot::Series line = second_order(chart); !line.points.empty())
       chart.series.push_back(std::move(line));
   }
