@@ -30,7 +30,7 @@ class MpiMachine final : public Machine, private Network {
                   .first_core = shared.place * pes_per_process_,
                   .oversubscribed = !enough};
     transport_ = std::make_unique<Transport>(session_.comm(), n_processes_, options.chunk_bytes);
-    mail_ = std::vector<Mail>(static_cast<std::size_t>(pes_per_process_));
+    for (std::int32_t i = 0; i < pes_per_process_; ++i) mail_.push_back(transport_->new_mail());
     team_ = std::make_unique<Team>(PeId{process_.value * pes_per_process_},
                                    pes_per_process_,
                                    placement_,
@@ -42,7 +42,7 @@ class MpiMachine final : public Machine, private Network {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_->post(to, message);
   }
-  void send(PeId, ProcessId to, Buffer&& bytes) override { transport_->send(to, std::move(bytes)); }
+  void send(PeId, ProcessId to, Buffer&& bytes) override { transport_->send(to, bytes); }
   void run(Program& program) override {
     team_->run(program, topology_);
     transport_->drain();
