@@ -73,6 +73,10 @@ class Array final : public ArrayOf<typename C::Index> {
           arrival.element = new C();
         }
         ar(arrival.element->state_);
+        if (ar.template take<bool>()) {
+          arrival.element->balance_.reset(new BalanceRecord);
+          arrival.element->balance_->unpack(ar, this->pe_.start_meter());
+        }
         arrival.element->serialize(ar);
         TESS_CHECK(ar.remaining() == 0,
                    this->name(),
@@ -87,9 +91,35 @@ class Array final : public ArrayOf<typename C::Index> {
 
   static void pack_element(C& element, Writer& ar) {
     if constexpr (Migratable<C>) {
-      ar(element.index_, element.state_);
+      ar(element.index_, element.state_, element.balance_ != nullptr);
+      if (element.balance_ != nullptr) element.balance_->pack(ar, current_pe().start_meter());
       element.serialize(ar);
     }
+  }
+
+  void resume(Element& element) override {
+    if constexpr (ResumesFromSync<C>) {
+      C& chare = static_cast<C&>(element);
+      auto* letter = Awakening<C>::make(this->pe_, this->id(), chare.index_);
+      letter->epoch = chare.balance_->sync.epoch;  // counted there since at_sync()
+      this->post(letter);
+    } else {
+      Base::resume(element);
+    }
+  }
+  [[nodiscard]] std::optional<std::array<double, 3>> position_of(
+      const Element& element) const override {
+    if constexpr (requires(const C& c) { c.balance_position(); }) {
+      return static_cast<const C&>(element).balance_position();
+    } else {
+      return Base::position_of(element);
+    }
+  }
+  [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override {
+    Buffer bytes;
+    Writer ar(bytes);
+    pack_element(static_cast<C&>(element), ar);
+    return bytes.size();
   }
 
   [[nodiscard]] bool migratable() const override { return Migratable<C>; }
@@ -214,6 +244,8 @@ class ElementProxy {
     auto* letter = Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
     letter->demand = demand;
     letter->ask = demand == Demand::here;
+    if (Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages()) [[unlikely]]
+      meter->sent({collection_, IndexHash<Index>()(index_)}, payload_bytes(letter->arguments));
     post_letter(pe, letter);
   }
   void post_letter(Pe& pe, ElementMessage<Index>* letter) const {

@@ -13,6 +13,12 @@ namespace tess {
 template <class C>
 class ArrayProxy;
 
+/// A chare that can wait for its balancer.
+template <class C>
+concept ResumesFromSync = requires(C& chare) {
+  chare.resume_from_sync();
+};
+
 template <class Derived, class IndexType = Index1>
 class Chare : public IndexedElement<IndexType> {
  public:
@@ -42,6 +48,16 @@ class Chare : public IndexedElement<IndexType> {
 
   /// Ends this element once what runs of it, and what waits, is done.
   void destroy() { this->doomed_ = true; }
+
+  /// At the balancer's barrier (start_balancing): this element has done its part of the phase, and
+  /// waits. Once all members have said so and the round is over, its resume_from_sync() is called,
+  /// on the PE where it then is. Nothing of it but that has to run meanwhile: messages may, but a
+  /// second at_sync() before the resume is misuse.
+  void at_sync() {
+    static_assert(ResumesFromSync<Derived>,
+                  "a chare that calls at_sync() has a member function resume_from_sync()");
+    this->collection_->at_sync(*this);
+  }
 
   /// The number of the reduction that the next contribution belongs to. An element that is born
   /// joins at the first that its PE has not reported yet: while others are at number r that is r or

@@ -107,6 +107,12 @@ void refuse_rest(int argc, char** argv) {
 }
 }  // namespace detail
 
+bool charge(std::chrono::nanoseconds work) {
+  Pe& pe = current_pe();
+  pe.machine().charge(pe.id(), work);
+  return pe.machine().virtual_time();
+}
+
 void exit(int code) {
   Pe& pe = current_pe();
   pe.runtime().exit(pe, code);

@@ -13,6 +13,7 @@
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/task.hpp"
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -67,6 +68,10 @@ int run(int argc, char** argv, Main main) {
     return run_on(setup, detail::as_message(std::move(main)));
   });
 }
+
+/// On the simulated machine: this PE works for that long, in virtual time. True there; on a real
+/// machine nothing happens, and the caller does the work itself.
+bool charge(std::chrono::nanoseconds work);
 
 /// Ends the run on all PEs; no user code runs afterwards. The greatest code that any PE gives is
 /// the exit code.

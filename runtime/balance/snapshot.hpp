@@ -3,6 +3,7 @@
 // its position in them.
 #pragma once
 
+#include "runtime/base/mix.hpp"
 #include "runtime/ids.hpp"
 
 #include <array>
@@ -17,6 +18,12 @@ struct ElementKey {
   CollectionId array;
   std::uint64_t element = 0;
   friend auto operator<=>(const ElementKey&, const ElementKey&) = default;
+};
+
+struct ElementKeyHash {
+  std::size_t operator()(const ElementKey& key) const noexcept {
+    return mix(key.element ^ mix(key.array.value));
+  }
 };
 
 /// Messages from one element to another since the last round; ends are positions in Elements.

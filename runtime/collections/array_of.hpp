@@ -103,6 +103,10 @@ class ArrayOf : public Collection {
     }
   }
 
+  [[nodiscard]] std::uint64_t key_of(const Element& element) const override {
+    return IndexHash<Index>()(static_cast<const Element_&>(element).index_);
+  }
+
   void describe_waiting(std::vector<std::string>& lines) const override;
 
   // Messages between the parts of this array.
@@ -163,8 +167,8 @@ class ArrayOf : public Collection {
     }();
     element->state_.version = version;
     born(*element);
-    list(*element);
     here_.emplace(index, element);
+    list(*element);
     if (element->migrate_to_.value >= 0 || element->doomed_) [[unlikely]]
       settle(*element);  // its constructor asked for it
   }
@@ -462,10 +466,10 @@ void ArrayOf<Index>::land(Element_* element, PeId from) {
   const EpochId epoch = pe_.context().epoch;
   const std::uint64_t seen = element->state_.seen_broadcast;
   const Version version = element->state_.version;
-  list(*element);
   here_.emplace(index, element);
   cache_.forget(index);
   departed_.erase(index);
+  list(*element);
   // It stays until it has met the broadcasts that it missed on its way: only then has it landed.
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
@@ -520,6 +524,8 @@ void ArrayOf<Index>::bury(Element_& element) {
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
   here_.erase(index);
+  if (watcher() != nullptr) [[unlikely]]
+    watcher()->died(element);
   destroy(element);
   reductions().died(next);
   reductions().advance();

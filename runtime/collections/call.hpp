@@ -23,6 +23,20 @@ template <class... T>
   return found;
 }
 
+/// What the arguments of a message take when packed.
+template <class... T>
+[[nodiscard]] std::uint64_t payload_bytes(const std::tuple<T...>& arguments) {
+  if constexpr ((Bitwise<T> && ...)) {
+    return (sizeof(T) + ... + 0);
+  } else {
+    thread_local Buffer bytes;
+    bytes.clear();
+    Writer ar(bytes);
+    ar(arguments);
+    return bytes.size();
+  }
+}
+
 /// Making, packing and ending of a message type that derives from ElementMessage and has
 /// `arguments`.
 template <class Derived, class C, class Arguments>
@@ -152,6 +166,25 @@ struct Relocation final : TypedLetter<Relocation<C>, C, std::tuple<PeId>> {
                                                  &Base::pack,
                                                  &Base::unpack,
                                                  &Relocation::invoke,
+                                                 nullptr};
+};
+
+/// Ends the wait of an element at its balancer's barrier.
+template <class C>
+struct Awakening final : TypedLetter<Awakening<C>, C, std::tuple<>> {
+  using Base = TypedLetter<Awakening, C, std::tuple<>>;
+  using Index = typename C::Index;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
+    if (Collection::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
+  }
+  static inline const ElementAction<Index> entry{name_of_type<Awakening>,
+                                                 &Base::run,
+                                                 &Base::destroy,
+                                                 &Base::pack,
+                                                 &Base::unpack,
+                                                 &Awakening::invoke,
                                                  nullptr};
 };
 

@@ -9,7 +9,19 @@ std::string element_text(const Element& element) {
 }
 
 Collection::Collection(Pe& pe, CollectionId id, std::string name)
-    : pe_(pe), id_(id), name_(std::move(name)), broadcasts_(pe, *this), reductions_(pe, *this) {}
+    : pe_(pe),
+      id_(id),
+      name_(std::move(name)),
+      broadcasts_(pe, *this),
+      reductions_(pe,
+                  *this,
+                  Track::own,
+                  root(),
+                  {"reduction", [this](std::uint32_t number) { return elements_before(number); }}) {}
+
+ReductionTree& Collection::tree(Track track) {
+  return track == Track::own ? reductions_ : *second_tree_;
+}
 
 void Collection::list(Element& element) {
   element.collection_ = this;
@@ -17,11 +29,15 @@ void Collection::list(Element& element) {
   elements_.push_back(&element);
   ++n_local_;
   reductions_.enter(element.state_.next_reduction);
+  if (watcher_ != nullptr) [[unlikely]]
+    watcher_->entered(element);
 }
 
 void Collection::unlist(Element& element) {
   --n_local_;
   reductions_.leave(element.state_.next_reduction);
+  if (watcher_ != nullptr) [[unlikely]]
+    watcher_->left(element);
   if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat one
     elements_[element.slot_] = nullptr;
     return;
@@ -88,6 +104,55 @@ std::string Collection::elements_before(std::uint32_t number) const {
 
 void Collection::describe_waiting(std::vector<std::string>& lines) const {
   reductions_.describe_waiting(lines);
+  if (second_tree_ != nullptr) second_tree_->describe_waiting(lines);
+  if (watcher_ != nullptr) return;
+  for (const Element* element : elements_)
+    if (element != nullptr && element->balance_ &&
+        element->balance_->sync.phase == SyncPhase::waits)
+      lines.push_back(element_text(*element) +
+                      " waits at at_sync(), but its array has no balancer: start_balancing(array)");
+}
+
+BalanceRecord& Collection::make_record(Element& element) {
+  if (!element.balance_) element.balance_.reset(new BalanceRecord);
+  return *element.balance_;
+}
+
+bool Collection::awake(Element& element) {
+  SyncState& sync = make_record(element).sync;
+  return std::exchange(sync.phase, SyncPhase::runs) == SyncPhase::resumes;
+}
+
+void Collection::at_sync(Element& element) {
+  SyncState& sync = make_record(element).sync;
+  TESS_CHECK(sync.phase == SyncPhase::runs,
+             element_text(element),
+             " calls at_sync() again before it was resumed");
+  sync.phase = SyncPhase::waits;
+  sync.epoch = pe_.context().epoch;
+  pe_.completion().sent(sync.epoch);
+  if (watcher_ != nullptr) watcher_->at_sync(element);
+}
+
+void Collection::move(Element& element, PeId to) {
+  element.migrate_to_ = to;
+  settle(element);
+}
+
+void Collection::resume(Element& element) {
+  TESS_CHECK(false, element_text(element), " has no resume_from_sync()");
+}
+
+std::uint64_t Collection::key_of(const Element& /*element*/) const {
+  return 0;
+}
+
+std::optional<std::array<double, 3>> Collection::position_of(const Element& /*element*/) const {
+  return std::nullopt;
+}
+
+std::uint64_t Collection::packed_bytes(Element& /*element*/) const {
+  return 0;
 }
 
 void ElementScope::take_whim() {

@@ -2,12 +2,15 @@
 // reductions. What depends on the type of index and chare is in ArrayOf, Array and GroupOf.
 #pragma once
 
+#include "runtime/collections/balance_record.hpp"
 #include "runtime/collections/broadcast_log.hpp"
 #include "runtime/collections/element.hpp"
 #include "runtime/collections/reduction_tree.hpp"
 #include "runtime/scheduler/pe.hpp"
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +20,23 @@ namespace tess {
 [[nodiscard]] inline PeId root_of(CollectionId id, std::int32_t n_pes) {
   return PeId{static_cast<std::int32_t>(mix(id.value) % static_cast<std::uint64_t>(n_pes))};
 }
+
+/// Is told of the elements of a collection on one PE.
+class ElementWatcher {
+ public:
+  ElementWatcher() = default;
+  ElementWatcher(const ElementWatcher&) = delete;
+  ElementWatcher& operator=(const ElementWatcher&) = delete;
+  virtual ~ElementWatcher() = default;
+
+  /// It is listed here from now on: born, or come from another PE.
+  virtual void entered(Element& element) = 0;
+  /// It is no longer listed here.
+  virtual void left(Element& element) = 0;
+  /// It ends; called after left().
+  virtual void died(Element& element) = 0;
+  virtual void at_sync(Element& element) = 0;
+};
 
 class Collection {
  public:
@@ -33,6 +53,9 @@ class Collection {
 
   [[nodiscard]] BroadcastLog& broadcasts() { return broadcasts_; }
   [[nodiscard]] ReductionTree& reductions() { return reductions_; }
+  [[nodiscard]] ReductionTree& tree(Track track);
+  /// A library's tree, which messages of the second track reach; it stays the library's.
+  void set_second_tree(ReductionTree& tree) { second_tree_ = &tree; }
 
   /// Local elements; a slot may be empty while elements leave in the middle of a broadcast.
   [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
@@ -52,6 +75,32 @@ class Collection {
     return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
   }
   void contributed(Element& element) { reductions_.added(element.state_.next_reduction++); }
+
+  // The balancer's side.
+
+  /// Who is told of elements that come and go here; null: nobody.
+  [[nodiscard]] ElementWatcher* watcher() const { return watcher_; }
+  void set_watcher(ElementWatcher& watcher) { watcher_ = &watcher; }
+  /// What is kept of an element for its balancer; null while nobody asked for it.
+  [[nodiscard]] static BalanceRecord* record_of(const Element& element) {
+    return element.balance_.get();
+  }
+  static BalanceRecord& make_record(Element& element);
+  /// The element waits until its balancer resumes it.
+  void at_sync(Element& element);
+  /// The message of resume() has come: whether it was this life of the index that waited.
+  [[nodiscard]] static bool awake(Element& element);
+  /// Has the element leave for a PE once nothing of it runs or waits. The epoch that runs waits for
+  /// the move, unless a coroutine puts it off.
+  void move(Element& element, PeId to);
+  /// Sends the element the message that calls its resume_from_sync().
+  virtual void resume(Element& element);
+  /// The hash of the element's index.
+  [[nodiscard]] virtual std::uint64_t key_of(const Element& element) const;
+  /// What its balance_position() says, if it has one.
+  [[nodiscard]] virtual std::optional<std::array<double, 3>> position_of(const Element& element) const;
+  /// What a migration to another process would send.
+  [[nodiscard]] virtual std::uint64_t packed_bytes(Element& element) const;
 
   /// After something of the element ran: it leaves or ends now if that was asked for and nothing of
   /// it waits.
@@ -77,6 +126,8 @@ class Collection {
   const CollectionId id_;
   const std::string name_;
   std::vector<Element*> elements_;
+  ElementWatcher* watcher_ = nullptr;
+  ReductionTree* second_tree_ = nullptr;
   std::size_t n_local_ = 0;
   unsigned applying_ = 0;
   BroadcastLog broadcasts_;
@@ -88,15 +139,19 @@ class Collection {
 class ElementScope {
  public:
   ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch)
-      : pe_(pe), element_(element), before_(pe.context()) {
+      : pe_(pe), element_(element), before_(pe.context()), meter_(pe.meter()) {
     ++element.n_suspended_;
     pe.context() = Context{&element, action, epoch};
+    if (meter_ != nullptr) [[unlikely]]
+      outer_ = meter_->enter({load_of(element), action});
   }
   ElementScope(const ElementScope&) = delete;
   ElementScope& operator=(const ElementScope&) = delete;
   /// Ends the scope; the element may be gone afterwards.
   ~ElementScope() noexcept(false) {
     pe_.context() = before_;
+    if (meter_ != nullptr) [[unlikely]]
+      meter_->leave(outer_);
     if (--element_.n_suspended_ == 0) {
       if (pe_.intercepts()) [[unlikely]]
         take_whim();
@@ -107,9 +162,14 @@ class ElementScope {
 
  private:
   void take_whim();
+  [[nodiscard]] static LoadRecord* load_of(const Element& element) {
+    return element.balance_ ? &element.balance_->load : nullptr;
+  }
   Pe& pe_;
   Element& element_;
   Context before_;
+  Meter* const meter_;
+  Meter::Scope outer_;
 };
 
 }  // namespace tess

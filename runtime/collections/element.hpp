@@ -7,11 +7,18 @@
 
 #include <compare>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace tess {
 
 class Collection;
+struct BalanceRecord;
+
+/// Frees a record; out of line, for most elements have none.
+struct EndRecord {
+  void operator()(BalanceRecord* record) const;
+};
 
 /// Which life of an index (incarnation) and which place of that life (epoch, one more for each
 /// migration). Later knowledge has the greater version; {0, 0} is no knowledge.
@@ -54,6 +61,7 @@ class Element {
   friend std::string element_text(const Element& element);
 
   Collection* collection_ = nullptr;
+  std::unique_ptr<BalanceRecord, EndRecord> balance_;  // while a balancer watches its array
   ElementState state_;
   std::uint32_t slot_ = 0;         // in the collection's list
   std::uint32_t n_suspended_ = 0;  // coroutines of this element that wait, and handlers that run

@@ -8,20 +8,43 @@
 namespace tess {
 namespace {
 
+template <Track track>
 void report_arrives(Collection& collection, ReductionTree::Report&& m) {
-  collection.reductions().on_report(std::move(m));
+  collection.tree(track).on_report(std::move(m));
 }
+template <Track track>
 void begin_arrives(Collection& collection, ReductionTree::Begin&& m) {
-  collection.reductions().on_begin(m);
+  collection.tree(track).on_begin(m);
 }
 
 }  // namespace
 
-ReductionTree::ReductionTree(Pe& pe, Collection& collection)
-    : pe_(pe), collection_(collection), root_(collection.root()) {
+ReductionTree::ReductionTree(
+    Pe& pe, Collection& collection, Track track, PeId root, TreeWords words)
+    : pe_(pe),
+      collection_(collection),
+      track_(track),
+      words_(std::move(words)),
+      root_(root) {
   const SpanningTree tree(pe.id(), root_, pe.n_pes());
   parent_ = tree.parent();
   children_ = tree.children();
+}
+
+void ReductionTree::send(PeId to, Report&& report) {
+  if (track_ == Track::own) {
+    send_to_collection<&report_arrives<Track::own>>(collection_, to, std::move(report));
+  } else {
+    send_to_collection<&report_arrives<Track::second>>(collection_, to, std::move(report));
+  }
+}
+
+void ReductionTree::ask(PeId child, std::uint32_t number) {
+  if (track_ == Track::own) {
+    send_to_collection<&begin_arrives<Track::own>>(collection_, child, Begin{number});
+  } else {
+    send_to_collection<&begin_arrives<Track::second>>(collection_, child, Begin{number});
+  }
 }
 
 void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {
@@ -57,7 +80,7 @@ void ReductionTree::died(std::uint32_t next) {
   late.number = next;
   late.change = -1;
   late.late = true;
-  send_to_collection<&report_arrives>(collection_, root_, std::move(late));
+  send(root_, std::move(late));
 }
 
 void ReductionTree::enter(std::uint32_t next) {
@@ -91,7 +114,7 @@ void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> va
     late.late = true;
     late.value.held = std::move(value);
     late.shares = {{epoch, 1}};
-    send_to_collection<&report_arrives>(collection_, root_, std::move(late));
+    send(root_, std::move(late));
     return;
   }
   Gathering& gathering = gathering_[number];
@@ -116,8 +139,7 @@ void ReductionTree::advance() {
     if (static_cast<std::size_t>(gathering.children) < children_.size()) {
       if (!gathering.asked) {
         gathering.asked = true;
-        for (const PeId child : children_)
-          send_to_collection<&begin_arrives>(collection_, child, Begin{next_report_});
+        for (const PeId child : children_) ask(child, next_report_);
       }
       return;
     }
@@ -134,14 +156,13 @@ void ReductionTree::advance() {
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != pe_.id()) {
-    send_to_collection<&report_arrives>(collection_,
-                                        parent_,
-                                        Report{number,
-                                               gathered.n,
-                                               gathered.change,
-                                               false,
-                                               PartialBox{std::move(gathered.value)},
-                                               std::move(gathered.shares)});
+    send(parent_,
+         Report{number,
+                gathered.n,
+                gathered.change,
+                false,
+                PartialBox{std::move(gathered.value)},
+                std::move(gathered.shares)});
     return;
   }
   Whole& whole = whole_[number];
@@ -210,26 +231,32 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [number, gathering] : gathering_) {
     if (gathering.n == 0 && ready(number)) continue;
     lines.push_back(text(collection_.name(),
-                         ": reduction ",
+                         ": ",
+                         words_.noun,
+                         " ",
                          number,
                          " has ",
                          gathering.n,
                          " contributions on ",
                          pe_.id(),
                          "; it waits for ",
-                         ready(number) ? "other PEs" : collection_.elements_before(number + 1)));
+                         ready(number) ? "other PEs" : words_.missing_before(number + 1)));
   }
   // Elements that came after this PE had reported; what they have yet to give is not complete.
   if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
     lines.push_back(text(collection_.name(),
-                         ": reduction ",
+                         ": ",
+                         words_.noun,
+                         " ",
                          elements_at_.lowest(),
                          " waits for ",
-                         collection_.elements_before(next_report_)));
+                         words_.missing_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
     if (whole.sum.n != 0)
       lines.push_back(text(collection_.name(),
-                           ": reduction ",
+                           ": ",
+                         words_.noun,
+                         " ",
                            number,
                            " has ",
                            whole.sum.n,

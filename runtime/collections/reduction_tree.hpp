@@ -21,6 +21,7 @@
 #include "runtime/ids.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -37,9 +38,20 @@ struct EpochShare {
   std::uint64_t n = 0;
 };
 
+/// Which tree of a collection: its own, or a second one over members that a library gives it (the
+/// balancer's barrier).
+enum class Track : std::uint8_t { own, second };
+
+/// How a tree speaks of itself in reports: "reduction", and the members that have not contributed
+/// to the numbers below one.
+struct TreeWords {
+  std::string noun;
+  std::function<std::string(std::uint32_t)> missing_before;
+};
+
 class ReductionTree {
  public:
-  ReductionTree(Pe& pe, Collection& collection);
+  ReductionTree(Pe& pe, Collection& collection, Track track, PeId root, TreeWords words);
 
   /// The number at which an element that is born here now joins; the caller has counted it by
   /// enter().
@@ -112,8 +124,13 @@ class ReductionTree {
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();
 
+  void send(PeId to, Report&& report);
+  void ask(PeId child, std::uint32_t number);
+
   Pe& pe_;
   Collection& collection_;
+  const Track track_;
+  const TreeWords words_;
   PeId root_, parent_;
   std::vector<PeId> children_;
   std::uint32_t next_report_ = 0;  // this PE has reported all numbers below

@@ -113,6 +113,11 @@ class Machine {
 
   [[nodiscard]] virtual Time now(PeId pe) const = 0;
 
+  /// True if now() is a virtual clock.
+  [[nodiscard]] virtual bool virtual_time() const { return false; }
+  /// Advances the virtual clock of a PE that runs; nothing where time is real.
+  virtual void charge(PeId /*pe*/, Time /*work*/) {}
+
   /// One line: what the machine is and how its PEs are placed.
   [[nodiscard]] virtual std::string describe() const = 0;
 

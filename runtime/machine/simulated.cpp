@@ -71,6 +71,10 @@ class SimulatedMachine final : public Machine {
     return Time(clocks_[static_cast<std::size_t>(pe.value)].now +
                 (running_ == pe.value ? elapsed() : 0));
   }
+  [[nodiscard]] bool virtual_time() const override { return true; }
+  void charge(PeId pe, Time work) override {
+    clocks_[static_cast<std::size_t>(pe.value)].now += work.count();
+  }
   [[nodiscard]] std::string describe() const override {
     return text("simulated: ",
                 options_.n_pes,

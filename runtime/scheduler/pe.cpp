@@ -158,10 +158,14 @@ void Pe::exception(const char* what, int exit_code) {
 }
 
 std::size_t Pe::step(std::size_t most) {
+  if (ready_.empty()) return 0;
   const RunsOn here(*this);
   std::size_t n = 0;
+  if (meter_) [[unlikely]]
+    meter_->step_begins();
   for (; n < most && !ready_.empty(); ++n) run(static_cast<Envelope*>(ready_.pop()));
-  if (n == 0) return 0;
+  if (meter_) [[unlikely]]
+    meter_->step_ends();
   statistics_.messages += n;
   idle_calls_ = 0;
   if (++steps_since_flush_ >= steps_between_flushes) {
@@ -173,6 +177,8 @@ std::size_t Pe::step(std::size_t most) {
 
 bool Pe::idle() {
   const RunsOn here(*this);
+  if (meter_) [[unlikely]]
+    meter_->idle();
   bool busy = completion_.tell_epochs();
   // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
   // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.

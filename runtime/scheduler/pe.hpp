@@ -7,6 +7,7 @@
 #include "runtime/base/pool.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
 
@@ -63,6 +64,13 @@ class Pe {
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
   [[nodiscard]] Time now() const { return machine_.now(id_); }
+  /// What measures this PE's code; null while nobody asks for it.
+  [[nodiscard]] Meter* meter() { return meter_.get(); }
+  /// Measures from now on.
+  Meter& start_meter() {
+    if (!meter_) meter_ = std::make_unique<Meter>(machine_, id_);
+    return *meter_;
+  }
 
   /// Marks a new message as sent by this PE, on account of the epoch that runs.
   template <class M>
@@ -210,6 +218,7 @@ class Pe {
   SuspendedList suspended_;
   PeStatistics statistics_;
   Random random_;
+  std::unique_ptr<Meter> meter_;
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
   unsigned steps_since_flush_ = 0;

@@ -1,0 +1,50 @@
+// Measurement-based load balancing of an array: tess::start_balancing(blocks, {.strategy =
+// "greedy"}). What elements cost and send is measured from then on; at a round a strategy sees the
+// measured loads, and elements migrate.
+//
+//     at_sync     each element calls at_sync() once a phase; when all have, a round runs, and then
+//                 every element's resume_from_sync() is called
+//     automatic   the same barrier, but a round runs only when it is worth its cost
+//     periodic    no barrier: a round whenever `period` has passed, beside the elements' work
+//
+// Elements that exist where balancing starts are waited for from the first round on; later ones
+// from their first at_sync() on. An element that ends is no longer waited for.
+#pragma once
+
+#include "runtime/array.hpp"
+#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/rounds/balancer.hpp"
+
+namespace tess {
+
+/// The balancer of an array. A value that can be copied; history() on the PE that started it.
+class BalancerProxy {
+ public:
+  BalancerProxy() = default;
+  explicit BalancerProxy(GroupProxy<balance::Balancer> group) : group_(group) {}
+
+  /// The rounds so far, in order. On the PE that called start_balancing() alone.
+  [[nodiscard]] const std::vector<balance::Round>& history() const { return group_.local().history(); }
+
+ private:
+  GroupProxy<balance::Balancer> group_;
+};
+
+/// Balances an array from now on; once an array. The PE that calls it coordinates the rounds.
+/// Throws Error for options that name no strategy or prediction, or that fit not the PEs of the
+/// run.
+template <class C>
+BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options = {}) {
+  return BalancerProxy(balance::start(array.id(), options, {}));
+}
+
+/// The same by the user's own strategy: Assignment(const Snapshot&), of which what may not be moved
+/// is left where it is.
+template <class C>
+BalancerProxy start_balancing(ArrayProxy<C> array,
+                              const BalanceOptions& options,
+                              balance::Strategy strategy) {
+  return BalancerProxy(balance::start(array.id(), options, std::move(strategy)));
+}
+
+}  // namespace tess

@@ -1,0 +1,82 @@
+// The balancer of one array: a group, one member a PE. Each member watches the array's elements on
+// its PE; the coordinator (where balancing was started) decides.
+//
+//     at_sync of all -> barrier -> coordinator: reached
+//         collect  ->  all PEs report their loads        (reduction, in PE order)
+//         decide       the strategy, on the coordinator
+//         move     ->  elements migrate                  (an epoch: it ends when all have arrived)
+//         resume   ->  every element goes on
+//
+// A distributed strategy (diffusion, gossip) has no collect and no decide: see Distributed.
+#pragma once
+
+#include "runtime/balance/rounds/barrier.hpp"
+#include "runtime/balance/rounds/measured.hpp"
+#include "runtime/epoch.hpp"
+#include "runtime/future.hpp"
+#include "runtime/group.hpp"
+
+#include <memory>
+
+namespace tess::balance {
+
+class Balancer final : public Group<Balancer>, private ElementWatcher {
+ public:
+  /// What every member needs of the options.
+  struct Plan {
+    CollectionId array{};
+    PeId coordinator{};
+    BalanceWhen when = BalanceWhen::at_sync;
+    std::int64_t period_ns = 0;
+    bool passes = false;         ///< strategy none: at_sync() goes on at once
+    std::vector<double> speeds;  ///< of each PE, or empty
+  };
+  explicit Balancer(const Plan& plan);
+
+  /// The array is known here.
+  void attach(Collection& array);
+  /// On the coordinator: what decides.
+  void coordinate(std::unique_ptr<Coordinator> coordinator) { coordinator_ = std::move(coordinator); }
+  [[nodiscard]] const std::vector<Round>& history() const;
+
+  // Entry methods.
+  Task reached(std::uint64_t n_elements);
+  Task due(std::uint64_t round);
+  void sum_up(Callback<PhaseSums> target);
+  void collect(Callback<std::vector<PeReport>> target);
+  void move(std::vector<Move> moves);
+  void resume(std::uint32_t round);
+  void forget(std::uint64_t round);
+
+ private:
+  // ElementWatcher.
+  void entered(Element& element) override;
+  void left(Element& element) override;
+  void died(Element& element) override;
+  void at_sync(Element& element) override;
+
+  Task round();
+  void pass(Element& element);
+  void alarm();
+
+  const Plan plan_;
+  Barrier barrier_;
+  Measured measured_;
+  Collection* array_ = nullptr;
+  std::uint64_t n_collected_ = 0;
+  std::uint64_t n_rounds_seen_ = 0;  // periodic: that this member knows of
+
+  // On the coordinator.
+  std::unique_ptr<Coordinator> coordinator_;
+  std::uint32_t barriers_ = 0;
+  std::uint64_t n_rounds_ = 0;
+  bool running_ = false;
+  Time phase_began_{0};
+};
+
+/// Makes the balancer of an array, coordinated by this PE. For start_balancing().
+[[nodiscard]] GroupProxy<Balancer> start(CollectionId array,
+                                         const BalanceOptions& options,
+                                         Strategy users);
+
+}  // namespace tess::balance

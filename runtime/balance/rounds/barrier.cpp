@@ -1,0 +1,121 @@
+#include "runtime/balance/rounds/barrier.hpp"
+
+#include "runtime/reduction.hpp"
+
+namespace tess::balance {
+namespace {
+
+SyncState& sync_of(Element& element) {
+  return Collection::record_of(element)->sync;
+}
+
+}  // namespace
+
+Barrier::Barrier(Pe& pe, Collection& group, PeId coordinator, Callback<std::uint64_t> reached)
+    : pe_(pe),
+      reached_(std::move(reached)),
+      tree_(pe,
+            group,
+            Track::second,
+            coordinator,
+            {"balance round", [this](std::uint32_t round) { return missing_before(round); }}) {
+  group.set_second_tree(tree_);
+  tree_.enter(0);
+}
+
+void Barrier::attach(Collection& array) {
+  array_ = &array;
+  for (Element* element : array.elements()) {
+    if (element == nullptr) continue;
+    SyncState& sync = Collection::make_record(*element).sync;
+    if (!sync.member) {
+      sync.member = true;
+      sync.next = 0;
+      tree_.born(0);
+    }
+    tree_.enter(sync.next);
+  }
+  tree_.leave(0);
+  for (Element* element : array.elements())
+    if (element != nullptr && sync_of(*element).phase == SyncPhase::waits) at_sync(*element);
+  tree_.advance();
+}
+
+void Barrier::entered(Element& element) {
+  SyncState& sync = sync_of(element);
+  if (sync.member) tree_.enter(sync.next);
+  if (sync.phase != SyncPhase::waits) return;
+  if (!sync.member) {
+    at_sync(element);  // it began to wait where balancing had not started
+  } else if (sync.waits_for < n_resumed_) {
+    wake(element);
+  }
+}
+
+void Barrier::left(Element& element) {
+  const SyncState& sync = sync_of(element);
+  if (!sync.member) return;
+  tree_.leave(sync.next);
+  tree_.advance();
+}
+
+void Barrier::died(Element& element) {
+  const SyncState& sync = sync_of(element);
+  if (sync.phase == SyncPhase::waits) pe_.completion().processed(sync.epoch);
+  if (!sync.member) return;
+  tree_.died(sync.next);
+  tree_.advance();
+}
+
+void Barrier::at_sync(Element& element) {
+  SyncState& sync = sync_of(element);
+  if (sync.member) {
+    contribute(sync);
+    return;
+  }
+  sync.member = true;
+  sync.next = tree_.joins_at();
+  tree_.enter(sync.next);
+  tree_.born(sync.next);
+  if (sync.next > n_resumed_) {
+    sync.waits_for = sync.next - 1;
+  } else {
+    contribute(sync);
+  }
+}
+
+void Barrier::contribute(SyncState& sync) {
+  sync.waits_for = sync.next;
+  const EpochId before = std::exchange(pe_.context().epoch, sync.epoch);
+  tree_.contribute(sync.next++, std::make_unique<MergedPartial<std::uint64_t, Sum>>(1, reached_));
+  pe_.context().epoch = before;
+}
+
+void Barrier::resume(std::uint32_t round) {
+  n_resumed_ = std::max(n_resumed_, round + 1);
+  for (Element* element : array_->elements()) {
+    if (element == nullptr) continue;
+    const SyncState& sync = sync_of(*element);
+    if (sync.phase == SyncPhase::waits && sync.waits_for <= round) wake(*element);
+  }
+}
+
+void Barrier::wake(Element& element) {
+  sync_of(element).phase = SyncPhase::resumes;
+  array_->resume(element);
+}
+
+std::string Barrier::missing_before(std::uint32_t round) const {
+  std::string out;
+  std::size_t n = 0;
+  for (const Element* element : array_->elements()) {
+    if (element == nullptr) continue;
+    const SyncState& sync = Collection::record_of(*element)->sync;
+    if (!sync.member || sync.next >= round) continue;
+    if (++n <= 5) out += (n > 1 ? ", " : "") + element_text(*element);
+  }
+  if (n > 5) out += text(" and ", n - 5, " more");
+  return out;
+}
+
+}  // namespace tess::balance

@@ -1,0 +1,140 @@
+#include "runtime/balance/rounds/coordinator.hpp"
+
+#include "runtime/balance/honour.hpp"
+#include "runtime/balance/metrics.hpp"
+#include "runtime/messages/registry.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tess::balance {
+namespace {
+
+constexpr double counts_in_vain = 0.1;  // of imbalance that the last round could not remove
+constexpr double noise = 0.01;          // of the average: loads that differ by less are alike
+
+double slowest(const Snapshot& s, const Assignment& placement) {
+  return measure(s, placement).max_over_average * average_time(s);
+}
+
+std::map<std::string, double> by_entry(const std::vector<PeReport>& reports) {
+  std::map<std::string, double> result;
+  for (const PeReport& report : reports)
+    for (const auto& [action, seconds] : report.seconds_by_action)
+      result[plain_name(Registry::at(action).name())] += seconds;
+  return result;
+}
+
+}  // namespace
+
+Coordinator::Coordinator(BalanceOptions options, Strategy users)
+    : options_(std::move(options)),
+      strategy_(users ? make_strategy(std::move(users))
+                      : make_strategy(options_.strategy, options_.seed)),
+      predictor_(parse_prediction(options_.prediction), options_.window) {}
+
+bool Coordinator::worth(const PhaseSums& phase) {
+  if (judges_) return true;
+  const double average = phase.work / phase.speed;
+  const double above_floor = std::max(0.0, phase.slowest - (floor_ + noise) * average);
+  const double in_vain = std::max(0.0, phase.slowest - (1 + noise) * average) - above_floor;
+  lost_ += above_floor + counts_in_vain * in_vain;
+  return lost_ > cost_;
+}
+
+Assignment Coordinator::before_last_round(const Snapshot& measured) const {
+  Assignment placement = measured.elements.pe;
+  for (std::size_t i = 0; i < placement.size(); ++i)
+    if (const auto at = moved_from_.find(measured.elements.key[i]); at != moved_from_.end())
+      placement[i] = at->second;
+  return placement;
+}
+
+void Coordinator::judge_last_round(const Snapshot& measured, double now) {
+  if (history_.empty() || moved_from_.empty()) return;
+  Round& last = history_.back();
+  const double average = average_time(measured);
+  if (!(average > 0)) return;
+  const double without = slowest(measured, before_last_round(measured));
+  last.measured = now / average;
+  last.gain = 1 - now / without;
+}
+
+Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
+  const bool automatic = options_.when == BalanceWhen::automatic;
+  const double now = round.before * average_time(measured);
+  if (judges_) {
+    judges_ = false;
+    floor_ = round.before;
+    if (history_.back().gain < -noise) {
+      round.rolled_back = true;
+      return honour(measured, before_last_round(measured));
+    }
+    round.skipped = true;
+    return measured.elements.pe;
+  }
+  const Snapshot expected = predictor_.predict(measured);
+  const auto began = std::chrono::steady_clock::now();
+  Assignment wanted = strategy_(expected);
+  round.strategy_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  round.predicted = measure(expected, wanted).max_over_average;
+  if (automatic && slowest(expected, wanted) >= std::min(now, slowest(expected, expected.elements.pe))) {
+    floor_ = round.before;
+    round.skipped = true;
+    return measured.elements.pe;
+  }
+  return wanted;
+}
+
+std::vector<std::vector<Move>> Coordinator::decide(const std::vector<PeReport>& reports) {
+  const Snapshot measured = snapshot_of(reports, options_);
+  validate(measured);
+  predictor_.record(measured);
+  Round round;
+  round.number = history_.size();
+  round.strategy = options_.strategy;
+  round.n_elements = measured.elements.size();
+  round.seconds_by_entry = by_entry(reports);
+  round.before = measure(measured, measured.elements.pe).max_over_average;
+  judge_last_round(measured, round.before * average_time(measured));
+  const Assignment wanted = choose(measured, round);
+  const Metrics metrics = measure(measured, wanted);
+  if (round.skipped || round.rolled_back) round.predicted = metrics.max_over_average;
+  round.n_moved = metrics.n_moves;
+  round.moved_bytes = metrics.moved_bytes;
+  lost_ = 0;
+
+  moved_from_.clear();
+  std::vector<std::vector<Move>> moves(reports.size());
+  std::size_t at = 0;
+  for (std::size_t pe = 0; pe < reports.size(); ++pe) {
+    for (std::size_t i = 0; i < reports[pe].keys.size(); ++i, ++at) {
+      if (wanted[at] == pe_at(pe)) continue;
+      moves[pe].push_back({i, wanted[at]});
+      moved_from_.emplace(measured.elements.key[at], pe_at(pe));
+    }
+  }
+  judges_ = options_.when == BalanceWhen::automatic && round.n_moved != 0 && !round.rolled_back;
+  history_.push_back(std::move(round));
+  return moves;
+}
+
+void Coordinator::record_distributed(Round round) {
+  round.number = history_.size();
+  round.strategy = options_.strategy;
+  if (!history_.empty()) history_.back().measured = round.before;
+  floor_ = round.predicted;
+  lost_ = 0;
+  history_.push_back(std::move(round));
+}
+
+const Round& Coordinator::finish(double round_seconds, double phase_seconds) {
+  Round& round = history_.back();
+  round.round_seconds = round_seconds;
+  round.phase_seconds = phase_seconds;
+  if (round.strategy_seconds > 0) cost_ = round_seconds;
+  return round;
+}
+
+}  // namespace tess::balance

@@ -1,0 +1,105 @@
+#include "runtime/balance/rounds/measured.hpp"
+
+#include <algorithm>
+
+namespace tess::balance {
+namespace {
+
+// Packing an element only to learn its size costs as much as a migration: each is looked at when
+// it is new, and again every so many rounds.
+constexpr std::uint64_t rounds_between_weighings = 16;
+
+}  // namespace
+
+void Measured::attach(Collection& array) {
+  array_ = &array;
+  for (Element* element : array.elements())
+    if (element != nullptr) entered(*element);
+}
+
+void Measured::entered(Element& element) {
+  BalanceRecord& record = Collection::make_record(element);
+  record.load.of_pe = &in_elements_;
+  record.position = BalanceRecord::nowhere;
+}
+
+void Measured::left(Element& element) {
+  BalanceRecord& record = *Collection::record_of(element);
+  meter_.forget(&record.load);
+  record.load.of_pe = nullptr;
+  if (record.position != BalanceRecord::nowhere) reported_[record.position] = nullptr;
+  record.position = BalanceRecord::nowhere;
+}
+
+double Measured::busy_outside() const {
+  const std::uint64_t busy = meter_.busy() - busy_before_;
+  return meter_.seconds(busy - std::min(busy, in_elements_));
+}
+
+void Measured::begin_phase() {
+  busy_before_ = meter_.busy();
+  in_elements_ = 0;
+}
+
+void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
+  BalanceRecord& record = *Collection::record_of(element);
+  record.position = reported_.size();
+  reported_.push_back(&element);
+  const std::uint64_t key = array_->key_of(element);
+  if (array_->migratable() &&
+      (record.size_bytes == 0 || (round + key) % rounds_between_weighings == 0))
+    record.size_bytes = array_->packed_bytes(element);
+  report.keys.push_back({array_->id(), key});
+  report.seconds.push_back(meter_.seconds(record.load.ticks));
+  report.migratable.push_back(array_->migratable() ? 1 : 0);
+  report.size_bytes.push_back(record.size_bytes);
+  if (const auto position = array_->position_of(element)) report.positions.push_back(*position);
+  for (const auto& [to, sent] : record.load.sent)
+    report.parcels.push_back(
+        {record.position, ElementKey{to.array, to.element}, sent.bytes, sent.messages});
+  for (const LoadRecord::Entry& entry : record.load.entries) {
+    const std::uint32_t action = entry.action->id();
+    auto at = std::find_if(report.seconds_by_action.begin(),
+                           report.seconds_by_action.end(),
+                           [action](const auto& one) { return one.first == action; });
+    if (at == report.seconds_by_action.end())
+      at = report.seconds_by_action.insert(at, {action, 0.0});
+    at->second += meter_.seconds(entry.ticks);
+  }
+  record.load.clear();
+}
+
+PeReport Measured::report(std::uint64_t round) {
+  PeReport report;
+  if (array_ == nullptr) return report;  // not known here yet
+  report.background = busy_outside();
+  begin_phase();
+  for (Element* element : reported_)
+    if (element != nullptr) Collection::record_of(*element)->position = BalanceRecord::nowhere;
+  reported_.clear();
+  for (Element* element : array_->elements())
+    if (element != nullptr) add(*element, round, report);
+  return report;
+}
+
+PhaseSums Measured::sums(double speed) const {
+  double seconds = 0;
+  for (const Element* element : array_->elements())
+    if (element != nullptr) seconds += meter_.seconds(Collection::record_of(*element)->load.ticks);
+  seconds += busy_outside();
+  return {seconds, seconds * speed, speed};
+}
+
+void Measured::clear() {
+  begin_phase();
+  for (Element* element : array_->elements())
+    if (element != nullptr) Collection::record_of(*element)->load.clear();
+}
+
+void Measured::move(const std::vector<Move>& moves) {
+  for (const Move& one : moves)
+    if (Element* element = reported_[one.element]; element != nullptr)
+      array_->move(*element, one.to);
+}
+
+}  // namespace tess::balance

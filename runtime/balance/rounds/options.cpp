@@ -1,0 +1,115 @@
+#include "runtime/balance/rounds/options.hpp"
+
+#include "runtime/balance/prediction.hpp"
+#include "runtime/balance/strategy.hpp"
+#include "runtime/error.hpp"
+
+#include <charconv>
+
+namespace tess {
+namespace {
+
+double number(std::string_view key, std::string_view value, std::string_view* rest) {
+  double result = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
+  if (error != std::errc() || !(result >= 0))
+    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is no number of at least 0");
+  *rest = std::string_view(end, static_cast<std::size_t>(value.data() + value.size() - end));
+  return result;
+}
+
+std::uint64_t whole(std::string_view key, std::string_view value) {
+  std::uint64_t result = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
+  if (error != std::errc() || end != value.data() + value.size())
+    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is no whole number");
+  return result;
+}
+
+std::chrono::nanoseconds time(std::string_view key, std::string_view value) {
+  std::string_view unit;
+  const double count = number(key, value, &unit);
+  const double factor = unit == "us" ? 1e3 : unit == "ms" ? 1e6 : unit == "s" ? 1e9 : 0;
+  if (factor == 0)
+    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is no time (us, ms, s)");
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(count * factor));
+}
+
+BalanceWhen parse_when(std::string_view value) {
+  if (value == "at_sync") return BalanceWhen::at_sync;
+  if (value == "periodic") return BalanceWhen::periodic;
+  if (value == "automatic") return BalanceWhen::automatic;
+  fail(ErrorCode::bad_argument,
+       "--balance when: ",
+       value,
+       " is none of at_sync, periodic, automatic");
+}
+
+}  // namespace
+
+BalanceOptions parse_balance(std::string_view given) {
+  BalanceOptions options;
+  for (bool first = true; !given.empty(); first = false) {
+    const std::size_t comma = std::min(given.find(','), given.size());
+    const std::string_view part = given.substr(0, comma);
+    given.remove_prefix(std::min(comma + 1, given.size()));
+    const std::size_t equals = part.find('=');
+    const std::string_view key = part.substr(0, equals);
+    const std::string_view value =
+        equals == std::string_view::npos ? std::string_view() : part.substr(equals + 1);
+    if (key == "strategy") {
+      options.strategy = value;
+    } else if (key == "when") {
+      options.when = parse_when(value);
+    } else if (key == "period") {
+      options.period = time(key, value);
+    } else if (key == "prediction") {
+      options.prediction = value;
+    } else if (key == "window") {
+      options.window = whole(key, value);
+    } else if (key == "seed") {
+      options.seed = whole(key, value);
+    } else if (key == "report") {
+      options.lines = RoundLines::print;
+    } else if (first && equals == std::string_view::npos) {
+      options.strategy = key;
+    } else {
+      fail(ErrorCode::bad_argument,
+           "--balance: unknown key ",
+           key,
+           " (strategy, when, period, prediction, window, seed, report)");
+    }
+  }
+  balance::validate(options, 0);
+  return options;
+}
+
+void balance::validate(const BalanceOptions& options, std::int32_t n_pes) {
+  (void)make_strategy(options.strategy, options.seed);
+  (void)parse_prediction(options.prediction);
+  if (options.window == 0)
+    fail(ErrorCode::bad_argument, "balance window: 0 phases; a prediction looks back at least one");
+  if (options.when == BalanceWhen::periodic && options.period.count() <= 0)
+    fail(ErrorCode::bad_argument, "balance period: periodic rounds need one above 0, as period=50ms");
+  if (n_pes == 0) return;
+  const auto fits = [n_pes](std::size_t n) { return n == 0 || n == static_cast<std::size_t>(n_pes); };
+  if (!fits(options.speeds.size()))
+    fail(ErrorCode::bad_argument,
+         "balance speeds: ",
+         options.speeds.size(),
+         " are given, the run has ",
+         n_pes,
+         " PEs");
+  for (const double speed : options.speeds)
+    if (!(speed > 0 && speed < 1e9))
+      fail(ErrorCode::bad_argument, "balance speeds: ", speed, " is not above 0");
+  if (!fits(options.memory_limit_bytes.size()))
+    fail(ErrorCode::bad_argument,
+         "balance memory limits: ",
+         options.memory_limit_bytes.size(),
+         " are given, the run has ",
+         n_pes,
+         " PEs");
+}
+
+}  // namespace tess

@@ -1,0 +1,39 @@
+// How an array is balanced: by which strategy, when, on which prediction of loads.
+#pragma once
+
+#include <chrono>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tess {
+
+enum class RoundLines : std::uint8_t { none, print };
+enum class BalanceWhen : std::uint8_t { at_sync, periodic, automatic };
+
+struct BalanceOptions {
+  /// A name of balance::strategy_names(). With `none` at_sync() is no barrier: elements go on at
+  /// once.
+  std::string strategy = "greedy_refine";
+  BalanceWhen when = BalanceWhen::at_sync;
+  std::chrono::nanoseconds period{0};  ///< of periodic rounds; above 0 there
+  std::string prediction = "last";    ///< last, moving_average, linear_trend
+  std::uint64_t window = 5;           ///< phases that a prediction looks back
+  std::uint64_t seed = 1;             ///< of strategies that draw
+  std::vector<double> speeds;         ///< of each PE, relative; empty: all alike
+  std::vector<std::uint64_t> memory_limit_bytes;  ///< of each PE; 0 or empty: none
+  RoundLines lines = RoundLines::none;  ///< or one a round to standard error
+};
+
+/// "strategy=greedy,when=periodic,period=50ms,prediction=linear_trend,window=5,seed=7,report".
+/// A first part without a key is the strategy. Throws Error that names the part.
+[[nodiscard]] BalanceOptions parse_balance(std::string_view text);
+
+namespace balance {
+/// Throws Error that names the option, its value, and what it may be.
+void validate(const BalanceOptions& options, std::int32_t n_pes);
+}  // namespace balance
+
+}  // namespace tess

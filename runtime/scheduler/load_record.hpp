@@ -1,0 +1,65 @@
+// What one element cost since its loads were last collected: the time of its code by entry method,
+// and what it sent to whom. Kept while a balancer watches the element, and travels with it.
+#pragma once
+
+#include "runtime/base/mix.hpp"
+#include "runtime/ids.hpp"
+
+#include <boost/unordered/unordered_flat_map.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace tess {
+
+struct Action;
+
+/// An element as its traffic names it: the array, and the hash of the index.
+struct Destination {
+  CollectionId array{};
+  std::uint64_t element = 0;
+  friend bool operator==(const Destination&, const Destination&) = default;
+};
+struct DestinationHash {
+  std::size_t operator()(const Destination& to) const noexcept {
+    return mix(to.element ^ mix(to.array.value));
+  }
+};
+
+/// Payload that was sent; headers do not count.
+struct SentTo {
+  std::uint64_t bytes = 0;
+  std::uint64_t messages = 0;
+};
+
+struct LoadRecord {
+  struct Entry {
+    const Action* action = nullptr;
+    std::uint64_t ticks = 0;
+    std::uint64_t calls = 0;
+  };
+
+  std::uint64_t ticks = 0;            ///< of the PE's meter
+  std::vector<Entry> entries;         ///< by entry method: few
+  boost::unordered_flat_map<Destination, SentTo, DestinationHash> sent;
+  std::uint64_t* of_pe = nullptr;     ///< where the PE adds up the ticks of all such elements
+
+  void spend(const Action* action, std::uint64_t spent) {
+    ticks += spent;
+    if (of_pe != nullptr) *of_pe += spent;
+    for (Entry& entry : entries) {
+      if (entry.action != action) continue;
+      entry.ticks += spent;
+      ++entry.calls;
+      return;
+    }
+    entries.push_back({action, spent, 1});
+  }
+  void clear() {
+    ticks = 0;
+    entries.clear();
+    sent.clear();
+  }
+};
+
+}  // namespace tess

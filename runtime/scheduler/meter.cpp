@@ -1,0 +1,100 @@
+#include "runtime/scheduler/meter.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+namespace tess {
+namespace {
+
+constexpr double quantum_seconds = 1e-3;
+constexpr double gap_seconds = 30e-6;   // without a step or a look at the queue: the thread slept
+constexpr double noise_seconds = 20e-6;  // below it the two clocks differ by themselves
+
+double thread_cpu_seconds() {
+  timespec at{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
+  return static_cast<double>(at.tv_sec) + 1e-9 * static_cast<double>(at.tv_nsec);
+}
+
+}  // namespace
+
+Meter::Meter(Machine& machine, PeId pe)
+    : machine_(machine),
+      pe_(pe),
+      virtual_(machine.virtual_time()),
+      seconds_per_tick_(virtual_ ? 1e-9 : tess::seconds_per_tick()),
+      made_(now()),
+      since_(made_),
+      step_began_(made_),
+      quantum_ticks_(ticks(quantum_seconds)),
+      gap_ticks_(ticks(gap_seconds)) {}
+
+std::uint64_t Meter::pass() {
+  const std::uint64_t at = now();
+  if (scope_.record != nullptr) {
+    const std::uint64_t spent = at - since_;
+    scope_.record->spend(scope_.action, spent);
+    if (spent > longest_ticks_) {
+      longest_ticks_ = spent;
+      longest_ = scope_;
+    }
+  }
+  since_ = at;
+  return at;
+}
+
+void Meter::step_begins() {
+  const std::uint64_t at = now();
+  step_began_ = at;
+  if (!virtual_ && at - last_seen_ > gap_ticks_) begin_quantum(at);
+}
+
+void Meter::step_ends() {
+  const std::uint64_t at = now();
+  busy_ += at - step_began_;
+  last_seen_ = at;
+  if (!virtual_ && at - quantum_began_ > quantum_ticks_) {
+    end_quantum(at);
+    begin_quantum(at);
+  }
+}
+
+void Meter::idle() {
+  if (!virtual_) last_seen_ = now();
+}
+
+void Meter::begin_quantum(std::uint64_t at) {
+  quantum_began_ = at;
+  cpu_at_begin_ = thread_cpu_seconds();
+  longest_ = {};
+  longest_ticks_ = 0;
+}
+
+void Meter::end_quantum(std::uint64_t at) {
+  const double stolen = seconds(at - quantum_began_) - (thread_cpu_seconds() - cpu_at_begin_);
+  if (stolen < noise_seconds || longest_.record == nullptr) return;
+  const std::uint64_t back = std::min(ticks(stolen), longest_ticks_);
+  LoadRecord& record = *longest_.record;
+  busy_ -= std::min(back, busy_);
+  record.ticks -= std::min(back, record.ticks);
+  if (record.of_pe != nullptr) *record.of_pe -= std::min(back, *record.of_pe);
+  for (LoadRecord::Entry& entry : record.entries)
+    if (entry.action == longest_.action) entry.ticks -= std::min(back, entry.ticks);
+}
+
+void Meter::add_alarm(std::uint64_t period, std::function<void()> ring) {
+  alarms_.push_back({period, now() + period, std::move(ring)});
+  alarm_at_ = std::min(alarm_at_, alarms_.back().at);
+}
+
+void Meter::ring(std::uint64_t at) {
+  alarm_at_ = ~std::uint64_t{0};
+  for (Alarm& alarm : alarms_) {
+    const bool due = alarm.at <= at;
+    if (due) alarm.at = at + alarm.period;
+    alarm_at_ = std::min(alarm_at_, alarm.at);
+    if (due) alarm.ring();
+  }
+}
+
+}  // namespace tess

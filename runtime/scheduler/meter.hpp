@@ -1,0 +1,117 @@
+// What the code of a PE costs, and whose code it is. A PE has a meter while a balancer, a trace or
+// statistics ask for one; without it a call of an entry method costs one test of a null pointer.
+//
+// Scopes nest (a constructor inside a handler); time is the innermost scope's. It is read from the
+// cycle counter, which goes on while the kernel runs somebody else. So once a quantum of about a
+// millisecond the PE's thread asks for its CPU time: what the counter has more was stolen, and is
+// taken back from the longest call of the quantum, for a call that was preempted is long. On the
+// simulated machine the meter reads the virtual clock, which nobody steals from.
+//
+//   step_begins  [ enter … [ enter … leave ] … leave ]*  step_ends   idle …
+#pragma once
+
+#include "runtime/base/ticks.hpp"
+#include "runtime/machine/machine.hpp"
+#include "runtime/scheduler/load_record.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace tess {
+
+class Meter {
+ public:
+  Meter(Machine& machine, PeId pe);
+
+  /// The scope that runs: whose time it is (null: nobody's record), and in which entry method.
+  struct Scope {
+    LoadRecord* record = nullptr;
+    const Action* action = nullptr;
+  };
+
+  [[nodiscard]] std::uint64_t now() const {
+    return virtual_ ? static_cast<std::uint64_t>(machine_.now(pe_).count()) : read_ticks();
+  }
+  [[nodiscard]] double seconds(std::uint64_t ticks) const {
+    return static_cast<double>(ticks) * seconds_per_tick_;
+  }
+  [[nodiscard]] std::uint64_t ticks(double seconds) const {
+    return static_cast<std::uint64_t>(seconds / seconds_per_tick_);
+  }
+
+  /// A scope begins; returns the one that it interrupts, for leave().
+  [[nodiscard]] Scope enter(Scope scope) {
+    pass();
+    return std::exchange(scope_, scope);
+  }
+  void leave(Scope outer) {
+    const std::uint64_t at = pass();
+    scope_ = outer;
+    if (at >= alarm_at_) [[unlikely]]
+      ring(at);
+  }
+  /// Whether what is sent is to be weighed: packing is how, and a record takes it down.
+  [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
+  /// The element that runs sends a payload to another element.
+  void sent(const Destination& to, std::uint64_t bytes) {
+    SentTo& sum = scope_.record->sent[to];
+    sum.bytes += bytes;
+    ++sum.messages;
+  }
+  /// The record ends, or leaves this PE.
+  void forget(const LoadRecord* record) {
+    if (scope_.record == record) scope_.record = nullptr;
+    if (longest_.record == record) longest_ = {};
+  }
+
+  // Called by the PE.
+  void step_begins();
+  void step_ends();
+  void idle();
+
+  /// Ticks in steps that ran something, less what was stolen.
+  [[nodiscard]] std::uint64_t busy() const { return busy_; }
+  /// Seconds since the meter was made.
+  [[nodiscard]] double age() const { return seconds(now() - made_); }
+
+  /// From now on `ring` is called after a scope that ends `period` ticks or more after its last
+  /// call.
+  void add_alarm(std::uint64_t period, std::function<void()> ring);
+
+ private:
+  /// Time since the last change of scope goes to the scope that runs; returns now.
+  std::uint64_t pass();
+  void ring(std::uint64_t at);
+  void begin_quantum(std::uint64_t at);
+  void end_quantum(std::uint64_t at);
+
+  Machine& machine_;
+  const PeId pe_;
+  const bool virtual_;
+  const double seconds_per_tick_;
+  const std::uint64_t made_;
+  Scope scope_;
+  std::uint64_t since_ = 0;  // the last change of scope
+  std::uint64_t step_began_ = 0;
+  std::uint64_t busy_ = 0;
+
+  // The quantum: from when, at which CPU time, and its longest call.
+  const std::uint64_t quantum_ticks_, gap_ticks_;
+  std::uint64_t quantum_began_ = 0;
+  double cpu_at_begin_ = 0;
+  std::uint64_t last_seen_ = 0;
+  Scope longest_;
+  std::uint64_t longest_ticks_ = 0;
+
+  struct Alarm {
+    std::uint64_t period = 0;
+    std::uint64_t at = 0;
+    std::function<void()> ring;
+  };
+  std::vector<Alarm> alarms_;
+  std::uint64_t alarm_at_ = ~std::uint64_t{0};  // the earliest
+};
+
+}  // namespace tess
