@@ -71,9 +71,11 @@ Runtime::~Runtime() = default;
 
 int Runtime::run() {
   Registry::seal();
-  if (!machine_.agree(Registry::fingerprint()))
+  if (!machine_.agree(Registry::fingerprint())) {
+    if (machine_.process().value != 0) return 2;  // all found it; one says it
     fail(ErrorCode::environment,
          "the processes of this job run different programs: start the same build everywhere");
+  }
   machine_.run(*this);
   if (left_) return exit_code_;
   // Only a simulated machine can notice that nothing at all is under way any more.
