@@ -96,6 +96,7 @@ class MpiMachine final : public Machine, private Network {
 }  // namespace
 
 bool under_mpirun() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): asked before there are threads
   return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
 }
 
