@@ -1,7 +1,7 @@
 // A job that ends as its argument says, while messages go round all PEs and would do so for ever;
 // run under mpirun by job_ends.sh.
 //
-//     test_job throw | fail | check | exit | codes | wait
+//     test_job throw | fail | check | exit | codes=A,B | forget | wait
 #include "runtime/runtime.hpp"
 
 #include <chrono>
@@ -54,6 +54,25 @@ class Actor : public tess::Chare<Actor, tess::Index1> {
   int delay_ = 1000;
 };
 
+/// Moves, and reads a member into nowhere: builds with CHECKS=all refuse it.
+class Forgetful : public tess::Chare<Forgetful, tess::Index1> {
+ public:
+  void go() {
+    lost_ = 7.5;
+    migrate_to(tess::PeId{tess::current_pe().n_pes() - 1});
+  }
+  void end() const { tess::exit(0); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    double other = Ar::is_reading ? 0 : lost_;
+    ar(kept_, other);
+  }
+
+ private:
+  int kept_ = 1;
+  double lost_ = 0;
+};
+
 /// The first PE and the last both give a code before either can hear of the other's.
 void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
   tess::Pe& pe = tess::current_pe();
@@ -72,6 +91,10 @@ int job(int argc, char** argv) {
       give_codes(crowd, 3, 9);
     } else if (ending == "codes=9,3") {
       give_codes(crowd, 9, 3);
+    } else if (ending == "forget") {
+      const auto forgetful = tess::create<Forgetful>(tess::range(1));
+      forgetful[{0}].send<&Forgetful::go>();
+      forgetful[{0}].send<&Forgetful::end>();
     } else {
       crowd.broadcast<&Crowd::begin>();
       const std::int32_t n = tess::current_pe().n_pes();

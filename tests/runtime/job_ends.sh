@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # How a job ends under mpirun: with the exit code and the line that it should, on all processes, within seconds.
 #
-#     job_ends.sh MPIEXEC JOB OTHER_JOB
+#     job_ends.sh MPIEXEC JOB OTHER_JOB CHECKS
 set -uo pipefail
 mpirun=("$1" --allow-run-as-root --oversubscribe)
 job=$2
@@ -58,6 +58,16 @@ ends 9 "" -n 2 "$job" codes=9,3 --pes 1
 ends 2 "different programs" -n 1 "$job" exit --pes 1 : -n 1 "$other" exit --pes 1
 once "different programs"
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
+# An element whose serialize() forgets: within a process and between two.
+if [[ ${4:-} == all ]]; then
+  for pes in "-n 1 --pes 2" "-n 2 --pes 1"; do
+    # shellcheck disable=SC2086
+    set -- $pes
+    ends 1 "Forgetful: member 2 of 2 (double) does not come back" "$1" "$2" "$job" forget "$3" "$4"
+  done
+else
+  ends 0 "" -n 2 "$job" forget --pes 1
+fi
 
 # A process that is killed: mpirun notices, ends the others and names it.
 timeout -k 5 $limit "${mpirun[@]}" -n 2 "$job" wait --pes 1 >"$scratch/out" 2>"$scratch/err" </dev/null &
