@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t flush_bytes = 32U << 10U;
 constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
 constexpr unsigned steps_between_flushes = 4;
+/// A step of so few messages shows that no company will come soon for what it sent.
+constexpr std::size_t hand_to_mouth = 2;
 
 /// What stands before each message in a packed buffer.
 struct PackedHeader {
@@ -171,6 +173,8 @@ std::size_t Pe::step(std::size_t most) {
   if (++steps_since_flush_ >= steps_between_flushes) {
     flush();
     completion_.tell_epochs();
+  } else if (n <= hand_to_mouth && holds_packed_) {
+    flush();
   }
   return n;
 }
