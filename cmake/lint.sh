@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks that all sources are formatted; with --tidy also runs clang-tidy on the given sources, or on those that differ
-# from the last commit. `cmake/lint.sh --fix` formats them.
+# Checks that all sources are formatted; `cmake/lint.sh --fix` formats them, `--tidy` runs clang-tidy (tidy.sh) on the
+# given sources, or on the runtime's core as far as it changed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,9 +11,7 @@ case "${1:-}" in
     ;;
   --tidy)
     shift
-    files=("$@")
-    if ((${#files[@]} == 0)); then mapfile -t files < <(git diff --name-only --diff-filter=d HEAD -- '*.cpp'); fi
-    if ((${#files[@]} != 0)); then clang-tidy --quiet -p build/release "${files[@]}"; fi
+    exec bash cmake/tidy.sh "$@"
     ;;
   "")
     clang-format --dry-run -Werror "${sources[@]}"

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
-#include "runtime/reduction.hpp"
+#include "runtime/collections/contribution.hpp"
 #include "runtime/task.hpp"
 
 namespace tess {
@@ -65,26 +65,10 @@ class Chare : public IndexedElement<IndexType> {
   [[nodiscard]] std::uint32_t next_reduction() const { return this->state_.next_reduction; }
 
   /// Gives this element's value to the next reduction of the array; every element gives one. The
-  /// whole goes to `target`.
+  /// whole goes to `target`. in_order(op) combines in the order of indices.
   template <class Op, class T>
-  void contribute(Op /*op*/, T value, Callback<T> target) {
-    using Merged = MergedPartial<T, Op>;
-    if (Partial* open = this->collection_->open_sum(*this, Merged::its_kind()); open != nullptr) {
-      static_cast<Merged*>(open)->add(value);
-      this->collection_->contributed(*this);
-    } else {
-      this->collection_->contribute(*this,
-                                    std::make_unique<Merged>(std::move(value), std::move(target)));
-    }
-  }
-  /// The same, combined in the order of indices.
-  template <class Op, class T>
-  void contribute(InOrder<Op> /*op*/, T value, Callback<T> target) {
-    std::vector<std::pair<Index, T>> values;
-    values.emplace_back(index(), std::move(value));
-    this->collection_->contribute(
-        *this,
-        std::make_unique<OrderedPartial<T, Op, Index>>(std::move(values), std::move(target)));
+  void contribute(Op op, T value, Callback<T> target) {
+    contribute_as(index(), *this, *this->collection_, op, std::move(value), std::move(target));
   }
 };
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "runtime/collections/collection_action.hpp"
+#include "runtime/collections/contribution.hpp"
 #include "runtime/messages/entry_traits.hpp"
-#include "runtime/reduction.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
 
@@ -25,24 +25,10 @@ class Group : public Element {
   [[nodiscard]] GroupProxy<Derived> group() const { return GroupProxy<Derived>(id_); }
 
   /// Gives this member's value to the next reduction of the group; every member gives one.
+  /// in_order(op) combines in the order of PEs.
   template <class Op, class T>
-  void contribute(Op /*op*/, T value, Callback<T> target) {
-    using Merged = MergedPartial<T, Op>;
-    if (Partial* open = this->collection_->open_sum(*this, Merged::its_kind()); open != nullptr) {
-      static_cast<Merged*>(open)->add(value);
-      this->collection_->contributed(*this);
-    } else {
-      this->collection_->contribute(*this,
-                                    std::make_unique<Merged>(std::move(value), std::move(target)));
-    }
-  }
-  /// The same, combined in the order of PEs.
-  template <class Op, class T>
-  void contribute(InOrder<Op> /*op*/, T value, Callback<T> target) {
-    std::vector<std::pair<PeId, T>> values;
-    values.emplace_back(pe_, std::move(value));
-    this->collection_->contribute(
-        *this, std::make_unique<OrderedPartial<T, Op, PeId>>(std::move(values), std::move(target)));
+  void contribute(Op op, T value, Callback<T> target) {
+    contribute_as(pe_, *this, *this->collection_, op, std::move(value), std::move(target));
   }
 
  protected:

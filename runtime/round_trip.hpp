@@ -1,7 +1,9 @@
 // Does a type read what it writes? Packs a value, unpacks it, packs again, and compares; what
 // differs is named by its place in serialize() (or in the aggregate) and its type. Builds with
-// CHECKS=all ask this of the arguments of every message; tests may ask it of any type. Not of
-// elements that migrate: their serialize() may have effects, and would be called once more.
+// CHECKS=all ask this of the arguments of every message, and of every element that migrates (it is
+// made again from its bytes then, on whatever machine); tests may ask it of any type. So
+// serialize() is called when nobody moves, and has no effect but on its archive and the members
+// that it reads.
 #pragma once
 
 #include "runtime/messages/registry.hpp"
@@ -74,6 +76,32 @@ template <class T>
                 i < after.size() ? after[i].bytes.size() : 0,
                 " after");
   }
+  return {};
+}
+
+/// The same for a copy and the bytes that it was read from.
+template <class T>
+[[nodiscard]] std::string difference_from_bytes(std::span<const std::byte> sent, const T& copy) {
+  const auto members = detail::members_of(copy);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const auto mine = sent.subspan(at, std::min(members[i].bytes.size(), sent.size() - at));
+    if (!detail::same_bytes({mine.begin(), mine.end()}, members[i].bytes))
+      return text(plain_name(name_of_type<T>),
+                  ": member ",
+                  i + 1,
+                  " of ",
+                  members.size(),
+                  " (",
+                  members[i].type,
+                  ") does not come back as it was sent");
+    at += mine.size();
+  }
+  if (at != sent.size())
+    return text(plain_name(name_of_type<T>),
+                ": serialize() writes ",
+                sent.size() - at,
+                " bytes less after it has read than before");
   return {};
 }
 

@@ -143,7 +143,7 @@ void refuse_rest(int argc, char** argv) {
   if (option == "--help" || option == "-h") {
     std::printf("usage: %s [options]\n%s", argv[0], options_help().c_str());
     std::fflush(stdout);
-    std::exit(0);
+    std::exit(0);  // NOLINT(concurrency-mt-unsafe): there are no threads yet
   }
   fail(ErrorCode::bad_argument, "unknown option ", option, " (--help lists them)");
 }

@@ -19,6 +19,10 @@ for preset in "${presets[@]}"; do
   targets=(all)
   if [[ $preset == release ]]; then targets+=(headers_alone); fi
   cmake --build --preset "$preset" --target "${targets[@]}" -j "$jobs" >build/"$preset".log 2>&1 || { tail -60 build/"$preset".log; exit 1; }
+  if [[ $preset == release ]]; then
+    echo "== $preset: tidy"
+    bash cmake/tidy.sh
+  fi
   echo "== $preset: test"
   ctest --preset "$preset" -j "$jobs"
 done

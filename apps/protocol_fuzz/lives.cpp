@@ -18,7 +18,6 @@ struct Population {
   int n_sent = 0;                             // tokens and destructions
   int n_ended = 0;
   int n_agents_done = 0;
-  bool closed = false;  // the run ends: what dies now was not destroyed
 
   /// All that the agents sent has come to something.
   bool is_settled() {
@@ -45,10 +44,15 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
   Mortal(const Mortal&) = delete;
   Mortal& operator=(const Mortal&) = delete;
   ~Mortal() override {
-    if (moved_) return;
     const std::lock_guard lock(population->mutex);
     --population->alive[at()];
-    if (!population->closed) ++population->n_ended;
+    if (ended_) ++population->n_ended;
+  }
+
+  /// Hides the base's: an end is to be told from an object that goes on elsewhere.
+  void destroy() {
+    ended_ = true;
+    Chare<Mortal<Mode>, Index2>::destroy();
   }
 
   void take(int token) {
@@ -56,6 +60,7 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
     if (random.chance(0.3))
       this->migrate_to(PeId{static_cast<std::int32_t>(
           random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
+    ++n_taken_;
     const std::lock_guard lock(population->mutex);
     ++population->delivered[static_cast<std::size_t>(token)];
   }
@@ -66,14 +71,7 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n_moves_);
-    if constexpr (Ar::is_reading) {
-      ++n_moves_;
-    } else {
-      const std::lock_guard lock(population->mutex);
-      --population->alive[at()];  // the copy that is read counts itself
-      moved_ = true;
-    }
+    ar(n_taken_);
   }
 
  private:
@@ -83,8 +81,8 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
     population->trial.expect(++population->alive[at()] == 1, "index ", at(), " has two elements");
   }
 
-  int n_moves_ = 0;
-  bool moved_ = false;
+  int n_taken_ = 0;
+  bool ended_ = false;
 };
 
 struct Orders {
@@ -170,10 +168,6 @@ Task drive(Orders orders) {
   while (!population->is_settled() && n_mends++ < most_mends) co_await epoch(mend);
   population->trial.expect(population->is_settled(), "messages are lost");
   co_await epoch(mend);
-  {
-    const std::lock_guard lock(population->mutex);
-    population->closed = true;
-  }
   array.template broadcast<&Mortal<Mode>::appear>();
 }
 

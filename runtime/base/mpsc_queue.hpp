@@ -19,6 +19,7 @@ class MpscQueue {
   MpscQueue() = default;
   MpscQueue(const MpscQueue&) = delete;
   MpscQueue& operator=(const MpscQueue&) = delete;
+  ~MpscQueue() = default;
 
   /// True if the queue was empty: this producer, and no other, has to wake the consumer.
   bool push(Link* link) noexcept { return push_chain(link, link); }

@@ -20,6 +20,7 @@ class Parker {
   Parker() = default;
   Parker(const Parker&) = delete;
   Parker& operator=(const Parker&) = delete;
+  ~Parker() = default;
 
   /// Sleeps until wake(), or until the time is over; not at all if `ready()` holds after the
   /// announcement. May also return for no reason. `forever` waits without limit.

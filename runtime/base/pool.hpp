@@ -35,6 +35,7 @@ class Pool {
   Pool() = default;
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
+  ~Pool() = default;
 
   /// Uninitialised memory, aligned to 16 bytes. The thread of this pool's PE alone.
   [[nodiscard]] void* allocate(std::size_t bytes) {

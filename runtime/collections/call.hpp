@@ -188,14 +188,14 @@ struct Awakening final : TypedLetter<Awakening<C>, C, std::tuple<>> {
                                                  nullptr};
 };
 
-/// An element on its way. Within a process the object itself travels; between processes what it
-/// serialises.
+/// An element on its way. Within a process the object itself travels (but with CHECKS=all); between
+/// processes what it serialises.
 template <class C>
 struct Arrival final : Envelope {
   CollectionId collection{};
   PeId from{};
   C* element = nullptr;
-  Buffer state;  // of an element that came from another process, until its array is known
+  Buffer state;  // what it serialised, once there is no object
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* arrival = static_cast<Arrival*>(envelope);
@@ -212,6 +212,8 @@ struct Arrival final : Envelope {
     delete arrival->element;
     delete arrival;
   }
+  /// Leaves the bytes of the element in place of the object.
+  void pack_state();
   static void pack(Envelope& envelope, Writer& ar);
   static Envelope* unpack(Pe& /*pe*/, Reader& ar) {
     auto arrival = std::make_unique<Arrival>();

@@ -139,8 +139,8 @@ void ReductionTree::advance() {
       }
       return;
     }
-    Gathering done = std::move(gathering);
     if (current_ == &gathering) current_ = nullptr;
+    Gathering done = std::move(gathering);
     gathering_.erase(at);
     if (const auto change = changes_.find(next_report_); change != changes_.end()) {
       done.change += change->second;

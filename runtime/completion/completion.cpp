@@ -71,7 +71,6 @@ bool Completion::tell_epochs() {
     if (at == local_.end()) continue;
     at->second.listed = false;
     forget_last();  // each time: telling one epoch may have counted for the next of this list
-    at->second.told = at->second.now;
     const Counters now = at->second.now;
     tell(epoch, now);
   }

@@ -70,7 +70,6 @@ class Completion {
   /// Tells the coordinator of the run. True if anything was told.
   bool tell_run();
 
-  [[nodiscard]] std::size_t n_open() const { return coordinated_.size(); }
   /// One line for each epoch that this PE opened and that is not done.
   void describe_open(std::vector<std::string>& lines) const;
 
@@ -100,7 +99,7 @@ class Completion {
 
  private:
   struct Local {
-    Counters now, told;
+    Counters now;
     bool listed = false;
   };
   struct Coordinated {

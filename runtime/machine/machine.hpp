@@ -91,7 +91,8 @@ class Machine {
   virtual void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) = 0;
 
   /// Sends bytes to another process; never to this one. Any PE thread may call it; it does not
-  /// block.
+  /// block. What it leaves of `bytes` is for clear() alone; it may keep its memory, to be filled
+  /// again.
   virtual void send(PeId from, ProcessId to, Buffer&& bytes) = 0;
 
   /// Drives the PEs of this process until stop(); returns on the thread that called it.

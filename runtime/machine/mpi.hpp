@@ -1,11 +1,12 @@
 // Several processes, each with the same number of PEs, joined by MPI. Within a process it is the
 // threads machine; between processes buffers travel as MPI messages that any PE moves along, one at
 // a time under a try-lock: an idle PE whenever it finds nothing to do, a busy one every 30 us.
-// There is no dedicated core and nothing blocks. mpi.h is included by mpi.cpp alone.
+// There is no dedicated core and nothing blocks. mpi.h is included by the mpi_* files alone:
 //
-//     send() ─► outbox ─► MPI_Isend … MPI_Testsome        MPI_Improbe ─► MPI_Mrecv ─► receive()
-//
-// A buffer above the chunk limit is announced by its size and follows in chunks, in order.
+//     mpi             the machine             mpi_transport   buffers out and in, large ones in
+//     chunks mpi_session     start, end, agreement   mpi_requests    what MPI has under way
+//                                             mpi_mail        what has come, until the program has
+//                                             it
 #pragma once
 
 #include "runtime/machine/machine.hpp"

@@ -35,13 +35,6 @@ class Network {
   virtual bool progress(Program& program, PeId pe) = 0;
 };
 
-/// Where the team's PEs run.
-struct Placement {
-  bool pinned = false;
-  std::int32_t first_core = 0;  // of the process's set, for PE 0 of the team
-  bool oversubscribed = false;  // more PEs than cores, counting all teams that share them
-};
-
 class Team {
  public:
   Team(PeId first, std::int32_t n_pes, Placement placement, Network* network);

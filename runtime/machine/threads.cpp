@@ -34,14 +34,8 @@ class ThreadsMachine final : public Machine {
   std::string describe() const override {
     return text("threads: ",
                 pes_per_process_,
-                pes_per_process_ == 1 ? " PE on " : " PEs on ",
-                topology_.n_cores(),
-                topology_.n_cores() == 1 ? " core (" : " cores (",
-                topology_.cpuset(),
-                ")",
-                placement_.pinned           ? ", pinned"
-                : placement_.oversubscribed ? ", more PEs than cores: not pinned"
-                                            : ", not pinned");
+                pes_per_process_ == 1 ? " PE" : " PEs",
+                placement_.describe(topology_));
   }
 
  private:

@@ -73,4 +73,14 @@ std::string Topology::cpuset() const {
   return out;
 }
 
+std::string Placement::describe(const Topology& topology) const {
+  return text(" on ",
+              topology.n_cores(),
+              topology.n_cores() == 1 ? " core (" : " cores (",
+              topology.cpuset(),
+              pinned           ? "), pinned"
+              : oversubscribed ? "), more PEs than cores: not pinned"
+                               : "), not pinned");
+}
+
 }  // namespace tess

@@ -34,4 +34,14 @@ class Topology {
   std::int32_t n_cores_ = 1;
 };
 
+/// Where the PEs of a process run.
+struct Placement {
+  bool pinned = false;
+  std::int32_t first_core = 0;  // of the process's set, for the first PE
+  bool oversubscribed = false;  // more PEs than cores, counting all processes that share them
+
+  /// " on 2 cores (0-1), pinned".
+  [[nodiscard]] std::string describe(const Topology& topology) const;
+};
+
 }  // namespace tess

@@ -8,7 +8,10 @@ namespace tess {
 namespace {
 
 constexpr std::size_t flush_bytes = 32U << 10U;
+constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
 constexpr unsigned steps_between_flushes = 4;
+/// A step of so few messages shows that no company will come soon for what it sent.
+constexpr std::size_t hand_to_mouth = 2;
 
 /// What stands before each message in a packed buffer.
 struct PackedHeader {
@@ -59,7 +62,7 @@ void Pe::route(PeId to, Envelope* message) {
 void Pe::pack(PeId to, Envelope* message) {
   const auto process = static_cast<std::size_t>(machine_.process_of(to).value);
   Buffer& out = packed_[process];
-  if (out.capacity() == 0) out.reserve(flush_bytes + 4096);
+  if (out.capacity() == 0) out.reserve(first_bytes);
   const std::size_t begin = out.size();
   PackedHeader header{0,
                       message->epoch,
@@ -77,7 +80,7 @@ void Pe::pack(PeId to, Envelope* message) {
   holds_packed_ = true;
   if (out.size() >= flush_bytes || intercepts_) {
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
-    out = Buffer();
+    out.clear();
   }
 }
 
@@ -88,7 +91,7 @@ bool Pe::flush() {
   for (std::size_t process = 0; process < packed_.size(); ++process) {
     if (packed_[process].empty()) continue;
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(packed_[process]));
-    packed_[process] = Buffer();
+    packed_[process].clear();
   }
   return true;
 }
@@ -190,6 +193,8 @@ std::size_t Pe::step(std::size_t most) {
   if (++steps_since_flush_ >= steps_between_flushes) {
     flush();
     completion_.tell_epochs();
+  } else if (n <= hand_to_mouth && holds_packed_) {
+    flush();
   }
   return n;
 }

@@ -33,6 +33,7 @@ class ReadyQueue {
   ReadyQueue() = default;
   ReadyQueue(const ReadyQueue&) = delete;
   ReadyQueue& operator=(const ReadyQueue&) = delete;
+  ~ReadyQueue() = default;
 
  private:
   Link* first_ = nullptr;

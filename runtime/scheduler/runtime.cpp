@@ -76,9 +76,11 @@ Runtime::~Runtime() = default;
 
 int Runtime::run() {
   Registry::seal();
-  if (!machine_.agree(Registry::fingerprint()))
+  if (!machine_.agree(Registry::fingerprint())) {
+    if (machine_.process().value != 0) return 2;  // all found it; one says it
     fail(ErrorCode::environment,
          "the processes of this job run different programs: start the same build everywhere");
+  }
   if (!options_.trace.empty()) require_writable_trace(trace_path());
   machine_.run(*this);
   write_traces();

@@ -33,6 +33,8 @@ struct RuntimeOptions {
 class Runtime final : public Program {
  public:
   Runtime(Machine& machine, const RuntimeOptions& options, std::function<void()> main);
+  Runtime(const Runtime&) = delete;
+  Runtime& operator=(const Runtime&) = delete;
   ~Runtime() override;
 
   /// Drives this process until the run ends; returns the exit code.

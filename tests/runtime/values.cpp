@@ -166,3 +166,18 @@ TEST_CASE("a member that does not come back is named by its place and type",
   REQUIRE(found.find("Forgets: member 2 of 2 (double)") != std::string::npos);
   REQUIRE(tess::round_trip_difference(Remembers{3, {"a", "b"}}).empty());
 }
+
+TEST_CASE("a copy is compared with the bytes it was read from", "[runtime][serialize]") {
+  const Remembers original{3, {"a", "b"}};
+  const auto sent = tess::to_bytes(original);
+  CHECK(tess::difference_from_bytes(sent, original).empty());
+  const std::string changed = tess::difference_from_bytes(sent, Remembers{3, {"a", "c"}});
+  CHECK(changed.find("Remembers: member 2 of 2 (") != std::string::npos);
+  const std::string shorter = tess::difference_from_bytes(sent, Remembers{3, {"a"}});
+  CHECK(shorter.find("Remembers: member 2 of 2 (") != std::string::npos);
+  CHECK(tess::difference_from_bytes(sent, Remembers{4, {}}).find("member 1 of 2 (int)") !=
+        std::string::npos);
+  std::vector<std::byte> more = sent;
+  more.push_back(std::byte{0});
+  CHECK(tess::difference_from_bytes(more, original).find("1 bytes less") != std::string::npos);
+}

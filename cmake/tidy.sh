@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Runs clang-tidy on the runtime's core, or on the given sources: on those alone whose text, or that of a header of ours
+# which they include, changed since they were last clean. Knows the headers from the release build, which comes first; what
+# is clean has a stamp in build/tidy/, a hash of all that was read.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=build/release
+stamps=build/tidy
+mkdir -p "$stamps"
+[[ -e $build/compile_commands.json ]] || { echo "tidy: there is no $build: cmake --preset release && cmake --build --preset release" >&2; exit 2; }
+
+sources=("$@")
+# The core: what every program runs on. The balance strategies and the libraries are checked by name, by hand.
+if ((${#sources[@]} == 0)); then mapfile -t sources < <(git ls-files -co --exclude-standard 'runtime/*.cpp' ':!runtime/balance'); fi
+
+# SOURCE HEADER… a line, those of the project: of each object, ninja lists the source first.
+ninja -C "$build" -t deps 2>/dev/null | awk -v root="$PWD/" '
+  /^[^ ]/ { if (line != "") print line; line = ""; next }
+  NF == 1 {
+    file = $1
+    if (index(file, root) == 1) file = substr(file, length(root) + 1)
+    if (file !~ /^\// && file !~ /^build\//) line = line == "" ? file : line " " file
+  }
+  END { if (line != "") print line }' >"$stamps/includes"
+
+stale=()
+for source in "${sources[@]}"; do
+  read -r -a reads < <(grep -m 1 "^$source " "$stamps/includes" || echo "$source")
+  key=$(cat .clang-tidy "${reads[@]}" 2>/dev/null | sha256sum | cut -d' ' -f1)
+  stamp=$stamps/${source//\//__}
+  if [[ ! -e $stamp || $(<"$stamp") != "$key" ]]; then stale+=("$source" "$stamp" "$key"); fi
+done
+
+check() {
+  local out
+  if out=$(clang-tidy --quiet -p build/release "$1" 2>/dev/null); then
+    echo "$3" >"$2"
+  else
+    printf '%s\n' "$out"
+    return 1
+  fi
+}
+export -f check
+echo "tidy: $((${#stale[@]} / 3)) of ${#sources[@]} sources to look at"
+((${#stale[@]} == 0)) || printf '%s\n' "${stale[@]}" | xargs -d '\n' -n 3 -P "$(nproc)" bash -c 'check "$@"' check

@@ -1,0 +1,45 @@
+// How an element's value gets into a reduction: the same for chares and for members of groups. The
+// key orders the values where the reduction is in order: an index, or a PE.
+#pragma once
+
+#include "runtime/collections/collection.hpp"
+#include "runtime/reduction.hpp"
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace tess {
+
+/// Merges as it goes; the sum that the elements before it have begun takes the value in place.
+template <class Key, class Op, class T>
+void contribute_as(const Key& /*key*/,
+                   Element& element,
+                   Collection& collection,
+                   Op /*op*/,
+                   T value,
+                   Callback<T> target) {
+  using Merged = MergedPartial<T, Op>;
+  if (Partial* open = collection.open_sum(element, Merged::its_kind()); open != nullptr) {
+    static_cast<Merged*>(open)->add(value);
+    collection.contributed(element);
+  } else {
+    collection.contribute(element, std::make_unique<Merged>(std::move(value), std::move(target)));
+  }
+}
+
+/// Combines in the order of keys, at the end.
+template <class Key, class Op, class T>
+void contribute_as(const Key& key,
+                   Element& element,
+                   Collection& collection,
+                   InOrder<Op> /*op*/,
+                   T value,
+                   Callback<T> target) {
+  std::vector<std::pair<Key, T>> values;
+  values.emplace_back(key, std::move(value));
+  collection.contribute(
+      element, std::make_unique<OrderedPartial<T, Op, Key>>(std::move(values), std::move(target)));
+}
+
+}  // namespace tess

@@ -1,0 +1,96 @@
+#include "runtime/machine/mpi_session.hpp"
+
+#include "runtime/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <vector>
+
+namespace tess {
+
+void must(int result, const char* call) {
+  if (result == MPI_SUCCESS) return;
+  std::array<char, MPI_MAX_ERROR_STRING> reason{};
+  int length = 0;
+  int rank = -1;
+  MPI_Error_string(result, reason.data(), &length);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  std::fprintf(stderr, "tessera: %s failed on process %d: %s\n", call, rank, reason.data());
+  std::fflush(nullptr);
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::_Exit(1);
+}
+
+Session::Session(int& argc, char**& argv) {
+  int over = 0;
+  MPI_Finalized(&over);
+  if (over != 0) fail(ErrorCode::environment, "MPI has ended and cannot be started again");
+  int initialised = 0;
+  MPI_Initialized(&initialised);
+  ours_ = initialised == 0;
+  int provided = MPI_THREAD_SINGLE;
+  if (ours_)
+    must(MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
+  else
+    must(MPI_Query_thread(&provided), "MPI_Query_thread");
+  if (provided < MPI_THREAD_SERIALIZED)
+    fail(ErrorCode::environment,
+         "MPI gives thread level ",
+         provided,
+         ", but MPI_THREAD_SERIALIZED is needed: use an MPI built with threads");
+  must(MPI_Comm_dup(MPI_COMM_WORLD, &comm_), "MPI_Comm_dup");
+  must(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  set_check_abort([] { MPI_Abort(MPI_COMM_WORLD, 1); });
+}
+
+Session::~Session() {
+  set_check_abort(nullptr);
+  MPI_Comm_free(&comm_);
+  if (ours_) MPI_Finalize();
+}
+
+std::int32_t Session::n_processes() const {
+  int n = 0;
+  must(MPI_Comm_size(comm_, &n), "MPI_Comm_size");
+  return n;
+}
+
+std::int32_t Session::process() const {
+  int me = 0;
+  must(MPI_Comm_rank(comm_, &me), "MPI_Comm_rank");
+  return me;
+}
+
+bool Session::agree(std::uint64_t mine) const {
+  const std::array<std::uint64_t, 2> both{mine, ~mine};
+  std::array<std::uint64_t, 2> least{};
+  must(MPI_Allreduce(both.data(), least.data(), 2, MPI_UINT64_T, MPI_MIN, comm_), "MPI_Allreduce");
+  return least[0] == ~least[1];  // the smallest is the greatest, on every process alike
+}
+
+std::int32_t Session::least(std::int32_t mine) const {
+  std::int32_t least = mine;
+  must(MPI_Allreduce(&mine, &least, 1, MPI_INT32_T, MPI_MIN, comm_), "MPI_Allreduce");
+  return least;
+}
+
+Session::Sharing Session::sharing(const std::string& cpuset) const {
+  MPI_Comm host = MPI_COMM_NULL;
+  must(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host),
+       "MPI_Comm_split_type");
+  int n = 0;
+  int me = 0;
+  must(MPI_Comm_size(host, &n), "MPI_Comm_size");
+  must(MPI_Comm_rank(host, &me), "MPI_Comm_rank");
+  const std::uint64_t mine = std::hash<std::string>()(cpuset);
+  std::vector<std::uint64_t> all(static_cast<std::size_t>(n));
+  must(MPI_Allgather(&mine, 1, MPI_UINT64_T, all.data(), 1, MPI_UINT64_T, host), "MPI_Allgather");
+  must(MPI_Comm_free(&host), "MPI_Comm_free");
+  return {static_cast<std::int32_t>(std::count(all.begin(), all.end(), mine)),
+          static_cast<std::int32_t>(std::count(all.begin(), all.begin() + me, mine))};
+}
+
+}  // namespace tess

@@ -1,0 +1,111 @@
+// A job that ends as its argument says, while messages go round all PEs and would do so for ever;
+// run under mpirun by job_ends.sh.
+//
+//     test_job throw | fail | check | exit | codes=A,B | forget | wait
+#include "runtime/runtime.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+#include <thread>
+#include <unistd.h>
+
+namespace {
+
+constexpr int n_balls = 100;  // of each PE
+
+/// Keeps every PE busy.
+class Crowd : public tess::Group<Crowd> {
+ public:
+  void begin() {
+    std::printf("PE %d pid %d\n", pe().value, static_cast<int>(::getpid()));
+    std::fflush(stdout);
+    for (int i = 0; i < n_balls; ++i) pass(i);
+  }
+  void pass(int ball) {
+    const tess::PeId next{(pe().value + 1) % tess::current_pe().n_pes()};
+    group()[next].send<&Crowd::pass>(ball);
+  }
+  void give(int code) { tess::exit(code); }
+#ifdef OTHER_PROGRAM
+  void only_here() {}
+  void begin_other() {
+    group()[pe()].send<&Crowd::only_here>();
+  }
+#endif
+};
+
+/// What goes wrong does so in an element on the last PE.
+class Actor : public tess::Chare<Actor, tess::Index1> {
+ public:
+  void act(std::string ending) {
+    // After the flood has begun.
+    if (--delay_ > 0) {
+      array()[index()].send<&Actor::act>(std::move(ending));
+      return;
+    }
+    if (ending == "throw") throw std::runtime_error("the bridge is out");
+    if (ending == "fail") tess::fail(tess::ErrorCode::bad_value, "the dose is -1: give more");
+    if (ending == "exit") tess::exit(5);
+    TESS_CHECK(ending != "check", "element ", index().x, " was told to");
+  }
+
+ private:
+  int delay_ = 1000;
+};
+
+/// Moves, and reads a member into nowhere: builds with CHECKS=all refuse it.
+class Forgetful : public tess::Chare<Forgetful, tess::Index1> {
+ public:
+  void go() {
+    lost_ = 7.5;
+    migrate_to(tess::PeId{tess::current_pe().n_pes() - 1});
+  }
+  void end() const { tess::exit(0); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    double other = Ar::is_reading ? 0 : lost_;
+    ar(kept_, other);
+  }
+
+ private:
+  int kept_ = 1;
+  double lost_ = 0;
+};
+
+/// The first PE and the last both give a code before either can hear of the other's.
+void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
+  tess::Pe& pe = tess::current_pe();
+  crowd[tess::PeId{pe.n_pes() - 1}].send<&Crowd::give>(last);
+  pe.flush();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  tess::exit(first);
+}
+
+int job(int argc, char** argv) {
+  tess::Setup setup = tess::take_options(argc, argv);
+  const std::string ending = argc > 1 ? argv[1] : "";
+  return tess::run(setup, [ending] {
+    const auto crowd = tess::create_group<Crowd>();
+    if (ending == "codes=3,9") {
+      give_codes(crowd, 3, 9);
+    } else if (ending == "codes=9,3") {
+      give_codes(crowd, 9, 3);
+    } else if (ending == "forget") {
+      const auto forgetful = tess::create<Forgetful>(tess::range(1));
+      forgetful[{0}].send<&Forgetful::go>();
+      forgetful[{0}].send<&Forgetful::end>();
+    } else {
+      crowd.broadcast<&Crowd::begin>();
+      const std::int32_t n = tess::current_pe().n_pes();
+      const auto actors = tess::create<Actor>(tess::range(n));
+      actors[{n - 1}].send<&Actor::act>(ending);
+    }
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] { return job(argc, argv); });
+}

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# How a job ends under mpirun: with the exit code and the line that it should, on all processes, within seconds.
+#
+#     job_ends.sh MPIEXEC JOB OTHER_JOB CHECKS
+set -uo pipefail
+mpirun=("$1" --allow-run-as-root --oversubscribe)
+job=$2
+other=$3
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed=0
+passed=0
+# Generous: what is not found by itself never ends.
+limit=30
+
+verdict() {
+  local what=$1 code=$2 want=$3 word=$4
+  if [[ $code =~ ^($want)$ ]] && grep -q -- "$word" "$scratch/err"; then
+    passed=$((passed + 1))
+    echo "ok: $what: exit code $code; $(grep -m 1 -- "$word" "$scratch/err")"
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $what: exit code $code, wanted $want and a line with '$word':"
+    tail -20 "$scratch/err"
+  fi
+}
+
+# ends CODE WORD ARGUMENTS…: the job ends with this code (a pattern) and says WORD on standard error.
+ends() {
+  local want=$1 word=$2
+  shift 2
+  timeout -k 5 $limit "${mpirun[@]}" "$@" >"$scratch/out" 2>"$scratch/err" </dev/null
+  verdict "${*##*/}" $? "$want" "$word"
+}
+
+# once WORD: standard error has one line with WORD.
+once() {
+  local n
+  n=$(grep -c -- "$1" "$scratch/err")
+  if ((n == 1)); then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: '$1' stands in $n lines, not in one"
+  fi
+}
+
+ends 1 "the bridge is out" -n 2 "$job" throw --pes 1
+ends 1 "on PE 3, Actor\[3\], in Actor::act" -n 2 "$job" throw --pes 2
+ends 2 "the dose is -1" -n 2 "$job" fail --pes 1
+once "the dose is -1"
+ends 1 "element 1 was told to" -n 2 "$job" check --pes 1
+ends 1 "on PE 3, Actor\[3\], in Actor::act" -n 2 "$job" check --pes 2
+ends 5 "" -n 2 "$job" exit --pes 1
+ends 5 "" -n 2 "$job" exit --pes 2
+ends 9 "" -n 2 "$job" codes=3,9 --pes 1
+ends 9 "" -n 2 "$job" codes=9,3 --pes 1
+ends 2 "different programs" -n 1 "$job" exit --pes 1 : -n 1 "$other" exit --pes 1
+once "different programs"
+ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
+# An element whose serialize() forgets: within a process and between two.
+if [[ ${4:-} == all ]]; then
+  for pes in "-n 1 --pes 2" "-n 2 --pes 1"; do
+    # shellcheck disable=SC2086
+    set -- $pes
+    ends 1 "Forgetful: member 2 of 2 (double) does not come back" "$1" "$2" "$job" forget "$3" "$4"
+  done
+else
+  ends 0 "" -n 2 "$job" forget --pes 1
+fi
+
+# A process that is killed: mpirun notices, ends the others and names it.
+timeout -k 5 $limit "${mpirun[@]}" -n 2 "$job" wait --pes 1 >"$scratch/out" 2>"$scratch/err" </dev/null &
+run=$!
+for ((i = 0; i < 300; ++i)); do
+  grep -q "^PE 1 pid" "$scratch/out" && break
+  sleep 0.1
+done
+kill -KILL "$(sed -n 's/^PE 1 pid //p' "$scratch/out")"
+wait $run
+verdict "process 1 is killed" $? "137" "rank 1 .* signal 9"
+
+echo "$passed passed, $failed failed"
+((failed == 0))
