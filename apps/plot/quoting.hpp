@@ -1,0 +1,22 @@
+// Any text as a field of CSV, as text of XML, as a string of gnuplot. Names of series, strategies
+// and files come from users: they are quoted here and nowhere else.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace plot {
+
+/// A field of a line of CSV (RFC 4180): quoted where it must be; every byte is kept.
+[[nodiscard]] std::string csv_field(std::string_view text);
+
+/// What XML can hold: control characters become spaces, bytes that are not UTF-8 become U+FFFD.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// Printable text between tags or in an attribute.
+[[nodiscard]] std::string xml_text(std::string_view text);
+
+/// Printable text as a string in which gnuplot interprets nothing, with its quotes.
+[[nodiscard]] std::string gnuplot_string(std::string_view text);
+
+}  // namespace plot
