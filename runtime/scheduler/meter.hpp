@@ -48,8 +48,8 @@ class Meter {
   }
   void leave(Scope outer) {
     const std::uint64_t at = pass();
-    scope_ = outer;
-    if (at >= alarm_at_) [[unlikely]]
+    const Scope ended = std::exchange(scope_, outer);
+    if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
       ring(at);
   }
   /// Whether what is sent is to be weighed: packing is how, and a record takes it down.
@@ -76,8 +76,8 @@ class Meter {
   /// Seconds since the meter was made.
   [[nodiscard]] double age() const { return seconds(now() - made_); }
 
-  /// From now on `ring` is called after a scope that ends `period` ticks or more after its last
-  /// call.
+  /// From now on `ring` is called after a scope with a record that ends `period` ticks or more
+  /// after its last call. (What a ring causes has no record: it does not ring again.)
   void add_alarm(std::uint64_t period, std::function<void()> ring);
 
  private:

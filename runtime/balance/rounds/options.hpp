@@ -22,8 +22,8 @@ struct BalanceOptions {
   std::string prediction = "last";    ///< last, moving_average, linear_trend
   std::uint64_t window = 5;           ///< phases that a prediction looks back
   std::uint64_t seed = 1;             ///< of strategies that draw
-  std::vector<double> speeds;         ///< of each PE, relative; empty: all alike
-  std::vector<std::uint64_t> memory_limit_bytes;  ///< of each PE; 0 or empty: none
+  std::vector<double> speeds{};       ///< of each PE, relative; empty: all alike
+  std::vector<std::uint64_t> memory_limit_bytes{};  ///< of each PE; 0 or empty: none
   RoundLines lines = RoundLines::none;  ///< or one a round to standard error
 };
 
