@@ -30,6 +30,11 @@ constexpr std::array all{
     Scenario{"exceptions", "an exception names element, entry method and PE", &exceptions},
     Scenario{"dead_letters", "messages to the dead are counted", &dead_letters},
     Scenario{"groups", "one member on each PE, broadcast and reduction over all", &groups},
+    Scenario{"balance_rounds",
+             "each wait at the balance barrier is resumed once, while elements move, come and go",
+             &balance_rounds},
+    Scenario{"balance_rotate", "after each round elements are where it put them", &balance_rotate},
+    Scenario{"balance_periodic", "rounds without a barrier lose no message", &balance_periodic},
 };
 
 }  // namespace

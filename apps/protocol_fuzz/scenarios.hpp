@@ -24,6 +24,9 @@ void deadlocks(Trial& trial);         // ends.cpp
 void exceptions(Trial& trial);        // ends.cpp
 void dead_letters(Trial& trial);      // ends.cpp
 void groups(Trial& trial);            // groups.cpp
+void balance_rounds(Trial& trial);    // balance.cpp
+void balance_rotate(Trial& trial);    // balance.cpp
+void balance_periodic(Trial& trial);  // balance.cpp
 
 struct Scenario {
   std::string_view name;

@@ -1,0 +1,238 @@
+// Balance rounds while everything else goes on: elements are born, end, migrate, contribute, and
+// wait at the barrier. The oracles: every wait is resumed exactly once, every phase of every life
+// is run, every contribution arrives; with `rotate` elements are where the rounds have put them;
+// periodic rounds lose no message.
+#include "apps/protocol_fuzz/scenarios.hpp"
+#include "runtime/balance.hpp"
+#include "runtime/balance/strategy.hpp"
+
+#include <array>
+#include <map>
+
+namespace tess::fuzz {
+namespace {
+
+struct Lives {
+  Trial& trial;
+  std::uint64_t seed = 0;
+  double birth_chance = 0, move_chance = 0;
+  std::mutex mutex{};
+  std::map<std::pair<int, int>, int> phases_run{};
+  std::int64_t n_contributed = 0, n_collected = 0;
+
+  [[nodiscard]] Random draws(int root, int path, int phase) const {
+    return Random(mix(seed ^ mix(static_cast<std::uint64_t>(root) * 1000003U +
+                                 static_cast<std::uint64_t>(path) * 16U +
+                                 static_cast<std::uint64_t>(phase))));
+  }
+  [[nodiscard]] int n_phases(int root, int path) const {
+    return 1 + static_cast<int>(draws(root, path, 15).below(6));
+  }
+  [[nodiscard]] bool bears(int root, int path, int phase) const {
+    return path < 100 && draws(root, path, phase).chance(birth_chance);
+  }
+  /// What one life and all that it bears run, in phases.
+  void expect_life(std::map<std::pair<int, int>, int>& expected,
+                   int root,
+                   int path) const {
+    const int n = n_phases(root, path);
+    expected[{root, path}] = n;
+    for (int phase = 0; phase < n; ++phase)
+      if (bears(root, path, phase)) expect_life(expected, root, path * 10 + phase + 1);
+  }
+};
+Lives* lives_of_trial = nullptr;
+
+class Life : public Chare<Life, Index2> {
+ public:
+  void begin() { live(); }
+  void resume_from_sync() {
+    lives_of_trial->trial.expect(waiting_, "resumed without waiting: ", element_text(*this));
+    waiting_ = false;
+    live();
+  }
+  [[nodiscard]] std::array<double, 3> balance_position() const {
+    return {1.0 * index().x, 1.0 * index().y, 0};
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(phase_, waiting_);
+  }
+
+ private:
+  void live();
+  int phase_ = 0;
+  bool waiting_ = false;
+};
+
+class Collector : public Group<Collector> {
+ public:
+  void collected(std::int64_t n) {
+    const std::lock_guard lock(lives_of_trial->mutex);
+    lives_of_trial->n_collected += n;
+  }
+};
+GroupProxy<Collector> collector_of_trial;
+
+void Life::live() {
+  Lives& l = *lives_of_trial;
+  const int root = index().x;
+  const int path = index().y;
+  const int phase = phase_++;
+  {
+    const std::lock_guard lock(l.mutex);
+    ++l.phases_run[{root, path}];
+    ++l.n_contributed;
+  }
+  charge(std::chrono::microseconds(1 + root % 5));
+  contribute(sum, std::int64_t{1}, collector_of_trial[PeId{0}].target<&Collector::collected>());
+  if (l.bears(root, path, phase)) {
+    const auto child = array()[{root, path * 10 + phase + 1}];
+    child.insert();
+    child.send<&Life::begin>();
+  }
+  Random random = l.draws(root, path, phase + 100);
+  if (random.chance(l.move_chance))
+    migrate_to(PeId{static_cast<std::int32_t>(
+        random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
+  if (phase_ == l.n_phases(root, path)) {
+    destroy();
+    return;
+  }
+  waiting_ = true;
+  at_sync();
+}
+
+std::string drawn_strategy(Random& random) {
+  const auto& names = balance::strategy_names();
+  return names[random.below(names.size())];
+}
+
+/// Where each element of `rotate` is to be after so many rounds.
+class Rotor : public Chare<Rotor, Index1> {
+ public:
+  static inline Trial* trial = nullptr;
+  static inline int n_rounds = 0;
+  static inline std::atomic<int> n_done{0};
+
+  void begin() {
+    first_ = current_pe().id().value;
+    at_sync();
+  }
+  void resume_from_sync() {
+    ++round_;
+    const int expected = (first_ + round_) % current_pe().n_pes();
+    trial->expect(current_pe().id().value == expected,
+                  element_text(*this),
+                  " is on ",
+                  current_pe().id(),
+                  " after round ",
+                  round_,
+                  ", not on PE ",
+                  expected);
+    if (round_ < n_rounds) {
+      at_sync();
+    } else {
+      ++n_done;
+    }
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(first_, round_);
+  }
+
+ private:
+  int first_ = 0, round_ = 0;
+};
+
+/// Sends itself around a ring of elements, while periodic rounds move them.
+class Runner : public Chare<Runner, Index1> {
+ public:
+  static inline std::atomic<std::int64_t> n_hops{0};
+
+  void hop(int left) {
+    ++n_hops;
+    charge(std::chrono::microseconds(1 + index().x % 7));
+    if (left > 0) array()[{(index().x * 5 + left) % static_cast<int>(array().size())}].send<&Runner::hop>(left - 1);
+  }
+  [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(none_);
+  }
+
+ private:
+  int none_ = 0;
+};
+
+}  // namespace
+
+void balance_rounds(Trial& trial) {
+  Lives l{trial};
+  lives_of_trial = &l;
+  l.seed = trial.seed();
+  l.birth_chance = 0.1 * trial.draw(0, 3);
+  l.move_chance = 0.1 * trial.draw(0, 3);
+  const int n = trial.draw(0, 24);
+  BalanceOptions options;
+  options.strategy = drawn_strategy(trial.random());
+  if (trial.draw(0, 3) == 0) options.when = BalanceWhen::automatic;
+  const bool late = trial.draw(0, 3) == 0;  // balancing starts when some already wait
+  trial.run_clean([&] {
+    collector_of_trial = create_group<Collector>();
+    const auto lives = create<Life>(sparse);
+    if (!late) start_balancing(lives, options);
+    for (int i = 0; i < n; ++i) {
+      lives[{i, 1}].insert_on(PeId{i % current_pe().n_pes()});
+      lives[{i, 1}].send<&Life::begin>();
+    }
+    if (late) start_balancing(lives, options);
+  });
+  std::map<std::pair<int, int>, int> expected;
+  for (int i = 0; i < n; ++i) l.expect_life(expected, i, 1);
+  trial.expect(l.phases_run == expected,
+               l.phases_run.size(),
+               " lives ran, ",
+               expected.size(),
+               " were to, or in other phases; strategy ",
+               options.strategy);
+  trial.expect(l.n_collected == l.n_contributed,
+               l.n_contributed,
+               " contributions were made, ",
+               l.n_collected,
+               " arrived");
+}
+
+void balance_rotate(Trial& trial) {
+  Rotor::trial = &trial;
+  Rotor::n_rounds = 40;
+  Rotor::n_done = 0;
+  trial.forbid_forced_migration();
+  constexpr int n = 8;
+  trial.run_clean([] {
+    const auto rotors = create<Rotor>(range(n));
+    start_balancing(rotors, {.strategy = "rotate"});
+    rotors.broadcast<&Rotor::begin>();
+  });
+  trial.expect(Rotor::n_done == n, Rotor::n_done.load(), " of ", n, " elements met all rounds");
+}
+
+void balance_periodic(Trial& trial) {
+  Runner::n_hops = 0;
+  const int n = trial.draw(1, 20), n_runs = trial.draw(1, 10), n_hops = trial.draw(1, 200);
+  BalanceOptions options;
+  options.strategy = drawn_strategy(trial.random());
+  options.when = BalanceWhen::periodic;
+  options.period = std::chrono::microseconds(trial.draw(5, 500));
+  trial.run_clean([&] {
+    const auto runners = create<Runner>(range(n));
+    start_balancing(runners, options);
+    for (int i = 0; i < n_runs; ++i) runners[{i % n}].send<&Runner::hop>(n_hops);
+  });
+  trial.expect(Runner::n_hops == std::int64_t{n_runs} * (n_hops + 1),
+               Runner::n_hops.load(),
+               " hops of ",
+               n_runs * (n_hops + 1));
+}
+
+}  // namespace tess::fuzz
