@@ -12,8 +12,8 @@
 #pragma once
 
 #include "runtime/array.hpp"
-#include "runtime/balance/rounds/options.hpp"
 #include "runtime/balance/rounds/balancer.hpp"
+#include "runtime/balance/rounds/options.hpp"
 
 namespace tess {
 
@@ -24,7 +24,9 @@ class BalancerProxy {
   explicit BalancerProxy(GroupProxy<balance::Balancer> group) : group_(group) {}
 
   /// The rounds so far, in order. On the PE that called start_balancing() alone.
-  [[nodiscard]] const std::vector<balance::Round>& history() const { return group_.local().history(); }
+  [[nodiscard]] const std::vector<balance::Round>& history() const {
+    return group_.local().history();
+  }
 
  private:
   GroupProxy<balance::Balancer> group_;

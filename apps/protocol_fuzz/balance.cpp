@@ -2,8 +2,9 @@
 // wait at the barrier. The oracles: every wait is resumed exactly once, every phase of every life
 // is run, every contribution arrives; with `rotate` elements are where the rounds have put them;
 // periodic rounds lose no message.
-#include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/balance.hpp"
+
+#include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/balance/strategy.hpp"
 
 #include <array>
@@ -32,9 +33,7 @@ struct Lives {
     return path < 100 && draws(root, path, phase).chance(birth_chance);
   }
   /// What one life and all that it bears run, in phases.
-  void expect_life(std::map<std::pair<int, int>, int>& expected,
-                   int root,
-                   int path) const {
+  void expect_life(std::map<std::pair<int, int>, int>& expected, int root, int path) const {
     const int n = n_phases(root, path);
     expected[{root, path}] = n;
     for (int phase = 0; phase < n; ++phase)
@@ -93,8 +92,8 @@ void Life::live() {
   }
   Random random = l.draws(root, path, phase + 100);
   if (random.chance(l.move_chance))
-    migrate_to(PeId{static_cast<std::int32_t>(
-        random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
+    migrate_to(PeId{
+        static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
   if (phase_ == l.n_phases(root, path)) {
     destroy();
     return;
@@ -153,7 +152,9 @@ class Runner : public Chare<Runner, Index1> {
   void hop(int left) {
     ++n_hops;
     charge(std::chrono::microseconds(1 + index().x % 7));
-    if (left > 0) array()[{(index().x * 5 + left) % static_cast<int>(array().size())}].send<&Runner::hop>(left - 1);
+    if (left > 0)
+      array()[{(index().x * 5 + left) % static_cast<int>(array().size())}].send<&Runner::hop>(left -
+                                                                                              1);
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
   template <class Ar>

@@ -21,10 +21,10 @@ enum class SyncPhase : std::uint8_t {
 
 struct SyncState {
   SyncPhase phase = SyncPhase::runs;
-  bool member = false;           ///< the barrier waits for it
-  std::uint32_t next = 0;        ///< a member: the round it reaches next
-  std::uint32_t waits_for = 0;   ///< while it waits: the round that resumes it
-  EpochId epoch{};               ///< on whose account it waits
+  bool member = false;          ///< the barrier waits for it
+  std::uint32_t next = 0;       ///< a member: the round it reaches next
+  std::uint32_t waits_for = 0;  ///< while it waits: the round that resumes it
+  EpochId epoch{};              ///< on whose account it waits
 };
 
 struct BalanceRecord {
@@ -32,8 +32,8 @@ struct BalanceRecord {
 
   LoadRecord load;
   SyncState sync;
-  std::uint64_t size_bytes = 0;     ///< packed, when it was last looked at; 0: never
-  std::size_t position = nowhere;   ///< among what its PE has reported in this round; stays here
+  std::uint64_t size_bytes = 0;    ///< packed, when it was last looked at; 0: never
+  std::size_t position = nowhere;  ///< among what its PE has reported in this round; stays here
 
   /// Ticks travel as seconds: another machine's counter may run at another rate.
   void pack(Writer& ar, const Meter& meter) const;

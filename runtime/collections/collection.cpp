@@ -13,11 +13,9 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name)
       id_(id),
       name_(std::move(name)),
       broadcasts_(pe, *this),
-      reductions_(pe,
-                  *this,
-                  Track::own,
-                  root(),
-                  {"reduction", [this](std::uint32_t number) { return elements_before(number); }}) {}
+      reductions_(pe, *this, Track::own, root(), {"reduction", [this](std::uint32_t number) {
+                                                    return elements_before(number);
+                                                  }}) {}
 
 ReductionTree& Collection::tree(Track track) {
   return track == Track::own ? reductions_ : *second_tree_;

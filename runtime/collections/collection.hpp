@@ -98,7 +98,8 @@ class Collection {
   /// The hash of the element's index.
   [[nodiscard]] virtual std::uint64_t key_of(const Element& element) const;
   /// What its balance_position() says, if it has one.
-  [[nodiscard]] virtual std::optional<std::array<double, 3>> position_of(const Element& element) const;
+  [[nodiscard]] virtual std::optional<std::array<double, 3>> position_of(
+      const Element& element) const;
   /// What a migration to another process would send.
   [[nodiscard]] virtual std::uint64_t packed_bytes(Element& element) const;
 

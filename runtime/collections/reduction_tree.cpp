@@ -21,11 +21,7 @@ void begin_arrives(Collection& collection, ReductionTree::Begin&& m) {
 
 ReductionTree::ReductionTree(
     Pe& pe, Collection& collection, Track track, PeId root, TreeWords words)
-    : pe_(pe),
-      collection_(collection),
-      track_(track),
-      words_(std::move(words)),
-      root_(root) {
+    : pe_(pe), collection_(collection), track_(track), words_(std::move(words)), root_(root) {
   const SpanningTree tree(pe.id(), root_, pe.n_pes());
   parent_ = tree.parent();
   children_ = tree.children();
@@ -255,8 +251,8 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
     if (whole.sum.n != 0)
       lines.push_back(text(collection_.name(),
                            ": ",
-                         words_.noun,
-                         " ",
+                           words_.noun,
+                           " ",
                            number,
                            " has ",
                            whole.sum.n,

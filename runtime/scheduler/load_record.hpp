@@ -39,10 +39,10 @@ struct LoadRecord {
     std::uint64_t calls = 0;
   };
 
-  std::uint64_t ticks = 0;            ///< of the PE's meter
-  std::vector<Entry> entries;         ///< by entry method: few
+  std::uint64_t ticks = 0;     ///< of the PE's meter
+  std::vector<Entry> entries;  ///< by entry method: few
   boost::unordered_flat_map<Destination, SentTo, DestinationHash> sent;
-  std::uint64_t* of_pe = nullptr;     ///< where the PE adds up the ticks of all such elements
+  std::uint64_t* of_pe = nullptr;  ///< where the PE adds up the ticks of all such elements
 
   void spend(const Action* action, std::uint64_t spent) {
     ticks += spent;

@@ -7,7 +7,7 @@ namespace tess {
 namespace {
 
 constexpr double quantum_seconds = 1e-3;
-constexpr double gap_seconds = 30e-6;   // without a step or a look at the queue: the thread slept
+constexpr double gap_seconds = 30e-6;    // without a step or a look at the queue: the thread slept
 constexpr double noise_seconds = 20e-6;  // below it the two clocks differ by themselves
 
 double thread_cpu_seconds() {

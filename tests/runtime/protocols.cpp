@@ -36,6 +36,15 @@ void run_seeds(std::string_view name) {
 TEST_CASE("an index that all PEs demand at once is created once", "[runtime][protocol]") {
   run_seeds("create_at_once");
 }
+TEST_CASE("each wait at the balance barrier is resumed once", "[runtime][protocol][balance]") {
+  run_seeds("balance_rounds");
+}
+TEST_CASE("rotate puts elements where it says, 40 rounds", "[runtime][protocol][balance]") {
+  run_seeds("balance_rotate");
+}
+TEST_CASE("periodic balance rounds lose no message", "[runtime][protocol][balance]") {
+  run_seeds("balance_periodic");
+}
 TEST_CASE("a message to an absent index waits for its element", "[runtime][protocol]") {
   run_seeds("message_first");
 }

@@ -5,13 +5,27 @@
 namespace tess::balance {
 namespace {
 
-/// Waits on each PE until the array is known there.
+/// Waits on each PE until the exchange, if there is one, and the array are known there.
 struct Attach {
   CollectionId balancer{};
+  CollectionId array{};
 };
 void attach_arrives(Collection& array, Attach&& m) {
   GroupProxy<Balancer>(m.balancer).local().attach(array);
 }
+void exchange_known(Collection& exchange, Attach&& m) {
+  Pe& pe = exchange.pe();
+  send_to_collection<&attach_arrives>(pe, m.array, pe.id(), m);
+}
+
+struct MergeOutcomes {
+  Balancer::Outcome operator()(const Balancer::Outcome& a, const Balancer::Outcome& b) const {
+    return {MergeSums()(a.phase, b.phase),
+            a.n_elements + b.n_elements,
+            a.n_moved + b.n_moved,
+            a.moved_bytes + b.moved_bytes};
+  }
+};
 
 double seconds(Time time) {
   return std::chrono::duration<double>(time).count();
@@ -27,7 +41,12 @@ Balancer::Balancer(const Plan& plan)
                group()[plan.coordinator].target<&Balancer::reached>()),
       measured_(current_pe()) {
   Pe& pe = current_pe();
-  send_to_collection<&attach_arrives>(pe, plan_.array, pe.id(), Attach{group().id()});
+  const Attach attach{group().id(), plan_.array};
+  if (plan_.distributed == DistributedStrategy::none) {
+    send_to_collection<&attach_arrives>(pe, plan_.array, pe.id(), attach);
+  } else {
+    send_to_collection<&exchange_known>(pe, plan_.exchange.id(), pe.id(), attach);
+  }
 }
 
 void Balancer::attach(Collection& array) {
@@ -44,6 +63,11 @@ void Balancer::attach(Collection& array) {
   Meter& meter = current_pe().start_meter();
   if (plan_.when == BalanceWhen::periodic)
     meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), [this] { alarm(); });
+  contribute(sum, 1, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+}
+
+void Balancer::attached_everywhere(int /*n_pes*/) {
+  ready_ = true;
 }
 
 const std::vector<Round>& Balancer::history() const {
@@ -96,7 +120,7 @@ Task Balancer::reached(std::uint64_t /*n_elements*/) {
   if (worth) {
     co_await round();
   } else {
-    group().broadcast<&Balancer::forget>(n_rounds_);
+    group().broadcast<&Balancer::forget>();
   }
   phase_began_ = current_pe().now();
   group().broadcast<&Balancer::resume>(barrier);
@@ -105,7 +129,8 @@ Task Balancer::reached(std::uint64_t /*n_elements*/) {
 Task Balancer::due(std::uint64_t seen) {
   // Several PEs ring, each in its own time; one round answers them all.
   const Time period(plan_.period_ns);
-  if (running_ || seen < n_rounds_ || current_pe().now() - phase_began_ < period * 9 / 10)
+  if (!ready_ || running_ || seen < n_rounds_ ||
+      current_pe().now() - phase_began_ < period * 9 / 10)
     co_return;
   running_ = true;
   co_await round();
@@ -117,14 +142,11 @@ Task Balancer::round() {
   Pe& pe = current_pe();
   const Time began = pe.now();
   ++n_rounds_;
-  Future<std::vector<PeReport>> collected;
-  group().broadcast<&Balancer::collect>(collected.callback());
-  const std::vector<PeReport> reports = co_await collected;
-  std::vector<std::vector<Move>> moves = coordinator_->decide(reports);
-  co_await epoch([&] {
-    for (std::size_t to = 0; to < moves.size(); ++to)
-      if (!moves[to].empty()) group()[pe_at(to)].send<&Balancer::move>(std::move(moves[to]));
-  });
+  if (plan_.distributed == DistributedStrategy::none) {
+    co_await central_round();
+  } else {
+    co_await distributed_round();
+  }
   const Round& round =
       coordinator_->finish(seconds(pe.now() - began), seconds(began - phase_began_));
   if (coordinator_->options().lines == RoundLines::print) {
@@ -134,10 +156,45 @@ Task Balancer::round() {
   }
 }
 
+Task Balancer::central_round() {
+  Future<std::vector<PeReport>> collected;
+  group().broadcast<&Balancer::collect>(collected.callback());
+  const std::vector<PeReport> reports = co_await collected;
+  std::vector<std::vector<Move>> moves = coordinator_->decide(reports);
+  co_await epoch([&] {
+    for (std::size_t to = 0; to < moves.size(); ++to)
+      if (!moves[to].empty()) group()[pe_at(to)].send<&Balancer::move>(std::move(moves[to]));
+  });
+}
+
+Task Balancer::distributed_round() {
+  Future<PhaseSums> prepared;
+  group().broadcast<&Balancer::prepare>(prepared.callback());
+  const PhaseSums before = co_await prepared;
+  const double average = before.work / before.speed;
+  Future<std::uint64_t> traded;
+  plan_.exchange[pe()].send<&Exchange::run>(Exchange::Order{plan_.distributed, average},
+                                            traded.callback());
+  co_await traded;
+  co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
+  Future<Outcome> summed;
+  group().broadcast<&Balancer::sum_outcome>(summed.callback());
+  const Outcome outcome = co_await summed;
+  Round round;
+  round.n_elements = outcome.n_elements;
+  round.n_moved = outcome.n_moved;
+  round.moved_bytes = outcome.moved_bytes;
+  round.before = average > 0 ? before.slowest / average : 1;
+  round.predicted = average > 0 ? outcome.phase.slowest / average : 1;
+  coordinator_->record_distributed(std::move(round));
+}
+
+double Balancer::speed() const {
+  return plan_.speeds.empty() ? 1 : plan_.speeds[slot(pe())];
+}
+
 void Balancer::sum_up(Callback<PhaseSums> target) {
-  const auto self = static_cast<std::size_t>(pe().value);
-  const double speed = plan_.speeds.empty() ? 1 : plan_.speeds[self];
-  contribute(MergeSums{}, measured_.sums(speed), std::move(target));
+  contribute(MergeSums{}, measured_.sums(speed()), std::move(target));
 }
 
 void Balancer::collect(Callback<std::vector<PeReport>> target) {
@@ -148,15 +205,41 @@ void Balancer::collect(Callback<std::vector<PeReport>> target) {
 }
 
 void Balancer::move(std::vector<Move> moves) {
-  measured_.move(moves);
+  outcome_.n_moved += moves.size();
+  outcome_.moved_bytes += measured_.move(moves);
 }
 
 void Balancer::resume(std::uint32_t round) {
   barrier_.resume(round);
 }
 
-void Balancer::forget(std::uint64_t /*round*/) {
+void Balancer::forget() {
   measured_.clear();
+}
+
+void Balancer::prepare(Callback<PhaseSums> target) {
+  ++n_rounds_seen_;
+  const PhaseSums before = measured_.sums(speed());
+  const PeReport report = measured_.report(n_collected_++);
+  const std::uint64_t limit =
+      plan_.memory_limit_bytes.empty() ? 0 : plan_.memory_limit_bytes[slot(pe())];
+  plan_.exchange.local().hold(report, speed(), limit);
+  outcome_ = {};
+  outcome_.n_elements = report.keys.size();
+  contribute(MergeSums{}, before, std::move(target));
+}
+
+void Balancer::fetch() {
+  boost::unordered_flat_map<PeId, std::vector<Move>, std::hash<PeId>> wanted;
+  for (const Item& item : plan_.exchange.local().arrived())
+    wanted[origin_of(item.element)].push_back({position_of(item.element), pe()});
+  for (auto& [origin, moves] : wanted) group()[origin].send<&Balancer::move>(std::move(moves));
+}
+
+void Balancer::sum_outcome(Callback<Outcome> target) {
+  const PeSummary& summary = plan_.exchange.local().summary();
+  outcome_.phase = {summary.time(), summary.time() * summary.speed, summary.speed};
+  contribute(MergeOutcomes{}, outcome_, std::move(target));
 }
 
 void Balancer::alarm() {
@@ -167,8 +250,20 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
   Pe& pe = current_pe();
   validate(options, pe.n_pes());
   const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;
-  const GroupProxy<Balancer> group = create_group<Balancer>(Balancer::Plan{
-      array, pe.id(), options.when, options.period.count(), passes, options.speeds});
+  const DistributedStrategy distributed =
+      users ? DistributedStrategy::none : distributed_strategy(options.strategy);
+  GroupProxy<Exchange> exchange;
+  if (distributed != DistributedStrategy::none) exchange = create_group<Exchange>();
+  const GroupProxy<Balancer> group =
+      create_group<Balancer>(Balancer::Plan{array,
+                                            pe.id(),
+                                            options.when,
+                                            options.period.count(),
+                                            passes,
+                                            options.speeds,
+                                            options.memory_limit_bytes,
+                                            distributed,
+                                            exchange});
   group.local().coordinate(std::make_unique<Coordinator>(options, std::move(users)));
   return group;
 }

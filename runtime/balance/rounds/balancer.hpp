@@ -7,10 +7,12 @@
 //         move     ->  elements migrate                  (an epoch: it ends when all have arrived)
 //         resume   ->  every element goes on
 //
-// A distributed strategy (diffusion, gossip) has no collect and no decide: see Distributed.
+// A distributed strategy (diffusion, gossip) has neither collect nor decide: the PEs exchange items
+// among themselves (Exchange), then each fetches what it was given.
 #pragma once
 
 #include "runtime/balance/rounds/barrier.hpp"
+#include "runtime/balance/rounds/exchange.hpp"
 #include "runtime/balance/rounds/measured.hpp"
 #include "runtime/epoch.hpp"
 #include "runtime/future.hpp"
@@ -30,23 +32,39 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
     std::int64_t period_ns = 0;
     bool passes = false;         ///< strategy none: at_sync() goes on at once
     std::vector<double> speeds;  ///< of each PE, or empty
+    std::vector<std::uint64_t> memory_limit_bytes;
+    DistributedStrategy distributed = DistributedStrategy::none;
+    GroupProxy<Exchange> exchange;  ///< where a strategy is distributed
+  };
+  /// A distributed round, summed over PEs.
+  struct Outcome {
+    PhaseSums phase;
+    std::uint64_t n_elements = 0;
+    std::uint64_t n_moved = 0;
+    std::uint64_t moved_bytes = 0;
   };
   explicit Balancer(const Plan& plan);
 
   /// The array is known here.
   void attach(Collection& array);
   /// On the coordinator: what decides.
-  void coordinate(std::unique_ptr<Coordinator> coordinator) { coordinator_ = std::move(coordinator); }
+  void coordinate(std::unique_ptr<Coordinator> coordinator) {
+    coordinator_ = std::move(coordinator);
+  }
   [[nodiscard]] const std::vector<Round>& history() const;
 
   // Entry methods.
+  void attached_everywhere(int n_pes);
   Task reached(std::uint64_t n_elements);
   Task due(std::uint64_t round);
   void sum_up(Callback<PhaseSums> target);
   void collect(Callback<std::vector<PeReport>> target);
   void move(std::vector<Move> moves);
   void resume(std::uint32_t round);
-  void forget(std::uint64_t round);
+  void forget();
+  void prepare(Callback<PhaseSums> target);
+  void fetch();
+  void sum_outcome(Callback<Outcome> target);
 
  private:
   // ElementWatcher.
@@ -56,6 +74,9 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void at_sync(Element& element) override;
 
   Task round();
+  Task central_round();
+  Task distributed_round();
+  [[nodiscard]] double speed() const;
   void pass(Element& element);
   void alarm();
 
@@ -65,11 +86,13 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Collection* array_ = nullptr;
   std::uint64_t n_collected_ = 0;
   std::uint64_t n_rounds_seen_ = 0;  // periodic: that this member knows of
+  Outcome outcome_;                  // of this PE, in a distributed round
 
   // On the coordinator.
   std::unique_ptr<Coordinator> coordinator_;
   std::uint32_t barriers_ = 0;
   std::uint64_t n_rounds_ = 0;
+  bool ready_ = false;  // all members watch the array
   bool running_ = false;
   Time phase_began_{0};
 };

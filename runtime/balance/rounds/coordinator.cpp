@@ -79,7 +79,8 @@ Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
   round.strategy_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   round.predicted = measure(expected, wanted).max_over_average;
-  if (automatic && slowest(expected, wanted) >= std::min(now, slowest(expected, expected.elements.pe))) {
+  if (automatic &&
+      slowest(expected, wanted) >= std::min(now, slowest(expected, expected.elements.pe))) {
     floor_ = round.before;
     round.skipped = true;
     return measured.elements.pe;

@@ -4,9 +4,9 @@
 // automatic is ski rental: the time lost to imbalance since the last round is added up, and once it
 // exceeds what a round cost when last measured, one runs. So at most twice the time of the best
 // hindsight is lost, without knowing how long the run lasts. Imbalance that the last round could
-// not remove counts a tenth, or a single heavy element would have rounds run in vain for ever. After
-// a round comes one more collection: the next phase's loads under the placement before the round
-// tell what the round gained, and if that was less than nothing the moves are undone.
+// not remove counts a tenth, or a single heavy element would have rounds run in vain for ever.
+// After a round comes one more collection: the next phase's loads under the placement before the
+// round tell what the round gained, and if that was less than nothing the moves are undone.
 #pragma once
 
 #include "runtime/balance/prediction.hpp"

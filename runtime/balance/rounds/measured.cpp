@@ -71,7 +71,6 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
 
 PeReport Measured::report(std::uint64_t round) {
   PeReport report;
-  if (array_ == nullptr) return report;  // not known here yet
   report.background = busy_outside();
   begin_phase();
   for (Element* element : reported_)
@@ -96,10 +95,15 @@ void Measured::clear() {
     if (element != nullptr) Collection::record_of(*element)->load.clear();
 }
 
-void Measured::move(const std::vector<Move>& moves) {
-  for (const Move& one : moves)
-    if (Element* element = reported_[one.element]; element != nullptr)
-      array_->move(*element, one.to);
+std::uint64_t Measured::move(const std::vector<Move>& moves) {
+  std::uint64_t n_bytes = 0;
+  for (const Move& one : moves) {
+    Element* element = reported_[one.element];
+    if (element == nullptr) continue;
+    n_bytes += Collection::record_of(*element)->size_bytes;
+    array_->move(*element, one.to);
+  }
+  return n_bytes;
 }
 
 }  // namespace tess::balance

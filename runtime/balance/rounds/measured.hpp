@@ -27,8 +27,8 @@ class Measured {
   /// A new phase begins: what was measured is forgotten.
   void clear();
 
-  /// Elements of the last report leave for other PEs.
-  void move(const std::vector<Move>& moves);
+  /// Elements of the last report leave for other PEs; returns their packed size.
+  std::uint64_t move(const std::vector<Move>& moves);
 
  private:
   void add(Element& element, std::uint64_t round, PeReport& report);
@@ -39,7 +39,7 @@ class Measured {
   Meter& meter_;
   Collection* array_ = nullptr;
   std::vector<Element*> reported_;
-  std::uint64_t busy_before_;  // of the meter, when the phase began
+  std::uint64_t busy_before_;      // of the meter, when the phase began
   std::uint64_t in_elements_ = 0;  // ticks of the array's elements on this PE since then
 };
 

@@ -90,9 +90,12 @@ void balance::validate(const BalanceOptions& options, std::int32_t n_pes) {
   if (options.window == 0)
     fail(ErrorCode::bad_argument, "balance window: 0 phases; a prediction looks back at least one");
   if (options.when == BalanceWhen::periodic && options.period.count() <= 0)
-    fail(ErrorCode::bad_argument, "balance period: periodic rounds need one above 0, as period=50ms");
+    fail(ErrorCode::bad_argument,
+         "balance period: periodic rounds need one above 0, as period=50ms");
   if (n_pes == 0) return;
-  const auto fits = [n_pes](std::size_t n) { return n == 0 || n == static_cast<std::size_t>(n_pes); };
+  const auto fits = [n_pes](std::size_t n) {
+    return n == 0 || n == static_cast<std::size_t>(n_pes);
+  };
   if (!fits(options.speeds.size()))
     fail(ErrorCode::bad_argument,
          "balance speeds: ",

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -18,13 +17,13 @@ struct BalanceOptions {
   /// once.
   std::string strategy = "greedy_refine";
   BalanceWhen when = BalanceWhen::at_sync;
-  std::chrono::nanoseconds period{0};  ///< of periodic rounds; above 0 there
-  std::string prediction = "last";    ///< last, moving_average, linear_trend
-  std::uint64_t window = 5;           ///< phases that a prediction looks back
-  std::uint64_t seed = 1;             ///< of strategies that draw
-  std::vector<double> speeds{};       ///< of each PE, relative; empty: all alike
+  std::chrono::nanoseconds period{0};               ///< of periodic rounds; above 0 there
+  std::string prediction = "last";                  ///< last, moving_average, linear_trend
+  std::uint64_t window = 5;                         ///< phases that a prediction looks back
+  std::uint64_t seed = 1;                           ///< of strategies that draw
+  std::vector<double> speeds{};                     ///< of each PE, relative; empty: all alike
   std::vector<std::uint64_t> memory_limit_bytes{};  ///< of each PE; 0 or empty: none
-  RoundLines lines = RoundLines::none;  ///< or one a round to standard error
+  RoundLines lines = RoundLines::none;              ///< or one a round to standard error
 };
 
 /// "strategy=greedy,when=periodic,period=50ms,prediction=linear_trend,window=5,seed=7,report".

@@ -2,8 +2,8 @@
 // they sent. From the reports of all PEs, in PE order, the snapshot that a strategy sees.
 #pragma once
 
-#include "runtime/balance/snapshot.hpp"
 #include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/snapshot.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,0 +1,100 @@
+// The distributed strategies among the PEs of a run: what diffusion and gossip compute over a
+// snapshot (strategies/), carried out by messages. A group, one member a PE; each knows its own
+// elements and what others have told it, nothing lists all. Elements change hands as items, four
+// numbers each; only when the strategy is through do they migrate.
+//
+//   diffusion   in each stage two PEs talk:  greet <-> greet,  offer -> answer, offer -> answer …
+//               (the later of the two offers); a reduction a sweep tells whether to go on
+//   gossip      spread word (an epoch a round), then  offer -> answer  until nobody offers
+#pragma once
+
+#include "runtime/balance/rounds/pe_report.hpp"
+#include "runtime/balance/strategies/gossip.hpp"
+#include "runtime/callback.hpp"
+#include "runtime/group.hpp"
+#include "runtime/mailbox.hpp"
+
+#include <memory>
+#include <string_view>
+
+namespace tess::balance {
+
+enum class DistributedStrategy : std::uint8_t { none, diffusion, gossip };
+
+/// Which of them a name names; none for all other strategies.
+[[nodiscard]] DistributedStrategy distributed_strategy(std::string_view name);
+
+/// An item's origin: the PE that reported it, and its position there.
+[[nodiscard]] constexpr std::size_t item_name(PeId origin, std::size_t position) {
+  return static_cast<std::size_t>(origin.value) << 40U | position;
+}
+[[nodiscard]] constexpr PeId origin_of(std::size_t name) {
+  return PeId{static_cast<std::int32_t>(name >> 40U)};
+}
+[[nodiscard]] constexpr std::size_t position_of(std::size_t name) {
+  return name & ((std::size_t{1} << 40U) - 1);
+}
+
+class Exchange final : public Group<Exchange> {
+ public:
+  /// This PE's elements, as it has reported them; before run().
+  void hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes);
+
+  struct Order {
+    DistributedStrategy strategy = DistributedStrategy::none;
+    double average_time = 0;  ///< of all PEs, in seconds
+  };
+  /// On one member: has all carry out the strategy; `done` is given the number of trades.
+  Task run(Order order, Callback<std::uint64_t> done);
+
+  /// After run(): items here that another PE reported.
+  [[nodiscard]] std::vector<Item> arrived() const;
+  [[nodiscard]] const PeSummary& summary() const { return local().summary(); }
+
+  struct Talk {
+    std::uint64_t key = 0;
+    PeSummary summary;
+    Item item;
+    double wanted = 0;
+    std::vector<Item> change;
+    std::uint8_t ends = 0;  ///< the giver has no more to offer; the taker refuses
+  };
+  struct Proposal {
+    PeId from{};
+    std::uint64_t key = 0;
+    Offer offer;
+  };
+  struct Reply {
+    std::uint64_t key = 0;
+    std::uint8_t taken = 0;
+    std::vector<Item> change;
+    PeSummary receiver;
+  };
+
+  // Entry methods.
+  Task sweep(std::uint64_t number, Callback<std::uint64_t> n_trades);
+  void hear(Talk talk);
+  void begin_gossip(double average_time);
+  void begin_iteration();
+  void spread();
+  void rumour(std::vector<Rumour> rumours);
+  Task offer_all(Callback<std::uint64_t> n_trades);
+  void propose(Proposal proposal);
+  void reply(Reply reply);
+
+ private:
+  Task diffuse_with(PeId other, std::uint64_t stage);
+  Task run_diffusion();
+  Task run_gossip(double average_time);
+  [[nodiscard]] const LocalPe& local() const { return gossip_ ? gossip_->local() : *local_; }
+
+  std::unique_ptr<LocalPe> local_;
+  std::unique_ptr<GossipPe> gossip_;  // holds a copy of it from begin_gossip() on
+  Mailbox<&Talk::key> talks_;
+  Mailbox<&Reply::key> replies_;
+  std::uint64_t n_trades_ = 0;  // in this sweep or iteration, given by this PE
+  std::uint64_t n_offers_ = 0;
+  std::uint64_t n_all_ = 0;  // on the member that runs
+};
+
+}  // namespace tess::balance
