@@ -10,6 +10,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 namespace lb_lab {
 namespace {
@@ -25,7 +26,9 @@ tess::Task measure(Settings settings, double steps_a_second) {
   tess::Pe& pe = tess::current_pe();
   Sweep sweep;
   sweep.settings = std::move(settings);
+  sweep.tell = print_row;
   sweep.machine = pe.machine().describe();
+  print_head();
   co_await run_all(sweep, steps_a_second);
   print_best(sweep);
   if (!sweep.settings.json.empty()) write_json(sweep.settings.json, sweep);
@@ -33,6 +36,12 @@ tess::Task measure(Settings settings, double steps_a_second) {
     std::fprintf(stderr, "lb_lab: wrong answer: %s\n", sweep.wrong.c_str());
     tess::exit(1);
   }
+}
+
+/// A run of minutes is not to end in a file that cannot be written.
+void make_file(const std::string& option, const std::string& path) {
+  if (path.empty() || std::ofstream(path, std::ios::app)) return;
+  tess::fail(tess::ErrorCode::environment, option, ": ", path, " cannot be written");
 }
 
 void add_options(CLI::App& app, Settings& s) {
@@ -91,6 +100,7 @@ int start(int argc, char** argv) {
   if (talks) {
     make_directory("--plot", settings.plot);
     make_directory("--save-snapshot", settings.snapshots);
+    make_file("--json", settings.json);
     if (settings.explain) tess::print_text(explain_text(settings, n_pes));
     if (!setup.machine->virtual_time()) steps_a_second = calibrate();
   }

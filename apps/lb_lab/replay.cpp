@@ -59,6 +59,7 @@ std::string row(std::uint64_t phase,
 }  // namespace
 
 std::string replay(const Settings& s) {
+  (void)tess::balance::parse_fold(s.fold);  // before files are read
   std::vector<std::string> names = s.strategies;
   if (std::ranges::count(names, "all") > 0) names = tess::balance::strategy_names();
   std::string out = fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12}\n",

@@ -86,7 +86,6 @@ tess::Task run_fastest(const Experiment& experiment, std::int32_t repeat, Outcom
 tess::Task run_all(Sweep& sweep, double steps_a_second) {
   const Settings& s = sweep.settings;
   const std::int32_t n_pes = tess::current_pe().n_pes();
-  print_head();
   for (const std::string& name : s.workloads) {
     Problem problem = problem_of(s, find_workload(name), n_pes);
     const std::uint64_t serial = serial_answer(problem);
@@ -103,7 +102,7 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
         row.gain = 1 - row.seconds_total / none_seconds;
         check(sweep, row, serial);
         sweep.rows.push_back(std::move(row));
-        print_row(sweep.rows.back());
+        if (sweep.tell) sweep.tell(sweep.rows.back());
         if (!s.snapshots.empty()) save_snapshots(s.snapshots, sweep.rows.back(), outcome);
         if (!s.plot.empty()) drawings.add(experiment, outcome, sweep.rows.back());
       }

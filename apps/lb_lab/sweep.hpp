@@ -5,6 +5,7 @@
 #include "apps/lb_lab/experiment.hpp"
 #include "apps/lb_lab/settings.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Row {
 
 struct Sweep {
   Settings settings;
+  std::function<void(const Row&)> tell;  ///< called with each row as it comes; may be empty
   std::string machine;
   std::vector<Row> rows;
   std::string wrong;  ///< in which run the answer was not the serial one; empty: all is well
