@@ -22,7 +22,7 @@ namespace {
 }
 
 const std::vector<std::string> all_measures{
-    "ping_pong", "send_cost", "creation", "collectives", "migration"};
+    "ping_pong", "send_cost", "creation", "collectives", "migration", "balance"};
 
 tess::Task measure(const Report& report, std::vector<std::string> names, Options options) {
   report.header();
@@ -33,6 +33,7 @@ tess::Task measure(const Report& report, std::vector<std::string> names, Options
     if (name == "creation") co_await creation(report, options);
     if (name == "collectives") co_await collectives(report, options);
     if (name == "migration" && !alone) co_await migration(report, options);
+    if (name == "balance") co_await balance(report, options);
   }
 }
 

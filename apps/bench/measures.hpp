@@ -28,5 +28,6 @@ tess::Task creation(const Report& report, Options options);
 tess::Task collectives(const Report& report, Options options);
 /// Elements with 1 KiB of state that go from PE to PE: elapsed time over migrations.
 tess::Task migration(const Report& report, Options options);
+tess::Task balance(const Report& report, Options options);
 
 }  // namespace bench

@@ -25,10 +25,12 @@ void Predictor::record(const Snapshot& measured) {
   ++n_phases_;
   for (std::size_t i = 0; i < measured.elements.size(); ++i) {
     History& history = history_[measured.elements.key[i]];
+    if (history.size() == window_) history.erase(history.begin());
     history.push_back({n_phases_, measured.elements.load[i]});
-    if (history.size() > window_) history.pop_front();
   }
-  std::erase_if(history_, [&](const auto& entry) {
+  // Looking through all costs as much as recording: now and then is often enough.
+  if (n_phases_ % (forget_after_ / 4 + 1) != 0) return;
+  boost::unordered::erase_if(history_, [&](const auto& entry) {
     return entry.second.back().phase + forget_after_ < n_phases_;
   });
 }

@@ -4,9 +4,10 @@
 
 #include "runtime/balance/snapshot.hpp"
 
-#include <deque>
-#include <map>
+#include <boost/unordered/unordered_flat_map.hpp>
+
 #include <string_view>
+#include <vector>
 
 namespace tess::balance {
 
@@ -42,14 +43,14 @@ class Predictor {
     std::size_t phase = 0;
     double load = 0;
   };
-  using History = std::deque<Sample>;
+  using History = std::vector<Sample>;  // oldest first, at most window_
   [[nodiscard]] double next(const History& history) const;
 
   Prediction kind_;
   std::size_t window_;
   std::size_t forget_after_;
   std::size_t n_phases_ = 0;
-  std::map<ElementKey, History> history_;
+  boost::unordered_flat_map<ElementKey, History, ElementKeyHash> history_;
 };
 
 }  // namespace tess::balance

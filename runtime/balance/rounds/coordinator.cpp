@@ -30,8 +30,10 @@ std::map<std::string, double> by_entry(const std::vector<PeReport>& reports) {
 Coordinator::Coordinator(BalanceOptions options, Strategy users)
     : options_(std::move(options)),
       strategy_(users ? make_strategy(std::move(users))
-                      : make_strategy(options_.strategy, options_.seed)),
-      predictor_(parse_prediction(options_.prediction), options_.window) {}
+                      : make_strategy(options_.strategy, options_.seed)) {
+  const Prediction prediction = parse_prediction(options_.prediction);
+  if (prediction != Prediction::last) predictor_.emplace(prediction, options_.window);
+}
 
 bool Coordinator::worth(const PhaseSums& phase) {
   if (judges_) return true;
@@ -73,7 +75,8 @@ Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
     round.skipped = true;
     return measured.elements.pe;
   }
-  const Snapshot expected = predictor_.predict(measured);
+  const Snapshot predicted = predictor_ ? predictor_->predict(measured) : Snapshot{};
+  const Snapshot& expected = predictor_ ? predicted : measured;
   const auto began = std::chrono::steady_clock::now();
   Assignment wanted = strategy_(expected);
   round.strategy_seconds =
@@ -91,7 +94,7 @@ Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
 std::vector<std::vector<Move>> Coordinator::decide(const std::vector<PeReport>& reports) {
   const Snapshot measured = snapshot_of(reports, options_);
   validate(measured);
-  predictor_.record(measured);
+  if (predictor_) predictor_->record(measured);
   Round round;
   round.number = history_.size();
   round.strategy = options_.strategy;

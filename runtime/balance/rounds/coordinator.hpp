@@ -56,7 +56,7 @@ class Coordinator {
 
   const BalanceOptions options_;
   Strategy strategy_;
-  Predictor predictor_;
+  std::optional<Predictor> predictor_;  // none: the last phase is what it is expected to be
   std::vector<Round> history_;
   Placement moved_from_;  // by the last round
   double cost_ = 0;       // seconds of the last round that asked the strategy
