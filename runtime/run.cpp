@@ -22,6 +22,33 @@ std::int32_t whole_number(std::string_view option, std::string_view value, std::
   return number;
 }
 
+void print_error(const char* program, const Error& error) {
+  const char* slash = std::strrchr(program, '/');
+  std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program, error.what());
+  std::fflush(stderr);
+}
+
+/// What a process that refuses its input gives to Machine::agree(), where others may give the
+/// fingerprint of the program.
+constexpr std::uint64_t refused = 0x7265667573656421U;
+
+/// An Error before the run: process 0 speaks for all, if all have one. If not, the others stand at
+/// the start of the run, and this process ends the job.
+void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
+  if (!setup.machine && under_mpirun()) {
+    try {
+      setup.machine = make_mpi_machine(argc, argv, {});
+    } catch (const Error&) {  // then each speaks for itself
+    }
+  }
+  if (!setup.machine || setup.started) return print_error(argv[0], error);
+  const bool all = setup.machine->agree(refused);
+  if (!all || setup.machine->process().value == 0) print_error(argv[0], error);
+  if (!all) setup.machine->abort(2);
+  // A process that leaves makes mpirun end the others: not before the line is out.
+  (void)setup.machine->agree(refused);
+}
+
 }  // namespace
 
 std::string options_help() {
@@ -30,7 +57,9 @@ std::string options_help() {
          "  --sim KEYS  run on a simulated machine: "
          "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
          "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations)\n"
-         "  --stats     print what each PE did\n";
+         "  --stats     print what each PE did: messages, bytes, busy and idle seconds, chares\n"
+         "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
+         "              chrome://tracing (process p of several writes F.p)\n";
 }
 
 Setup take_options(int& argc, char** argv) {
@@ -59,6 +88,8 @@ Setup take_options(int& argc, char** argv) {
     } else if (takes_value("--sim")) {
       simulates = true;
       simulated = value;
+    } else if (takes_value("--trace")) {
+      setup.options.trace = value;
     } else if (option == "--stats") {
       setup.options.statistics = true;
     } else {
@@ -80,6 +111,7 @@ Setup take_options(int& argc, char** argv) {
 }
 
 int run_on(Setup& setup, std::function<void()> main) {
+  setup.started = true;
   Runtime runtime(*setup.machine, setup.options, std::move(main));
   return runtime.run();
 }
@@ -88,8 +120,18 @@ int guarded(const char* program, const std::function<int()>& body) {
   try {
     return body();
   } catch (const Error& error) {
-    const char* slash = std::strrchr(program, '/');
-    std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program, error.what());
+    print_error(program, error);
+    return 2;
+  }
+}
+
+int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
+  Setup setup;
+  try {
+    setup = take_options(argc, argv);
+    return body(setup);
+  } catch (const Error& error) {
+    refuse(setup, argc, argv, error);
     return 2;
   }
 }

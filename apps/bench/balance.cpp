@@ -1,5 +1,6 @@
-#include "apps/bench/measures.hpp"
 #include "runtime/balance.hpp"
+
+#include "apps/bench/measures.hpp"
 #include "runtime/base/ticks.hpp"
 #include "runtime/runtime.hpp"
 
@@ -66,8 +67,8 @@ class Worker : public tess::Chare<Worker, tess::Index1> {
     while (tess::read_ticks() < until) {
     }
     if (left > 0)
-      array()[{(index().x + 1) % static_cast<std::int32_t>(array().size())}]
-          .send<&Worker::work>(left - 1);
+      array()[{(index().x + 1) % static_cast<std::int32_t>(array().size())}].send<&Worker::work>(
+          left - 1);
   }
 };
 

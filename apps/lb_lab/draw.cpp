@@ -7,7 +7,8 @@
 namespace lb_lab {
 namespace {
 
-constexpr std::size_t most_rows = 32;  // PEs of a timeline
+constexpr std::size_t most_rows = 32;     // PEs of a timeline
+constexpr std::size_t most_points = 160;  // of a curve: as many as one sees
 
 /// A PE's time in the drawn iterations: its work, rounds on top, idle between.
 void draw_pe(std::size_t pe,
@@ -42,6 +43,21 @@ void draw_pe(std::size_t pe,
   rest_until(end);
 }
 
+/// Means over as many iterations each as it takes.
+plot::Series curve_of(const Row& row) {
+  plot::Series curve{.name = row.strategy, .style = plot::Style::lines};
+  const std::vector<double>& values = row.imbalance_of_iteration;
+  const std::size_t window = (values.size() + most_points - 1) / most_points;
+  for (std::size_t first = 0; first < values.size(); first += window) {
+    const std::size_t n = std::min(window, values.size() - first);
+    double sum = 0;
+    for (std::size_t t = first; t < first + n; ++t) sum += values[t];
+    const auto count = static_cast<double>(n);
+    curve.points.push_back({static_cast<double>(first) + (count - 1) / 2, sum / count});
+  }
+  return curve;
+}
+
 plot::Timeline timeline_of(const Outcome& outcome, const Row& row) {
   plot::Timeline timeline;
   const std::size_t n = std::min(most_rows, outcome.records.size());
@@ -64,7 +80,7 @@ plot::Timeline timeline_of(const Outcome& outcome, const Row& row) {
 
 }  // namespace
 
-void Drawings::add(const Experiment& /*experiment*/, const Outcome& outcome, const Row& row) {
+void Drawings::add(const Outcome& outcome, const Row& row) {
   runs_.push_back({row, timeline_of(outcome, row)});
 }
 
@@ -98,10 +114,7 @@ void Drawings::write(const std::string& directory) const {
         {per_pe, 1e3 * row.seconds_total / row.n_iterations});
     if (std::ranges::count(time.x_ticks, per_pe) == 0) time.x_ticks.push_back(per_pe);
     if (row.per_pe != best.row.per_pe) continue;
-    plot::Series curve{.name = row.strategy, .style = plot::Style::lines};
-    for (std::size_t t = 0; t < row.imbalance_of_iteration.size(); ++t)
-      curve.points.push_back({static_cast<double>(t), row.imbalance_of_iteration[t]});
-    balance.series.push_back(std::move(curve));
+    balance.series.push_back(curve_of(row));
     if (row.strategy == "none") {
       plot::write_svg(path("timeline-none"), run.timeline);
     } else if (drawn == nullptr || faster(run, *drawn)) {

@@ -16,7 +16,7 @@ class Drawings {
  public:
   explicit Drawings(std::string workload) : workload_(std::move(workload)) {}
 
-  void add(const Experiment& experiment, const Outcome& outcome, const Row& row);
+  void add(const Outcome& outcome, const Row& row);
 
   /// Into a directory: WORKLOAD-time.svg, WORKLOAD-imbalance.svg of the best cut,
   /// WORKLOAD-timeline-none.svg and -timeline-STRATEGY.svg of the best cut and strategy.

@@ -76,8 +76,7 @@ void add_options(CLI::App& app, Settings& s) {
   app.add_flag("--explain", s.explain, "say what this run uses and what it left out");
 }
 
-int start(int argc, char** argv) {
-  tess::Setup setup = tess::take_options(argc, argv);
+int start(tess::Setup& setup, int argc, char** argv) {
   Settings settings;
   bool list = false;
   CLI::App app("Experiments with overdecomposition and load balancing.", "lb_lab");
@@ -96,11 +95,12 @@ int start(int argc, char** argv) {
   }
   const std::int32_t n_pes = setup.machine->n_pes();
   complete(settings, n_pes);
+  // On all processes: a fault has to meet them all.
+  make_directory("--plot", settings.plot);
+  make_directory("--save-snapshot", settings.snapshots);
+  make_file("--json", settings.json);
   double steps_a_second = 0;
   if (talks) {
-    make_directory("--plot", settings.plot);
-    make_directory("--save-snapshot", settings.snapshots);
-    make_file("--json", settings.json);
     if (settings.explain) tess::print_text(explain_text(settings, n_pes));
     if (!setup.machine->virtual_time()) steps_a_second = calibrate();
   }
@@ -110,7 +110,7 @@ int start(int argc, char** argv) {
 }  // namespace
 
 int program(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] { return start(argc, argv); });
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return start(setup, argc, argv); });
 }
 
 }  // namespace lb_lab

@@ -104,7 +104,7 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
         sweep.rows.push_back(std::move(row));
         if (sweep.tell) sweep.tell(sweep.rows.back());
         if (!s.snapshots.empty()) save_snapshots(s.snapshots, sweep.rows.back(), outcome);
-        if (!s.plot.empty()) drawings.add(experiment, outcome, sweep.rows.back());
+        if (!s.plot.empty()) drawings.add(outcome, sweep.rows.back());
       }
     }
     if (!s.plot.empty()) drawings.write(s.plot);

@@ -27,7 +27,8 @@ struct Envelope : Link {
   EpochId epoch{};
   PeId source{};
   PeId target{};
-  bool counted = true;  ///< a hop of epoch 0; false for what measures or ends the run
+  bool counted = true;      ///< a hop of epoch 0; false for what measures or ends the run
+  std::uint32_t trace = 0;  ///< the number of its send on the source, while a trace is kept
 };
 
 /// What an envelope does when it is its turn. One static object for each kind of message.

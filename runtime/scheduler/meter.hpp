@@ -44,8 +44,12 @@ class Meter {
   /// A scope begins; returns the one that it interrupts, for leave().
   [[nodiscard]] Scope enter(Scope scope) {
     pass();
+    if (entered_ == nullptr) entered_ = scope.action;
     return std::exchange(scope_, scope);
   }
+  /// The entry method of the first scope since forget_entered(); null where there was none.
+  [[nodiscard]] const Action* entered() const { return entered_; }
+  void forget_entered() { entered_ = nullptr; }
   void leave(Scope outer) {
     const std::uint64_t at = pass();
     const Scope ended = std::exchange(scope_, outer);
@@ -75,6 +79,7 @@ class Meter {
   [[nodiscard]] std::uint64_t busy() const { return busy_; }
   /// Seconds since the meter was made.
   [[nodiscard]] double age() const { return seconds(now() - made_); }
+  [[nodiscard]] std::uint64_t made() const { return made_; }
 
   /// From now on `ring` is called after a scope with a record that ends `period` ticks or more
   /// after its last call. (What a ring causes has no record: it does not ring again.)
@@ -93,6 +98,7 @@ class Meter {
   const double seconds_per_tick_;
   const std::uint64_t made_;
   Scope scope_;
+  const Action* entered_ = nullptr;
   std::uint64_t since_ = 0;  // the last change of scope
   std::uint64_t step_began_ = 0;
   std::uint64_t busy_ = 0;

@@ -17,7 +17,7 @@ struct PackedHeader {
   std::uint32_t action;
   PeId source;
   PeId target;
-  std::uint32_t counted;
+  std::uint32_t trace_and_counted;  // the lowest bit: counted
 };
 static_assert(Bitwise<PackedHeader>);
 
@@ -61,8 +61,12 @@ void Pe::pack(PeId to, Envelope* message) {
   Buffer& out = packed_[process];
   if (out.capacity() == 0) out.reserve(flush_bytes + 4096);
   const std::size_t begin = out.size();
-  PackedHeader header{
-      0, message->epoch, message->action->id(), message->source, to, message->counted ? 1U : 0U};
+  PackedHeader header{0,
+                      message->epoch,
+                      message->action->id(),
+                      message->source,
+                      to,
+                      message->trace << 1U | (message->counted ? 1U : 0U)};
   Writer write(out);
   write(header);
   message->action->pack(*message, write);
@@ -108,7 +112,8 @@ void Pe::receive(std::span<const std::byte> bytes) {
     message->epoch = header.epoch;
     message->source = header.source;
     message->target = header.target;
-    message->counted = header.counted != 0;
+    message->counted = (header.trace_and_counted & 1U) != 0;
+    message->trace = header.trace_and_counted >> 1U;
     if (header.target == id_) {
       ready_.push(message);
     } else {
@@ -139,6 +144,17 @@ void Pe::run(Envelope* message) {
   if (counted) completion_.hop_processed();
 }
 
+void Pe::run_traced(Envelope* message) {
+  const Action* action = message->action;
+  const PeId source = message->source;
+  const std::uint32_t number = message->trace;
+  const std::uint64_t begin = meter_->now();
+  meter_->forget_entered();
+  run(message);
+  if (meter_->entered() != nullptr) action = meter_->entered();
+  trace_->ran(action, begin, meter_->now(), source, number);
+}
+
 void Pe::note_place() {
   if (place_.empty()) place_ = runtime_.describe(*this);
 }
@@ -162,7 +178,11 @@ std::size_t Pe::step(std::size_t most) {
   std::size_t n = 0;
   if (meter_) [[unlikely]]
     meter_->step_begins();
-  for (; n < most && !ready_.empty(); ++n) run(static_cast<Envelope*>(ready_.pop()));
+  if (trace_) [[unlikely]] {
+    for (; n < most && !ready_.empty(); ++n) run_traced(static_cast<Envelope*>(ready_.pop()));
+  } else {
+    for (; n < most && !ready_.empty(); ++n) run(static_cast<Envelope*>(ready_.pop()));
+  }
   if (meter_) [[unlikely]]
     meter_->step_ends();
   statistics_.messages += n;

@@ -10,6 +10,7 @@
 #include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
+#include "runtime/scheduler/trace.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 
@@ -77,8 +78,17 @@ class Pe {
   M* stamp(M* message) {
     message->source = id_;
     message->epoch = context_.epoch;
+    if (trace_) [[unlikely]]
+      message->trace = trace_->sent(meter_->now());
     return message;
   }
+
+  /// Keeps a trace from now on.
+  void start_trace(std::size_t most_records) {
+    start_meter();
+    trace_ = std::make_unique<Trace>(most_records);
+  }
+  [[nodiscard]] const Trace* trace() const { return trace_.get(); }
 
   // Sending and forwarding of stamped messages. All take ownership.
 
@@ -194,6 +204,7 @@ class Pe {
   void route(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
   void run(Envelope* message);
+  void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
   Collection* find_slow(CollectionId id);
 
@@ -219,6 +230,7 @@ class Pe {
   PeStatistics statistics_;
   Random random_;
   std::unique_ptr<Meter> meter_;
+  std::unique_ptr<Trace> trace_;
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
   unsigned steps_since_flush_ = 0;

@@ -40,6 +40,8 @@ void census_arrives(Pe& pe, Runtime::Census&& census) {
   pe.runtime().on_census(pe, std::move(census));
 }
 
+constexpr std::size_t most_trace_records = 1'000'000;  // of each kind a PE: some 60 MB
+
 template <auto Handler, class Payload>
 void send_to_all(Pe& pe, const Payload& payload) {
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) send_uncounted<Handler>(pe, PeId{to}, payload);
@@ -62,7 +64,10 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
   for (std::int32_t i = 0; i < n_here; ++i) {
     pes_.push_back(std::make_unique<Pe>(
         PeId{first_.value + i}, *this, machine, pools_.emplace_back(), options.seed));
-    pes_.back()->set_migration_chance(options.migration_chance);
+    Pe& pe = *pes_.back();
+    pe.set_migration_chance(options.migration_chance);
+    if (options.statistics) pe.start_meter();
+    if (!options.trace.empty()) pe.start_trace(most_trace_records);
   }
   set_check_context(&context_of_this_thread);
 }
@@ -74,7 +79,9 @@ int Runtime::run() {
   if (!machine_.agree(Registry::fingerprint()))
     fail(ErrorCode::environment,
          "the processes of this job run different programs: start the same build everywhere");
+  if (!options_.trace.empty()) require_writable_trace(trace_path());
   machine_.run(*this);
+  write_traces();
   if (left_) return exit_code_;
   // Only a simulated machine can notice that nothing at all is under way any more.
   std::string report =
@@ -97,22 +104,48 @@ void Runtime::run_main(Pe& /*pe*/) {
 
 void Runtime::finish(PeId id) {
   const RunsOn here(pe(id));
-  if (options_.statistics) {
-    const PeStatistics& s = pe(id).statistics();
-    error_line(fmt::format(
-        "stats: PE {} messages {} sent {} bytes {} forwards {} migrations {} dead letters {}",
-        id.value,
-        s.messages,
-        s.sent_remote,
-        s.bytes_sent,
-        s.forwards,
-        s.migrations,
-        s.dead_letters));
-  }
+  if (options_.statistics) print_statistics(id);
   if (!left_) {
     for (std::string& line : pe(id).census()) still_.push_back(std::move(line));
   }
   pe(id).drop_all();
+}
+
+void Runtime::print_statistics(PeId id) {
+  Pe& of = pe(id);
+  const PeStatistics& s = of.statistics();
+  const double busy = of.meter()->seconds(of.meter()->busy());
+  std::size_t chares = 0;
+  for (const Collection* collection : of.collections()) chares += collection->n_local();
+  error_line(fmt::format(
+      "stats: PE {} messages {} sent {} bytes {} busy {:.6f} s idle {:.6f} s chares {} forwards {} "
+      "migrations {} dead letters {}",
+      id.value,
+      s.messages,
+      s.sent_remote,
+      s.bytes_sent,
+      busy,
+      std::max(0.0, of.meter()->age() - busy),
+      chares,
+      s.forwards,
+      s.migrations,
+      s.dead_letters));
+}
+
+void Runtime::write_traces() {
+  if (options_.trace.empty()) return;
+  std::vector<TraceOfPe> all;
+  for (const auto& pe : pes_)
+    all.push_back({pe->id(),
+                   pe->trace(),
+                   pe->meter()->seconds(1'000'000'000) * 1e-9,
+                   pes_.front()->meter()->made()});
+  write_trace(trace_path(), machine_.process(), all);
+}
+
+std::string Runtime::trace_path() const {
+  const std::int32_t process = machine_.process().value;
+  return process == 0 ? options_.trace : text(options_.trace, ".", process);
 }
 
 void Runtime::error_line(const std::string& line) {

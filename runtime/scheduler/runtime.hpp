@@ -25,6 +25,7 @@ struct RuntimeOptions {
   double migration_chance =
       0;                    ///< after each message an element may be sent away: schedule fuzzing
   bool statistics = false;  ///< print what each PE did
+  std::string trace;        ///< the file that a trace is written to; empty: none is kept
   /// Who is given the lines of reports (deadlock, exception, statistics); absent: standard error.
   std::function<void(const std::string&)> report;
 };
@@ -73,6 +74,9 @@ class Runtime final : public Program {
 
  private:
   void end_with(Pe& pe, int code);
+  void print_statistics(PeId id);
+  [[nodiscard]] std::string trace_path() const;
+  void write_traces();
 
   Machine& machine_;
   const RuntimeOptions options_;
