@@ -77,6 +77,24 @@ for fault in "$scratch/missing.exo kuhn:2" "kuhn:2 kuhn:2 --nonsense" "kuhn:2 ku
   fi
 done
 
+lab=("$bin/lb_lab" --json "$scratch/result.json" --sim pes=4)
+refuses moving_hot_spot "${lab[@]}" --workload nonsense
+refuses greedy_refine "${lab[@]}" --strategy nonsense
+refuses --per-pe "${lab[@]}" --per-pe 1,0
+refuses "11 blocks" "$bin/lb_lab" --sim pes=1 --json "$scratch/result.json" --workload stencil --per-pe 12,11
+refuses --grain "${lab[@]}" --grain 1
+refuses --period "${lab[@]}" --period 6 --iterations 5
+refuses --when "${lab[@]}" --when sometimes
+refuses moving_average "${lab[@]}" --prediction nonsense
+refuses --speed "${lab[@]}" --speed 1,1,0.5
+refuses --speed "${lab[@]}" --speed 1,1,0.5,0
+refuses missing.json "${lab[@]}" --replay "$scratch/missing.json"
+refuses empty.exo "${lab[@]}" --replay "$scratch/empty.exo"
+refuses modulo "${lab[@]}" --replay "$scratch/empty.exo" --fold nonsense
+refuses --plot "${lab[@]}" --plot "$scratch/empty.exo/plots"
+refuses --json "$bin/lb_lab" --sim pes=4 --json "$scratch/missing/result.json"
+refuses --nonsense "${lab[@]}" --nonsense
+
 data=${TESS_DATA:-$(dirname "$0")/../../../shared/data}
 if [[ -d $data/nalu ]]; then
   refuses HEX "${transfer[@]}" "$data/nalu/3d_hex8_pipe.exo" kuhn:2

@@ -2,6 +2,8 @@
 
 #include "runtime/scheduler/runtime.hpp"
 
+#include <algorithm>
+
 namespace tess::balance {
 namespace {
 
@@ -243,6 +245,9 @@ void Balancer::sum_outcome(Callback<Outcome> target) {
 }
 
 void Balancer::alarm() {
+  // A PE without elements leaves it to others; an array that has ended has no more rounds.
+  const auto& here = array_->elements();
+  if (std::none_of(here.begin(), here.end(), [](const Element* e) { return e != nullptr; })) return;
   group()[plan_.coordinator].send<&Balancer::due>(n_rounds_seen_);
 }
 

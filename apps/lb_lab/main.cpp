@@ -1,0 +1,120 @@
+// lb_lab: how many chares a PE, which strategy, how often, at what cost, and what is gained. Runs
+// workloads whose answer is known under every strategy and cut that are asked for, or strategies on
+// snapshots that were saved.
+#include "apps/command_line.hpp"
+#include "apps/lb_lab/kernel.hpp"
+#include "apps/lb_lab/replay.hpp"
+#include "apps/lb_lab/report.hpp"
+#include "apps/lb_lab/sweep.hpp"
+#include "runtime/runtime.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace lb_lab {
+namespace {
+
+void make_directory(const std::string& option, const std::string& path) {
+  if (path.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) tess::fail(tess::ErrorCode::environment, option, ": ", path, ": ", error.message());
+}
+
+tess::Task measure(Settings settings, double steps_a_second) {
+  tess::Pe& pe = tess::current_pe();
+  Sweep sweep;
+  sweep.settings = std::move(settings);
+  sweep.tell = print_row;
+  sweep.machine = pe.machine().describe();
+  print_head();
+  co_await run_all(sweep, steps_a_second);
+  print_best(sweep);
+  if (!sweep.settings.json.empty()) write_json(sweep.settings.json, sweep);
+  if (!sweep.wrong.empty()) {
+    std::fprintf(stderr, "lb_lab: wrong answer: %s\n", sweep.wrong.c_str());
+    tess::exit(1);
+  }
+}
+
+/// A run of minutes is not to end in a file that cannot be written.
+void make_file(const std::string& option, const std::string& path) {
+  if (path.empty() || std::ofstream(path, std::ios::app)) return;
+  tess::fail(tess::ErrorCode::environment, option, ": ", path, " cannot be written");
+}
+
+void add_options(CLI::App& app, Settings& s) {
+  app.add_option("--workload", s.workloads, "names, or all (--list)")->delimiter(',');
+  app.add_option("--per-pe", s.per_pe, "chares on a PE: cuts of the same work")->delimiter(',');
+  app.add_option("--strategy", s.strategies, "names, or all (--list); none is always run")
+      ->delimiter(',');
+  app.add_option("--period", s.period, "iterations between rounds");
+  app.add_option("--iterations", s.n_iterations, "iterations of a run")
+      ->check(CLI::Range(1, 100'000'000));
+  app.add_option(
+      "--grain", s.grain, "mean work of a chare an iteration at the finest cut, as 250us");
+  app.add_option("--when", s.when, "at_sync, periodic (no barrier), automatic");
+  app.add_option("--prediction", s.prediction, "last, moving_average, linear_trend");
+  app.add_option("--speed", s.speeds, "of each PE, as 1,1,0.5")->delimiter(',');
+  app.add_option("--seed", s.seed, "of workloads and strategies that draw");
+  app.add_option("--cell-bytes", s.cell_bytes, "that migrate with a chare at the finest cut")
+      ->check(CLI::Range(0, 1 << 30));
+  app.add_option("--message-bytes", s.message_bytes, "ballast to each neighbour an iteration")
+      ->check(CLI::Range(0, 1 << 30));
+  app.add_option("--repeat", s.repeat, "runs of each; the fastest counts")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--json", s.json, "write the rows as JSON");
+  app.add_option("--plot", s.plot, "write SVG plots into a directory");
+  app.add_option(
+      "--save-snapshot", s.snapshots, "write what strategies were shown into a directory");
+  app.add_option(
+      "--replay", s.replay, "run the strategies on saved snapshots (vt's LBDatafile) instead");
+  app.add_option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
+      ->check(CLI::Range(1, 1 << 20));
+  app.add_option("--fold", s.fold, "how another number of PEs is filled: block, modulo");
+  app.add_flag("--explain", s.explain, "say what this run uses and what it left out");
+}
+
+int start(tess::Setup& setup, int argc, char** argv) {
+  Settings settings;
+  bool list = false;
+  CLI::App app("Experiments with overdecomposition and load balancing.", "lb_lab");
+  add_options(app, settings);
+  app.add_flag("--list", list, "say which workloads and strategies there are");
+  if (!apps::parse(app, argc, argv)) return 0;
+  const bool talks = setup.machine->process() == tess::ProcessId{0};
+  if (list) {
+    if (talks) tess::print_text(list_text());
+    return 0;
+  }
+  if (!settings.replay.empty()) {
+    const std::string report = replay(settings);
+    if (talks) tess::print_text(report);
+    return 0;
+  }
+  const std::int32_t n_pes = setup.machine->n_pes();
+  complete(settings, n_pes);
+  // On all processes: a fault has to meet them all.
+  make_directory("--plot", settings.plot);
+  make_directory("--save-snapshot", settings.snapshots);
+  make_file("--json", settings.json);
+  double steps_a_second = 0;
+  if (talks) {
+    if (settings.explain) tess::print_text(explain_text(settings, n_pes));
+    if (!setup.machine->virtual_time()) steps_a_second = calibrate();
+  }
+  return tess::run(setup, [&] { return measure(settings, steps_a_second); });
+}
+
+}  // namespace
+
+int program(int argc, char** argv) {
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return start(setup, argc, argv); });
+}
+
+}  // namespace lb_lab
+
+int main(int argc, char** argv) {
+  return lb_lab::program(argc, argv);
+}

@@ -1,0 +1,29 @@
+// What the laboratory tells: a table as it goes, JSON at the end, what it will use before.
+#pragma once
+
+#include "apps/lb_lab/sweep.hpp"
+
+#include <string>
+
+namespace lb_lab {
+
+void print_head();
+void print_row(const Row& row);
+/// The best cut and strategy of each workload.
+void print_best(const Sweep& sweep);
+
+/// Writes rows (the schema of the README), best, and imbalance over iterations. Throws tess::Error
+/// where the file cannot be written.
+void write_json(const std::string& path, const Sweep& sweep);
+
+/// The workloads and strategies there are, a line each.
+[[nodiscard]] std::string list_text();
+
+/// What these settings use, and what they leave out.
+[[nodiscard]] std::string explain_text(const Settings& settings, std::int32_t n_pes);
+
+/// Writes the phases that a strategy was shown, one file a PE:
+/// DIR/WORKLOAD-PER_PE-STRATEGY/data.PE.json.
+void save_snapshots(const std::string& directory, const Row& row, const Outcome& outcome);
+
+}  // namespace lb_lab

@@ -1,0 +1,73 @@
+#include "apps/lb_lab/station.hpp"
+
+#include "apps/lb_lab/kernel.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace lb_lab {
+namespace {
+
+// Intervals with less between them than this share of the shorter are one: a message's cost is no
+// idle time.
+constexpr double gap = 0.05;
+
+double& entry(std::vector<double>& values, std::int32_t at, double fill) {
+  const auto i = static_cast<std::size_t>(at);
+  if (values.size() <= i) values.resize(i + 1, fill);
+  return values[i];
+}
+
+}  // namespace
+
+Station::Station(Plan plan)
+    : plan_(std::move(plan)),
+      speed_(plan_.speeds.empty() ? 1 : plan_.speeds[static_cast<std::size_t>(pe().value)]) {}
+
+double Station::clock() const {
+  return std::chrono::duration<double>(tess::current_pe().now()).count();
+}
+
+double Station::cpu() const {
+  return tess::current_pe().machine().virtual_time() ? clock() : thread_seconds();
+}
+
+std::uint64_t Station::work(double seconds, std::uint64_t word) {
+  const double here = seconds / speed_;
+  if (tess::charge(std::chrono::nanoseconds(std::llround(1e9 * here)))) return word;
+  return walk(word, static_cast<std::uint64_t>(here * plan_.steps_a_second));
+}
+
+void Station::begins() {
+  began_ = clock();
+  cpu_at_begin_ = cpu();
+}
+
+void Station::ends(std::int32_t iteration) {
+  entry(record_.seconds, iteration, 0) += cpu() - cpu_at_begin_;
+  if (iteration >= plan_.n_drawn) return;
+  const Interval now{began_, clock()};
+  if (!record_.busy.empty() && now.begin - record_.busy.back().end < gap * (now.end - now.begin)) {
+    record_.busy.back().end = now.end;
+  } else {
+    record_.busy.push_back(now);
+  }
+}
+
+void Station::waits(std::int32_t phase) {
+  entry(record_.waits_from, phase, -1) = clock();
+}
+
+void Station::resumes(std::int32_t phase) {
+  double& at = entry(record_.resumes_at, phase, -1);
+  if (at < 0) at = clock();
+}
+
+void Station::tell(tess::Callback<std::vector<PeRecord>> target) {
+  std::vector<PeRecord> mine;
+  mine.push_back(record_);
+  contribute(tess::in_order(tess::concatenate), std::move(mine), std::move(target));
+}
+
+}  // namespace lb_lab

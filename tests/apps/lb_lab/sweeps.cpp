@@ -1,0 +1,164 @@
+// What the laboratory measures, on a machine that repeats to the bit; what it writes; what it
+// refuses.
+#include "apps/lb_lab/replay.hpp"
+#include "apps/lb_lab/report.hpp"
+#include "runtime/error.hpp"
+#include "tests/apps/lb_lab/on_simulated.hpp"
+#include "tests/support/catch.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+using namespace lb_lab;
+
+namespace {
+
+/// A directory of its own for the files of a test.
+struct Scratch {
+  std::filesystem::path path;
+  Scratch() {
+    std::string name = (std::filesystem::temp_directory_path() / "lb_lab.XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    path = name;
+  }
+  ~Scratch() { std::filesystem::remove_all(path); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+};
+
+Settings linear() {
+  Settings s;
+  s.workloads = {"linear"};
+  s.per_pe = {1, 16};
+  s.strategies = {"greedy", "refine"};
+  s.n_iterations = 20;
+  s.period = 2;
+  return s;
+}
+
+const Row& row_of(const Sweep& sweep, const std::string& strategy, std::int32_t per_pe) {
+  for (const Row& row : sweep.rows)
+    if (row.strategy == strategy && row.per_pe == per_pe) return row;
+  FAIL("no row of " << strategy << " with " << per_pe);
+  return sweep.rows.front();
+}
+
+}  // namespace
+
+TEST_CASE("work by index is balanced once there are chares to move, and its ideal is exact",
+          "[lb_lab]") {
+  const Sweep sweep = sweep_on("pes=4,cost=1us", linear());
+  // 64 cells on 4 PEs: the last PE has 49 … 64, of 1 … 64.
+  const double before = 4 * (49 + 64) * 8.0 / (64 * 65 / 2.0);
+  for (const std::int32_t per_pe : {1, 16})
+    for (const char* strategy : {"none", "greedy", "refine"})
+      CHECK(row_of(sweep, strategy, per_pe).imbalance_before == Approx(before).epsilon(1e-3));
+  CHECK(row_of(sweep, "none", 16).imbalance_after == Approx(before).epsilon(1e-3));
+  CHECK(row_of(sweep, "greedy", 1).imbalance_after == Approx(before).epsilon(1e-3));
+  CHECK(row_of(sweep, "greedy", 16).imbalance_after <= 1.05);
+  CHECK(row_of(sweep, "refine", 16).imbalance_after <= 1.10);
+  CHECK(row_of(sweep, "none", 16).ideal_seconds == Approx(20 * 16e-3).epsilon(0.01));
+  // One phase of ten at `before`, nine that are balanced.
+  CHECK(row_of(sweep, "greedy", 16).gain > 0.35);
+  CHECK(row_of(sweep, "none", 16).gain == 0);
+  CHECK(&best_of(sweep, "linear") == &row_of(sweep, "greedy", 16));
+}
+
+TEST_CASE("a PE of half the speed gets half the work", "[lb_lab]") {
+  Settings s = linear();
+  s.workloads = {"uniform"};
+  s.speeds = {1, 1, 1, 0.5};
+  const Sweep sweep = sweep_on("pes=4,cost=1us", s);
+  CHECK(row_of(sweep, "none", 16).imbalance_before == Approx(2 * 3.5 / 4).epsilon(1e-3));
+  CHECK(row_of(sweep, "greedy", 16).imbalance_after <= 1.05);
+}
+
+TEST_CASE("automatic rounds lose next to nothing where nothing can be gained", "[lb_lab]") {
+  Settings s = linear();
+  s.workloads = {"uniform", "uniform_comm"};
+  s.when = "automatic";
+  const Sweep sweep = sweep_on("pes=4,cost=1us", s);
+  for (const Row& row : sweep.rows) {
+    CHECK(row.gain >= -0.02);
+    CHECK(row.n_moves == 0);
+  }
+}
+
+TEST_CASE("the JSON has the rows of the schema", "[lb_lab]") {
+  const Scratch scratch;
+  const Sweep sweep = sweep_on("pes=4,cost=1us", linear());
+  const std::string file = (scratch.path / "out.json").string();
+  write_json(file, sweep);
+  std::ifstream in(file);
+  const nlohmann::json root = nlohmann::json::parse(in);
+  const std::set<std::string> keys = {"workload",
+                                      "strategy",
+                                      "per_pe",
+                                      "pes",
+                                      "iterations",
+                                      "seconds_total",
+                                      "seconds_per_iteration",
+                                      "imbalance_before",
+                                      "imbalance_after",
+                                      "moves",
+                                      "bytes_moved",
+                                      "balance_seconds",
+                                      "gain",
+                                      "result_hash"};
+  REQUIRE(root.at("rows").size() == sweep.rows.size());
+  for (const nlohmann::json& row : root.at("rows")) {
+    std::set<std::string> found;
+    for (const auto& [key, value] : row.items()) found.insert(key);
+    CHECK(found == keys);
+    CHECK(row.at("workload").is_string());
+    CHECK(row.at("result_hash").get<std::string>().size() == 16);
+    for (const char* key : {"per_pe", "pes", "iterations", "moves", "bytes_moved"})
+      CHECK(row.at(key).is_number_unsigned());
+    CHECK(row.at("seconds_per_iteration").get<double>() * row.at("iterations").get<double>() ==
+          Approx(row.at("seconds_total").get<double>()));
+  }
+  CHECK(root.at("imbalance_over_iterations").at(0).size() == 20);
+  CHECK(root.at("best").at(0).at("strategy") == "greedy");
+}
+
+TEST_CASE("what a strategy was shown is saved, and replayed gives the same prediction",
+          "[lb_lab]") {
+  const Scratch scratch;
+  Settings s = linear();
+  s.per_pe = {16};
+  s.strategies = {"greedy"};
+  s.snapshots = scratch.path.string();
+  s.plot = scratch.path.string();
+  const Sweep sweep = sweep_on("pes=4,cost=1us", s);
+  for (const char* name : {"time", "imbalance", "timeline-none", "timeline-greedy"})
+    CHECK(std::filesystem::exists(scratch.path / (std::string("linear-") + name + ".csv")));
+  for (int pe = 0; pe < 4; ++pe)
+    s.replay.push_back(
+        (scratch.path / "linear-16-greedy" / ("data." + std::to_string(pe) + ".json")).string());
+  s.strategies = {"none", "greedy"};
+  const std::string table = replay(s);
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);
+  for (const char* strategy : {"none", "greedy"}) {
+    std::size_t phase = 9, n_pes = 0, n_elements = 0, moves = 0;
+    std::string name;
+    double before = 0, predicted = 0;
+    lines >> phase >> n_pes >> n_elements >> name >> before >> predicted >> moves;
+    CHECK(phase == 0);
+    CHECK(n_pes == 4);
+    CHECK(n_elements == 64);
+    CHECK(name == strategy);
+    CHECK(before == Approx(1.738).epsilon(2e-3));
+    CHECK((name == "none" ? predicted == before : predicted <= 1.05));
+    std::getline(lines, line);
+  }
+  s.replay_pes = 7;
+  s.strategies = {"graph"};
+  CHECK(replay(s).find("      7        64 graph") != std::string::npos);
+  s.speeds = {1, 2};
+  CHECK_THROWS_WITH(replay(s), Catch::Contains("2 speeds for a replay on 7 PEs"));
+}
