@@ -33,8 +33,8 @@ Task transfer_once(const DriverOptions& options, Progress& progress) {
     progress.clear();
     print(explain(problem, options.out.empty() ? Output::report : Output::mesh));
   }
-  const auto meter = create_group<Meter>();
-  co_await measure(problem, meter, progress);
+  const auto gauge = create_group<Gauge>();
+  co_await measure(problem, gauge, progress);
   progress.phase("writing");
   if (!options.json.empty()) plot::write_file(options.json, json({problem.report}));
   if (!options.out.empty()) write_exodus(options.out, problem.target, problem.target_fields);
@@ -47,7 +47,7 @@ Task run_study(const DriverOptions& options, Progress& progress) {
     fail(ErrorCode::bad_argument, "--out is for one transfer, not for --study");
   std::vector<Request> requests = plan_study(options.request, options.policies);
   prepare_folder(*options.study);
-  const auto meter = create_group<Meter>();
+  const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (Request& request : requests) {
     progress.part(static_cast<std::uint32_t>(reports.size() + 1),
@@ -58,7 +58,7 @@ Task run_study(const DriverOptions& options, Progress& progress) {
       progress.clear();
       print(explain(problem, Output::report));
     }
-    co_await measure(problem, meter, progress);
+    co_await measure(problem, gauge, progress);
     reports.push_back(problem.report);
   }
   progress.clear();

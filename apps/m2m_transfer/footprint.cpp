@@ -22,7 +22,7 @@ Footprint JoinFootprints::operator()(Footprint a, const Footprint& b) const {
   return a;
 }
 
-void Meter::read(Callback<Footprint> target) {
+void Gauge::read(Callback<Footprint> target) {
   Pe& here = current_pe();
   const Machine& machine = here.machine();
   Footprint mine;

@@ -19,7 +19,7 @@ struct JoinFootprints {
   Footprint operator()(Footprint a, const Footprint& b) const;
 };
 
-class Meter : public Group<Meter> {
+class Gauge : public Group<Gauge> {
  public:
   /// Gives what this PE sent, and on the first PE of a process what the process holds.
   void read(Callback<Footprint> target);

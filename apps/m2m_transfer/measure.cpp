@@ -44,11 +44,11 @@ void end(const DistributedMesh& mesh) {
 
 }  // namespace
 
-Task measure(Problem& problem, GroupProxy<Meter> meter, Progress& progress) {
+Task measure(Problem& problem, GroupProxy<Gauge> gauge, Progress& progress) {
   Pe& pe = current_pe();
   TransferReport& report = problem.report;
   Future<Footprint> before, after, most;
-  meter.broadcast<&Meter::read>(before.callback());
+  gauge.broadcast<&Gauge::read>(before.callback());
   const Footprint sent_before = co_await before;
 
   progress.phase("partition");
@@ -73,7 +73,7 @@ Task measure(Problem& problem, GroupProxy<Meter> meter, Progress& progress) {
       best.report = times.report;
     }
     if (round != 0) continue;
-    meter.broadcast<&Meter::read>(after.callback());
+    gauge.broadcast<&Gauge::read>(after.callback());
     report.footprint.bytes_sent = (co_await after).bytes_sent - sent_before.bytes_sent;
   }
   progress.phase("comparison with the truth");
@@ -81,7 +81,7 @@ Task measure(Problem& problem, GroupProxy<Meter> meter, Progress& progress) {
   target.workers.broadcast<&Worker::gather>(outcome.callback());
   take(co_await outcome, problem);
   judge(problem);
-  meter.broadcast<&Meter::read>(most.callback());
+  gauge.broadcast<&Gauge::read>(most.callback());
   const Footprint peak = co_await most;
   report.footprint.peak_memory_bytes = peak.peak_memory_bytes;
   report.footprint.greatest_peak_memory_bytes = peak.greatest_peak_memory_bytes;

@@ -10,7 +10,7 @@
 namespace tess::m2m {
 
 /// Fills in the target's fields (with one more, "status") and the report. The meshes' chares are
-/// gone when it is done. `meter`: created before, known everywhere. `progress` is told the phases.
-Task measure(Problem& problem, GroupProxy<Meter> meter, Progress& progress);
+/// gone when it is done. `gauge`: created before, known everywhere. `progress` is told the phases.
+Task measure(Problem& problem, GroupProxy<Gauge> gauge, Progress& progress);
 
 }  // namespace tess::m2m

@@ -144,6 +144,42 @@ class Rotor : public Chare<Rotor, Index1> {
   int first_ = 0, round_ = 0;
 };
 
+/// Counts who has reached each barrier.
+class Marcher : public Chare<Marcher, Index1> {
+ public:
+  static constexpr int n_phases = 8;
+  static inline Trial* trial = nullptr;
+  static inline int n = 0;
+  static inline std::array<std::atomic<int>, n_phases + 1> reached{};
+
+  void begin() { reach(); }
+  void resume_from_sync() {
+    trial->expect(reached[static_cast<std::size_t>(phase_)] == n,
+                  element_text(*this),
+                  " is past barrier ",
+                  phase_,
+                  ", which ",
+                  reached[static_cast<std::size_t>(phase_)].load(),
+                  " of ",
+                  n,
+                  " have reached");
+    if (++phase_ <= n_phases) reach();
+  }
+  [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(phase_);
+  }
+
+ private:
+  void reach() {
+    charge(std::chrono::microseconds(1 + index().x % 3));
+    ++reached[static_cast<std::size_t>(phase_)];
+    at_sync();
+  }
+  int phase_ = 0;
+};
+
 /// Sends itself around a ring of elements, while periodic rounds move them.
 class Runner : public Chare<Runner, Index1> {
  public:
@@ -216,6 +252,23 @@ void balance_rotate(Trial& trial) {
     rotors.broadcast<&Rotor::begin>();
   });
   trial.expect(Rotor::n_done == n, Rotor::n_done.load(), " of ", n, " elements met all rounds");
+}
+
+void balance_barrier(Trial& trial) {
+  Marcher::trial = &trial;
+  Marcher::n = trial.draw(1, 20);
+  for (auto& count : Marcher::reached) count = 0;
+  BalanceOptions options;
+  do options.strategy = drawn_strategy(trial.random());
+  while (options.strategy == "none");  // no barrier
+  trial.run_clean([&] {
+    const auto marchers = create<Marcher>(range(Marcher::n));
+    if (trial.seed() % 2 == 0) marchers.broadcast<&Marcher::begin>();
+    start_balancing(marchers, options);
+    if (trial.seed() % 2 != 0) marchers.broadcast<&Marcher::begin>();
+  });
+  for (const auto& count : Marcher::reached)
+    trial.expect(count == Marcher::n, count.load(), " of ", Marcher::n, " reached a barrier");
 }
 
 void balance_periodic(Trial& trial) {

@@ -33,6 +33,9 @@ constexpr std::array all{
     Scenario{"balance_rounds",
              "each wait at the balance barrier is resumed once, while elements move, come and go",
              &balance_rounds},
+    Scenario{"balance_barrier",
+             "no element passes the barrier before all have reached it, wherever they are",
+             &balance_barrier},
     Scenario{"balance_rotate", "after each round elements are where it put them", &balance_rotate},
     Scenario{"balance_periodic", "rounds without a barrier lose no message", &balance_periodic},
 };

@@ -448,6 +448,7 @@ template <class Index>
 void ArrayOf<Index>::depart(Element_& element, PeId to) {
   const Index index = element.index_;
   unlist(element);
+  count_departure(element);
   here_.erase(index);
   const Version version{element.state_.version.incarnation, element.state_.version.epoch + 1};
   element.state_.version = version;
@@ -469,6 +470,7 @@ void ArrayOf<Index>::land(Element_* element, PeId from) {
   here_.emplace(index, element);
   cache_.forget(index);
   departed_.erase(index);
+  count_arrival(*element);
   list(*element);
   // It stays until it has met the broadcasts that it missed on its way: only then has it landed.
   ++element->n_suspended_;

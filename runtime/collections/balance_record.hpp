@@ -21,6 +21,7 @@ enum class SyncPhase : std::uint8_t {
 
 struct SyncState {
   SyncPhase phase = SyncPhase::runs;
+  bool known = false;           ///< a barrier has seen it
   bool member = false;          ///< the barrier waits for it
   std::uint32_t next = 0;       ///< a member: the round it reaches next
   std::uint32_t waits_for = 0;  ///< while it waits: the round that resumes it

@@ -86,6 +86,13 @@ class Collection {
     return element.balance_.get();
   }
   static BalanceRecord& make_record(Element& element);
+  /// Whether it has not migrated yet.
+  [[nodiscard]] static bool never_moved(const Element& element) {
+    return element.state_.version.epoch <= 1;
+  }
+  /// Migrations from this PE less those to it, of elements that no barrier knows: summed over PEs,
+  /// how many are under way.
+  [[nodiscard]] std::int64_t n_away() const { return n_away_; }
   /// The element waits until its balancer resumes it.
   void at_sync(Element& element);
   /// The message of resume() has come: whether it was this life of the index that waited.
@@ -118,15 +125,22 @@ class Collection {
  protected:
   void list(Element& element);
   void unlist(Element& element);
+  void count_departure(const Element& element) { n_away_ += known(element) ? 0 : 1; }
+  void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
   /// Registers a new element as born here and now.
   void born(Element& element);
 
   Pe& pe_;
 
  private:
+  [[nodiscard]] static bool known(const Element& element) {
+    return element.balance_ && element.balance_->sync.known;
+  }
+
   const CollectionId id_;
   const std::string name_;
   std::vector<Element*> elements_;
+  std::int64_t n_away_ = 0;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
   std::size_t n_local_ = 0;

@@ -25,13 +25,13 @@ class Chatter : public Group<Chatter> {
 };
 
 Task compare(Footprint& before, Footprint& after) {
-  const auto meter = create_group<Meter>();
+  const auto gauge = create_group<Gauge>();
   const auto chatter = create_group<Chatter>();
   Future<Footprint> first, second;
-  meter.broadcast<&Meter::read>(first.callback());
+  gauge.broadcast<&Gauge::read>(first.callback());
   before = co_await first;
   co_await epoch([&] { chatter.broadcast<&Chatter::talk>(n_rounds); });
-  meter.broadcast<&Meter::read>(second.callback());
+  gauge.broadcast<&Gauge::read>(second.callback());
   after = co_await second;
 }
 

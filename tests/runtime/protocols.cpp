@@ -39,6 +39,10 @@ TEST_CASE("an index that all PEs demand at once is created once", "[runtime][pro
 TEST_CASE("each wait at the balance barrier is resumed once", "[runtime][protocol][balance]") {
   run_seeds("balance_rounds");
 }
+TEST_CASE("no element passes the balance barrier before all have reached it",
+          "[runtime][protocol][balance]") {
+  run_seeds("balance_barrier");
+}
 TEST_CASE("rotate puts elements where it says, 40 rounds", "[runtime][protocol][balance]") {
   run_seeds("balance_rotate");
 }

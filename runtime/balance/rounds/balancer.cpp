@@ -58,18 +58,37 @@ void Balancer::attach(Collection& array) {
   measured_.attach(array);
   if (plan_.passes) {
     for (Element* element : array.elements())
-      if (element != nullptr) at_sync(*element);
+      if (element != nullptr) pass(*element);
   } else {
     barrier_.attach(array);
   }
   Meter& meter = current_pe().start_meter();
   if (plan_.when == BalanceWhen::periodic)
     meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), [this] { alarm(); });
-  contribute(sum, 1, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+  contribute(
+      sum, array.n_away(), group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
 }
 
-void Balancer::attached_everywhere(int /*n_pes*/) {
+void Balancer::attached_everywhere(std::int64_t n_under_way) {
+  attached_ = true;
+  n_under_way_ += n_under_way;
+  begin_if_ready();
+}
+
+void Balancer::landed_late() {
+  --n_under_way_;
+  begin_if_ready();
+}
+
+void Balancer::begin_if_ready() {
+  if (!attached_ || n_under_way_ != 0) return;
   ready_ = true;
+  phase_began_ = current_pe().now();
+  group().broadcast<&Balancer::begin>();
+}
+
+void Balancer::begin() {
+  if (!plan_.passes) barrier_.begin();
 }
 
 const std::vector<Round>& Balancer::history() const {
@@ -79,10 +98,10 @@ const std::vector<Round>& Balancer::history() const {
 
 void Balancer::entered(Element& element) {
   measured_.entered(element);
-  if (!plan_.passes) {
-    barrier_.entered(element);
-  } else {
+  if (plan_.passes) {
     pass(element);
+  } else if (barrier_.entered(element)) {
+    group()[plan_.coordinator].send<&Balancer::landed_late>();
   }
 }
 

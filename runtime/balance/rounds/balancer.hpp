@@ -54,7 +54,9 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   [[nodiscard]] const std::vector<Round>& history() const;
 
   // Entry methods.
-  void attached_everywhere(int n_pes);
+  void attached_everywhere(std::int64_t n_under_way);
+  void landed_late();
+  void begin();
   Task reached(std::uint64_t n_elements);
   Task due(std::uint64_t round);
   void sum_up(Callback<PhaseSums> target);
@@ -78,6 +80,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Task distributed_round();
   [[nodiscard]] double speed() const;
   void pass(Element& element);
+  void begin_if_ready();
   void alarm();
 
   const Plan plan_;
@@ -92,7 +95,9 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   std::unique_ptr<Coordinator> coordinator_;
   std::uint32_t barriers_ = 0;
   std::uint64_t n_rounds_ = 0;
-  bool ready_ = false;  // all members watch the array
+  std::int64_t n_under_way_ = 0;  // elements that left before balancing started where they were
+  bool attached_ = false;         // everywhere
+  bool ready_ = false;            // all members of round 0 are found
   bool running_ = false;
   Time phase_began_{0};
 };

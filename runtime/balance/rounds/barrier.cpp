@@ -26,28 +26,42 @@ void Barrier::attach(Collection& array) {
   for (Element* element : array.elements()) {
     if (element == nullptr) continue;
     SyncState& sync = Collection::make_record(*element).sync;
-    if (!sync.member) {
-      sync.member = true;
-      sync.next = 0;
-      tree_.born(0);
-    }
-    tree_.enter(sync.next);
+    if (!sync.known) join_first(sync);
+    if (sync.member) tree_.enter(sync.next);
   }
+  for (Element* element : array.elements()) {
+    if (element == nullptr) continue;
+    const SyncState& sync = sync_of(*element);
+    if (sync.phase == SyncPhase::waits && sync.next == 0) at_sync(*element);
+  }
+}
+
+void Barrier::begin() {
   tree_.leave(0);
-  for (Element* element : array.elements())
-    if (element != nullptr && sync_of(*element).phase == SyncPhase::waits) at_sync(*element);
   tree_.advance();
 }
 
-void Barrier::entered(Element& element) {
+void Barrier::join_first(SyncState& sync) {
+  sync.known = true;
+  sync.member = true;
+  sync.next = 0;
+  tree_.born(0);
+}
+
+bool Barrier::entered(Element& element) {
   SyncState& sync = sync_of(element);
+  const bool late = !sync.known && !Collection::never_moved(element);
+  if (late) join_first(sync);
+  sync.known = true;
   if (sync.member) tree_.enter(sync.next);
-  if (sync.phase != SyncPhase::waits) return;
-  if (!sync.member) {
-    at_sync(element);  // it began to wait where balancing had not started
-  } else if (sync.waits_for < n_resumed_) {
-    wake(element);
+  if (sync.phase == SyncPhase::waits) {
+    if (late) {
+      contribute(sync);  // it began to wait where balancing had not started
+    } else if (sync.waits_for < n_resumed_) {
+      wake(element);
+    }
   }
+  return late;
 }
 
 void Barrier::left(Element& element) {
