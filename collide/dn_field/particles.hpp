@@ -1,0 +1,48 @@
+// Particles as structure of arrays, in world coordinates. Double precision: at an offset of 1e9 a
+// float knows positions to 64 units, and in a million steps its rounding would feed or eat the
+// energy that the rules keep. What the field sees is the position relative to the grid, which is
+// subtracted in double and only then rounded to float. Particles do not meet one another, so that
+// no result depends on their order or on how they are cut into blocks.
+#pragma once
+
+#include "collide/dn_field/vec3.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace tess::dn {
+
+/// What the step loop writes to: n positions and n velocities, one array an axis. Not owned.
+struct ParticleSpan {
+  double *x = nullptr, *y = nullptr, *z = nullptr;
+  double *vx = nullptr, *vy = nullptr, *vz = nullptr;
+  std::size_t count = 0;
+
+  /// Particles [first, first + n).
+  [[nodiscard]] ParticleSpan part(std::size_t first, std::size_t n) const {
+    return {x + first, y + first, z + first, vx + first, vy + first, vz + first, n};
+  }
+};
+
+struct Particles {
+  std::vector<double> x, y, z;     ///< position
+  std::vector<double> vx, vy, vz;  ///< velocity
+
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] Vec3 position(std::size_t p) const { return {x[p], y[p], z[p]}; }
+  [[nodiscard]] Vec3 velocity(std::size_t p) const { return {vx[p], vy[p], vz[p]}; }
+
+  void resize(std::size_t n) {
+    for (auto* values : {&x, &y, &z, &vx, &vy, &vz}) values->resize(n);
+  }
+  void push_back(Vec3 position, Vec3 velocity) {
+    x.push_back(position.x), y.push_back(position.y), z.push_back(position.z);
+    vx.push_back(velocity.x), vy.push_back(velocity.y), vz.push_back(velocity.z);
+  }
+  /// Valid until the number of particles changes.
+  [[nodiscard]] ParticleSpan span() {
+    return {x.data(), y.data(), z.data(), vx.data(), vy.data(), vz.data(), x.size()};
+  }
+};
+
+}  // namespace tess::dn

@@ -1,0 +1,114 @@
+// What acts on the particles of a scene: each rule is there or not, and the step loop that
+// make_stepper() composes holds those alone that are. All are for mass 1: a stiffness is k/m, a
+// rate c/m, in 1/s² and 1/s. N is the surface's normal, V the velocity relative to the moving
+// surface, d the distance to it in world units. The closest surface acts, no other.
+// (Paper, sections 3.3 to 3.6; the integrators are ours: exact where the motion has a closed form.)
+#pragma once
+
+#include "collide/dn_field/field.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tess::dn {
+
+/// How a field is asked (from fast to smooth): the value of the closest voxel; that value carried
+/// on along the voxel's normal, which is exact for planes; interpolation between eight voxels.
+enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
+
+/// Whether a look-up at the start of the step serves the whole step (then speed × step must stay
+/// below the field's thickness), or particles that go further than is known to be free are traced
+/// along their way.
+enum class Sweep : std::uint32_t { off, on };
+
+/// Drag of a velocity u: -rate × u, or -rate × |u| u.
+enum class DragLaw : std::uint32_t { linear, quadratic };
+
+/// A force (stiffness × depth) along N in d < reach, with -damping × N·V. Must be less than
+/// critically damped: damping < 2 √stiffness.
+struct Spring {
+  double stiffness = 1;
+  double damping = 0;
+  double reach = 0;  ///< the spring is slack here
+};
+
+/// V − (1 + restitution)(N·V)N for what would come closer than `threshold` in this step.
+struct Impact {
+  double restitution = 1;  ///< 0: slides on; 1: no loss
+  double threshold = 0;    ///< the distance at which particles bounce: their radius
+  Sweep sweep = Sweep::on;
+};
+
+/// Drag toward the surface's own velocity, in d < threshold.
+struct SurfaceDrag {
+  double rate = 0;
+  double threshold = 0;
+  DragLaw law = DragLaw::linear;
+};
+
+/// Turns V toward the surface's tangent with an acceleration perpendicular to V, in d < distance.
+/// alpha_in for N·V < 0, alpha_out for N·V > 0; a negative one turns away from the tangent.
+/// |V| is kept.
+struct SurfaceFlow {
+  double alpha_in = 0;
+  double alpha_out = 0;
+  double distance = 0;
+};
+
+struct Gravity {
+  Vec3 acceleration;
+};
+
+/// Air that moves: linear drag toward `velocity`.
+struct Wind {
+  Vec3 velocity;
+  double rate = 0;
+};
+
+/// Air at rest.
+struct AirDrag {
+  double rate = 0;
+  DragLaw law = DragLaw::linear;
+};
+
+/// Pushes away from `centre`: strength × (1 − r/radius) within `radius`, from `start` for
+/// `duration`.
+struct Explosion {
+  Vec3 centre;
+  double strength = 0;  ///< an acceleration; negative pulls
+  double radius = 1;
+  double start = 0;
+  double duration = 0;
+};
+
+struct Rules {
+  LookUp look_up = LookUp::tangent;
+  std::optional<Spring> spring;
+  std::optional<Impact> impact;
+  std::optional<SurfaceDrag> surface_drag;
+  std::optional<SurfaceFlow> surface_flow;
+  std::optional<Gravity> gravity;
+  std::optional<Wind> wind;
+  std::optional<AirDrag> air_drag;
+  std::vector<Explosion> explosions;
+};
+
+/// Throws Error(bad_value) for the first value that is not finite or out of its range; the message
+/// names it as a scene file does ("spring.damping"), and the remedy.
+void validate(const Rules& rules);
+
+/// Whether a rule asks for the surface at all.
+[[nodiscard]] bool needs_field(const Rules& rules);
+
+/// What the fields of this scene must store: normals only where a rule or the look-up asks for
+/// them.
+[[nodiscard]] Content needed_content(const Rules& rules);
+
+/// The distance from the surface at which the first rule acts.
+[[nodiscard]] double reach(const Rules& rules);
+
+/// One line a rule, "used" or "left out", for --explain.
+[[nodiscard]] std::vector<std::string> explain(const Rules& rules);
+
+}  // namespace tess::dn

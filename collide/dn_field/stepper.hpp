@@ -1,0 +1,69 @@
+// The step loop of a scene, composed at set-up: make_stepper() picks from a table of instantiated
+// loops the one that holds this scene's rules and no test for the others. Serial; any thread may
+// run any part of the particles, at the same time, with the same Stepper. The result depends on the
+// particle, the objects, the time and the step alone: not on blocks, threads or instruction set.
+//
+// One step of a particle:
+//     velocity   quadratic drags and the surface flow, each by its exact solution
+//     flight     gravity, wind, linear drags and explosions, exact for constant coefficients, gives
+//                the velocity at the end and the mean velocity
+//     surface    the spring's exact motion along the normal; the impact at its time within the
+//     step,
+//                then the rest of the step with the new velocity
+#pragma once
+
+#include "collide/dn_field/frame.hpp"
+#include "collide/dn_field/particles.hpp"
+#include "collide/dn_field/rules.hpp"
+
+#include <memory>
+#include <span>
+
+namespace tess::dn {
+
+/// What particles collide with. The field is shared, read-only, and must outlive the object.
+struct Object {
+  const Field* field = nullptr;
+  Frame frame;  ///< at the start of a run, with the velocities it moves by
+};
+
+/// Moves all frames over n_steps; bit for bit what a run of n_steps sees.
+void advance(std::span<Object> objects, double step, int n_steps);
+
+/// Throws Error(bad_argument) where `objects` cannot serve `rules`: a field without distances or
+/// without the normals that a rule needs, a scale that is not positive and finite.
+void validate(const Rules& rules, std::span<const Object> objects);
+
+class Stepper {
+ public:
+  /// n_steps steps from `time` on, the objects standing as at `time`. Particles are taken a few
+  /// hundred at a time through all the steps, so that they stay in the cache: many steps a call are
+  /// faster than one. Particles that are not finite stay so and touch no others. `objects` must
+  /// have passed validate().
+  void run(ParticleSpan particles,
+           std::span<const Object> objects,
+           double time,
+           int n_steps = 1) const;
+
+  [[nodiscard]] const Rules& rules() const;
+  [[nodiscard]] double step() const;
+
+  struct Plan;  ///< constants and loops of a scene; in stepper.cpp
+
+ private:
+  friend Stepper make_stepper(const Rules& rules, double step);
+  explicit Stepper(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {}
+  std::shared_ptr<const Plan> plan_;
+};
+
+/// Throws Error(bad_value) where validate(rules) does, and for a step that is not positive and
+/// finite.
+[[nodiscard]] Stepper make_stepper(const Rules& rules, double step);
+
+/// Sum of v²/2. Particles that are not finite are left out.
+[[nodiscard]] double kinetic_energy(ParticleSpan particles);
+
+/// Particles with a coordinate or velocity that is NaN or infinite.
+[[nodiscard]] std::size_t count_nonfinite(ParticleSpan particles);
+
+}  // namespace tess::dn
