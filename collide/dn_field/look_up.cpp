@@ -1,38 +1,93 @@
 #include "collide/dn_field/look_up.hpp"
 
+#include "collide/dn_field/sample.hpp"
 #include "runtime/check.hpp"
 
-namespace tess::dn {
+#include <array>
 
-void nearest_distance(const Field& field, const Points& points, std::span<float> distance) {
-  const std::size_t count = distance.size();
-  TESS_CHECK(points.x.size() == count && points.y.size() == count && points.z.size() == count,
+namespace tess::dn {
+namespace {
+
+using namespace lanes;
+
+/// Fills whole vectors; the last points are copied to one of their own.
+template <LookUp Kind, Ask Asked>
+void answer(const Field& field, const Points& points, const Answers& answers) {
+  const Sampler sampler = sampler_of(field);
+  const auto& grid = field.grid;
+  const auto per_cell = static_cast<float>(1 / grid.cell);
+  const auto ox = static_cast<float>(-grid.origin.x / grid.cell),
+             oy = static_cast<float>(-grid.origin.y / grid.cell),
+             oz = static_cast<float>(-grid.origin.z / grid.cell);
+  const auto at = [&](const float* x, const float* y, const float* z) {
+    return sample<Kind, Asked>(
+        sampler,
+        {load<F>(x) * per_cell + ox, load<F>(y) * per_cell + oy, load<F>(z) * per_cell + oz});
+  };
+  const std::size_t count = points.x.size();
+  std::size_t p = 0;
+  for (; p + width <= count; p += width) {
+    const Sample found = at(&points.x[p], &points.y[p], &points.z[p]);
+    if constexpr (Asked != Ask::normal) store(&answers.distance[p], found.distance);
+    if constexpr (Asked != Ask::distance) {
+      store(&answers.nx[p], found.normal.x);
+      store(&answers.ny[p], found.normal.y);
+      store(&answers.nz[p], found.normal.z);
+    }
+  }
+  if (p == count) return;
+  std::array<float, width> x{}, y{}, z{};
+  for (std::size_t i = 0; p + i < count; ++i)
+    x[i] = points.x[p + i], y[i] = points.y[p + i], z[i] = points.z[p + i];
+  const Sample found = at(x.data(), y.data(), z.data());
+  for (std::size_t i = 0; p + i < count; ++i) {
+    if constexpr (Asked != Ask::normal) answers.distance[p + i] = found.distance[i];
+    if constexpr (Asked != Ask::distance) {
+      answers.nx[p + i] = found.normal.x[i];
+      answers.ny[p + i] = found.normal.y[i];
+      answers.nz[p + i] = found.normal.z[i];
+    }
+  }
+}
+
+template <LookUp Kind>
+void answer(const Field& field, const Points& points, const Answers& answers) {
+  if (answers.nx.empty()) return answer<Kind, Ask::distance>(field, points, answers);
+  if (answers.distance.empty()) return answer<Kind, Ask::normal>(field, points, answers);
+  answer<Kind, Ask::both>(field, points, answers);
+}
+
+}  // namespace
+
+void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers) {
+  const std::size_t count = points.x.size();
+  TESS_CHECK(points.y.size() == count && points.z.size() == count,
              "expected ",
              count,
              " coordinates on each axis");
+  TESS_CHECK(answers.distance.empty() || answers.distance.size() == count,
+             "expected room for ",
+             count,
+             " distances");
+  for (const auto& normal : {answers.nx, answers.ny, answers.nz})
+    TESS_CHECK(normal.size() == answers.nx.size() && (normal.empty() || normal.size() == count),
+               "expected room for ",
+               count,
+               " normals on each axis, or none");
   TESS_CHECK(field.grid.size() < (std::size_t{1} << 31U), "voxels are numbered in 32 bits");
-  const float* const table = field.distance.data();
-  const float* const px = points.x.data();
-  const float* const py = points.y.data();
-  const float* const pz = points.z.data();
-  float* const out = distance.data();
-  const auto& g = field.grid;
-  const auto per_cell = static_cast<float>(1 / g.cell);
-  // Half a voxel is added once here, so that truncation rounds to the nearest centre.
-  const float ox = static_cast<float>(0.5 - g.origin.x / g.cell);
-  const float oy = static_cast<float>(0.5 - g.origin.y / g.cell);
-  const float oz = static_cast<float>(0.5 - g.origin.z / g.cell);
-  const auto nx = static_cast<float>(g.n[0]), ny = static_cast<float>(g.n[1]),
-             nz = static_cast<float>(g.n[2]);
-  const int row = g.n[0], layer = g.n[0] * g.n[1];
-  for (std::size_t p = 0; p < count; ++p) {
-    const float u = px[p] * per_cell + ox, v = py[p] * per_cell + oy, w = pz[p] * per_cell + oz;
-    const bool in = (u >= 0) & (u < nx) & (v >= 0) & (v < ny) & (w >= 0) & (w < nz);
-    const int i = static_cast<int>(in ? u : 0.0F), j = static_cast<int>(in ? v : 0.0F),
-              k = static_cast<int>(in ? w : 0.0F);
-    const float found = table[k * layer + j * row + i];
-    out[p] = in ? found : out_of_reach;
-  }
+  if (count == 0 || (answers.distance.empty() && answers.nx.empty())) return;
+  if ((!answers.nx.empty() || kind == LookUp::tangent) && field.normal.empty())
+    fail(ErrorCode::bad_argument,
+         "normals are asked of a field of ",
+         field.grid.size(),
+         " voxels that stores none; build it with distance and normal");
+  if (kind == LookUp::nearest) answer<LookUp::nearest>(field, points, answers);
+  if (kind == LookUp::tangent) answer<LookUp::tangent>(field, points, answers);
+  if (kind == LookUp::trilinear) answer<LookUp::trilinear>(field, points, answers);
+}
+
+void nearest_distance(const Field& field, const Points& points, std::span<float> distance) {
+  look_up(field, LookUp::nearest, points, {distance, {}, {}, {}});
 }
 
 }  // namespace tess::dn

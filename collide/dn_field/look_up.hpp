@@ -1,6 +1,6 @@
-// What a field says at many points at once: structure-of-arrays in, structure-of-arrays out,
-// branch-free. Points are in the object's own coordinates. Any thread. g++ 12 does not yet turn the
-// loop into vector gathers: scalar speed.
+// What a field says at many points at once: structure of arrays in, structure of arrays out,
+// branch-free, eight points at a time. Points are in the object's own coordinates. Any thread. The
+// step loop does the same for particles without the detour over arrays: see closest.hpp.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
@@ -9,13 +9,31 @@
 
 namespace tess::dn {
 
+/// How a field is asked, from fast to smooth. Off the medial axis:
+/// nearest: the value of the closest voxel; off by up to half a voxel's diagonal.
+/// tangent: that value carried on along the voxel's normal; exact for planes, error of order 2.
+/// trilinear: interpolated between eight voxels, continuous; exact for planes, error of order 2.
+enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
+
 /// n points; all three spans have one length.
 struct Points {
   std::span<const float> x, y, z;
 };
 
-/// Distance in the voxel whose centre is nearest; `out_of_reach` outside the grid and for NaN
-/// points. Off by up to half a voxel's diagonal (|gradient| <= 1). distance: one per point.
+/// What is asked for: spans of one per point, or empty ones where it is not. Normals are three or
+/// none.
+struct Answers {
+  std::span<float> distance;
+  std::span<float> nx, ny, nz;
+};
+
+/// Distance: `out_of_reach` outside the grid and for NaN points. Normals: of unit length, or zero
+/// where there is none (outside, on the medial axis, beyond the thickness). The trilinear look-up
+/// ends at the outer voxels' centres, the others at their faces. Throws Error(bad_argument) where
+/// normals are asked of a field that stores none (the tangent look-up always asks).
+void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers);
+
+/// The nearest look-up's distance alone.
 void nearest_distance(const Field& field, const Points& points, std::span<float> distance);
 
 inline constexpr float out_of_reach = 3.0e38F;

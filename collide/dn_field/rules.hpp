@@ -5,17 +5,13 @@
 // (Paper, sections 3.3 to 3.6; the integrators are ours: exact where the motion has a closed form.)
 #pragma once
 
-#include "collide/dn_field/field.hpp"
+#include "collide/dn_field/look_up.hpp"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tess::dn {
-
-/// How a field is asked (from fast to smooth): the value of the closest voxel; that value carried
-/// on along the voxel's normal, which is exact for planes; interpolation between eight voxels.
-enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
 
 /// Whether a look-up at the start of the step serves the whole step (then speed × step must stay
 /// below the field's thickness), or particles that go further than is known to be free are traced

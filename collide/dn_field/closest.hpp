@@ -1,0 +1,51 @@
+// First pass of a step over a block of particles: asks each object's field, keeps the closest
+// surface of each particle, in world coordinates. The second pass (rule_loop.hpp) reads it from the
+// cache. Private to the step loop.
+#pragma once
+
+#include "collide/dn_field/sample.hpp"
+#include "collide/dn_field/stepper.hpp"
+
+namespace tess::dn {
+
+inline constexpr std::size_t block_size = 256;  // with the particles, 20 to 30 kB: the first cache
+
+/// Of each particle of a block.
+struct alignas(64) Closest {
+  float distance[block_size];                            ///< out_of_reach where no field is
+  float nx[block_size], ny[block_size], nz[block_size];  ///< unit or zero
+  float free[block_size];  ///< no surface of any object is nearer than this (swept impact only)
+  double ux[block_size], uy[block_size], uz[block_size];  ///< the surface's velocity (General only)
+};
+
+/// An object of one step as the loops see it. Positions are taken relative to the grid's centre in
+/// double precision before they are rounded to float.
+struct Placed {
+  Sampler field;
+  Vec3 centre;           ///< of the grid, in the world
+  float to_grid[3][3];   ///< rows: grid coordinates of a world vector
+  float middle[3];       ///< grid coordinates of the centre
+  float to_world[3][3];  ///< rows: a normal in the world
+  float scale;           ///< world units per unit of the object
+  float cell;            ///< in world units
+  float padding;  ///< taken off the distance: a look-up that blends the sides of a thin sheet
+                  ///< cannot see it closer than this
+  bool two_sided;
+  float doubt;  ///< half a voxel's diagonal, in world units
+  Frame frame;
+};
+
+[[nodiscard]] Placed placed(const Object& object, LookUp kind);
+
+/// Whether positions must be turned, surfaces move, or several objects be compared.
+enum class Setting : std::uint32_t { one_at_rest, general };
+
+using ClosestPass = void (*)(const Placed&, const ParticleSpan&, Closest&);
+
+/// The pass for one object; `general` passes keep what is closer and start from clear().
+[[nodiscard]] ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep);
+
+/// No surface anywhere.
+void clear(Closest& closest, std::size_t count);
+
+}  // namespace tess::dn

@@ -1,0 +1,168 @@
+// Eight particles at once: GCC vector types, so that one source serves every instruction set, and
+// the same operations in the same order give the same bits on all of them (the build forbids fused
+// multiply-add). Intrinsics stand only where the language has no word: gather, square root, "any".
+// Private to the loops of this folder.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
+namespace tess::dn::lanes {
+
+inline constexpr int width = 8;
+
+using D = double __attribute__((vector_size(64)));
+using F = float __attribute__((vector_size(32)));
+using I = std::int32_t __attribute__((vector_size(32)));  // also the mask of F
+using L = std::int64_t __attribute__((vector_size(64)));  // also the mask of D
+
+template <class V, class T>
+inline V load(const T* from) {
+  V v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+template <class V, class T>
+inline void store(T* to, V v) {
+  std::memcpy(to, &v, sizeof v);
+}
+
+inline D to_double(F v) {
+  return __builtin_convertvector(v, D);
+}
+inline F to_float(D v) {
+  return __builtin_convertvector(v, F);
+}
+inline L widen(I mask) {
+  return __builtin_convertvector(mask, L);
+}
+
+inline D all(double v) {
+  return D{} + v;
+}
+inline F all(float v) {
+  return F{} + v;
+}
+
+inline D abs(D v) {
+  return (D)((L)v & (L{} + 0x7FFFFFFFFFFFFFFF));
+}
+inline F abs(F v) {
+  return (F)((I)v & (I{} + 0x7FFFFFFF));
+}
+inline D min(D a, D b) {
+  return a < b ? a : b;
+}
+inline D max(D a, D b) {
+  return a > b ? a : b;
+}
+inline F min(F a, F b) {
+  return a < b ? a : b;
+}
+inline F max(F a, F b) {
+  return a > b ? a : b;
+}
+/// v where the mask holds, else zero.
+inline D only(L mask, D v) {
+  return (D)(mask & (L)v);
+}
+inline F only(I mask, F v) {
+  return (F)(mask & (I)v);
+}
+
+inline bool any(L mask) {
+#ifdef __AVX512F__
+  return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#else
+  std::int64_t found = 0;
+  for (int i = 0; i < width; ++i) found |= mask[i];
+  return found != 0;
+#endif
+}
+
+inline D sqrt(D v) {
+#ifdef __AVX512F__
+  return (D)_mm512_maskz_sqrt_pd(0xFF, (__m512d)v);  // the plain one warns in g++ 12
+#else
+  for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
+  return v;
+#endif
+}
+inline F sqrt(F v) {
+#ifdef __AVX2__
+  return (F)_mm256_sqrt_ps((__m256)v);
+#else
+  for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
+  return v;
+#endif
+}
+
+inline F gather(const float* table, I at) {
+#ifdef __AVX2__
+  return (F)_mm256_i32gather_ps(table, (__m256i)at, 4);
+#else
+  F v;
+  for (int i = 0; i < width; ++i) v[i] = table[at[i]];
+  return v;
+#endif
+}
+inline I gather(const std::uint32_t* table, I at) {
+#ifdef __AVX2__
+  return (I)_mm256_i32gather_epi32(reinterpret_cast<const int*>(table), (__m256i)at, 4);
+#else
+  I v;
+  for (int i = 0; i < width; ++i) v[i] = std::bit_cast<std::int32_t>(table[at[i]]);
+  return v;
+#endif
+}
+
+/// A point or vector in each lane.
+template <class V>
+struct Three {
+  V x, y, z;
+
+  friend Three operator+(Three a, Three b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Three operator-(Three a, Three b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Three operator*(V s, Three a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+using D3 = Three<D>;
+using F3 = Three<F>;
+
+template <class V>
+inline V dot(Three<V> a, Three<V> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline D3 only(L mask, D3 v) {
+  return {only(mask, v.x), only(mask, v.y), only(mask, v.z)};
+}
+inline F3 only(I mask, F3 v) {
+  return {only(mask, v.x), only(mask, v.y), only(mask, v.z)};
+}
+template <class M, class V>
+inline Three<V> select(M mask, Three<V> a, Three<V> b) {
+  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+inline D3 to_double(F3 v) {
+  return {to_double(v.x), to_double(v.y), to_double(v.z)};
+}
+
+/// tan(x/2) = p/q for |x| <= pi/2, good to 3e-11 (the continued fraction, six terms). Sine and
+/// cosine from it have squares that add up to 1 to rounding, whatever its error: lengths are kept.
+struct Turn {
+  D cosine, sine;
+};
+inline Turn turn(D angle) {
+  const D x = 0.5 * angle, xx = x * x;
+  const D p = x * (10395.0 + xx * (-1260.0 + xx * 21.0));
+  const D q = 10395.0 + xx * (-4725.0 + xx * (210.0 - xx));
+  const D scale = 1.0 / (q * q + p * p);
+  return {(q * q - p * p) * scale, 2.0 * p * q * scale};
+}
+
+}  // namespace tess::dn::lanes

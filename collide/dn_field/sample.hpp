@@ -1,0 +1,120 @@
+// Eight look-ups in one field, in grid coordinates (voxel (i, j, k) has its centre at (i, j, k)).
+// The one place that knows how the three kinds of look-up work; private to look_up.cpp and the step
+// loop.
+#pragma once
+
+#include "collide/dn_field/lanes.hpp"
+#include "collide/dn_field/look_up.hpp"
+#include "collide/dn_field/normal_code.hpp"
+
+namespace tess::dn {
+
+/// A field as the loops see it.
+struct Sampler {
+  const float* distance = nullptr;
+  const std::uint32_t* normal = nullptr;
+  float cell = 1;
+  int row = 1, layer = 1;
+  int n[3] = {0, 0, 0};
+};
+
+inline Sampler sampler_of(const Field& field) {
+  const Grid& g = field.grid;
+  return {field.distance.data(),
+          field.normal.data(),
+          static_cast<float>(g.cell),
+          g.n[0],
+          g.n[0] * g.n[1],
+          {g.n[0], g.n[1], g.n[2]}};
+}
+
+/// Which answers a loop computes; a loop for one holds no trace of the other.
+enum class Ask : std::uint32_t { distance, normal, both };
+
+struct Sample {
+  lanes::F distance;  ///< of the object, not of the world; out_of_reach outside
+  lanes::F3 normal;   ///< unit or zero
+  lanes::F voxel;     ///< the closest voxel's own distance (trilinear: the interpolated one)
+};
+
+namespace lanes {
+
+/// decode_normal() before it is normalised; zero for no_normal.
+inline F3 decode(I code) {
+  const F u = __builtin_convertvector((code << 16) >> 16, F) * (1 / code_scale);
+  const F v = __builtin_convertvector(code >> 16, F) * (1 / code_scale);
+  const F z = 1.0F - abs(u) - abs(v);
+  const F fold = z < 0.0F ? -z : F{};
+  const I sign = I{} + std::bit_cast<std::int32_t>(0x80000000U);
+  const F x = u - (F)((I)fold | ((I)u & sign)), y = v - (F)((I)fold | ((I)v & sign));
+  return only(code != I{} + std::bit_cast<std::int32_t>(no_normal), F3{x, y, z});
+}
+
+/// Unit, or zero where `n` is shorter than a thousandth: blends of opposite normals.
+inline F3 unit(F3 n) {
+  const F square = dot(n, n);
+  const F scale = only(square > 1e-6F, 1.0F / sqrt(square));
+  return scale * n;
+}
+
+template <LookUp Kind, Ask Asked>
+requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
+  const F3 h{g.x + 0.5F, g.y + 0.5F, g.z + 0.5F};
+  const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
+             nz = static_cast<float>(field.n[2]);
+  const I in = (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
+  const I i = __builtin_convertvector(only(in, h.x), I),
+          j = __builtin_convertvector(only(in, h.y), I),
+          k = __builtin_convertvector(only(in, h.z), I);
+  const I at = k * field.layer + j * field.row + i;
+  Sample found{};
+  if constexpr (Asked != Ask::distance || Kind == LookUp::tangent)
+    found.normal = only(in, unit(decode(gather(field.normal, at))));
+  if constexpr (Asked != Ask::normal) {
+    found.voxel = found.distance = gather(field.distance, at);
+    if constexpr (Kind == LookUp::tangent) {
+      const F3 off{g.x - __builtin_convertvector(i, F),
+                   g.y - __builtin_convertvector(j, F),
+                   g.z - __builtin_convertvector(k, F)};
+      found.distance += field.cell * dot(found.normal, off);
+    }
+    found.distance = in ? found.distance : all(out_of_reach);
+    found.voxel = in ? found.voxel : all(out_of_reach);
+  }
+  return found;
+}
+
+template <LookUp Kind, Ask Asked>
+requires(Kind == LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
+  const auto nx = static_cast<float>(field.n[0] - 1), ny = static_cast<float>(field.n[1] - 1),
+             nz = static_cast<float>(field.n[2] - 1);
+  const I in =
+      (g.x >= 0.0F) & (g.x <= nx) & (g.y >= 0.0F) & (g.y <= ny) & (g.z >= 0.0F) & (g.z <= nz);
+  const F3 h = only(in, g);
+  // The last cell also serves the points on its far face.
+  const I i = __builtin_convertvector(min(h.x, all(nx - 1)), I),
+          j = __builtin_convertvector(min(h.y, all(ny - 1)), I),
+          k = __builtin_convertvector(min(h.z, all(nz - 1)), I);
+  const F u = h.x - __builtin_convertvector(i, F), v = h.y - __builtin_convertvector(j, F),
+          w = h.z - __builtin_convertvector(k, F);
+  const I corner = k * field.layer + j * field.row + i;
+  Sample found{};
+  for (int c = 0; c < 8; ++c) {
+    const int dx = c & 1, dy = (c >> 1) & 1, dz = c >> 2;
+    const I at = corner + (dz * field.layer + dy * field.row + dx);
+    const F weight = (dx != 0 ? u : 1.0F - u) * (dy != 0 ? v : 1.0F - v) * (dz != 0 ? w : 1.0F - w);
+    if constexpr (Asked != Ask::normal)
+      found.distance = found.distance + weight * gather(field.distance, at);
+    if constexpr (Asked != Ask::distance)
+      found.normal = found.normal + weight * unit(decode(gather(field.normal, at)));
+  }
+  if constexpr (Asked != Ask::normal) {
+    found.distance = in ? found.distance : all(out_of_reach);
+    found.voxel = found.distance;
+  }
+  if constexpr (Asked != Ask::distance) found.normal = only(in, unit(found.normal));
+  return found;
+}
+
+}  // namespace lanes
+}  // namespace tess::dn

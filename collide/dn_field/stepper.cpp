@@ -1,0 +1,295 @@
+#include "collide/dn_field/stepper.hpp"
+
+#include "collide/dn_field/rule_table.hpp"
+#include "collide/dn_field/trace.hpp"
+#include "collide/dn_field/velocity_rules.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tess::dn {
+namespace {
+
+constexpr int steps_at_once = 64;  // for which the objects' positions are made in advance
+
+LinearFlow linear_flow(double rate, double step) {
+  const double x = rate * step;
+  if (!(x > 0)) return {1, step, 1, 0.5 * step};
+  const double lost = -std::expm1(-x), mean_keep = lost / x;
+  // 1 − (1 − exp(−x))/x, by its series where it cancels
+  const double mean_lost =
+      x < 0.02 ? x * (1.0 / 2 - x * (1.0 / 6 - x * (1.0 / 24 - x * (1.0 / 120 - x / 720))))
+               : 1 - mean_keep;
+  return {1 - lost, lost / rate, mean_keep, mean_lost / rate};
+}
+
+LoopKey key_of(const Rules& rules) {
+  LoopKey key;
+  const bool linear_air = rules.air_drag && rules.air_drag->law == DragLaw::linear;
+  if (rules.gravity || rules.wind || linear_air) key.flight = Flight::air;
+  if (rules.surface_drag && rules.surface_drag->law == DragLaw::linear)
+    key.flight = Flight::surface;
+  if (rules.impact)
+    key.impacts = rules.impact->sweep == Sweep::on ? Impacts::swept : Impacts::plain;
+  if (rules.spring) key.springs = Springs::exact;
+  if (rules.surface_flow) key.flows = Flows::turned;
+  return key;
+}
+
+RuleConstants constants_of(const Rules& rules, double step) {
+  RuleConstants c;
+  c.step = step;
+  double rate = 0;
+  if (rules.gravity) c.acceleration += rules.gravity->acceleration;
+  if (rules.wind) {
+    rate += rules.wind->rate;
+    c.acceleration += rules.wind->rate * rules.wind->velocity;
+  }
+  if (rules.air_drag && rules.air_drag->law == DragLaw::linear) rate += rules.air_drag->rate;
+  if (rules.surface_drag && rules.surface_drag->law == DragLaw::linear) {
+    c.surface_rate = rules.surface_drag->rate;
+    c.surface_threshold = rules.surface_drag->threshold;
+  }
+  c.air = linear_flow(rate, step);
+  c.surface = linear_flow(rate + c.surface_rate, step);
+  c.curved = rate + c.surface_rate > 0 ? 0 : 1;
+  if (rules.impact) {
+    c.restitution = rules.impact->restitution;
+    c.threshold = rules.impact->threshold;
+  }
+  if (rules.surface_flow) {
+    c.turn_in = rules.surface_flow->alpha_in * step;
+    c.turn_out = rules.surface_flow->alpha_out * step;
+    c.flow_distance = rules.surface_flow->distance;
+  }
+  if (rules.spring) {
+    const double gamma = 0.5 * rules.spring->damping, k = rules.spring->stiffness;
+    c.spring = {k, std::sqrt(k - gamma * gamma), gamma, rules.spring->reach};
+  }
+  return c;
+}
+
+}  // namespace
+
+struct Stepper::Plan {
+  Rules rules;
+  double step = 0;
+  RuleConstants constants;
+  bool looks_up = false;
+  ClosestPass look_up_at_rest = nullptr, look_up_general = nullptr;
+  RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
+};
+
+namespace {
+
+/// What is the same for all blocks of a run.
+struct Run {
+  const Stepper::Plan& plan;
+  RuleConstants constants;
+  Setting setting = Setting::general;
+  ClosestPass look_up = nullptr;
+  RuleLoop loop = nullptr;
+};
+
+Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
+  Run run{plan, plan.constants};
+  const bool simple =
+      objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
+  run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
+  run.look_up = simple ? plan.look_up_at_rest : plan.look_up_general;
+  run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
+  double coarsest = 0, finest = HUGE_VAL;
+  for (const Object& object : objects) {
+    const double cell = object.frame.scale * object.field->grid.cell;
+    coarsest = std::max(coarsest, cell);
+    finest = std::min(finest, cell);
+  }
+  run.constants.slack =
+      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest;
+  run.constants.stride = 0.5 * finest;
+  return run;
+}
+
+void one_step(const Run& run,
+              std::span<const Placed> objects,
+              double time,
+              const ParticleSpan& block,
+              Closest& closest,
+              std::vector<Untraced>& untraced) {
+  const Stepper::Plan& plan = run.plan;
+  for (const Explosion& explosion : plan.rules.explosions)
+    if (const double active = active_within(explosion, time, plan.step); active > 0)
+      explode(explosion, active, block);
+  if (plan.rules.air_drag && plan.rules.air_drag->law == DragLaw::quadratic)
+    drag_quadratic(plan.rules.air_drag->rate * plan.step, block);
+  if (plan.looks_up) {
+    if (run.setting == Setting::general) clear(closest, block.count);
+    for (const Placed& object : objects) run.look_up(object, block, closest);
+    if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
+      drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, block, closest);
+  }
+  run.loop(run.constants, block, closest, untraced);
+  for (const Untraced& from : untraced)
+    trace(run.constants, objects, plan.rules.look_up, from, block);
+  untraced.clear();
+}
+
+/// Where all objects stand at each of the next n_steps steps, and after them.
+std::vector<std::vector<Placed>> placed_for(std::vector<Object>& objects,
+                                            const Stepper::Plan& plan,
+                                            int n_steps) {
+  std::vector<std::vector<Placed>> result(static_cast<std::size_t>(n_steps));
+  for (auto& now : result) {
+    for (const Object& object : objects) now.push_back(placed(object, plan.rules.look_up));
+    advance(objects, plan.step, 1);
+  }
+  return result;
+}
+
+}  // namespace
+
+void Stepper::run(ParticleSpan particles,
+                  std::span<const Object> objects,
+                  double time,
+                  int n_steps) const {
+  const Plan& plan = *plan_;
+  const Run run = prepared(plan, objects);
+  std::vector<Object> standing(objects.begin(), objects.end());
+  if (!plan.looks_up) standing.clear();
+  Closest closest;
+  if (run.setting == Setting::one_at_rest) clear(closest, block_size);
+  std::vector<Untraced> untraced;
+  // The last particles, fewer than a vector, are stepped in room of their own.
+  const std::size_t whole = particles.count / lanes::width * lanes::width;
+  std::array<std::array<double, lanes::width>, 6> room{};
+  const ParticleSpan rest{room[0].data(),
+                          room[1].data(),
+                          room[2].data(),
+                          room[3].data(),
+                          room[4].data(),
+                          room[5].data(),
+                          lanes::width};
+  const auto copy = [&](bool in) {
+    const std::array<double*, 6> outer{
+        particles.x, particles.y, particles.z, particles.vx, particles.vy, particles.vz};
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t i = 0; whole + i < particles.count; ++i)
+        if (in)
+          room[a][i] = outer[a][whole + i];
+        else
+          outer[a][whole + i] = room[a][i];
+  };
+  copy(true);
+  for (int done = 0; done < n_steps; done += steps_at_once) {
+    const int now = std::min(steps_at_once, n_steps - done);
+    const auto places = placed_for(standing, plan, now);
+    const auto step_all = [&](const ParticleSpan& block) {
+      for (int i = 0; i < now; ++i)
+        one_step(run,
+                 places[static_cast<std::size_t>(i)],
+                 time + (done + i) * plan.step,
+                 block,
+                 closest,
+                 untraced);
+    };
+    for (std::size_t first = 0; first < whole; first += block_size)
+      step_all(particles.part(first, std::min(block_size, whole - first)));
+    if (whole < particles.count) step_all(rest);
+  }
+  copy(false);
+}
+
+const Rules& Stepper::rules() const {
+  return plan_->rules;
+}
+double Stepper::step() const {
+  return plan_->step;
+}
+
+Stepper make_stepper(const Rules& rules, double step) {
+  validate(rules);
+  if (!(step > 0) || !std::isfinite(step))
+    fail(ErrorCode::bad_value, "step is ", step, "; give a positive, finite time");
+  const LoopKey key = key_of(rules);
+  const Sweep sweep = key.impacts == Impacts::swept ? Sweep::on : Sweep::off;
+  const Ask ask = needed_content(rules) == Content::distance_and_normal ? Ask::both : Ask::distance;
+  auto plan = std::make_shared<Stepper::Plan>();
+  *plan = {rules,
+           step,
+           constants_of(rules, step),
+           needs_field(rules),
+           closest_pass(rules.look_up, ask, Setting::one_at_rest, sweep),
+           closest_pass(rules.look_up, ask, Setting::general, sweep),
+           rule_loop_at_rest(key),
+           rule_loop_general(key)};
+  return Stepper(std::move(plan));
+}
+
+void advance(std::span<Object> objects, double step, int n_steps) {
+  for (Object& object : objects)
+    if (object.frame.is_moving())
+      for (int i = 0; i < n_steps; ++i) object.frame.advance(step);
+}
+
+void validate(const Rules& rules, std::span<const Object> objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Object& object = objects[i];
+    const Frame& frame = object.frame;
+    if (object.field == nullptr || object.field->distance.size() != object.field->grid.size() ||
+        object.field->distance.empty())
+      fail(ErrorCode::bad_argument, "object ", i, " has no field; build one");
+    if (object.field->grid.size() >= std::size_t{1} << 31U)
+      fail(ErrorCode::bad_argument,
+           "object ",
+           i,
+           " has ",
+           object.field->grid.size(),
+           " voxels, above 2^31; lower its resolution");
+    if (needed_content(rules) == Content::distance_and_normal &&
+        object.field->normal.size() != object.field->grid.size())
+      fail(ErrorCode::bad_argument,
+           "object ",
+           i,
+           " stores no normals and a rule or the tangent look-up needs them; build its field with "
+           "distance and normal");
+    if (!(frame.scale > 0) || !std::isfinite(frame.scale))
+      fail(ErrorCode::bad_argument,
+           "object ",
+           i,
+           " is scaled by ",
+           frame.scale,
+           "; give a positive, finite scale");
+    for (const Vec3 v : {frame.position, frame.velocity, frame.angular_velocity})
+      if (!is_finite(v))
+        fail(ErrorCode::bad_argument,
+             "object ",
+             i,
+             " has (",
+             v.x,
+             ", ",
+             v.y,
+             ", ",
+             v.z,
+             ") as position or velocity; give finite numbers");
+  }
+}
+
+double kinetic_energy(ParticleSpan particles) {
+  double twice = 0;
+  for (std::size_t p = 0; p < particles.count; ++p) {
+    const Vec3 v{particles.vx[p], particles.vy[p], particles.vz[p]};
+    if (const double square = dot(v, v); std::isfinite(square)) twice += square;
+  }
+  return 0.5 * twice;
+}
+
+std::size_t count_nonfinite(ParticleSpan particles) {
+  std::size_t found = 0;
+  for (std::size_t p = 0; p < particles.count; ++p)
+    found += !is_finite({particles.x[p], particles.y[p], particles.z[p]}) ||
+             !is_finite({particles.vx[p], particles.vy[p], particles.vz[p]});
+  return found;
+}
+
+}  // namespace tess::dn

@@ -1,0 +1,64 @@
+#include "collide/dn_field/velocity_rules.hpp"
+
+#include <algorithm>
+
+namespace tess::dn {
+namespace {
+
+using namespace lanes;
+
+D3 velocities(const ParticleSpan& particles, std::size_t p) {
+  return {load<D>(particles.vx + p), load<D>(particles.vy + p), load<D>(particles.vz + p)};
+}
+void set_velocities(const ParticleSpan& particles, std::size_t p, D3 v) {
+  store(particles.vx + p, v.x), store(particles.vy + p, v.y), store(particles.vz + p, v.z);
+}
+
+}  // namespace
+
+void explode(const Explosion& explosion, double active, const ParticleSpan& particles) {
+  const Vec3 c = explosion.centre;
+  const double kick = explosion.strength * active, per_radius = 1 / explosion.radius;
+  for (std::size_t p = 0; p < particles.count; p += width) {
+    const D3 from{load<D>(particles.x + p) - c.x,
+                  load<D>(particles.y + p) - c.y,
+                  load<D>(particles.z + p) - c.z};
+    const D r = sqrt(dot(from, from));
+    const L reached = (r > 0.0) & (r < explosion.radius);  // the centre has no direction
+    if (!any(reached)) continue;
+    const D scale = only(reached, kick * (1.0 - r * per_radius) / r);
+    set_velocities(particles, p, velocities(particles, p) + only(reached, scale * from));
+  }
+}
+
+void drag_quadratic(double rate_step, const ParticleSpan& particles) {
+  for (std::size_t p = 0; p < particles.count; p += width) {
+    const D3 v = velocities(particles, p);
+    set_velocities(particles, p, (1.0 / (1.0 + rate_step * sqrt(dot(v, v)))) * v);
+  }
+}
+
+void drag_quadratic(double rate_step,
+                    double threshold,
+                    Setting setting,
+                    const ParticleSpan& particles,
+                    const Closest& closest) {
+  for (std::size_t p = 0; p < particles.count; p += width) {
+    const L near = to_double(load<F>(closest.distance + p)) < threshold;
+    if (!any(near)) continue;
+    D3 u{};
+    if (setting == Setting::general)
+      u = {load<D>(closest.ux + p), load<D>(closest.uy + p), load<D>(closest.uz + p)};
+    const D3 v = velocities(particles, p), w = v - u;
+    const D3 slowed = u + (1.0 / (1.0 + rate_step * sqrt(dot(w, w)))) * w;
+    set_velocities(particles, p, select(near, slowed, v));
+  }
+}
+
+double active_within(const Explosion& explosion, double time, double step) {
+  return std::max(0.0,
+                  std::min(time + step, explosion.start + explosion.duration) -
+                      std::max(time, explosion.start));
+}
+
+}  // namespace tess::dn
