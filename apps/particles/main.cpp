@@ -1,0 +1,38 @@
+// particles SCENE.json: moves particles among objects by distance/normal fields, and says what came
+// of it: energies, particles that tunnelled, time a particle and step.
+#include "apps/command_line.hpp"
+#include "apps/particles/driver.hpp"
+#include "apps/particles/scene.hpp"
+#include "runtime/runtime.hpp"
+
+#include <cstring>
+
+namespace {
+
+int run(int argc, char** argv) {
+  tess::Setup setup = tess::take_options(argc, argv);
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help-scene") != 0) continue;
+    tess::print(particles::scene_help());
+    return 0;
+  }
+  particles::DriverOptions options;
+  CLI::App app("Particles against objects of any shape, by distance/normal fields.", "particles");
+  app.add_option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys")
+      ->required();
+  app.add_option("--steps", options.steps, "steps instead of the scene's")
+      ->check(CLI::Range(0, 1'000'000'000));
+  app.add_option("--json", options.json, "write the result as JSON");
+  app.add_option("--out", options.out, "folder for trajectories and pictures");
+  app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
+  bool help_scene = false;
+  app.add_flag("--help-scene", help_scene, "describe the keys of a scene file");
+  if (!apps::parse(app, argc, argv)) return 0;
+  return particles::drive(setup, options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] { return run(argc, argv); });
+}

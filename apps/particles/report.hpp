@@ -1,0 +1,23 @@
+// What a run of a scene has to show: a table for people, JSON for programs.
+#pragma once
+
+#include "apps/particles/scene.hpp"
+#include "apps/particles/simulate.hpp"
+
+#include <string>
+
+namespace particles {
+
+/// The run beside the machine it ran on.
+struct Report {
+  std::string machine;
+  std::int32_t pes = 0, processes = 0;
+};
+
+[[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);
+[[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);
+
+/// What the scene uses and what it leaves out, for --explain.
+[[nodiscard]] std::string explanation(const Scene& scene);
+
+}  // namespace particles
