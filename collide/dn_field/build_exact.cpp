@@ -1,9 +1,8 @@
 #include "collide/dn_field/build_exact.hpp"
 
-#include "collide/dn_field/bvh.hpp"
+#include "collide/dn_field/build_checks.hpp"
 #include "collide/dn_field/normal_code.hpp"
-#include "collide/dn_field/winding_lines.hpp"
-#include "runtime/error.hpp"
+#include "runtime/check.hpp"
 
 #include <algorithm>
 
@@ -11,67 +10,158 @@ namespace tess::dn {
 namespace {
 constexpr double on_surface =
     1e-3;  // of a cell: nearer, the direction to the closest point is rounding
+constexpr int block_edge = 4;
+constexpr int tile_edge = 4 * block_edge;  // voxels in x and y that are asked for at once
+constexpr double just_beyond = 1 + 1e-9;
 
-void fill_inside(std::vector<std::uint8_t>& inside, const Bvh& tree, const Grid& grid) {
-  for (int k = 0; k < grid.n[2]; ++k)
-    for (int j = 0; j < grid.n[1]; ++j)
-      for (int i = 0; i < grid.n[0]; ++i)
-        inside[grid.index(i, j, k)] = tree.is_inside(grid.centre(i, j, k)) ? 1 : 0;
+const Surface& validated(const Surface& surface, const Grid& grid, const ExactOptions& options) {
+  validate(surface);
+  require_thick(grid, options.thickness);
+  require_buildable(grid, options.content == Content::distance ? 4 : 8);
+  return surface;
 }
 
-std::vector<std::uint8_t> inside_of(const Surface& surface, const Bvh& tree, const Grid& grid) {
-  const Surface whole = welded(surface);
-  if (is_closed(whole)) return inside_by_lines(whole, tree, grid);
-  std::vector<std::uint8_t> inside(grid.size());
-  fill_inside(inside, tree, grid);
-  return inside;
+int up_to(int voxel, int step, int n) {
+  return std::min(voxel + step, n);
 }
 
 }  // namespace
 
-Field build_exact(const Surface& surface, const Grid& grid, const ExactOptions& options) {
-  validate(surface);
-  if (!(options.thickness >= 2 * grid.cell))
-    fail(ErrorCode::bad_argument,
-         "thickness ",
-         options.thickness,
-         " of a field with cells of ",
-         grid.cell,
-         "; it must be at least two cells");
-  const Bvh tree(surface);
-  const bool one_sided = options.sides == Sides::one;
-  const bool with_normals = options.content == Content::distance_and_normal;
-  const auto inside =
-      one_sided ? inside_of(surface, tree, grid) : std::vector<std::uint8_t>(grid.size(), 0);
+/// Some layers of a slab, within one row of blocks.
+struct ExactBuilder::Shelf {
+  int first, last;  // layers
+  int block_first;  // layer at which the blocks begin
+  std::span<float> distance;
+  std::span<std::uint32_t> normal;
+  std::span<const std::uint8_t> inside;  // empty for two-sided fields
+};
 
-  Field field{grid, Method::exact, options.sides, options.thickness, {}, {}};
-  field.distance.resize(grid.size());
-  if (with_normals) field.normal.assign(grid.size(), no_normal);
-  double furthest = 0;
-  for (int k = 0; k < grid.n[2]; ++k) {
-    for (int j = 0; j < grid.n[1]; ++j) {
-      double bound = options.thickness;  // the next voxel is at most one cell further from the
-                                         // surface than this one
-      for (int i = 0; i < grid.n[0]; ++i) {
-        const Vec3 p = grid.centre(i, j, k);
-        const double limit = std::min(options.thickness, bound * (1 + 1e-9));
-        const ClosestPoint found = tree.closest(p, limit * limit);
-        const bool reached = found.distance2 < HUGE_VAL;
-        const double distance = reached ? std::sqrt(found.distance2) : options.thickness;
-        const double sign = inside[grid.index(i, j, k)] != 0 ? -1 : 1;
-        const auto at = grid.index(i, j, k);
-        bound = distance + grid.cell;
-        furthest = std::max(furthest, distance);
-        field.distance[at] = static_cast<float>(sign * distance);
-        if (!with_normals || !reached) continue;
-        const bool touching = distance < on_surface * grid.cell;
-        field.normal[at] =
-            encode_normal(touching ? tree.normal(found.triangle) : sign * (p - found.point));
+Slab slab_of(Field& field, int first, int last) {
+  const auto begin = field.grid.index(0, 0, first), size = field.grid.index(0, 0, last) - begin;
+  return {first,
+          last,
+          std::span(field.distance).subspan(begin, size),
+          field.normal.empty() ? std::span<std::uint32_t>{}
+                               : std::span(field.normal).subspan(begin, size)};
+}
+
+ExactBuilder::ExactBuilder(const Surface& surface, const Grid& grid, ExactOptions options)
+    : grid_(grid), options_(std::move(options)), tree_(validated(surface, grid, options_)) {
+  if (options_.sides == Sides::one) inside_.emplace(surface, tree_, grid);
+}
+
+Field ExactBuilder::empty_field() const {
+  Field field{grid_, Method::exact, options_.sides, options_.thickness, {}, {}};
+  field.distance.resize(grid_.size());
+  if (options_.content == Content::distance_and_normal) field.normal.resize(grid_.size());
+  return field;
+}
+
+// All 64 points of a block ask, whichever layers the shelf wants: so the answer cannot depend on
+// the split.
+void ExactBuilder::fill_block(int i, int j, const Shelf& shelf) const {
+  PointBlock block;
+  const double limit2 = options_.thickness * options_.thickness * just_beyond;
+  std::size_t lane = 0;
+  for (int dk = 0; dk < block_edge; ++dk)
+    for (int dj = 0; dj < block_edge; ++dj)
+      for (int di = 0; di < block_edge; ++di, ++lane) {
+        const int k = shelf.block_first + dk;
+        const Vec3 p = grid_.centre(i + di, j + dj, k);
+        block.x[lane] = p.x, block.y[lane] = p.y, block.z[lane] = p.z;
+        const bool asks = i + di < grid_.n[0] && j + dj < grid_.n[1] && k < grid_.n[2];
+        block.distance2[lane] = asks ? limit2 : -1;
       }
-    }
-    if (options.progress) options.progress((k + 1.0) / grid.n[2]);
+  tree_.closest(block);
+  for (int k = shelf.first; k < shelf.last; ++k)
+    for (int y = j; y < up_to(j, block_edge, grid_.n[1]); ++y)
+      for (int x = i; x < up_to(i, block_edge, grid_.n[0]); ++x) {
+        lane = static_cast<std::size_t>(
+            ((k - shelf.block_first) * block_edge + y - j) * block_edge + x - i);
+        const auto place = block.place[lane];
+        if (place == PointBlock::none) continue;
+        const auto at = grid_.index(x, y, k - shelf.first);
+        const PreparedTriangle& triangle = tree_.triangle(place);
+        const Vec3 offset = offset_from(triangle, grid_.centre(x, y, k));
+        const double distance = std::min(norm(offset), options_.thickness);
+        const double sign = !shelf.inside.empty() && shelf.inside[at] != 0 ? -1 : 1;
+        shelf.distance[at] = static_cast<float>(sign * distance);
+        if (shelf.normal.empty()) continue;
+        const bool touching = distance < on_surface * grid_.cell;
+        shelf.normal[at] = encode_normal(touching ? triangle.normal : sign * offset);
+      }
+}
+
+double ExactBuilder::build_shelf(const Slab& slab, int first, int last) const {
+  const auto begin = grid_.index(0, 0, first - slab.first), size = grid_.index(0, 0, last - first);
+  std::vector<std::uint8_t> inside(inside_ ? size : 0);
+  if (inside_) inside_->layers(first, last, inside);
+  const Shelf shelf{first,
+                    last,
+                    first - first % block_edge,
+                    slab.distance.subspan(begin, size),
+                    slab.normal.empty() ? slab.normal : slab.normal.subspan(begin, size),
+                    inside};
+  const auto far = static_cast<float>(options_.thickness);
+  if (inside_) {
+    for (std::size_t at = 0; at < size; ++at) shelf.distance[at] = inside[at] != 0 ? -far : far;
+  } else {
+    std::fill(shelf.distance.begin(), shelf.distance.end(), far);
   }
-  field.thickness = std::min(options.thickness, furthest);
+  std::fill(shelf.normal.begin(), shelf.normal.end(), no_normal);
+  const double limit2 = options_.thickness * options_.thickness * just_beyond;
+  for (int tj = 0; tj < grid_.n[1]; tj += tile_edge)
+    for (int ti = 0; ti < grid_.n[0]; ti += tile_edge) {
+      Bounds tile;
+      tile.extend(grid_.centre(ti, tj, shelf.block_first));
+      tile.extend(
+          grid_.centre(ti + tile_edge - 1, tj + tile_edge - 1, shelf.block_first + block_edge - 1));
+      if (!tree_.may_reach(tile, limit2)) continue;
+      for (int j = tj; j < up_to(tj, tile_edge, grid_.n[1]); j += block_edge)
+        for (int i = ti; i < up_to(ti, tile_edge, grid_.n[0]); i += block_edge)
+          fill_block(i, j, shelf);
+    }
+  float furthest = 0;
+  for (const float d : shelf.distance) furthest = std::max(furthest, std::fabs(d));
+  return static_cast<double>(furthest);
+}
+
+double ExactBuilder::build(const Slab& slab) const {
+  TESS_CHECK(slab.first >= 0 && slab.last <= grid_.n[2] && slab.first <= slab.last &&
+                 slab.distance.size() == grid_.index(0, 0, slab.last - slab.first) &&
+                 (slab.normal.empty() || slab.normal.size() == slab.distance.size()),
+             "slab of layers ",
+             slab.first,
+             " to ",
+             slab.last,
+             " of ",
+             grid_.n[2],
+             " with room for ",
+             slab.distance.size(),
+             " distances");
+  double furthest = 0;
+  for (int k = slab.first; k < slab.last;) {
+    const int next = std::min(k - k % block_edge + block_edge, slab.last);
+    furthest = std::max(furthest, build_shelf(slab, k, next));
+    k = next;
+  }
+  return furthest;
+}
+
+void ExactBuilder::finish(Field& field, double furthest) const {
+  field.thickness = std::min(options_.thickness, furthest);
+}
+
+Field build_exact(const Surface& surface, const Grid& grid, const ExactOptions& options) {
+  const ExactBuilder builder(surface, grid, options);
+  Field field = builder.empty_field();
+  double furthest = 0;
+  for (int k = 0; k < grid.n[2]; k += block_edge) {
+    const int next = up_to(k, block_edge, grid.n[2]);
+    furthest = std::max(furthest, builder.build(slab_of(field, k, next)));
+    if (options.progress) options.progress(1.0 * next / grid.n[2]);
+  }
+  builder.finish(field, furthest);
   return field;
 }
 

@@ -1,12 +1,19 @@
 // The exact construction: signed distance by the closest feature of the mesh, sign by the winding
 // number, so that meshes with holes and flipped triangles work. The surface may be far denser or
-// coarser than the grid.
+// coarser than the grid. Blocks of 4³ voxels walk a tree of the triangles together; blocks further
+// than the thickness are not asked for.
+//
+// ExactBuilder is the seam for building in parallel: made once, it fills any layers of a field on
+// any thread, and the field does not depend on how its layers were split. build_exact does them one
+// after the other.
 #pragma once
 
+#include "collide/dn_field/build_sign.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/surface.hpp"
 
 #include <functional>
+#include <span>
 
 namespace tess::dn {
 
@@ -16,13 +23,51 @@ struct ExactOptions {
   double thickness = HUGE_VAL;  ///< in the object's units; distances are cut off here, which saves
                                 ///< most of the time
   std::function<void(double)>
-      progress;  ///< called with the fraction done, after every layer of voxels; may be empty
+      progress;  ///< called with the fraction done, after every few layers; may be empty
 };
 
-/// Builds the field of `surface` on `grid`. Errors of distance: rounding to float. Normals point
-/// along the gradient of the distance, and are those of the closest triangle within a thousandth of
-/// a cell from the surface. Throws Error(bad_mesh) where validate() does, Error(bad_argument) for a
-/// thickness below two cells.
+/// The layers `first` to `last` − 1 of a field, to be filled.
+struct Slab {
+  int first = 0, last = 0;
+  std::span<float> distance;        ///< (last − first) × n[1] × n[0], x fastest
+  std::span<std::uint32_t> normal;  ///< likewise; empty: not asked for
+};
+
+/// The layers of `field` as a slab.
+[[nodiscard]] Slab slab_of(Field& field, int first, int last);
+
+class ExactBuilder {
+ public:
+  /// Copies what it needs of `surface`. Throws Error(bad_mesh) where validate() does,
+  /// Error(bad_argument) for a thickness below two cells, a grid without voxels or cells without
+  /// size, and Error(environment) for a field that memory cannot hold.
+  ExactBuilder(const Surface& surface, const Grid& grid, ExactOptions options);
+
+  /// A field with room for all layers, thickness as asked for.
+  [[nodiscard]] Field empty_field() const;
+
+  /// Fills the layers of `slab` and returns the greatest |distance| among them. Errors of distance:
+  /// rounding to float. Any thread, different slabs at once. Best split at multiples of 4 layers:
+  /// others are done twice.
+  double build(const Slab& slab) const;
+
+  /// Cuts the field's thickness to the greatest distance that its slabs found.
+  void finish(Field& field, double furthest) const;
+
+ private:
+  struct Shelf;  // up to four layers
+  void fill_block(int i, int j, const Shelf& shelf) const;
+  double build_shelf(const Slab& slab, int first, int last) const;
+
+  Grid grid_;
+  ExactOptions options_;
+  Bvh tree_;
+  std::optional<Inside> inside_;
+};
+
+/// Builds the field of `surface` on `grid`. Normals point along the gradient of the distance, and
+/// are those of the closest triangle within a thousandth of a cell from the surface. Throws as
+/// ExactBuilder does.
 [[nodiscard]] Field build_exact(const Surface& surface,
                                 const Grid& grid,
                                 const ExactOptions& options = {});

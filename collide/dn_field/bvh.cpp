@@ -1,88 +1,135 @@
 #include "collide/dn_field/bvh.hpp"
 
-#include "collide/dn_field/triangle_distance.hpp"
-
 #include <algorithm>
-#include <numbers>
-#include <numeric>
 
 namespace tess::dn {
 namespace {
 constexpr std::uint32_t leaf_size = 4;
-constexpr double opening_ratio = 2.0;  // dipole error at most a few per cent of the cluster's share
-constexpr double undecided_half_width = 0.2;  // |w - 1/2| below it: ask again without approximation
-constexpr std::size_t max_depth = 64;         // median splits: log2 of the number of triangles
+constexpr std::size_t max_depth = 64;  // median splits: log2 of the number of triangles
+constexpr double slack = 1 + 1e-9;     // boxes are pruned only where rounding cannot have decided
+
+double gap2(const Bounds& a, const Bounds& b) {
+  const double x = std::max({0.0, a.low.x - b.high.x, b.low.x - a.high.x});
+  const double y = std::max({0.0, a.low.y - b.high.y, b.low.y - a.high.y});
+  const double z = std::max({0.0, a.low.z - b.high.z, b.low.z - a.high.z});
+  return x * x + y * y + z * z;
+}
+
+struct Pending {
+  std::uint32_t node;
+  double distance2;
+};
+
+struct Centroid {
+  std::array<float, 3> at;  // in units of the surface's box: no offset is lost in float
+  std::uint32_t triangle;
+};
+
+std::vector<Centroid> centroids(const Surface& surface) {
+  const Bounds box = bounds(surface);
+  const Vec3 size = box.size();
+  const double scale = 1 / std::max({size.x, size.y, size.z});
+  std::vector<Centroid> all(surface.triangles.size());
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    const Vec3 at = scale / 3 * ((a - box.low) + (b - box.low) + (c - box.low));
+    all[t] = {{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+              static_cast<std::uint32_t>(t)};
+  }
+  return all;
+}
+
+std::size_t widest_axis(const Centroid* first, const Centroid* last) {
+  std::array<float, 3> low = first->at, high = first->at;
+  for (; first != last; ++first)
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], first->at[a]);
+      high[a] = std::max(high[a], first->at[a]);
+    }
+  const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+}
+
 }  // namespace
 
 Bvh::Bvh(const Surface& surface) {
-  const auto n = surface.triangles.size();
-  corners_.resize(n);
-  order_.resize(n);
-  normals_.resize(n);
-  std::iota(order_.begin(), order_.end(), 0U);
-  for (std::size_t t = 0; t < n; ++t) {
-    corners_[t] = surface.corners(t);
-    const auto& [a, b, c] = corners_[t];
-    normals_[t] = direction(cross(b - a, c - a));
-  }
+  const auto n = static_cast<std::uint32_t>(surface.triangles.size());
+  std::vector<Centroid> all = centroids(surface);
+  struct Range {
+    std::uint32_t node, first, last;
+  };
+  std::vector<Range> open{{0, 0, n}};
   nodes_.reserve(n);
   nodes_.emplace_back();
-  build(0, 0, static_cast<std::uint32_t>(n));
-  auto sorted = corners_;
-  for (std::size_t i = 0; i < n; ++i) sorted[i] = corners_[order_[i]];
-  corners_ = std::move(sorted);
+  while (!open.empty()) {
+    const Range range = open.back();
+    open.pop_back();
+    if (range.last - range.first <= leaf_size) {
+      nodes_[range.node].first = range.first;
+      nodes_[range.node].count = range.last - range.first;
+      continue;
+    }
+    Centroid* const begin = all.data();
+    const std::uint32_t middle = range.first + (range.last - range.first) / 2;
+    const std::size_t axis = widest_axis(begin + range.first, begin + range.last);
+    std::nth_element(begin + range.first,
+                     begin + middle,
+                     begin + range.last,
+                     [axis](const Centroid& a, const Centroid& b) {
+                       return a.at[axis] < b.at[axis] ||
+                              (a.at[axis] == b.at[axis] && a.triangle < b.triangle);
+                     });
+    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[range.node].first = child;
+    nodes_.emplace_back();
+    nodes_.emplace_back();
+    open.push_back({child + 1, middle, range.last});
+    open.push_back({child, range.first, middle});
+  }
+  order_.reserve(n);
+  prepared_.reserve(n);
+  normals_.resize(n);
+  for (const Centroid& c : all) {
+    order_.push_back(c.triangle);
+    prepared_.push_back(prepare(surface.corners(c.triangle)));
+    normals_[c.triangle] = prepared_.back().normal;
+  }
+  summarise();
 }
 
-void Bvh::summarise(Node& node, std::uint32_t first, std::uint32_t last) const {
-  double area = 0;
-  Vec3 centre, plain;
-  for (std::uint32_t i = first; i < last; ++i) {
-    const auto& [a, b, c] = corners_[order_[i]];
-    for (const Vec3 p : {a, b, c}) node.box.extend(p);
-    const Vec3 area_normal = 0.5 * cross(b - a, c - a);
-    node.area_normal += area_normal;
-    area += norm(area_normal);
-    centre += norm(area_normal) / 3 * (a + b + c);
+void Bvh::summarise() {
+  moments_.resize(nodes_.size());
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    Node& node = nodes_[at];
+    Moment& moment = moments_[at];
+    Vec3 weighted;
+    if (node.count == 0) {
+      for (const std::size_t child : {node.first, node.first + 1}) {
+        node.box.extend(nodes_[child].box.low);
+        node.box.extend(nodes_[child].box.high);
+        moment.area_normal += moments_[child].area_normal;
+        moment.area += moments_[child].area;
+        weighted += moments_[child].area * moments_[child].centre;
+      }
+    } else {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const PreparedTriangle& t = prepared_[i];
+        for (const Vec3 p : t.corner) node.box.extend(p);
+        const Vec3 area_normal = 0.5 * cross(t.edge[0], -t.edge[2]);
+        const double area = norm(area_normal);
+        moment.area_normal += area_normal;
+        moment.area += area;
+        weighted += area / 3 * (t.corner[0] + t.corner[1] + t.corner[2]);
+      }
+    }
+    moment.centre = moment.area > 0 ? (1 / moment.area) * weighted : node.box.centre();
+    const Vec3 reach = moment.centre - node.box.low, rest = node.box.high - moment.centre;
+    moment.radius =
+        norm({std::max(reach.x, rest.x), std::max(reach.y, rest.y), std::max(reach.z, rest.z)});
   }
-  node.centre = area > 0 ? (1 / area) * centre : node.box.centre();
-  for (std::uint32_t i = first; i < last; ++i)
-    for (const Vec3 p : corners_[order_[i]])
-      node.radius = std::max(node.radius, norm(p - node.centre));
-}
-
-void Bvh::build(std::uint32_t node, std::uint32_t first, std::uint32_t last) {
-  Node made;
-  summarise(made, first, last);
-  if (last - first <= leaf_size) {
-    made.first = first;
-    made.count = last - first;
-    nodes_[node] = made;
-    return;
-  }
-  const Vec3 size = made.box.size();
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const auto middle = first + (last - first) / 2;
-  const auto key = [&](std::uint32_t t) {
-    const auto& [a, b, c] = corners_[t];
-    return component(a, axis) + component(b, axis) + component(c, axis);
-  };
-  std::nth_element(
-      order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](auto a, auto b) {
-        return std::pair(key(a), a) < std::pair(key(b), b);
-      });
-  made.first = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node] = made;
-  nodes_.emplace_back();
-  nodes_.emplace_back();
-  build(made.first, first, middle);
-  build(made.first + 1, middle, last);
 }
 
 ClosestPoint Bvh::closest(Vec3 p, double limit2) const {
-  struct Pending {
-    std::uint32_t node;
-    double distance2;
-  };
   std::array<Pending, max_depth> stack;
   std::size_t height = 0;
   ClosestPoint best;
@@ -101,42 +148,96 @@ ClosestPoint Bvh::closest(Vec3 p, double limit2) const {
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Vec3 q = closest_on_triangle(p, corners_[i]);
-      const double distance2 = dot(q - p, q - p);
+      const Vec3 offset = offset_from(prepared_[i], p);
+      const double distance2 = dot(offset, offset);
       if (distance2 <= bound) {
         bound = distance2;
-        best = {distance2, q, order_[i]};
+        best = {distance2, p - offset, order_[i]};
       }
     }
   }
   return best;
 }
 
-double Bvh::winding_number(Vec3 p, double accuracy) const {
+namespace {
+
+double furthest(const PointBlock& block) {
+  double most = block.distance2[0];
+  for (std::size_t l = 1; l < PointBlock::size; ++l)
+    most = block.distance2[l] > most ? block.distance2[l] : most;
+  return most;
+}
+
+/// Whether some point of the block is nearer to `box` than to what it has found.
+bool any_nearer(const PointBlock& block, const Bounds& box) {
+  int nearer = 0;
+  for (std::size_t l = 0; l < PointBlock::size; ++l) {
+    const double ax = box.low.x - block.x[l], bx = block.x[l] - box.high.x;
+    const double ay = box.low.y - block.y[l], by = block.y[l] - box.high.y;
+    const double az = box.low.z - block.z[l], bz = block.z[l] - box.high.z;
+    double dx = ax > bx ? ax : bx, dy = ay > by ? ay : by, dz = az > bz ? az : bz;
+    dx = dx > 0 ? dx : 0;
+    dy = dy > 0 ? dy : 0;
+    dz = dz > 0 ? dz : 0;
+    nearer |= dx * dx + dy * dy + dz * dz <= block.distance2[l] * slack ? 1 : 0;
+  }
+  return nearer != 0;
+}
+
+void offer(PointBlock& block, const PreparedTriangle& candidate, std::uint64_t place) {
+  const PreparedTriangle t = candidate;  // a copy that the block's stores cannot change
+  for (std::size_t l = 0; l < PointBlock::size; ++l) {
+    const double d = distance2(t, block.x[l], block.y[l], block.z[l]);
+    const double known = block.distance2[l];
+    const std::uint64_t holder = block.place[l];
+    const bool wins = (d < known) | ((d == known) & (place < holder));
+    block.distance2[l] = wins ? d : known;
+    block.place[l] = wins ? place : holder;
+  }
+}
+
+}  // namespace
+
+void Bvh::closest(PointBlock& block) const {
+  Bounds box;
+  for (std::size_t l = 0; l < PointBlock::size; ++l)
+    if (block.distance2[l] >= 0) box.extend({block.x[l], block.y[l], block.z[l]});
+  block.place.fill(PointBlock::none);
+  std::array<Pending, max_depth> stack;
+  std::size_t height = 0;
+  double bound = furthest(block) * slack;
+  stack[height++] = {0, gap2(nodes_[0].box, box)};
+  while (height > 0) {
+    const Pending top = stack[--height];
+    if (top.distance2 > bound) continue;
+    const Node& node = nodes_[top.node];
+    if (node.count == 0) {
+      Pending near{node.first, gap2(nodes_[node.first].box, box)};
+      Pending far{node.first + 1, gap2(nodes_[node.first + 1].box, box)};
+      if (far.distance2 < near.distance2) std::swap(near, far);
+      if (far.distance2 <= bound) stack[height++] = far;
+      if (near.distance2 <= bound) stack[height++] = near;
+      continue;
+    }
+    if (!any_nearer(block, node.box)) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+      offer(block, prepared_[i], i);
+    bound = furthest(block) * slack;
+  }
+}
+
+bool Bvh::may_reach(const Bounds& box, double limit2) const {
   std::array<std::uint32_t, max_depth> stack;
   std::size_t height = 0;
   stack[height++] = 0;
-  double angle = 0;
   while (height > 0) {
     const Node& node = nodes_[stack[--height]];
-    const Vec3 to = node.centre - p;
-    const double distance2 = dot(to, to), reach = accuracy * node.radius;
-    if (accuracy > 0 && distance2 > reach * reach) {
-      angle += dot(to, node.area_normal) / (distance2 * std::sqrt(distance2));
-    } else if (node.count == 0) {
-      stack[height++] = node.first;
-      stack[height++] = node.first + 1;
-    } else {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        angle += solid_angle(p, corners_[i]);
-    }
+    if (gap2(node.box, box) > limit2) continue;
+    if (node.count != 0) return true;
+    stack[height++] = node.first;
+    stack[height++] = node.first + 1;
   }
-  return angle / (4 * std::numbers::pi);
-}
-
-bool Bvh::is_inside(Vec3 p) const {
-  const double w = winding_number(p, opening_ratio);
-  return std::abs(w - 0.5) > undecided_half_width ? w > 0.5 : winding_number(p, 0) > 0.5;
+  return false;
 }
 
 }  // namespace tess::dn

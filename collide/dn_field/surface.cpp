@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <map>
+#include <numeric>
 #include <tuple>
 
 namespace tess::dn {
@@ -87,38 +87,57 @@ void validate(const Surface& surface) {
         ErrorCode::bad_mesh, "surface has extent ", norm(size), "; it must be positive and finite");
 }
 
-bool is_closed(const Surface& surface) {
-  using Edge = std::pair<std::uint32_t, std::uint32_t>;
-  std::vector<std::pair<Edge, int>> edges;
-  edges.reserve(3 * surface.triangles.size());
-  for (const auto& t : surface.triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto a = t[i], b = t[(i + 1) % 3];
-      if (a != b) edges.push_back({std::minmax(a, b), a < b ? 1 : -1});
+std::vector<RimEdge> rim(const Surface& surface) {
+  // Sorted by the lower vertex by counting, then the few edges of each vertex by the upper one.
+  const auto each_edge = [&](const auto& visit) {
+    for (const auto& t : surface.triangles)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (t[i] != t[(i + 1) % 3]) visit(t[i], t[(i + 1) % 3]);
+  };
+  std::vector<std::size_t> begin(surface.vertices.size() + 2, 0);
+  each_edge([&](std::uint32_t a, std::uint32_t b) { ++begin[std::min(a, b) + std::size_t{2}]; });
+  for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  struct Upper {
+    std::uint32_t vertex;
+    int balance;
+  };
+  std::vector<Upper> upper(begin.back());
+  each_edge([&](std::uint32_t a, std::uint32_t b) {
+    upper[begin[std::min(a, b) + std::size_t{1}]++] = {std::max(a, b), a < b ? 1 : -1};
+  });
+  std::vector<RimEdge> edges;
+  for (std::uint32_t low = 0; low < surface.vertices.size(); ++low) {
+    const auto first = upper.begin() + static_cast<std::ptrdiff_t>(begin[low]);
+    const auto last = upper.begin() + static_cast<std::ptrdiff_t>(begin[low + std::size_t{1}]);
+    std::sort(first, last, [](Upper a, Upper b) { return a.vertex < b.vertex; });
+    for (auto at = first; at != last;) {
+      const std::uint32_t high = at->vertex;
+      int balance = 0;
+      for (; at != last && at->vertex == high; ++at) balance += at->balance;
+      if (balance > 0) edges.push_back({low, high, balance});
+      if (balance < 0) edges.push_back({high, low, -balance});
     }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    int balance = 0;
-    const Edge edge = edges[i].first;
-    for (; i < edges.size() && edges[i].first == edge; ++i) balance += edges[i].second;
-    if (balance != 0) return false;
   }
-  return true;
+  return edges;
 }
 
 Surface welded(const Surface& surface) {
-  std::map<std::tuple<double, double, double>, std::uint32_t> known;
-  Surface result;
-  const auto merged = [&](std::uint32_t v) {
+  std::vector<std::uint32_t> order(surface.vertices.size()), merged(surface.vertices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto key = [&](std::uint32_t v) {
     const Vec3 p = surface.vertices[v];
-    const auto [at, added] =
-        known.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(result.vertices.size()));
-    if (added) result.vertices.push_back(p);
-    return at->second;
+    return std::tuple(p.x, p.y, p.z, v);
   };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+  Surface result;
+  for (const std::uint32_t v : order) {
+    const Vec3 p = surface.vertices[v];
+    if (result.vertices.empty() || !(result.vertices.back() == p)) result.vertices.push_back(p);
+    merged[v] = static_cast<std::uint32_t>(result.vertices.size() - 1);
+  }
   result.triangles.reserve(surface.triangles.size());
   for (const auto& t : surface.triangles)
-    result.triangles.push_back({merged(t[0]), merged(t[1]), merged(t[2])});
+    result.triangles.push_back({merged[t[0]], merged[t[1]], merged[t[2]]});
   return result;
 }
 

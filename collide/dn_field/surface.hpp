@@ -29,9 +29,22 @@ struct Surface {
 /// finite.
 void validate(const Surface& surface);
 
+/// Where a surface ends: an edge that runs `surplus` times more often from `from` to `to` than
+/// back.
+struct RimEdge {
+  std::uint32_t from = 0, to = 0;
+  int surplus = 0;  ///< positive
+};
+
+/// All edges that are not met by as many opposite ones: the rims of holes, and those of flipped
+/// triangles. Costs the number of triangles.
+[[nodiscard]] std::vector<RimEdge> rim(const Surface& surface);
+
 /// Whether every directed edge is met by as many opposite ones: then the winding number is an
 /// integer off the surface.
-[[nodiscard]] bool is_closed(const Surface& surface);
+[[nodiscard]] inline bool is_closed(const Surface& surface) {
+  return rim(surface).empty();
+}
 
 /// Merges vertices of bit-equal position, so that a triangle soup whose seams agree counts as
 /// closed.

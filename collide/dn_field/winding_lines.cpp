@@ -31,50 +31,57 @@ Range voxels_between(double low, double high, double origin, double cell, int n)
 
 }  // namespace
 
-std::vector<std::uint8_t> inside_by_lines(const Surface& surface,
-                                          const Bvh& tree,
-                                          const Grid& grid) {
-  const int nx = grid.n[0];
-  const auto stride =
-      static_cast<std::size_t>(nx) + 1;  // the last entry: crossings behind the line's last voxel
-  const auto line = [&](int j, int k) {
-    return stride * (static_cast<std::size_t>(k) * static_cast<std::size_t>(grid.n[1]) +
-                     static_cast<std::size_t>(j));
+WindingLines::WindingLines(Surface surface, const Grid& grid)
+    : surface_(std::move(surface)), grid_(grid) {
+  const auto layers_of = [&](std::size_t t) {
+    const auto [a, b, c] = surface_.corners(t);
+    const auto [low, high] = std::minmax({a.z, b.z, c.z});
+    return voxels_between(low, high, grid_.origin.z, grid_.cell, grid_.n[2]);
   };
-  std::vector<std::int16_t> change(line(0, grid.n[2]), 0);
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto [ia, ib, ic] = surface.triangles[t];
-    const auto [a, b, c] = surface.corners(t);
-    const Vec3 normal = cross(b - a, c - a);
-    if (normal.x == 0) continue;
-    const auto [ylow, yhigh] = std::minmax({a.y, b.y, c.y});
-    const auto [zlow, zhigh] = std::minmax({a.z, b.z, c.z});
-    const Range js = voxels_between(ylow, yhigh, grid.origin.y, grid.cell, grid.n[1]);
-    const Range ks = voxels_between(zlow, zhigh, grid.origin.z, grid.cell, grid.n[2]);
-    for (int k = ks.first; k <= ks.last; ++k)
-      for (int j = js.first; j <= js.last; ++j) {
-        const Vec3 p = grid.centre(0, j, k);
-        const int s = side(surface, ia, ib, p.y, p.z);
-        if (side(surface, ib, ic, p.y, p.z) != s || side(surface, ic, ia, p.y, p.z) != s) continue;
-        const double x = a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x;
-        const double voxel = std::clamp(std::ceil((x - grid.origin.x) / grid.cell), 0.0, 1.0 * nx);
-        change[line(j, k) + static_cast<std::size_t>(voxel)] -= static_cast<std::int16_t>(s);
-      }
+  begin_.assign(static_cast<std::size_t>(grid_.n[2]) + 2, 0);
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+    for (auto [k, last] = layers_of(t); k <= last; ++k) ++begin_[static_cast<std::size_t>(k) + 2];
+  for (std::size_t k = 2; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
+  triangles_.resize(begin_.back());
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+    for (auto [k, last] = layers_of(t); k <= last; ++k)
+      triangles_[begin_[static_cast<std::size_t>(k) + 1]++] = static_cast<std::uint32_t>(t);
+}
+
+void WindingLines::cross(std::uint32_t triangle, int k, std::span<std::int16_t> change) const {
+  const auto [ia, ib, ic] = surface_.triangles[triangle];
+  const auto [a, b, c] = surface_.corners(triangle);
+  const Vec3 normal = tess::dn::cross(b - a, c - a);
+  if (normal.x == 0) return;
+  const int nx = grid_.n[0];
+  const auto [low, high] = std::minmax({a.y, b.y, c.y});
+  const Range js = voxels_between(low, high, grid_.origin.y, grid_.cell, grid_.n[1]);
+  for (int j = js.first; j <= js.last; ++j) {
+    const Vec3 p = grid_.centre(0, j, k);
+    const int s = side(surface_, ia, ib, p.y, p.z);
+    if (side(surface_, ib, ic, p.y, p.z) != s || side(surface_, ic, ia, p.y, p.z) != s) continue;
+    const double x = a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x;
+    const double voxel = std::clamp(std::ceil((x - grid_.origin.x) / grid_.cell), 0.0, 1.0 * nx);
+    change[static_cast<std::size_t>(j) * (static_cast<std::size_t>(nx) + 1) +
+           static_cast<std::size_t>(voxel)] -= static_cast<std::int16_t>(s);
   }
-  std::vector<std::uint8_t> inside(grid.size());
-  for (int k = 0; k < grid.n[2]; ++k)
-    for (int j = 0; j < grid.n[1]; ++j) {
-      const std::int16_t* crossings = &change[line(j, k)];
-      int winding = 0;
-      for (int i = 0; i < nx; ++i) {
-        winding += crossings[i];
-        inside[grid.index(i, j, k)] = winding > 0 ? 1 : 0;
-      }
-      if (winding + crossings[nx] == 0) continue;
-      for (int i = 0; i < nx; ++i)
-        inside[grid.index(i, j, k)] = tree.is_inside(grid.centre(i, j, k)) ? 1 : 0;
+}
+
+void WindingLines::layer(int k, std::span<std::int16_t> winding) const {
+  const auto nx = static_cast<std::size_t>(grid_.n[0]), ny = static_cast<std::size_t>(grid_.n[1]);
+  // The last entry of a line: crossings behind its last voxel.
+  std::vector<std::int16_t> change(ny * (nx + 1), 0);
+  const auto at = static_cast<std::size_t>(k);
+  for (std::size_t i = begin_[at]; i < begin_[at + 1]; ++i) cross(triangles_[i], k, change);
+  for (std::size_t j = 0; j < ny; ++j) {
+    const auto line = winding.subspan(j * nx, nx);
+    int so_far = 0;
+    for (std::size_t i = 0; i < nx; ++i) {
+      so_far += change[j * (nx + 1) + i];
+      line[i] = static_cast<std::int16_t>(so_far);
     }
-  return inside;
+    if (so_far + change[j * (nx + 1) + nx] != 0) std::fill(line.begin(), line.end(), unknown);
+  }
 }
 
 }  // namespace tess::dn

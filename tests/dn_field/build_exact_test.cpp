@@ -4,7 +4,7 @@
 #include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "collide/dn_field/triangle_distance.hpp"
-#include "runtime/error.hpp"
+#include "tests/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -14,29 +14,12 @@
 namespace {
 
 using namespace tess::dn;
+using namespace tess::dn::test;
 
 double box_distance(Vec3 p, Vec3 half) {
   const Vec3 q{std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z};
   const Vec3 outside{std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0)};
   return norm(outside) + std::min(0.0, std::max({q.x, q.y, q.z}));
-}
-
-template <class Visit>
-void for_each_voxel(const Grid& grid, const Visit& visit) {
-  for (int k = 0; k < grid.n[2]; ++k)
-    for (int j = 0; j < grid.n[1]; ++j)
-      for (int i = 0; i < grid.n[0]; ++i) visit(grid.index(i, j, k), grid.centre(i, j, k));
-}
-
-/// The message with which `call` refuses its input; empty where it does not.
-template <class Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const tess::Error& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST_CASE("distances to a box are those of the formula at every voxel", "[dn_field]") {

@@ -1,0 +1,65 @@
+#include "collide/dn_field/build_checks.hpp"
+
+#include "runtime/error.hpp"
+
+#include <unistd.h>
+
+namespace tess::dn {
+namespace {
+
+double memory_bytes() {
+  const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+  return pages > 0 && page > 0 ? static_cast<double>(pages) * static_cast<double>(page) : HUGE_VAL;
+}
+
+}  // namespace
+
+void require_buildable(const Grid& grid, double bytes_per_voxel) {
+  const auto [nx, ny, nz] = grid.n;
+  if (nx < 1 || ny < 1 || nz < 1)
+    fail(ErrorCode::bad_argument,
+         "grid of ",
+         nx,
+         " × ",
+         ny,
+         " × ",
+         nz,
+         " voxels; each axis needs at least one");
+  if (!(grid.cell > 0) || !std::isfinite(grid.cell) || !is_finite(grid.origin))
+    fail(ErrorCode::bad_argument,
+         "grid with cells of ",
+         grid.cell,
+         " from (",
+         grid.origin.x,
+         ", ",
+         grid.origin.y,
+         ", ",
+         grid.origin.z,
+         "); cells must be positive and all of it finite");
+  const double wanted = bytes_per_voxel * nx * ny * nz, there = memory_bytes();
+  if (wanted > there)
+    fail(ErrorCode::environment,
+         "grid of ",
+         nx,
+         " × ",
+         ny,
+         " × ",
+         nz,
+         " voxels takes ",
+         wanted / 1e9,
+         " GB to build, this machine has ",
+         there / 1e9,
+         "; lower the resolution");
+}
+
+void require_thick(const Grid& grid, double thickness) {
+  if (!(thickness >= 2 * grid.cell))
+    fail(ErrorCode::bad_argument,
+         "thickness ",
+         thickness,
+         " of a field with cells of ",
+         grid.cell,
+         "; it must be at least two cells");
+}
+
+}  // namespace tess::dn

@@ -1,0 +1,158 @@
+#include "collide/dn_field/build_sign.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tess::dn {
+namespace {
+constexpr int tile_edge = 16, least_edge = 2;
+constexpr double accuracies[] = {2, 4, 12, HUGE_VAL};
+
+/// The connected pieces of a rim, as the lowest vertex number of each vertex's piece.
+std::vector<std::uint32_t> pieces(const std::vector<RimEdge>& edges, std::size_t n_vertices) {
+  std::vector<std::uint32_t> parent(n_vertices);
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const RimEdge& e : edges) {
+    const auto [low, high] = std::minmax({root(e.from), root(e.to)});
+    parent[high] = low;
+  }
+  for (std::uint32_t v = 0; v < n_vertices; ++v) parent[v] = root(v);
+  return parent;
+}
+
+/// Triangles that close `surface`, and the apexes that they need, appended to its vertices. An apex
+/// stands a little off the middle of its rim, so that caps do not lie in planes of voxels.
+std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
+                                                const std::vector<RimEdge>& edges) {
+  const auto piece = pieces(edges, surface.vertices.size());
+  struct Middle {
+    Vec3 sum;
+    double count = 0;
+    Bounds box;
+    std::uint32_t apex = 0;
+  };
+  std::vector<Middle> middle(surface.vertices.size());
+  for (const RimEdge& e : edges) {
+    Middle& m = middle[piece[e.from]];
+    for (const std::uint32_t v : {e.from, e.to}) {
+      m.sum += surface.vertices[v];
+      m.box.extend(surface.vertices[v]);
+      m.count += 1;
+    }
+  }
+  for (Middle& m : middle) {
+    if (m.count == 0) continue;
+    m.apex = static_cast<std::uint32_t>(surface.vertices.size());
+    const Vec3 aside{0.0061803398875, 0.0041421356237, 0.0073205080757};
+    surface.vertices.push_back((1 / m.count) * m.sum + norm(m.box.size()) * aside);
+  }
+  std::vector<std::array<std::uint32_t, 3>> caps;
+  for (const RimEdge& e : edges)
+    for (int i = 0; i < e.surplus; ++i) caps.push_back({e.to, e.from, middle[piece[e.from]].apex});
+  return caps;
+}
+
+/// How far from the nearest integer.
+double off_integer(double x) {
+  return std::abs(x - std::round(x));
+}
+
+}  // namespace
+
+Inside::Inside(const Surface& surface, const Bvh& tree, const Grid& grid)
+    : tree_(tree), grid_(grid) {
+  if (is_closed(surface)) {
+    lines_.emplace(surface, grid);
+    return;
+  }
+  Surface whole = welded(surface);
+  if (const auto edges = rim(whole); !edges.empty()) {
+    Surface caps;
+    caps.triangles = close(whole, edges);
+    caps.vertices = whole.vertices;
+    caps_.emplace(caps);
+    whole.triangles.insert(whole.triangles.end(), caps.triangles.begin(), caps.triangles.end());
+  }
+  lines_.emplace(std::move(whole), grid);
+}
+
+bool Inside::decide_voxel(Vec3 p, int winding) const {
+  for (const double accuracy : accuracies) {
+    const WindingEstimate caps = caps_->winding_estimate(p, 0, accuracy);
+    if (off_integer(caps.value + 0.5) > caps.error) return winding > caps.value + 0.5;
+  }
+  return tree_.winding_number(p, 0) > 0.5;
+}
+
+void Inside::decide(const Tile& tile,
+                    int first,
+                    std::span<const std::int16_t> winding,
+                    std::span<std::uint8_t> inside) const {
+  const auto& [low, high] = tile;
+  const auto each = [&](const auto& visit) {
+    for (int k = low[2]; k < high[2]; ++k)
+      for (int j = low[1]; j < high[1]; ++j)
+        for (int i = low[0]; i < high[0]; ++i) visit(i, j, k, grid_.index(i, j, k - first));
+  };
+  const Vec3 corner = grid_.centre(low[0], low[1], low[2]);
+  const Vec3 other = grid_.centre(high[0] - 1, high[1] - 1, high[2] - 1);
+  const WindingEstimate caps =
+      caps_->winding_estimate(0.5 * (corner + other), 0.5 * norm(other - corner), 2);
+  if (off_integer(caps.value + 0.5) > caps.error) {
+    each([&](int, int, int, std::size_t at) {
+      inside[at] = winding[at] > caps.value + 0.5 ? 1 : 0;
+    });
+    return;
+  }
+  const int edge = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (edge <= least_edge) {
+    each([&](int i, int j, int k, std::size_t at) {
+      inside[at] = decide_voxel(grid_.centre(i, j, k), winding[at]) ? 1 : 0;
+    });
+    return;
+  }
+  const int half = edge / 2;
+  for (int k = low[2]; k < high[2]; k += half)
+    for (int j = low[1]; j < high[1]; j += half)
+      for (int i = low[0]; i < high[0]; i += half)
+        decide({{i, j, k},
+                {std::min(i + half, high[0]),
+                 std::min(j + half, high[1]),
+                 std::min(k + half, high[2])}},
+               first,
+               winding,
+               inside);
+}
+
+void Inside::layers(int first, int last, std::span<std::uint8_t> inside) const {
+  const auto layer = static_cast<std::size_t>(grid_.n[0]) * static_cast<std::size_t>(grid_.n[1]);
+  std::vector<std::int16_t> winding(inside.size());
+  for (int k = first; k < last; ++k)
+    lines_->layer(k,
+                  std::span(winding).subspan(static_cast<std::size_t>(k - first) * layer, layer));
+  if (!caps_) {
+    for (std::size_t at = 0; at < inside.size(); ++at) inside[at] = winding[at] > 0 ? 1 : 0;
+  } else {
+    for (int k = first; k < last; k += tile_edge)
+      for (int j = 0; j < grid_.n[1]; j += tile_edge)
+        for (int i = 0; i < grid_.n[0]; i += tile_edge)
+          decide({{i, j, k},
+                  {std::min(i + tile_edge, grid_.n[0]),
+                   std::min(j + tile_edge, grid_.n[1]),
+                   std::min(k + tile_edge, last)}},
+                 first,
+                 winding,
+                 inside);
+  }
+  for (int k = first; k < last; ++k)
+    for (int j = 0; j < grid_.n[1]; ++j)
+      for (int i = 0; i < grid_.n[0]; ++i)
+        if (const auto at = grid_.index(i, j, k - first); winding[at] == WindingLines::unknown)
+          inside[at] = tree_.is_inside(grid_.centre(i, j, k)) ? 1 : 0;
+}
+
+}  // namespace tess::dn

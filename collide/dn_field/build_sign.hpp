@@ -1,0 +1,45 @@
+// Which voxels lie inside a surface that may have holes and flipped triangles: those with a winding
+// number above 1/2. Every rim is closed by a cap, a cone of triangles over it; the surface with its
+// caps winds around a voxel an integer number of times, which lines of voxels count, and
+//
+//     winding of the surface = winding with caps − winding of the caps alone.
+//
+// So what has to be summed over triangles is the caps alone, and that only where their share is
+// near a half: elsewhere one estimate decides a tile of voxels. A closed surface has no caps and
+// costs the lines. Immutable once made; any thread.
+#pragma once
+
+#include "collide/dn_field/bvh.hpp"
+#include "collide/dn_field/grid.hpp"
+#include "collide/dn_field/winding_lines.hpp"
+
+#include <optional>
+
+namespace tess::dn {
+
+class Inside {
+ public:
+  /// `tree` is that of `surface` and must outlive this.
+  Inside(const Surface& surface, const Bvh& tree, const Grid& grid);
+
+  /// inside: (last − first) × n[1] × n[0], x fastest; 1 inside, 0 outside, for layers first to last
+  /// − 1.
+  void layers(int first, int last, std::span<std::uint8_t> inside) const;
+
+ private:
+  struct Tile {
+    std::array<int, 3> low, high;  // voxels, high not included
+  };
+  void decide(const Tile& tile,
+              int first,
+              std::span<const std::int16_t> winding,
+              std::span<std::uint8_t> inside) const;
+  [[nodiscard]] bool decide_voxel(Vec3 p, int winding) const;
+
+  const Bvh& tree_;
+  Grid grid_;
+  std::optional<Bvh> caps_;
+  std::optional<WindingLines> lines_;
+};
+
+}  // namespace tess::dn
