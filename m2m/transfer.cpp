@@ -24,6 +24,10 @@ Task transfer(DistributedMesh source,
              " components a vertex, the target ",
              target.n_components);
   Pe& pe = current_pe();
+  const auto enter = [&options](const char* phase) {
+    if (options.on_phase) options.on_phase(phase);
+  };
+  enter("broad");
   const Time start = pe.now();
   TransferSetup setup;
   co_await epoch([&] {
@@ -41,8 +45,10 @@ Task transfer(DistributedMesh source,
   const Report to_target{report_to<&Worker::receive_hits>(target.workers), target_model};
   co_await collide(setup.collider, to_target);
   const Time broad = pe.now();
+  enter("narrow");
   co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(); });
   const Time narrow = pe.now();
+  enter("report");
   co_await epoch([&] { target.workers.broadcast<&Worker::settle>(options.policy); });
   const Time report = pe.now();
   if (times != nullptr)

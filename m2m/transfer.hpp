@@ -15,6 +15,7 @@
 #include "m2m/parallel/worker.hpp"
 
 #include <array>
+#include <functional>
 
 namespace tess::m2m {
 
@@ -22,6 +23,8 @@ struct TransferOptions {
   Point voxel_origin{0, 0, 0};
   Point voxel_size{1, 1, 1};
   OutsidePolicy policy = Keep{};
+  /// Told the name of each phase ("broad", "narrow", "report") when it starts; may be empty.
+  std::function<void(const char*)> on_phase{};
 };
 
 /// Wall-clock seconds of the phases, measured on the PE that runs the transfer.

@@ -22,6 +22,33 @@ std::int32_t whole_number(std::string_view option, std::string_view value, std::
   return number;
 }
 
+void print_error(const char* program, const Error& error) {
+  const char* slash = std::strrchr(program, '/');
+  std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program, error.what());
+  std::fflush(stderr);
+}
+
+/// What a process that refuses its input gives to Machine::agree(), where others may give the
+/// fingerprint of the program.
+constexpr std::uint64_t refused = 0x7265667573656421U;
+
+/// An Error before the run: process 0 speaks for all, if all have one. If not, the others stand at
+/// the start of the run, and this process ends the job.
+void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
+  if (!setup.machine && under_mpirun()) {
+    try {
+      setup.machine = make_mpi_machine(argc, argv, {});
+    } catch (const Error&) {  // then each speaks for itself
+    }
+  }
+  if (!setup.machine || setup.started) return print_error(argv[0], error);
+  const bool all = setup.machine->agree(refused);
+  if (!all || setup.machine->process().value == 0) print_error(argv[0], error);
+  if (!all) setup.machine->abort(2);
+  // A process that leaves makes mpirun end the others: not before the line is out.
+  (void)setup.machine->agree(refused);
+}
+
 }  // namespace
 
 std::string options_help() {
@@ -80,6 +107,7 @@ Setup take_options(int& argc, char** argv) {
 }
 
 int run_on(Setup& setup, std::function<void()> main) {
+  setup.started = true;
   Runtime runtime(*setup.machine, setup.options, std::move(main));
   return runtime.run();
 }
@@ -88,8 +116,18 @@ int guarded(const char* program, const std::function<int()>& body) {
   try {
     return body();
   } catch (const Error& error) {
-    const char* slash = std::strrchr(program, '/');
-    std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program, error.what());
+    print_error(program, error);
+    return 2;
+  }
+}
+
+int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
+  Setup setup;
+  try {
+    setup = take_options(argc, argv);
+    return body(setup);
+  } catch (const Error& error) {
+    refuse(setup, argc, argv, error);
     return 2;
   }
 }

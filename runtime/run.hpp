@@ -26,6 +26,7 @@ namespace tess {
 struct Setup {
   std::unique_ptr<Machine> machine;
   RuntimeOptions options;
+  bool started = false;  ///< run_on() was called
 };
 
 /// Takes the runtime's options out of argc and argv, and makes the machine they name. Throws Error
@@ -38,7 +39,12 @@ struct Setup {
 /// Runs `main` on PE 0 of that machine; returns the exit code.
 int run_on(Setup& setup, std::function<void()> main);
 
-/// Runs `body`, prints an Error in one line, returns its exit code or 2. For main().
+/// A whole program, for main(): takes the runtime's options, runs `body`, returns its exit code. An
+/// Error is one line and exit code 2: of a job under mpirun, too, in which all processes meet the
+/// same fault of the command line. `argc` holds what is left when `body` runs.
+int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body);
+
+/// The same for a program that makes no machine, or several.
 int guarded(const char* program, const std::function<int()>& body);
 
 namespace detail {
@@ -61,8 +67,7 @@ int run(Setup& setup, Main main) {
 /// For programs without options of their own.
 template <class Main>
 int run(int argc, char** argv, Main main) {
-  return guarded(argv[0], [&] {
-    Setup setup = take_options(argc, argv);
+  return guarded(argc, argv, [&](Setup& setup) {
     detail::refuse_rest(argc, argv);
     return run_on(setup, detail::as_message(std::move(main)));
   });

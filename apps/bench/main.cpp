@@ -40,8 +40,7 @@ tess::Task measure(const Report& report, std::vector<std::string> names, Options
 }  // namespace bench
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] {
-    tess::Setup setup = tess::take_options(argc, argv);
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     bench::Options options;
     std::vector<std::string> names = bench::all_measures;
     CLI::App app("The cost of messages, creation, collectives and migration.");

@@ -1,30 +1,26 @@
-// One transfer from file to file: reads both meshes, samples the manufactured fields, runs the
-// transfer, compares with the truth, and writes what was asked for. Everything that can be wrong
-// with the input is found before a run starts.
+// What the program does, from the command line to the report: one transfer, or a study of several.
+// PE 0 reads, judges and writes; what is wrong with the input is found before anything is sent.
 #pragma once
 
+#include "apps/m2m_transfer/problem.hpp"
 #include "runtime/runtime.hpp"
 
-#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tess::m2m {
 
 struct DriverOptions {
-  std::string source, target;
-  std::vector<std::string> fields{"gaussian"};
-  std::int32_t n_chares = 0;
-  std::int32_t per_pe = 8;
-  std::string policy = "keep";
-  std::string partition = "rcb";
-  double voxel = 0;
-  std::int32_t repeat = 1;
+  Request request;
+  std::vector<std::string> policies{"keep"};
+  std::optional<std::int32_t> repeat;  ///< absent: 1, in a study 3
   std::string out, json;
   bool explain = false;
+  std::optional<std::string> study;  ///< the folder of the study's report
 };
 
-/// Returns the exit code. Throws Error for bad input.
+/// Returns the exit code.
 int drive(Setup& setup, const DriverOptions& options);
 
 }  // namespace tess::m2m

@@ -6,37 +6,53 @@
 
 namespace {
 
-int run(int argc, char** argv) {
-  tess::Setup setup = tess::take_options(argc, argv);
+int run(tess::Setup& setup, int argc, char** argv) {
   tess::m2m::DriverOptions options;
+  tess::m2m::Request& request = options.request;
   CLI::App app("Moves fields between two tetrahedral meshes, and prints the error beside the time.",
                "m2m_transfer");
-  app.add_option("SOURCE", options.source, "mesh: ExodusII, gmsh 2.2 or 4.1, or kuhn:N")
-      ->required();
-  app.add_option("TARGET", options.target, "mesh: the same kinds")->required();
+  app.add_option("SOURCE", request.source, "mesh: ExodusII, gmsh 2.2 or 4.1, or kuhn:N");
+  app.add_option("TARGET", request.target, "mesh: the same kinds");
   app.add_option("--field",
-                 options.fields,
+                 request.fields,
                  "gaussian, linear, sin, or an expression in x, y, z; repeat for several");
-  app.add_option("--chares", options.n_chares, "chares of each mesh (default: --per-pe times PEs)")
+  app.add_option("--chares", request.n_chares, "chares of each mesh (default: --per-pe times PEs)")
       ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--per-pe", options.per_pe, "chares of each mesh on each PE")
+  app.add_option("--per-pe", request.per_pe, "chares of each mesh on each PE")
       ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--policy", options.policy, "what vertices outside get: keep, value:V, nearest");
-  app.add_option("--partition", options.partition, "rcb or hsfc");
-  app.add_option("--voxel", options.voxel, "edge of a voxel (default: chosen from the source)")
+  app.add_option("--policy", options.policies, "what vertices outside get: keep, value:V, nearest");
+  app.add_option("--partition", request.partition, "rcb or hsfc");
+  app.add_option("--voxel", request.voxel, "edge of a voxel (default: chosen from the source)")
       ->check(CLI::PositiveNumber);
   app.add_option(
-         "--repeat", options.repeat, "transfers in a row; the times are the fastest of each phase")
+         "--repeat",
+         options.repeat,
+         "transfers in a row; the times are those of the fastest (default: 1, with --study 3)")
       ->check(CLI::Range(1, 1000000));
   app.add_option("--out", options.out, "write the target mesh with fields and status as ExodusII");
   app.add_option("--json", options.json, "write the report as JSON");
   app.add_flag("--explain", options.explain, "say what this transfer uses and what it left out");
+  std::string study;
+  const CLI::Option* studies =
+      app.add_option("--study",
+                     study,
+                     "error against run time over several transfers, into this folder (default: "
+                     "study): SOURCE and TARGET may be ladders, kuhn:8,16,32@0.2 or a.msh,b.msh; "
+                     "--policy may be repeated. Instead of a folder, a ladder without TARGET")
+          ->expected(0, 1);
   if (!apps::parse(app, argc, argv)) return 0;
+  if (studies->count() != 0) {
+    const bool ladder = study.starts_with("kuhn:") && request.source.empty();
+    if (ladder) request.source = study;
+    options.study = ladder || study.empty() ? "study" : study;
+  }
+  if (request.source.empty())
+    tess::fail(tess::ErrorCode::bad_argument, "SOURCE is missing (--help lists the arguments)");
   return tess::m2m::drive(setup, options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] { return run(argc, argv); });
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return run(setup, argc, argv); });
 }

@@ -4,6 +4,56 @@
 #include <nlohmann/json.hpp>
 
 namespace tess::m2m {
+namespace {
+
+double megabytes(std::uint64_t bytes) {
+  return static_cast<double>(bytes) / 1e6;
+}
+
+nlohmann::ordered_json pair_of(const TransferReport& r) {
+  nlohmann::ordered_json pair;
+  pair["source"] = r.source;
+  pair["target"] = r.target;
+  pair["targets"] = r.targets;
+  pair["inside"] = r.counts[0];
+  pair["boundary"] = r.counts[1];
+  pair["snapped"] = r.counts[2];
+  pair["outside"] = r.counts[3];
+  const ErrorNorms& first = r.fields.front().norms;
+  pair["l2"] = first.l2;
+  pair["l2_relative"] = first.l2_relative;
+  pair["rms"] = first.rms;
+  pair["linf"] = first.linf;
+  pair["candidates"] = r.n_candidates;
+  pair["seconds"] = {{"read", r.seconds.read},
+                     {"setup", r.seconds.setup},
+                     {"broad", r.seconds.broad},
+                     {"narrow", r.seconds.narrow},
+                     {"report", r.seconds.report},
+                     {"transfer", r.seconds.transfer()}};
+  pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
+  pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
+  pair["bytes_sent"] = r.footprint.bytes_sent;
+  pair["result_hash"] = fmt::format("{:016x}", r.result_hash);
+  pair["policy"] = r.policy;
+  pair["source_tets"] = r.source_tets;
+  pair["source_edge"] = r.source_edge;
+  pair["machine"] = r.machine;
+  pair["pes"] = r.pes;
+  pair["processes"] = r.processes;
+  pair["chares"] = r.chares;
+  pair["voxel"] = r.voxel;
+  pair["fields"] = nlohmann::ordered_json::array();
+  for (const FieldError& field : r.fields)
+    pair["fields"].push_back({{"name", field.name},
+                              {"l2", field.norms.l2},
+                              {"l2_relative", field.norms.l2_relative},
+                              {"rms", field.norms.rms},
+                              {"linf", field.norms.linf}});
+  return pair;
+}
+
+}  // namespace
 
 std::string table(const TransferReport& r) {
   std::string out;
@@ -50,50 +100,20 @@ std::string table(const TransferReport& r) {
                      r.seconds.report,
                      r.seconds.transfer());
   line("memory",
-       fmt::format("{:.1f} MB peak a process, {:.3f} MB sent between processes",
-                   static_cast<double>(r.peak_memory_bytes) / 1e6,
-                   static_cast<double>(r.bytes_sent) / 1e6));
+       fmt::format("{:.1f} MB peak over {} {}, {:.1f} MB the greatest; {:.3f} MB sent between them",
+                   megabytes(r.footprint.peak_memory_bytes),
+                   r.processes,
+                   r.processes == 1 ? "process" : "processes",
+                   megabytes(r.footprint.greatest_peak_memory_bytes),
+                   megabytes(r.footprint.bytes_sent)));
   line("result", fmt::format("{:016x}", r.result_hash));
   return out;
 }
 
-std::string json(const TransferReport& r) {
-  nlohmann::ordered_json pair;
-  pair["source"] = r.source;
-  pair["target"] = r.target;
-  pair["targets"] = r.targets;
-  pair["inside"] = r.counts[0];
-  pair["boundary"] = r.counts[1];
-  pair["snapped"] = r.counts[2];
-  pair["outside"] = r.counts[3];
-  const ErrorNorms& first = r.fields.front().norms;
-  pair["l2"] = first.l2;
-  pair["l2_relative"] = first.l2_relative;
-  pair["rms"] = first.rms;
-  pair["linf"] = first.linf;
-  pair["candidates"] = r.n_candidates;
-  pair["seconds"] = {{"setup", r.seconds.setup},
-                     {"broad", r.seconds.broad},
-                     {"narrow", r.seconds.narrow},
-                     {"report", r.seconds.report},
-                     {"transfer", r.seconds.transfer()}};
-  pair["peak_memory_bytes"] = r.peak_memory_bytes;
-  pair["bytes_sent"] = r.bytes_sent;
-  pair["result_hash"] = fmt::format("{:016x}", r.result_hash);
-  pair["machine"] = r.machine;
-  pair["pes"] = r.pes;
-  pair["processes"] = r.processes;
-  pair["chares"] = r.chares;
-  pair["voxel"] = r.voxel;
-  pair["fields"] = nlohmann::ordered_json::array();
-  for (const FieldError& field : r.fields)
-    pair["fields"].push_back({{"name", field.name},
-                              {"l2", field.norms.l2},
-                              {"l2_relative", field.norms.l2_relative},
-                              {"rms", field.norms.rms},
-                              {"linf", field.norms.linf}});
+std::string json(const std::vector<TransferReport>& reports) {
   nlohmann::ordered_json whole;
-  whole["pairs"] = nlohmann::ordered_json::array({pair});
+  whole["pairs"] = nlohmann::ordered_json::array();
+  for (const TransferReport& report : reports) whole["pairs"].push_back(pair_of(report));
   return whole.dump(2) + "\n";
 }
 

@@ -1,6 +1,7 @@
 // What a transfer has to show: a table for people, JSON for programs.
 #pragma once
 
+#include "apps/m2m_transfer/footprint.hpp"
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
 
@@ -11,9 +12,9 @@
 
 namespace tess::m2m {
 
-/// Seconds of the phases.
+/// Seconds of the phases. Reading is PE 0's; set-up cuts the meshes and sends the parts.
 struct PhaseSeconds {
-  double setup = 0, broad = 0, narrow = 0, report = 0;
+  double read = 0, setup = 0, broad = 0, narrow = 0, report = 0;
   [[nodiscard]] double transfer() const { return broad + narrow + report; }
 };
 
@@ -24,22 +25,22 @@ struct FieldError {
 };
 
 struct TransferReport {
-  std::string source, target, machine;
+  std::string source, target, policy, machine;
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
+  double source_edge = 0;  ///< of a cube that holds six of its tetrahedra: 1/N for kuhn:N
   std::array<std::uint64_t, 4> counts{};  ///< by Status
   std::vector<FieldError> fields;
   Point worst_at{};  ///< of the first field
   std::uint64_t n_candidates = 0;
   double voxel = 0;
   PhaseSeconds seconds;
-  std::uint64_t peak_memory_bytes = 0;
-  std::uint64_t bytes_sent = 0;
+  Footprint footprint;  ///< bytes_sent: by set-up and one transfer
   std::uint64_t result_hash = 0;
 };
 
 [[nodiscard]] std::string table(const TransferReport& report);
 /// {"pairs": [{…}]}
-[[nodiscard]] std::string json(const TransferReport& report);
+[[nodiscard]] std::string json(const std::vector<TransferReport>& reports);
 
 }  // namespace tess::m2m

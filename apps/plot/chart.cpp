@@ -56,8 +56,8 @@ std::string script(const Chart& chart) {
   std::string out =
       "set encoding utf8\n"
       "set terminal svg noenhanced size 720,480 background rgb 'white' font 'sans-serif,13'\n"
-      "set grid linecolor rgb '#dddddd'\nset border 3\nset tics nomirror\n"
-      "set key outside right top\nset format '%g'\n";
+      "set grid linetype 1 linecolor rgb '#dddddd'\nset border 3\nset tics nomirror\n"
+      "set key outside right top Left reverse samplen 2\nset format '%g'\n";
   Text to(out);
   fmt::format_to(to, "set title {}\n", gnuplot_string(chart.title));
   fmt::format_to(to, "set xlabel {}\n", gnuplot_string(chart.x_label));

@@ -77,8 +77,7 @@ tess::Task go_round(Options options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] {
-    tess::Setup setup = tess::take_options(argc, argv);
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     Options options;
     CLI::App app("Messages around a ring of chares over all PEs.");
     app.add_option("--stations", options.stations, "chares in the ring; 0: one a PE")

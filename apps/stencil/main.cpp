@@ -86,8 +86,7 @@ tess::Task relax(Grid grid) {
 }  // namespace stencil
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] {
-    tess::Setup setup = tess::take_options(argc, argv);
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     stencil::Grid grid{{64}, 4, 10'000};
     CLI::App app("A two-dimensional Jacobi stencil on chares.");
     app.add_option("--blocks", grid.n_blocks, "blocks on each axis")->check(CLI::Range(1, 4096));

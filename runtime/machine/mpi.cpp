@@ -309,6 +309,9 @@ Sharing sharing(MPI_Comm comm, const std::string& cpuset) {
 class Session {
  public:
   Session(int& argc, char**& argv) {
+    int over = 0;
+    MPI_Finalized(&over);
+    if (over != 0) fail(ErrorCode::environment, "MPI has ended and cannot be started again");
     int initialised = 0;
     MPI_Initialized(&initialised);
     ours_ = initialised == 0;

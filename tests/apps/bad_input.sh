@@ -45,6 +45,37 @@ refuses --voxel "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
 refuses --nonsense "$bin/hello" --nonsense
+refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy nearest
+refuses SOURCE "${transfer[@]}"
+
+# A study: nothing in its folder.
+study=("$bin/m2m_transfer" --json "$scratch/result.json")
+refuses kuhn:x "${study[@]}" kuhn:2,x --study "$scratch/result.exo"
+refuses missing.msh "${study[@]}" "kuhn:2,4" "$scratch/missing.msh" --study "$scratch/result.exo"
+refuses empty.exo "${study[@]}" kuhn:2,4 kuhn:3 --study "$scratch/empty.exo"
+refuses "is for one transfer" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
+
+# A job of several processes says it once, and all of them end with 2. (mpirun reports the exit code
+# of the first process that failed; --quiet: without its own words.)
+job=(timeout 60 mpirun --quiet --allow-run-as-root --oversubscribe)
+refuses missing.exo "${job[@]}" -n 2 "${transfer[@]}" "$scratch/missing.exo" kuhn:2 --pes 2
+refuses perhaps "${job[@]}" -n 2 "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)' --pes 1
+refuses --nonsense "${job[@]}" -n 2 "$bin/hello" --nonsense
+# Each process's own exit code.
+printf '#!/bin/sh\n"$@"\necho $? >"%s/code.$OMPI_COMM_WORLD_RANK"\n' "$scratch" >"$scratch/keep_code"
+chmod +x "$scratch/keep_code"
+for fault in "$scratch/missing.exo kuhn:2" "kuhn:2 kuhn:2 --nonsense" "kuhn:2 kuhn:2 --pes 0"; do
+  rm -f "$scratch"/code.*
+  "${job[@]}" -n 4 "$scratch/keep_code" "${transfer[@]}" $fault \
+    >"$scratch/out" 2>"$scratch/err"
+  if [[ $(cat "$scratch"/code.[0-3] | tr '\n' ' ') == "2 2 2 2 " && $(wc -l <"$scratch/err") -eq 1 ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: four processes, $fault: exit codes $(cat "$scratch"/code.* | tr '\n' ' ')"
+    cat "$scratch/err"
+  fi
+done
 
 data=${TESS_DATA:-$(dirname "$0")/../../../shared/data}
 if [[ -d $data/nalu ]]; then

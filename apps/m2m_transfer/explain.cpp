@@ -1,0 +1,56 @@
+#include "apps/m2m_transfer/explain.hpp"
+
+#include <fmt/format.h>
+
+namespace tess::m2m {
+namespace {
+
+std::string mesh_line(const char* side, const TetMesh& mesh, const MeshCensus& census) {
+  std::string line =
+      fmt::format("  {}: {} vertices, {} tetrahedra", side, mesh.n_points(), mesh.n_tets());
+  if (census.n_flat != 0) line += fmt::format(", {} of them flat", census.n_flat);
+  if (census.n_inverted != 0) line += fmt::format(", {} inverted", census.n_inverted);
+  if (census.n_unused != 0) line += fmt::format(", {} vertices unused", census.n_unused);
+  return line + '\n';
+}
+
+bool apart(const Box& a, const Box& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (a.high[axis] < b.low[axis] || b.high[axis] < a.low[axis]) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string explain(const Problem& problem, Output output) {
+  const TransferReport& r = problem.report;
+  std::string out = "this transfer uses\n";
+  out += mesh_line("source", problem.source, problem.source_census);
+  out += mesh_line("target", problem.target, problem.target_census);
+  const std::size_t n_fields = problem.source_fields.size();
+  out += fmt::format("  {} {} of one component{}\n",
+                     n_fields,
+                     n_fields == 1 ? "field" : "fields",
+                     n_fields == 1 ? "" : ", side by side: one search for all");
+  if (r.chares > 1)
+    out += fmt::format("  Zoltan, to cut each mesh into {} chares on {} PEs\n", r.chares, r.pes);
+  out += fmt::format("  voxels of {:.4g}, made where a tetrahedron or a vertex is\n",
+                     problem.voxel[0]);
+  if (std::holds_alternative<Nearest>(problem.policy))
+    out += "  the nearest source vertex, for vertices outside (if there are any)\n";
+  if (output == Output::mesh) out += "  ExodusII output\n";
+
+  out += "it leaves out\n";
+  out += "  voxels in empty space, and the serial step in voxels that one mesh alone touches\n";
+  out += "  pairs within a mesh, and telling the source of candidates\n";
+  if (r.chares == 1) out += "  partitioning: each mesh is one chare\n";
+  if (r.processes == 1) out += "  serialisation: within a process messages are moved\n";
+  if (!std::holds_alternative<Nearest>(problem.policy))
+    out += "  the search for nearest vertices (--policy nearest)\n";
+  if (output == Output::report) out += "  writing a mesh (--out)\n";
+  if (apart(problem.source_census.bounds, problem.target_census.bounds))
+    out += "the boxes of the meshes do not meet: every vertex will be outside\n";
+  return out;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,36 @@
+#include "apps/m2m_transfer/footprint.hpp"
+
+#include <algorithm>
+#include <sys/resource.h>
+
+namespace tess::m2m {
+namespace {
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+Footprint JoinFootprints::operator()(Footprint a, const Footprint& b) const {
+  a.peak_memory_bytes += b.peak_memory_bytes;
+  a.greatest_peak_memory_bytes =
+      std::max(a.greatest_peak_memory_bytes, b.greatest_peak_memory_bytes);
+  a.bytes_sent += b.bytes_sent;
+  return a;
+}
+
+void Meter::read(Callback<Footprint> target) {
+  Pe& here = current_pe();
+  const Machine& machine = here.machine();
+  Footprint mine;
+  mine.bytes_sent = here.statistics().bytes_sent;
+  // All simulated processes share one memory, that of process 0.
+  if (machine.process_of(pe()) == machine.process() && pe().value % machine.pes_per_process() == 0)
+    mine.peak_memory_bytes = mine.greatest_peak_memory_bytes = peak_memory_bytes();
+  contribute(JoinFootprints{}, mine, std::move(target));
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,94 @@
+#include "apps/m2m_transfer/measure.hpp"
+
+#include "m2m/transfer.hpp"
+
+namespace tess::m2m {
+namespace {
+
+double seconds_since(Time start) {
+  return std::chrono::duration<double>(current_pe().now() - start).count();
+}
+
+/// The values of all vertices, in global order, from the pieces the Workers gave.
+void take(const Outcome& outcome, Problem& problem) {
+  const std::size_t n_fields = problem.target_fields.size();
+  std::vector<double> status(problem.target.n_points());
+  for (std::size_t i = 0; i < outcome.points.size(); ++i) {
+    const auto vertex = static_cast<std::size_t>(outcome.points[i]);
+    ++problem.report.counts[static_cast<std::size_t>(outcome.status[i])];
+    status[vertex] = static_cast<double>(outcome.status[i]);
+    for (std::size_t f = 0; f < n_fields; ++f)
+      problem.target_fields[f].values[vertex] = outcome.values[i * n_fields + f];
+  }
+  problem.target_fields.push_back({"status", 1, std::move(status)});
+  problem.report.n_candidates = outcome.n_candidates;
+}
+
+void judge(Problem& problem) {
+  TransferReport& report = problem.report;
+  std::uint64_t hash = result_hash({});
+  for (std::size_t f = 0; f < problem.truth.size(); ++f) {
+    const Field& truth = problem.truth[f];
+    const std::vector<double>& values = problem.target_fields[f].values;
+    report.fields.push_back({truth.name, error_norms(problem.target, values, truth.values)});
+    hash = result_hash(values, hash);
+  }
+  report.result_hash = hash;
+  report.worst_at =
+      problem.target.points[static_cast<std::size_t>(report.fields.front().norms.worst)];
+}
+
+void end(const DistributedMesh& mesh) {
+  for (std::int32_t k = 0; k < mesh.n_parts; ++k) mesh.workers[{k}].destroy();
+}
+
+}  // namespace
+
+Task measure(Problem& problem, GroupProxy<Meter> meter, Progress& progress) {
+  Pe& pe = current_pe();
+  TransferReport& report = problem.report;
+  Future<Footprint> before, after, most;
+  meter.broadcast<&Meter::read>(before.callback());
+  const Footprint sent_before = co_await before;
+
+  progress.phase("partition");
+  const Time start = pe.now();
+  DistributedMesh source, target;
+  co_await epoch([&] {
+    source = scatter(problem.source, problem.source_fields, report.chares, problem.partition);
+    target = scatter(problem.target, problem.target_fields, report.chares, problem.partition);
+  });
+  report.seconds.setup = seconds_since(start);
+  TransferOptions options;
+  options.voxel_size = problem.voxel;
+  options.policy = problem.policy;
+  options.on_phase = [&progress](const char* name) { progress.phase(name); };
+  for (std::int32_t round = 0; round < problem.repeat; ++round) {
+    TransferTimes times;
+    co_await transfer(source, target, options, &times);
+    PhaseSeconds& best = report.seconds;
+    if (round == 0 || times.broad + times.narrow + times.report < best.transfer()) {
+      best.broad = times.broad;
+      best.narrow = times.narrow;
+      best.report = times.report;
+    }
+    if (round != 0) continue;
+    meter.broadcast<&Meter::read>(after.callback());
+    report.footprint.bytes_sent = (co_await after).bytes_sent - sent_before.bytes_sent;
+  }
+  progress.phase("comparison with the truth");
+  Future<Outcome> outcome;
+  target.workers.broadcast<&Worker::gather>(outcome.callback());
+  take(co_await outcome, problem);
+  judge(problem);
+  meter.broadcast<&Meter::read>(most.callback());
+  const Footprint peak = co_await most;
+  report.footprint.peak_memory_bytes = peak.peak_memory_bytes;
+  report.footprint.greatest_peak_memory_bytes = peak.greatest_peak_memory_bytes;
+  co_await epoch([&] {
+    end(source);
+    end(target);
+  });
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,16 @@
+// Runs a problem on the machine: sets both meshes up, transfers, gathers the result to PE 0, and
+// judges it against the truth.
+#pragma once
+
+#include "apps/m2m_transfer/footprint.hpp"
+#include "apps/m2m_transfer/problem.hpp"
+#include "apps/m2m_transfer/progress.hpp"
+#include "runtime/runtime.hpp"
+
+namespace tess::m2m {
+
+/// Fills in the target's fields (with one more, "status") and the report. The meshes' chares are
+/// gone when it is done. `meter`: created before, known everywhere. `progress` is told the phases.
+Task measure(Problem& problem, GroupProxy<Meter> meter, Progress& progress);
+
+}  // namespace tess::m2m

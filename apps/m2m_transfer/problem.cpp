@@ -1,0 +1,54 @@
+#include "apps/m2m_transfer/problem.hpp"
+
+#include "m2m/io/read_mesh.hpp"
+#include "m2m/transfer.hpp"
+
+#include <cmath>
+
+namespace tess::m2m {
+namespace {
+
+/// The edge of a cube that holds six tetrahedra of average volume: 1/N for kuhn:N.
+double typical_edge(const TetMesh& mesh) {
+  double volume = 0;
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) volume += std::abs(signed_volume(mesh, t));
+  return std::cbrt(6 * volume / static_cast<double>(mesh.n_tets()));
+}
+
+}  // namespace
+
+Problem load(const Request& request, const Machine& machine) {
+  Problem problem;
+  problem.policy = parse_policy(request.policy);
+  problem.partition = parse_partition_method(request.partition);
+  problem.repeat = request.repeat;
+  problem.source = read_mesh(request.source);
+  problem.target = read_mesh(request.target);
+  problem.source_census = validate(problem.source);
+  problem.target_census = validate(problem.target);
+  const Box& domain = problem.source_census.bounds;
+  for (const std::string& name : request.fields) {
+    const Formula formula = make_formula(name, domain);
+    problem.source_fields.push_back(sample(problem.source, name, formula));
+    problem.truth.push_back(sample(problem.target, name, formula));
+    problem.target_fields.push_back({name, 1, std::vector<double>(problem.target.n_points(), 0.0)});
+  }
+  problem.voxel = suggest_voxel_size(problem.source, problem.target);
+  if (request.voxel > 0) problem.voxel = {request.voxel, request.voxel, request.voxel};
+
+  TransferReport& report = problem.report;
+  report.source = request.source;
+  report.target = request.target;
+  report.policy = request.policy;
+  report.machine = machine.describe();
+  report.pes = machine.n_pes();
+  report.processes = machine.n_processes();
+  report.chares = request.n_chares != 0 ? request.n_chares : request.per_pe * machine.n_pes();
+  report.voxel = problem.voxel[0];
+  report.source_tets = problem.source.n_tets();
+  report.source_edge = typical_edge(problem.source);
+  report.targets = problem.target.n_points();
+  return problem;
+}
+
+}  // namespace tess::m2m

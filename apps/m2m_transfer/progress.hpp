@@ -1,0 +1,50 @@
+// A line on a terminal that says what long work is at, rewritten in place: for a person who waits.
+// It costs the work one store a phase: a thread that sleeps does the rest, and there is none where
+// the output is no terminal. Nothing is shown before the work has taken a second.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+
+namespace tess::m2m {
+
+class Progress {
+ public:
+  /// Shows nothing if `terminal` is none, or null.
+  explicit Progress(std::FILE* terminal,
+                    std::chrono::milliseconds first = std::chrono::seconds(1),
+                    std::chrono::milliseconds next = std::chrono::milliseconds(250));
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// Work enters a phase: a text that outlives this object. Any thread.
+  void phase(const char* name) noexcept {
+    phase_.store(name, std::memory_order_relaxed);  // partner: show(); nothing else is read by it
+  }
+  /// Work enters its part `part` (from 1) of `n_parts`. Any thread.
+  void part(std::uint32_t part, std::uint32_t n_parts) noexcept {
+    part_.store(std::uint64_t{part} << 32U | n_parts, std::memory_order_relaxed);
+  }
+  /// Removes the line, so that other text can be printed; it may come again.
+  void clear();
+
+ private:
+  void show();
+
+  std::FILE* terminal_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::atomic<const char*> phase_{"starting"};
+  std::atomic<std::uint64_t> part_{0};
+  std::mutex line_;
+  bool shown_ = false;  // under line_
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace tess::m2m

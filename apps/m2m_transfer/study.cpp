@@ -1,0 +1,147 @@
+#include "apps/m2m_transfer/study.hpp"
+
+#include "m2m/io/kuhn.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace tess::m2m {
+namespace {
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+/// The meshes that each source of a ladder goes to where no target is named: the next finer one,
+/// whose vertices lie anywhere in the source's tetrahedra.
+std::vector<std::string> next_finer(const std::vector<std::string>& sources) {
+  std::vector<std::string> targets;
+  for (const std::string& source : sources) {
+    if (!source.starts_with("kuhn:"))
+      fail(ErrorCode::bad_argument,
+           "TARGET is missing: only a ladder such as kuhn:8,16,32 brings its own (--help)");
+    const KuhnBox box = parse_kuhn(source);
+    targets.push_back(fmt::format("kuhn:{}", box.n + 1));
+    if (box.jitter > 0) targets.back() += fmt::format("@{}", box.jitter);
+  }
+  return targets;
+}
+
+void must_exist(const std::string& mesh) {
+  std::error_code error;
+  if (mesh.starts_with("kuhn:"))
+    (void)parse_kuhn(mesh);
+  else if (!std::filesystem::exists(mesh, error))
+    fail(ErrorCode::bad_file, mesh, ": cannot be opened (no such file); check the path");
+}
+
+}  // namespace
+
+std::vector<std::string> expand(const std::string& name) {
+  std::error_code error;
+  if (name.find(',') == std::string::npos || std::filesystem::exists(name, error)) return {name};
+  if (!name.starts_with("kuhn:")) return split_at_commas(name);
+  const std::size_t at = std::min(name.find('@'), name.size());
+  std::vector<std::string> meshes = split_at_commas(name.substr(5, at - 5));
+  for (std::string& mesh : meshes) {
+    mesh = "kuhn:" + mesh + name.substr(at);
+    (void)parse_kuhn(mesh);
+  }
+  return meshes;
+}
+
+std::vector<Request> plan_study(const Request& request, const std::vector<std::string>& policies) {
+  std::vector<std::string> sources = expand(request.source);
+  std::vector<std::string> targets =
+      request.target.empty() ? next_finer(sources) : expand(request.target);
+  if (sources.size() == 1 && targets.size() == 1 && sources != targets) {
+    sources.push_back(targets.front());  // there and back
+    targets.push_back(sources.front());
+  }
+  const std::size_t n = std::max(sources.size(), targets.size());
+  if (sources.size() == 1) sources.resize(n, sources.front());
+  if (targets.size() == 1) targets.resize(n, targets.front());
+  if (sources.size() != targets.size())
+    fail(ErrorCode::bad_argument,
+         "--study: ",
+         sources.size(),
+         " source meshes and ",
+         targets.size(),
+         " target meshes: give as many of both, or one of one kind");
+  std::vector<Request> requests;
+  for (const std::string& policy : policies) {
+    (void)parse_policy(policy);
+    for (std::size_t i = 0; i < n; ++i) {
+      must_exist(sources[i]);
+      must_exist(targets[i]);
+      Request one = request;
+      one.source = sources[i];
+      one.target = targets[i];
+      one.policy = policy;
+      requests.push_back(std::move(one));
+    }
+  }
+  return requests;
+}
+
+std::optional<double> fitted_power(const std::vector<Sample>& samples) {
+  std::vector<Sample> logs;
+  for (const auto& [x, y] : samples)
+    if (std::isfinite(x) && std::isfinite(y) && x > 0 && y > 0)
+      logs.push_back({std::log(x), std::log(y)});
+  Sample mean;
+  for (const Sample& s : logs) {
+    mean.x += s.x / static_cast<double>(logs.size());
+    mean.y += s.y / static_cast<double>(logs.size());
+  }
+  double spread = 0, common = 0;
+  for (const Sample& s : logs) {
+    spread += (s.x - mean.x) * (s.x - mean.x);
+    common += (s.x - mean.x) * (s.y - mean.y);
+  }
+  if (logs.size() < 2 || spread < 1e-12) return std::nullopt;
+  return common / spread;
+}
+
+std::vector<Trend> trends(const Study& study) {
+  std::vector<Trend> all;
+  for (auto first = study.reports.begin(); first != study.reports.end();) {
+    const auto last = std::find_if(first, study.reports.end(), [&](const TransferReport& r) {
+      return r.policy != first->policy;
+    });
+    for (std::size_t f = 0; f < first->fields.size(); ++f) {
+      std::vector<Sample> l2_edge, linf_edge, l2_seconds, linf_seconds;
+      bool exact = true;
+      for (auto r = first; r != last; ++r) {
+        const ErrorNorms& norms = r->fields[f].norms;
+        exact = exact && norms.l2_relative < 1e-12;
+        l2_edge.push_back({r->source_edge, norms.l2});
+        linf_edge.push_back({r->source_edge, norms.linf});
+        l2_seconds.push_back({r->seconds.transfer(), norms.l2});
+        linf_seconds.push_back({r->seconds.transfer(), norms.linf});
+      }
+      Trend trend{first->fields[f].name, first->policy, exact, {}, {}, {}, {}};
+      if (!exact) {
+        trend.l2_of_edge = fitted_power(l2_edge);
+        trend.linf_of_edge = fitted_power(linf_edge);
+        trend.l2_of_seconds = fitted_power(l2_seconds);
+        trend.linf_of_seconds = fitted_power(linf_seconds);
+      }
+      all.push_back(std::move(trend));
+    }
+    first = last;
+  }
+  return all;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,237 @@
+#include "apps/m2m_transfer/study.hpp"
+#include "apps/plot/chart.hpp"
+#include "apps/plot/quoting.hpp"
+#include "apps/plot/write_file.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace tess::m2m {
+namespace {
+
+using Text = std::back_insert_iterator<std::string>;
+
+std::string power(const std::optional<double>& exponent) {
+  return exponent ? fmt::format("{:.2f}", *exponent) : std::string("-");
+}
+
+bool several_policies(const Study& study) {
+  return study.reports.front().policy != study.reports.back().policy;
+}
+
+/// A line of slope 2 below all points of the chart: what second order looks like.
+plot::Series second_order(const plot::Chart& chart) {
+  double low = 0, high = 0, c = 0;
+  for (const plot::Series& series : chart.series) {
+    for (const plot::Point& p : series.points) {
+      if (!(p.x > 0) || !(p.y > 0)) continue;
+      low = low == 0 ? p.x : std::min(low, p.x);
+      high = std::max(high, p.x);
+      const double at = p.y / (p.x * p.x);
+      c = c == 0 ? at : std::min(c, at);
+    }
+  }
+  if (c == 0) return {};
+  c *= 0.7;
+  return {"order 2", {{low, c * low * low}, {high, c * high * high}}, plot::Style::dashes};
+}
+
+enum class Against { seconds, edge };
+
+plot::Chart chart_of(const Study& study, Against against) {
+  plot::Chart chart{
+      .title = against == Against::seconds ? "transfer: error against run time"
+                                           : "transfer: error against the source's edge length",
+      .x_label = against == Against::seconds
+                     ? fmt::format("seconds a transfer ({} PEs)", study.reports.front().pes)
+                     : "edge length of the source",
+      .y_label = "error",
+      .x_log = true,
+      .y_log = true};
+  std::size_t at = 0;
+  for (const Trend& trend : trends(study)) {
+    const std::size_t f = at++ % study.reports.front().fields.size();
+    if (trend.exact) continue;  // rounding would set the scale of the axis
+    const std::string name =
+        trend.field + (several_policies(study) ? ", " + trend.policy : std::string());
+    plot::Series l2{name + ": L2"}, linf{name + ": Linf"};
+    for (const TransferReport& r : study.reports) {
+      if (r.policy != trend.policy) continue;
+      const double x = against == Against::seconds ? r.seconds.transfer() : r.source_edge;
+      l2.points.push_back({x, r.fields[f].norms.l2});
+      linf.points.push_back({x, r.fields[f].norms.linf});
+    }
+    chart.series.push_back(std::move(l2));
+    chart.series.push_back(std::move(linf));
+  }
+  if (against == Against::edge) {
+    for (const TransferReport& r : study.reports) chart.x_ticks.push_back(r.source_edge);
+    std::sort(chart.x_ticks.begin(), chart.x_ticks.end());
+    chart.x_ticks.erase(std::unique(chart.x_ticks.begin(), chart.x_ticks.end()),
+                        chart.x_ticks.end());
+    if (plot::Series line = second_order(chart); !line.points.empty())
+      chart.series.push_back(std::move(line));
+  }
+  return chart;
+}
+
+}  // namespace
+
+std::string table(const Study& study) {
+  const TransferReport& any = study.reports.front();
+  std::string out =
+      fmt::format("study of {} transfers, each the fastest of {}\n  machine      {}\n",
+                  study.reports.size(),
+                  study.repeat,
+                  any.machine);
+  std::size_t wide = 6;
+  for (const TransferReport& r : study.reports)
+    wide = std::max({wide, r.source.size(), r.target.size()});
+  const bool policies = several_policies(study);
+  Text to(out);
+  fmt::format_to(to,
+                 "  {:<{}} {:<{}} {:>9} {:>9} {:>9} {:>8}  {:<10} {:>11} {:>11}{}\n",
+                 "source",
+                 wide,
+                 "target",
+                 wide,
+                 "edge",
+                 "setup",
+                 "transfer",
+                 "outside",
+                 "field",
+                 "L2",
+                 "Linf",
+                 policies ? "  policy" : "");
+  for (const TransferReport& r : study.reports) {
+    for (const FieldError& field : r.fields) {
+      const bool first = &field == &r.fields.front();
+      if (first)
+        fmt::format_to(to,
+                       "  {:<{}} {:<{}} {:>9.4g} {:>9.4f} {:>9.4f} {:>8}",
+                       r.source,
+                       wide,
+                       r.target,
+                       wide,
+                       r.source_edge,
+                       r.seconds.setup,
+                       r.seconds.transfer(),
+                       r.counts[3]);
+      else
+        fmt::format_to(to, "{:{}}", "", 2 * wide + 42);
+      fmt::format_to(to,
+                     "  {:<10} {:>11.4e} {:>11.4e}{}\n",
+                     field.name,
+                     field.norms.l2,
+                     field.norms.linf,
+                     policies ? "  " + r.policy : std::string());
+    }
+  }
+  fmt::format_to(
+      to,
+      "fitted powers: error ~ edge^p, error ~ seconds^q\n  {:<22} {:>8} {:>8} {:>10} {:>10}\n",
+      "field",
+      "p(L2)",
+      "p(Linf)",
+      "q(L2)",
+      "q(Linf)");
+  for (const Trend& t : trends(study)) {
+    const std::string name = t.field + (policies ? ", " + t.policy : std::string());
+    if (t.exact)
+      fmt::format_to(to, "  {:<22} exact: relative L2 below 1e-12 everywhere\n", name);
+    else
+      fmt::format_to(to,
+                     "  {:<22} {:>8} {:>8} {:>10} {:>10}\n",
+                     name,
+                     power(t.l2_of_edge),
+                     power(t.linf_of_edge),
+                     power(t.l2_of_seconds),
+                     power(t.linf_of_seconds));
+  }
+  return out;
+}
+
+std::string json(const Study& study) {
+  auto whole = nlohmann::ordered_json::parse(json(study.reports));
+  whole["repeat"] = study.repeat;
+  whole["trends"] = nlohmann::ordered_json::array();
+  const auto number = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  for (const Trend& t : trends(study))
+    whole["trends"].push_back({{"field", t.field},
+                               {"policy", t.policy},
+                               {"exact", t.exact},
+                               {"l2_of_edge", number(t.l2_of_edge)},
+                               {"linf_of_edge", number(t.linf_of_edge)},
+                               {"l2_of_seconds", number(t.l2_of_seconds)},
+                               {"linf_of_seconds", number(t.linf_of_seconds)}});
+  return whole.dump(2) + "\n";
+}
+
+std::string csv(const Study& study) {
+  std::string out =
+      "source,target,policy,field,edge,source_tets,targets,inside,boundary,snapped,outside,l2,"
+      "l2_relative,rms,linf,candidates,setup,broad,narrow,report,transfer,bytes_sent,pes,"
+      "processes,result_hash\n";
+  for (const TransferReport& r : study.reports)
+    for (const FieldError& field : r.fields)
+      fmt::format_to(
+          Text(out),
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:016x}\n",
+          plot::csv_field(r.source),
+          plot::csv_field(r.target),
+          plot::csv_field(r.policy),
+          plot::csv_field(field.name),
+          r.source_edge,
+          r.source_tets,
+          r.targets,
+          r.counts[0],
+          r.counts[1],
+          r.counts[2],
+          r.counts[3],
+          field.norms.l2,
+          field.norms.l2_relative,
+          field.norms.rms,
+          field.norms.linf,
+          r.n_candidates,
+          r.seconds.setup,
+          r.seconds.broad,
+          r.seconds.narrow,
+          r.seconds.report,
+          r.seconds.transfer(),
+          r.footprint.bytes_sent,
+          r.pes,
+          r.processes,
+          r.result_hash);
+  return out;
+}
+
+void prepare_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder, error))
+    fail(ErrorCode::environment,
+         "--study ",
+         folder,
+         ": is no folder and cannot be made one (",
+         error.message(),
+         "); meshes come before --study");
+}
+
+std::string write(const Study& study, const std::string& folder) {
+  const std::string stem = folder + "/";
+  plot::write_file(stem + "study.csv", csv(study));
+  plot::write_file(stem + "study.json", json(study));
+  bool drawn = plot::write_svg(stem + "error_time.svg", chart_of(study, Against::seconds));
+  drawn = plot::write_svg(stem + "error_edge.svg", chart_of(study, Against::edge)) && drawn;
+  return fmt::format("written: {}study.csv, study.json, error_time and error_edge as {}\n",
+                     stem,
+                     drawn ? "svg and csv" : "csv");
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,68 @@
+#include "apps/m2m_transfer/footprint.hpp"
+
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+constexpr int n_rounds = 10;
+constexpr std::size_t n_bytes = 10000;
+
+/// Each member sends the next one the same amount, some times over.
+class Chatter : public Group<Chatter> {
+ public:
+  void talk(int left) {
+    if (left == 0) return;
+    const PeId next{(pe().value + 1) % current_pe().n_pes()};
+    group()[next].send<&Chatter::hear>(std::vector<std::uint8_t>(n_bytes));
+    group()[pe()].send<&Chatter::talk>(left - 1);
+  }
+  void hear(std::vector<std::uint8_t> bytes) { CHECK(bytes.size() == n_bytes); }
+};
+
+Task compare(Footprint& before, Footprint& after) {
+  const auto meter = create_group<Meter>();
+  const auto chatter = create_group<Chatter>();
+  Future<Footprint> first, second;
+  meter.broadcast<&Meter::read>(first.callback());
+  before = co_await first;
+  co_await epoch([&] { chatter.broadcast<&Chatter::talk>(n_rounds); });
+  meter.broadcast<&Meter::read>(second.callback());
+  after = co_await second;
+}
+
+}  // namespace
+
+TEST_CASE("what all PEs send between processes is counted, once", "[apps][footprint]") {
+  for (const char* keys : {"pes=4,seed=3", "pes=6,per-process=2,seed=4"}) {
+    Setup setup{make_simulated_machine(parse_simulated(keys)), {}};
+    const auto n_processes = static_cast<std::uint64_t>(setup.machine->n_processes());
+    Footprint before, after;
+    REQUIRE(run(setup, [&] { return compare(before, after); }) == 0);
+    // The last PE of each process talks to the next process; the others stay at home.
+    const std::uint64_t said = n_processes * n_rounds * n_bytes;
+    const std::uint64_t sent = after.bytes_sent - before.bytes_sent;
+    CHECK(sent > said);
+    CHECK(sent < said + said / 2);                                       // envelopes, and the epoch
+    CHECK(after.peak_memory_bytes == after.greatest_peak_memory_bytes);  // one memory
+    CHECK(after.peak_memory_bytes > 1'000'000);
+  }
+}
+
+TEST_CASE("within a process nothing is sent", "[apps][footprint]") {
+  Setup setup{make_threads_machine(2), {}};
+  Footprint before, after;
+  REQUIRE(run(setup, [&] { return compare(before, after); }) == 0);
+  CHECK(after.bytes_sent == 0);
+}
+
+TEST_CASE("footprints join: sums, and the greatest", "[apps][footprint]") {
+  const Footprint all = JoinFootprints()({10, 10, 1}, JoinFootprints()({30, 30, 2}, {20, 20, 4}));
+  CHECK(all.peak_memory_bytes == 60);
+  CHECK(all.greatest_peak_memory_bytes == 30);
+  CHECK(all.bytes_sent == 7);
+}

@@ -1,0 +1,94 @@
+#include "apps/m2m_transfer/progress.hpp"
+
+#include "tests/m2m/scratch.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cstdlib>
+#include <fcntl.h>
+#include <poll.h>
+#include <thread>
+#include <unistd.h>
+
+using tess::m2m::Progress;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A terminal without a person: what is written to it can be read here.
+class Terminal {
+ public:
+  Terminal() : reader_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+    REQUIRE(reader_ >= 0);
+    REQUIRE(::grantpt(reader_) == 0);
+    REQUIRE(::unlockpt(reader_) == 0);
+    writer_ = std::fopen(::ptsname(reader_), "w");
+    REQUIRE(writer_ != nullptr);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+  ~Terminal() {
+    std::fclose(writer_);
+    ::close(reader_);
+  }
+  [[nodiscard]] std::FILE* file() const { return writer_; }
+
+  /// Reads on until `text` has come; false if it does not within ten seconds.
+  bool shows(const std::string& text) {
+    while (seen_.find(text) == std::string::npos) {
+      pollfd ready{reader_, POLLIN, 0};
+      char bytes[256];
+      if (::poll(&ready, 1, 10000) <= 0) return false;
+      const ssize_t n = ::read(reader_, bytes, sizeof bytes);
+      if (n <= 0) return false;
+      seen_.append(bytes, static_cast<std::size_t>(n));
+    }
+    seen_.erase(0, seen_.find(text) + text.size());
+    return true;
+  }
+  [[nodiscard]] bool silent() const {
+    pollfd ready{reader_, POLLIN, 0};
+    return ::poll(&ready, 1, 0) == 0;
+  }
+
+ private:
+  int reader_;
+  std::FILE* writer_ = nullptr;
+  std::string seen_;
+};
+
+}  // namespace
+
+TEST_CASE("progress names the phase on a terminal and removes its line", "[apps][progress]") {
+  Terminal terminal;
+  {
+    Progress progress(terminal.file(), 1ms, 1ms);
+    progress.phase("narrow");
+    progress.part(3, 8);
+    CHECK(terminal.shows("\r\x1b[K3 of 8: narrow, 0 s"));
+    progress.phase("report");
+    CHECK(terminal.shows("report"));
+  }
+  CHECK(terminal.shows("\r\x1b[K"));
+}
+
+TEST_CASE("short work shows no progress", "[apps][progress]") {
+  const Terminal terminal;
+  {
+    Progress progress(terminal.file(), 1h);
+    progress.phase("narrow");
+    progress.clear();
+  }
+  CHECK(terminal.silent());
+}
+
+TEST_CASE("a file gets no progress", "[apps][progress]") {
+  const tess::test::Scratch scratch;
+  const std::string path = scratch.path("log");
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  {
+    Progress progress(file, 0ms, 1ms);
+    std::this_thread::sleep_for(20ms);
+  }
+  std::fclose(file);
+  CHECK(tess::test::slurp(path).empty());
+}

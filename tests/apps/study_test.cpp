@@ -1,0 +1,117 @@
+#include "apps/m2m_transfer/study.hpp"
+
+#include "apps/m2m_transfer/driver.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/apps/xml.hpp"
+#include "tests/m2m/scratch.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+using namespace tess;
+using namespace tess::m2m;
+using tess::test::message_of;
+using tess::test::Scratch;
+using tess::test::slurp;
+
+namespace {
+
+using Strings = std::vector<std::string>;
+
+Strings pairs_of(const std::string& source, const std::string& target, const Strings& policies) {
+  Request request;
+  request.source = source;
+  request.target = target;
+  Strings out;
+  for (const Request& one : plan_study(request, policies))
+    out.push_back(one.source + " " + one.target + " " + one.policy);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a ladder of meshes is the meshes it names", "[apps][study]") {
+  CHECK(expand("kuhn:8,16@0.2") == Strings{"kuhn:8@0.2", "kuhn:16@0.2"});
+  CHECK(expand("kuhn:4") == Strings{"kuhn:4"});
+  CHECK(expand("a.msh,b.exo") == Strings{"a.msh", "b.exo"});
+  const Scratch scratch;
+  const std::string odd = scratch.write("a,b.msh", "");
+  CHECK(expand(odd) == Strings{odd});
+  CHECK_THAT(message_of([] { (void)expand("kuhn:8,x"); }), Catch::Contains("'kuhn:x'"));
+}
+
+TEST_CASE("a study pairs its meshes", "[apps][study]") {
+  CHECK(pairs_of("kuhn:2,4", "", {"keep"}) == Strings{"kuhn:2 kuhn:3 keep", "kuhn:4 kuhn:5 keep"});
+  CHECK(pairs_of("kuhn:2,4", "kuhn:9", {"keep"}) ==
+        Strings{"kuhn:2 kuhn:9 keep", "kuhn:4 kuhn:9 keep"});
+  CHECK(pairs_of("kuhn:2", "kuhn:3", {"keep", "nearest"}) == Strings{"kuhn:2 kuhn:3 keep",
+                                                                     "kuhn:3 kuhn:2 keep",
+                                                                     "kuhn:2 kuhn:3 nearest",
+                                                                     "kuhn:3 kuhn:2 nearest"});
+  CHECK_THAT(message_of([] { (void)pairs_of("kuhn:2,3", "kuhn:4,5,6", {"keep"}); }),
+             Catch::Contains("2 source meshes and 3 target meshes"));
+  CHECK_THAT(message_of([] { (void)pairs_of("absent.msh", "kuhn:4", {"keep"}); }),
+             Catch::Contains("absent.msh: cannot be opened"));
+  CHECK_THAT(message_of([] { (void)pairs_of("absent.msh", "", {"keep"}); }),
+             Catch::Contains("TARGET is missing"));
+  CHECK_THAT(message_of([] { (void)pairs_of("kuhn:2", "kuhn:4", {"perhaps"}); }),
+             Catch::Contains("perhaps"));
+}
+
+TEST_CASE("a power law's exponent is found, zeros and infinities aside", "[apps][study]") {
+  std::vector<Sample> samples;
+  for (const double x : {0.01, 0.1, 0.5, 3.0}) samples.push_back({x, 7 * std::pow(x, -1.5)});
+  CHECK(fitted_power(samples).value() == Approx(-1.5));
+  samples.push_back({1, 0});
+  samples.push_back({2, INFINITY});
+  CHECK(fitted_power(samples).value() == Approx(-1.5));
+  CHECK_FALSE(fitted_power({}));
+  CHECK_FALSE(fitted_power({{1, 2}}));
+  CHECK_FALSE(fitted_power({{1, 2}, {1, 3}}));
+}
+
+TEST_CASE("a study shows second order, and writes what it prints", "[apps][study]") {
+  const Scratch scratch;
+  Setup setup{make_threads_machine(2), {}};
+  DriverOptions options;
+  options.request.source = "kuhn:6,12,24@0.2";
+  options.request.fields = {"sin", "linear", "x*y, or worse"};
+  options.request.n_chares = 2;
+  options.study = scratch.path("deep/study");
+  options.repeat = 1;
+  SECTION("a field that cannot be parsed leaves nothing but the folder") {
+    CHECK(drive(setup, options) == 2);
+    CHECK(std::filesystem::is_empty(*options.study));
+  }
+  SECTION("fields that can") {
+    options.request.fields.back() = "min(x, 1)";
+    REQUIRE(drive(setup, options) == 0);
+    const auto report = nlohmann::json::parse(slurp(*options.study + "/study.json"));
+    REQUIRE(report["pairs"].size() == 3);
+    const auto& trends = report["trends"];
+    REQUIRE(trends.size() == 3);
+    CHECK(trends[0]["l2_of_edge"].get<double>() == Approx(2).margin(0.25));
+    CHECK(trends[0]["l2_of_seconds"].get<double>() < 0);
+    CHECK_FALSE(trends[0]["exact"].get<bool>());
+    CHECK(trends[1]["exact"].get<bool>());
+    CHECK(trends[1]["l2_of_edge"].is_null());
+    CHECK(trends[2]["exact"].get<bool>());
+    const std::string csv = slurp(*options.study + "/study.csv");
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 3);
+    CHECK(csv.find("\"min(x, 1)\"") != std::string::npos);
+    for (const auto& pair : report["pairs"])
+      CHECK(csv.find(pair["result_hash"].get<std::string>()) != std::string::npos);
+    // The picture has the field that has an error, in two norms.
+    const std::string data = slurp(*options.study + "/error_time.csv");
+    CHECK(std::count(data.begin(), data.end(), '\n') == 1 + 2 * 3);
+    if (std::filesystem::exists(*options.study + "/error_edge.svg")) {
+      const auto elements = test::read_xml(slurp(*options.study + "/error_edge.svg"));
+      CHECK(std::count_if(elements.begin(), elements.end(), [](const test::XmlElement& e) {
+              return e.attributes.find("id=\"gnuplot_plot_") != std::string::npos;
+            }) == 3);  // L2, Linf, and order 2
+    }
+  }
+}
