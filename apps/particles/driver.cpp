@@ -23,7 +23,7 @@ void write_pictures(const std::string& folder, const Stage& stage, const RunResu
   const std::filesystem::path in(folder);
   if (const auto& slice = scene.outputs.slice)
     plot::write_file((in / "field.svg").string(),
-                     slice_svg(stage.fields[slice->object].field, scene.outputs.axis, slice->at));
+                     slice_svg(stage.fields[slice->object].field(), scene.outputs.axis, slice->at));
   if (result.trajectories.empty()) return;
   write_series(folder, result.trajectories, scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));

@@ -1,9 +1,6 @@
 #include "apps/particles/fields.hpp"
 
-#include "collide/dn_field/build_exact.hpp"
-
 #include <algorithm>
-#include <chrono>
 
 namespace particles {
 namespace {
@@ -29,16 +26,34 @@ Content content_of(const Scene& scene) {
   return scene.outputs.slice ? Content::distance_and_normal : needed_content(scene.rules);
 }
 
-BuiltField build(const SceneObject& object, Content content) {
-  const auto start = std::chrono::steady_clock::now();
+void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
+  start_ = std::chrono::steady_clock::now();
   const Grid grid = grid_around(bounds(object.surface), object.resolution, object.thickness);
   ExactOptions options;
   options.sides = object.sides;
   options.content = content;
   options.thickness = object.thickness;
-  BuiltField built{build_exact(object.surface, grid, options), 0};
-  built.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return built;
+  builder_.emplace(object.surface, grid, options);
+  field_ = builder_->empty_field();
+  furthest_.assign(static_cast<std::size_t>(n_parts), 0);
+}
+
+void FieldInTheMaking::fill(int part) {
+  const auto n_parts = static_cast<int>(furthest_.size());
+  constexpr int block = 4;  // layers that are built together
+  const int layers = field_.grid.n[2], blocks = (layers + block - 1) / block;
+  const auto edge = [&](int of) {
+    return std::min(layers, block * static_cast<int>(std::int64_t{blocks} * of / n_parts));
+  };
+  const int first = edge(part), last = edge(part + 1);
+  if (first == last) return;
+  furthest_[static_cast<std::size_t>(part)] = builder_->build(slab_of(field_, first, last));
+}
+
+void FieldInTheMaking::finish() {
+  builder_->finish(field_, *std::max_element(furthest_.begin(), furthest_.end()));
+  builder_.reset();
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 double distance_at(const Field& field, Vec3 p) {

@@ -4,23 +4,39 @@
 #pragma once
 
 #include "apps/particles/scene.hpp"
+#include "collide/dn_field/build_exact.hpp"
 #include "collide/dn_field/stepper.hpp"
 
+#include <chrono>
+#include <optional>
 #include <vector>
 
 namespace particles {
 
-/// The field of an object, and what it cost.
-struct BuiltField {
-  tess::dn::Field field;
-  double seconds = 0;
-};
-
 /// What the fields of this scene must hold: what its rules need, and normals for a picture.
 [[nodiscard]] tess::dn::Content content_of(const Scene& scene);
 
-/// Builds the field of one object by the method it names.
-[[nodiscard]] BuiltField build(const SceneObject& object, tess::dn::Content content);
+/// The field of an object in the making: begun by one PE of the process, its layers filled by all,
+/// finished by one. The field does not depend on how many there are.
+class FieldInTheMaking {
+ public:
+  /// The part that is one PE's: a tree of the triangles, and which voxels are inside.
+  void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
+  /// Fills one of the parts; different ones at once.
+  void fill(int part);
+  void finish();
+
+  [[nodiscard]] const tess::dn::Field& field() const { return field_; }
+  /// From begin() to finish().
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  std::optional<tess::dn::ExactBuilder> builder_;
+  tess::dn::Field field_;
+  std::vector<double> furthest_;  // by part
+  std::chrono::steady_clock::time_point start_;
+  double seconds_ = 0;
+};
 
 /// The signed distance at a point in the object's coordinates, interpolated between eight voxels;
 /// HUGE_VAL outside the grid. Off by the square of the cell times the curvature, off the medial

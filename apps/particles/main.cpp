@@ -9,8 +9,7 @@
 
 namespace {
 
-int run(int argc, char** argv) {
-  tess::Setup setup = tess::take_options(argc, argv);
+int run(tess::Setup& setup, int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--help-scene") != 0) continue;
     tess::print(particles::scene_help());
@@ -34,5 +33,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] { return run(argc, argv); });
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return run(setup, argc, argv); });
 }

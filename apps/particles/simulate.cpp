@@ -64,8 +64,12 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
       stations[tess::PeId{first}].send<&Station::take>(handle);
   };
   co_await tess::epoch(hand_out);
-  const auto build = [&] { stations.broadcast<&Station::build>(); };
-  co_await tess::epoch(build);
+  const auto begin_fields = [&] { stations.broadcast<&Station::begin_fields>(); };
+  co_await tess::epoch(begin_fields);
+  const auto fill_fields = [&] { stations.broadcast<&Station::fill_fields>(); };
+  co_await tess::epoch(fill_fields);
+  const auto finish_fields = [&] { stations.broadcast<&Station::finish_fields>(); };
+  co_await tess::epoch(finish_fields);
   result.block = block_edge(scene);
   result.exchange = exchange_interval(scene);
   result.audited = is_audited(scene);
@@ -118,7 +122,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
   stations.broadcast<&Station::give_build_seconds>(build_seconds.callback());
   const std::vector<double> built = co_await build_seconds;
   for (std::size_t i = 0; i < built.size(); ++i) {
-    const tess::dn::Field& field = stage->fields[i].field;
+    const tess::dn::Field& field = stage->fields[i].field();
     result.fields.push_back({built[i], field.grid.size(), field.bytes()});
   }
 }

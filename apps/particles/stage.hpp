@@ -24,8 +24,8 @@ struct Stage {
 
   const Scene scene;
   const Source source;
-  const std::vector<double> masses;  ///< a species is an index into this
-  std::vector<BuiltField> fields;    ///< of the objects; empty where no rule asks for a surface
+  const std::vector<double> masses;      ///< a species is an index into this
+  std::vector<FieldInTheMaking> fields;  ///< of the objects; empty where no rule asks for a surface
 
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
 };

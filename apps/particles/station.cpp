@@ -20,7 +20,7 @@ std::vector<tess::dn::Object> objects_of(const Stage& stage) {
   std::vector<tess::dn::Object> objects;
   if (!stage.collides()) return objects;
   for (std::size_t i = 0; i < stage.fields.size(); ++i)
-    objects.push_back({&stage.fields[i].field, stage.scene.objects[i].frame});
+    objects.push_back({&stage.fields[i].field(), stage.scene.objects[i].frame});
   return objects;
 }
 
@@ -33,11 +33,23 @@ void Station::take(StageHandle handle) {
   for (std::int32_t i = 1; i < n; ++i) group()[tess::PeId{first + i}].send<&Station::take>(handle);
 }
 
-void Station::build() {
+void Station::begin_fields() {
   const auto [first, n] = pes_of_process();
   const auto mine = static_cast<std::size_t>(pe().value - first);
   for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
-    stage_->fields[i] = particles::build(stage_->scene.objects[i], content_of(stage_->scene));
+    stage_->fields[i].begin(stage_->scene.objects[i], content_of(stage_->scene), n);
+}
+
+void Station::fill_fields() {
+  const auto [first, n] = pes_of_process();
+  for (FieldInTheMaking& field : stage_->fields) field.fill(pe().value - first);
+}
+
+void Station::finish_fields() {
+  const auto [first, n] = pes_of_process();
+  const auto mine = static_cast<std::size_t>(pe().value - first);
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
+    stage_->fields[i].finish();
 }
 
 void Station::prepare(double block_edge) {
@@ -98,7 +110,7 @@ void Station::give_seconds(tess::Callback<double> target) {
 
 void Station::give_build_seconds(tess::Callback<std::vector<double>> target) {
   std::vector<double> seconds;
-  for (const BuiltField& built : stage_->fields) seconds.push_back(built.seconds);
+  for (const FieldInTheMaking& field : stage_->fields) seconds.push_back(field.seconds());
   contribute(tess::max, std::move(seconds), std::move(target));
 }
 

@@ -30,9 +30,11 @@ struct Sample {
 
 class Station : public tess::Group<Station> {
  public:
-  // Set-up, an epoch each: first PEs of processes take, all build, all prepare.
+  // Set-up, an epoch each. The first PEs of processes take the stage, and pass it on; all build.
   void take(StageHandle handle);
-  void build();
+  void begin_fields();
+  void fill_fields();
+  void finish_fields();
   void prepare(double block_edge);
   /// Makes this PE's share of the particles and sends them to their blocks.
   void emit(tess::ArrayProxy<Block> blocks);
