@@ -35,6 +35,12 @@ struct Untraced {
   Vec3 position, start_velocity, end_velocity, mean_velocity;
 };
 
+/// What the rule loop leaves for others.
+struct Scratch {
+  std::vector<Untraced> untraced;
+  alignas(64) double energy[block_size];  ///< twice the energy a particle may have; springs only
+};
+
 struct RuleConstants {
   double step = 0;
   LinearFlow air, surface;
@@ -51,7 +57,7 @@ struct RuleConstants {
 using RuleLoop = void (*)(const RuleConstants&,
                           const ParticleSpan&,
                           const Closest&,
-                          std::vector<Untraced>&);
+                          Scratch&);
 
 namespace lanes {
 
@@ -97,7 +103,7 @@ template <Flight Flies, Impacts Hits, Springs Springy, Flows Turns, Setting Wher
 void rule_loop(const RuleConstants& c,
                const ParticleSpan& particles,
                const Closest& closest,
-               std::vector<Untraced>& untraced) {
+               Scratch& scratch) {
   constexpr bool asks_normal =
       Hits != Impacts::none || Springy != Springs::none || Turns != Flows::none;
   constexpr bool asks_distance = asks_normal || Flies == Flight::surface;
@@ -148,6 +154,7 @@ void rule_loop(const RuleConstants& c,
       mean = mean_keep * v0 + mean_gain * a;
     }
 
+    [[maybe_unused]] const D3 flight_end = v1, flight_mean = mean;
     [[maybe_unused]] D z0{}, energy{};
     if constexpr (Springy != Springs::none) {
       z0 = d - c.spring.reach;
@@ -181,7 +188,7 @@ void rule_loop(const RuleConstants& c,
           for (int i = 0; i < width; ++i)
             if (far[i] != 0) {
               const auto at = [i](D3 v) { return Vec3{v.x[i], v.y[i], v.z[i]}; };
-              untraced.push_back(
+              scratch.untraced.push_back(
                   {p + static_cast<std::size_t>(i), at(x0), at(v0), at(v1), at(mean)});
             }
       }
@@ -223,6 +230,13 @@ void rule_loop(const RuleConstants& c,
         }
         way = way + shift;
       }
+    }
+    if constexpr (Springy != Springs::none) {
+      const D3 w = relative(flight_end);
+      const D depth = min(z0, D{});
+      store(scratch.energy + p,
+            dot(w, w) + c.spring.stiffness * depth * depth +
+                2.0 * (gain * (1 / dt)) * dot(a, way - times(dt, flight_mean)));
     }
     const D3 x1 = x0 + way;
     store(particles.x + p, x1.x), store(particles.y + p, x1.y), store(particles.z + p, x1.z);

@@ -1,6 +1,7 @@
 #include "collide/dn_field/stepper.hpp"
 
 #include "collide/dn_field/rule_table.hpp"
+#include "collide/dn_field/spring_limit.hpp"
 #include "collide/dn_field/trace.hpp"
 #include "collide/dn_field/velocity_rules.hpp"
 #include "runtime/error.hpp"
@@ -83,6 +84,12 @@ struct Stepper::Plan {
 
 namespace {
 
+/// What a block needs besides its particles; made once a run.
+struct Buffers {
+  Closest closest, after;
+  Scratch scratch;
+};
+
 /// What is the same for all blocks of a run.
 struct Run {
   const Stepper::Plan& plan;
@@ -115,8 +122,8 @@ void one_step(const Run& run,
               std::span<const Placed> objects,
               double time,
               const ParticleSpan& block,
-              Closest& closest,
-              std::vector<Untraced>& untraced) {
+              Buffers& buffers) {
+  auto& [closest, after, scratch] = buffers;
   const Stepper::Plan& plan = run.plan;
   for (const Explosion& explosion : plan.rules.explosions)
     if (const double active = active_within(explosion, time, plan.step); active > 0)
@@ -129,10 +136,16 @@ void one_step(const Run& run,
     if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
       drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, block, closest);
   }
-  run.loop(run.constants, block, closest, untraced);
-  for (const Untraced& from : untraced)
-    trace(run.constants, objects, plan.rules.look_up, from, block);
-  untraced.clear();
+  run.loop(run.constants, block, closest, scratch);
+  for (const Untraced& from : scratch.untraced)
+    scratch.energy[from.particle] +=
+        trace(run.constants, objects, plan.rules.look_up, from, block);
+  scratch.untraced.clear();
+  if (plan.rules.spring) {
+    if (run.setting == Setting::general) clear(after, block.count);
+    for (const Placed& object : objects) run.look_up(object, block, after);
+    limit_spring(run.constants.spring, run.setting, block, closest, after, scratch);
+  }
 }
 
 /// Where all objects stand at each of the next n_steps steps, and after them.
@@ -157,9 +170,8 @@ void Stepper::run(ParticleSpan particles,
   const Run run = prepared(plan, objects);
   std::vector<Object> standing(objects.begin(), objects.end());
   if (!plan.looks_up) standing.clear();
-  Closest closest;
-  if (run.setting == Setting::one_at_rest) clear(closest, block_size);
-  std::vector<Untraced> untraced;
+  const auto buffers = std::make_unique<Buffers>();
+  clear(buffers->closest, block_size);
   // The last particles, fewer than a vector, are stepped in room of their own.
   const std::size_t whole = particles.count / lanes::width * lanes::width;
   std::array<std::array<double, lanes::width>, 6> room{};
@@ -190,8 +202,7 @@ void Stepper::run(ParticleSpan particles,
                  places[static_cast<std::size_t>(i)],
                  time + (done + i) * plan.step,
                  block,
-                 closest,
-                 untraced);
+                 *buffers);
     };
     for (std::size_t first = 0; first < whole; first += block_size)
       step_all(particles.part(first, std::min(block_size, whole - first)));

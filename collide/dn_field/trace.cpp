@@ -104,7 +104,7 @@ Contact first_contact(const RuleConstants& c,
 
 }  // namespace
 
-void trace(const RuleConstants& c,
+double trace(const RuleConstants& c,
            std::span<const Placed> objects,
            LookUp kind,
            const Untraced& from,
@@ -142,6 +142,8 @@ void trace(const RuleConstants& c,
   const std::size_t p = from.particle;
   particles.x[p] = x.x, particles.y[p] = x.y, particles.z[p] = x.z;
   particles.vx[p] = end.x, particles.vy[p] = end.y, particles.vz[p] = end.z;
+  const Vec3 way = x - from.position - c.step * from.mean_velocity;
+  return can_fly ? 2 * (c.air.gain / c.step) * dot(c.acceleration, way) : 0;
 }
 
 }  // namespace tess::dn

@@ -11,8 +11,9 @@
 namespace tess::dn {
 
 /// Flies `from` through the step, with up to 16 bounces, and writes its particle. What has more
-/// bounces, in a crevice, stops at the last one until the next step.
-void trace(const RuleConstants& constants,
+/// bounces, in a crevice, stops at the last one until the next step. Returns twice the work that
+/// the flight's acceleration did beyond that on the straight way.
+double trace(const RuleConstants& constants,
            std::span<const Placed> objects,
            LookUp kind,
            const Untraced& from,
