@@ -1,5 +1,7 @@
 #include "apps/particles/fields.hpp"
 
+#include "apps/particles/blurred_field.hpp"
+
 #include <algorithm>
 
 namespace particles {
@@ -29,6 +31,11 @@ Content content_of(const Scene& scene) {
 void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
   start_ = std::chrono::steady_clock::now();
   const Grid grid = grid_around(bounds(object.surface), object.resolution, object.thickness);
+  if (object.method != Method::exact) {
+    field_ = blurred_field(object.surface, grid, object.method, object.sides, object.thickness);
+    if (content == Content::distance) field_.normal = {};
+    return;
+  }
   ExactOptions options;
   options.sides = object.sides;
   options.content = content;
@@ -39,6 +46,7 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
 }
 
 void FieldInTheMaking::fill(int part) {
+  if (!builder_) return;
   const auto n_parts = static_cast<int>(furthest_.size());
   constexpr int block = 4;  // layers that are built together
   const int layers = field_.grid.n[2], blocks = (layers + block - 1) / block;
@@ -51,9 +59,17 @@ void FieldInTheMaking::fill(int part) {
 }
 
 void FieldInTheMaking::finish() {
-  builder_->finish(field_, *std::max_element(furthest_.begin(), furthest_.end()));
+  if (builder_) builder_->finish(field_, *std::max_element(furthest_.begin(), furthest_.end()));
   builder_.reset();
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+BuiltField build_alone(const SceneObject& object, Content content) {
+  FieldInTheMaking making;
+  making.begin(object, content, 1);
+  making.fill(0);
+  making.finish();
+  return {making.field(), making.seconds()};
 }
 
 double distance_at(const Field& field, Vec3 p) {

@@ -20,7 +20,8 @@ namespace particles {
 /// finished by one. The field does not depend on how many there are.
 class FieldInTheMaking {
  public:
-  /// The part that is one PE's: a tree of the triangles, and which voxels are inside.
+  /// The part that is one PE's: a tree of the triangles, and which voxels are inside; the whole
+  /// field by the methods that blur.
   void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
   /// Fills one of the parts; different ones at once.
   void fill(int part);
@@ -37,6 +38,13 @@ class FieldInTheMaking {
   std::chrono::steady_clock::time_point start_;
   double seconds_ = 0;
 };
+
+/// A field that was built by one thread, and what it took.
+struct BuiltField {
+  tess::dn::Field field;
+  double seconds = 0;
+};
+[[nodiscard]] BuiltField build_alone(const SceneObject& object, tess::dn::Content content);
 
 /// The signed distance at a point in the object's coordinates, interpolated between eight voxels;
 /// HUGE_VAL outside the grid. Off by the square of the cell times the curvature, off the medial

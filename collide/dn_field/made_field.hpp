@@ -50,8 +50,7 @@ template <class Formula>
 }
 
 [[nodiscard]] inline Field sphere_field(const Grid& grid, double radius) {
-  return made_field(
-      grid, [&](Vec3 p) { return DistanceNormal{norm(p) - radius, direction(p)}; });
+  return made_field(grid, [&](Vec3 p) { return DistanceNormal{norm(p) - radius, direction(p)}; });
 }
 
 /// The room |x|, |y|, |z| <= half seen from within: walls all around, eight corners.
@@ -60,8 +59,9 @@ template <class Formula>
     const Vec3 a{std::abs(p.x), std::abs(p.y), std::abs(p.z)};
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     const double side = component(p, axis) > 0 ? -1 : 1;
-    return DistanceNormal{half - component(a, axis),
-                          side * Vec3{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}};
+    return DistanceNormal{
+        half - component(a, axis),
+        side * Vec3{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}};
   });
 }
 

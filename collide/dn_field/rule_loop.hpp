@@ -54,10 +54,7 @@ struct RuleConstants {
   SpringConstants spring;
 };
 
-using RuleLoop = void (*)(const RuleConstants&,
-                          const ParticleSpan&,
-                          const Closest&,
-                          Scratch&);
+using RuleLoop = void (*)(const RuleConstants&, const ParticleSpan&, const Closest&, Scratch&);
 
 namespace lanes {
 

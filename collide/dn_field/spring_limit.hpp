@@ -1,8 +1,8 @@
 // What keeps the spring passive where the closest surface changes within a step: in corners, past
-// edges, on curved objects a particle can enter a stiff spring from the side, unnoticed by the plane
-// that the step was computed with, and would find potential energy that it never paid for. After
-// the step its depth is looked up again, and its speed, then its depth, cut to the energy it had.
-// Private to the step loop.
+// edges, on curved objects a particle can enter a stiff spring from the side, unnoticed by the
+// plane that the step was computed with, and would find potential energy that it never paid for.
+// After the step its depth is looked up again, and its speed, then its depth, cut to the energy it
+// had. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/rule_loop.hpp"

@@ -14,7 +14,8 @@ struct Rows {
   std::vector<StabilityRow> rows;
 
   void add(std::string name, std::string parameter, double value, double met, double tolerance) {
-    rows.push_back({std::move(name), std::move(parameter), value, met, tolerance, met <= tolerance});
+    rows.push_back(
+        {std::move(name), std::move(parameter), value, met, tolerance, met <= tolerance});
   }
 };
 
@@ -22,11 +23,8 @@ struct Rows {
 struct Particle {
   Vec3 position, velocity;
 };
-[[nodiscard]] Particle flown(const Rules& rules,
-                             double step,
-                             int n_steps,
-                             std::span<const Object> objects,
-                             Particle start);
+[[nodiscard]] Particle flown(
+    const Rules& rules, double step, int n_steps, std::span<const Object> objects, Particle start);
 
 /// Springs, drags, surface flow, impacts: against closed forms.
 void stiff_rules(Rows& rows);

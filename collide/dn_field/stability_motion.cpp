@@ -1,4 +1,5 @@
-// The stability report's extreme motions: speed, spin, moving walls, corners, rest, all rules at once.
+// The stability report's extreme motions: speed, spin, moving walls, corners, rest, all rules at
+// once.
 #include "collide/dn_field/stability_cases.hpp"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ void fast(Rows& rows) {
         const double side = i % 2 == 0 ? 1 : -1, lean = 0.02 * i - 0.4;
         const Vec3 way = direction({lean, -0.5 * lean, -side});
         const Object object{&sheet, {}};
-        const Particle end = flown(rules, 1, 3, {&object, 1}, {{-lean, 0, side * 1.7}, speed * way});
+        const Particle end =
+            flown(rules, 1, 3, {&object, 1}, {{-lean, 0, side * 1.7}, speed * way});
         tunnelled += end.position.z * side < 0 ? 1 : 0;
         changed = std::max(changed, total_speed_error(end, speed));
         // A ball that is hit head-on throws back.
@@ -69,12 +71,18 @@ void corners(Rows& rows) {
   const Object object{&room, {}};
   for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
     for (const double speed : {0.1, 3.0, 100.0}) {
-      const Particle end = flown(impact(1, Sweep::on, look_up), 0.05, 2000, {&object, 1},
+      const Particle end = flown(impact(1, Sweep::on, look_up),
+                                 0.05,
+                                 2000,
+                                 {&object, 1},
                                  {{0.1, 0.2, 0.3}, speed * direction({1, 1, 1})});
       const Vec3 a = end.position;
       const double outside = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}) - half;
       rows.add("corners: |v|", "speed", speed, total_speed_error(end, speed), 1e-11);
-      rows.add("corners: outside", "speed", speed, outside,
+      rows.add("corners: outside",
+               "speed",
+               speed,
+               outside,
                look_up == LookUp::tangent ? 1e-6 : 0.87 * room.grid.cell);
     }
 }
@@ -87,8 +95,11 @@ void moving_walls(Rows& rows) {
       object.frame.velocity = {0, 0, speed};
       const Particle end =
           flown(impact(restitution, Sweep::on), 0.2 / speed, 4, {&object, 1}, {{0, 0, 0.5}, {}});
-      rows.add("moving plate", "restitution", restitution,
-               std::abs(end.velocity.z / ((1 + restitution) * speed) - 1), 1e-12);
+      rows.add("moving plate",
+               "restitution",
+               restitution,
+               std::abs(end.velocity.z / ((1 + restitution) * speed) - 1),
+               1e-12);
     }
   // A disc that spins in its plane gives nothing.
   for (const double spin : {1e-3, 1.0, 1e3, 1e6}) {
@@ -106,8 +117,11 @@ void moving_walls(Rows& rows) {
     const Particle end =
         flown(impact(1, Sweep::on), 0.1, 50, {&object, 1}, {{1.5, 0.1, 0.05}, {-1, 0, 0}});
     const double excess = norm(end.velocity) - 1 - 2 * 0.6 * 1.12 * spin;
-    rows.add("spinning ball: excess of |v|", "spin × dt", 0.1 * spin,
-             is_finite(end.position) ? excess : HUGE_VAL, 1e-9);
+    rows.add("spinning ball: excess of |v|",
+             "spin × dt",
+             0.1 * spin,
+             is_finite(end.position) ? excess : HUGE_VAL,
+             1e-9);
   }
 }
 
@@ -124,14 +138,21 @@ void slope(Rows& rows) {
       const int n_steps = 20000;
       const Particle end = flown(rules, 1e-3, n_steps, {&object, 1}, {{-0.5, 0, 0.25}, {}});
       const double creep = 9.81 * std::sqrt(0.2) / 1e3;
-      rows.add("rest on a slope: distance", "steps", n_steps, std::abs(dot(end.position, normal)), 1e-3 * 2 / 16);
-      rows.add("rest on a slope: speed", "steps", n_steps, std::abs(norm(end.velocity) / creep - 1), 1e-3);
+      rows.add("rest on a slope: distance",
+               "steps",
+               n_steps,
+               std::abs(dot(end.position, normal)),
+               1e-3 * 2 / 16);
+      rows.add("rest on a slope: speed",
+               "steps",
+               n_steps,
+               std::abs(norm(end.velocity) / creep - 1),
+               1e-3);
     }
 }
 
 double distance_at(const Field& field, Vec3 p) {
-  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y),
-              z = static_cast<float>(p.z);
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float distance = 0;
   look_up(field, LookUp::tangent, {{&x, 1}, {&y, 1}, {&z, 1}}, {{&distance, 1}, {}, {}, {}});
   return static_cast<double>(distance);
@@ -154,8 +175,9 @@ void all_rules(Rows& rows) {
     const Stepper stepper = make_stepper(rules, step);
     Particles particles;
     for (int i = 0; i < 64; ++i)
-      particles.push_back({0.8 * std::sin(1.0 * i), 0.8 * std::sin(2.3 * i), 0.45 + 0.4 * std::sin(3.7 * i)},
-                          3 * Vec3{std::sin(5.1 * i), std::sin(7.7 * i), std::sin(9.1 * i)});
+      particles.push_back(
+          {0.8 * std::sin(1.0 * i), 0.8 * std::sin(2.3 * i), 0.45 + 0.4 * std::sin(3.7 * i)},
+          3 * Vec3{std::sin(5.1 * i), std::sin(7.7 * i), std::sin(9.1 * i)});
     std::vector<double> before(particles.size(), HUGE_VAL);
     double gain = 0;
     for (int i = 0; i < 300; ++i) {
@@ -168,8 +190,10 @@ void all_rules(Rows& rows) {
         const double energy = 0.5 * dot(v, v) - dot(g, x) + 0.5 * k * depth * depth;
         if (!(energy < HUGE_VAL)) gain = HUGE_VAL;
         if (i > 100) gain = std::max(gain, energy / (before[p] + 2) - 1);
-        if (i > 100) before[p] = std::min(before[p], energy);
-        else before[p] = energy;
+        if (i > 100)
+          before[p] = std::min(before[p], energy);
+        else
+          before[p] = energy;
       }
     }
     rows.add("all rules: energy gained", "k dt²/m", stiff, gain, 1e-2);

@@ -1,5 +1,5 @@
-// The stability report's extreme places: starts inside and on the surface, scales, offsets, particles
-// that are not finite.
+// The stability report's extreme places: starts inside and on the surface, scales, offsets,
+// particles that are not finite.
 #include "collide/dn_field/stability_cases.hpp"
 
 #include <algorithm>
@@ -40,18 +40,31 @@ void scales(Rows& rows) {
   for (const double scale : {1e-6, 1e-3, 1e3, 1e6}) {
     Object scaled{&ball, {}};
     scaled.frame.scale = scale;
-    const Particle end = flown(bouncing(), 0.05, 20, {&scaled, 1},
-                               {scale * start.position, scale * start.velocity});
+    const Particle end =
+        flown(bouncing(), 0.05, 20, {&scaled, 1}, {scale * start.position, scale * start.velocity});
     rows.add("scale", "scale", scale, norm((1 / scale) * end.position - plain.position), 1e-5);
-    rows.add("scale: |v|", "scale", scale, std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1), 1e-13);
+    rows.add("scale: |v|",
+             "scale",
+             scale,
+             std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1),
+             1e-13);
   }
   for (const double offset : {1e3, 1e6, 1e9}) {
     const Vec3 shift = offset * Vec3{1, -1, 1};
     Object shifted{&ball, {}};
     shifted.frame.position = shift;
-    const Particle end = flown(bouncing(), 0.05, 20, {&shifted, 1}, {shift + start.position, start.velocity});
-    rows.add("offset", "offset", offset, norm(end.position - shift - plain.position), 1e-5 + 1e-14 * offset);
-    rows.add("offset: |v|", "offset", offset, std::abs(norm(end.velocity) / norm(start.velocity) - 1), 1e-13);
+    const Particle end =
+        flown(bouncing(), 0.05, 20, {&shifted, 1}, {shift + start.position, start.velocity});
+    rows.add("offset",
+             "offset",
+             offset,
+             norm(end.position - shift - plain.position),
+             1e-5 + 1e-14 * offset);
+    rows.add("offset: |v|",
+             "offset",
+             offset,
+             std::abs(norm(end.velocity) / norm(start.velocity) - 1),
+             1e-13);
   }
 }
 
@@ -77,7 +90,9 @@ void not_finite(Rows& rows) {
     double different = 0;
     for (std::size_t p = 0; p < 16; ++p)
       if (p != 3 && p != 5)
-        different += with.position(p) == without.position(p) && with.velocity(p) == without.velocity(p) ? 0 : 1;
+        different +=
+            with.position(p) == without.position(p) && with.velocity(p) == without.velocity(p) ? 0
+                                                                                               : 1;
     rows.add("not finite: others changed", "value", bad, different, 0);
   }
 }

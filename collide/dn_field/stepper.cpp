@@ -138,8 +138,7 @@ void one_step(const Run& run,
   }
   run.loop(run.constants, block, closest, scratch);
   for (const Untraced& from : scratch.untraced)
-    scratch.energy[from.particle] +=
-        trace(run.constants, objects, plan.rules.look_up, from, block);
+    scratch.energy[from.particle] += trace(run.constants, objects, plan.rules.look_up, from, block);
   scratch.untraced.clear();
   if (plan.rules.spring) {
     if (run.setting == Setting::general) clear(after, block.count);

@@ -105,10 +105,10 @@ Contact first_contact(const RuleConstants& c,
 }  // namespace
 
 double trace(const RuleConstants& c,
-           std::span<const Placed> objects,
-           LookUp kind,
-           const Untraced& from,
-           const ParticleSpan& particles) {
+             std::span<const Placed> objects,
+             LookUp kind,
+             const Untraced& from,
+             const ParticleSpan& particles) {
   Vec3 x = from.position, start = from.start_velocity, end = from.end_velocity,
        mean = from.mean_velocity;
   const bool can_fly = is_finite(x) && is_finite(mean) && is_finite(start) && is_finite(end);

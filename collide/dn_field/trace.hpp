@@ -14,9 +14,9 @@ namespace tess::dn {
 /// bounces, in a crevice, stops at the last one until the next step. Returns twice the work that
 /// the flight's acceleration did beyond that on the straight way.
 double trace(const RuleConstants& constants,
-           std::span<const Placed> objects,
-           LookUp kind,
-           const Untraced& from,
-           const ParticleSpan& particles);
+             std::span<const Placed> objects,
+             LookUp kind,
+             const Untraced& from,
+             const ParticleSpan& particles);
 
 }  // namespace tess::dn
