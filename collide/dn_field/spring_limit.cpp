@@ -29,10 +29,12 @@ void limit_spring(const SpringConstants& spring,
     store(particles.vx + p, slowed.x), store(particles.vy + p, slowed.y);
     store(particles.vz + p, slowed.z);
     const D paid = sqrt(energy * (1 / spring.stiffness));
-    const D push = only(over & (depth > paid), depth - paid);
-    store(particles.x + p, load<D>(particles.x + p) + push * n.x);
-    store(particles.y + p, load<D>(particles.y + p) + push * n.y);
-    store(particles.z + p, load<D>(particles.z + p) + push * n.z);
+    const L deeper = over & (depth > paid);
+    const D push = depth - paid;
+    const D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
+    const D3 pushed = select(deeper, x + push * n, x);
+    store(particles.x + p, pushed.x), store(particles.y + p, pushed.y);
+    store(particles.z + p, pushed.z);
   }
 }
 

@@ -84,6 +84,13 @@ struct Stepper::Plan {
 
 namespace {
 
+/// The number of steps since time 0, whole where `time` is meant to be a sum or multiple of steps:
+/// then a run from there sees the same times to the bit as one that came by.
+double steps_before(double time, double step) {
+  const double steps = time / step, whole = std::round(steps);
+  return std::abs(steps - whole) < 1e-6 ? whole : steps;
+}
+
 /// What a block needs besides its particles; made once a run.
 struct Buffers {
   Closest closest, after;
@@ -169,6 +176,7 @@ void Stepper::run(ParticleSpan particles,
   const Run run = prepared(plan, objects);
   std::vector<Object> standing(objects.begin(), objects.end());
   if (!plan.looks_up) standing.clear();
+  const double before = steps_before(time, plan.step);
   const auto buffers = std::make_unique<Buffers>();
   clear(buffers->closest, block_size);
   // The last particles, fewer than a vector, are stepped in room of their own.
@@ -199,7 +207,7 @@ void Stepper::run(ParticleSpan particles,
       for (int i = 0; i < now; ++i)
         one_step(run,
                  places[static_cast<std::size_t>(i)],
-                 time + (done + i) * plan.step,
+                 (before + done + i) * plan.step,
                  block,
                  *buffers);
     };

@@ -27,7 +27,8 @@ void explode(const Explosion& explosion, double active, const ParticleSpan& part
     const L reached = (r > 0.0) & (r < explosion.radius);  // the centre has no direction
     if (!any(reached)) continue;
     const D scale = only(reached, kick * (1.0 - r * per_radius) / r);
-    set_velocities(particles, p, velocities(particles, p) + only(reached, scale * from));
+    const D3 v = velocities(particles, p);
+    set_velocities(particles, p, select(reached, v + scale * from, v));
   }
 }
 
