@@ -25,7 +25,7 @@ struct BlurredOptions {
   std::function<void(double)> progress;  ///< called with the fraction done; may be empty
 };
 
-/// Builds the field of `surface` on `grid`. On a sphere of 20 to 25 cells radius normals are within
+/// Builds the field of `surface` on `grid`. On a sphere of 14 cells radius normals are within
 /// 6° of the exact ones (mean 1°), by the potential within 22° (mean 3°). Throws as build_exact
 /// does, and Error(bad_argument) for
 /// a blur out of range, a two-sided field by normals, and an object of near-zero thickness by
