@@ -3,6 +3,7 @@
 #include "apps/particles/picture.hpp"
 #include "apps/particles/report.hpp"
 #include "apps/particles/simulate.hpp"
+#include "apps/particles/study.hpp"
 #include "apps/particles/vtp.hpp"
 #include "apps/plot/write_file.hpp"
 
@@ -35,8 +36,15 @@ tess::Task run(Problem& problem) {
   co_await simulate(stage, result);
   const DriverOptions& options = problem.options;
   tess::print(table(stage->scene, result, problem.report));
-  if (!options.json.empty())
+  if (options.study) {
+    problem.report.study = study(stage->scene, {});
+    tess::print(study_table(problem.report.study));
+    if (!options.out.empty()) write_study(options.out, problem.report.study);
+  }
+  if (!options.json.empty()) {
+    problem.report.bytes_compressed = compressed_bytes(*stage);
     plot::write_file(options.json, json(stage->scene, result, problem.report));
+  }
   if (!options.out.empty()) write_pictures(options.out, *stage, result);
 }
 
@@ -57,6 +65,10 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   const tess::Machine& machine = *setup.machine;
   problem.report = {machine.describe(), machine.n_pes(), machine.n_processes()};
   if (!options.out.empty()) make_folder(options.out);
+  if (options.study && problem.scene.objects.empty())
+    tess::fail(tess::ErrorCode::bad_value,
+               options.scene,
+               ": objects: is empty; --study needs an object to bounce off");
   if (options.explain && machine.process().value == 0) tess::print(explanation(problem.scene));
   return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });
 }

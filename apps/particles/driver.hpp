@@ -14,6 +14,7 @@ struct DriverOptions {
   std::int32_t steps = -1;  ///< instead of the scene's; -1: the scene's
   std::string json, out;
   bool explain = false;
+  bool study = false;
 };
 
 /// Returns the exit code. Throws tess::Error for bad input.

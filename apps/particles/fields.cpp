@@ -3,6 +3,7 @@
 #include "apps/particles/blurred_field.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace particles {
 namespace {
@@ -70,6 +71,11 @@ BuiltField build_alone(const SceneObject& object, Content content) {
   making.fill(0);
   making.finish();
   return {making.field(), making.seconds()};
+}
+
+ErrorBound usual_bound(const Field& field) {
+  constexpr double cells = 0.125, degrees = 3;
+  return {cells * field.grid.cell, degrees * std::numbers::pi / 180};
 }
 
 double distance_at(const Field& field, Vec3 p) {

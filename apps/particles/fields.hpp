@@ -5,6 +5,7 @@
 
 #include "apps/particles/scene.hpp"
 #include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/stepper.hpp"
 
 #include <chrono>
@@ -45,6 +46,10 @@ struct BuiltField {
   double seconds = 0;
 };
 [[nodiscard]] BuiltField build_alone(const SceneObject& object, tess::dn::Content content);
+
+/// How far the voxels of a compressed field may be off: an eighth of a cell and 3 degrees, no more
+/// than nearest look-up adds by itself.
+[[nodiscard]] tess::dn::ErrorBound usual_bound(const tess::dn::Field& field);
 
 /// The signed distance at a point in the object's coordinates, interpolated between eight voxels;
 /// HUGE_VAL outside the grid. Off by the square of the cell times the curvature, off the medial

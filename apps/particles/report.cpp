@@ -72,6 +72,35 @@ nlohmann::ordered_json json_of(const Row& row, double dt) {
   return out;
 }
 
+nlohmann::ordered_json json_of(const StudyRow& row) {
+  nlohmann::ordered_json out;
+  out["part"] = row.part;
+  out["resolution"] = row.resolution;
+  out["method"] = row.method;
+  if (!row.note.empty()) {
+    out["refused"] = row.note;
+    return out;
+  }
+  out["look_up"] = row.look_up;
+  out["rule"] = row.rule;
+  const auto measured = [&out](const char* key, double value) {
+    if (value >= 0) out[key] = value;
+  };
+  measured("step", row.step);
+  measured("build_seconds", row.build_seconds);
+  if (row.bytes != 0) out["bytes"] = row.bytes;
+  measured("distance_error", row.distance_error);
+  measured("distance_error_max", row.distance_error_max);
+  measured("normal_error_degrees", row.normal_error);
+  measured("penetration", row.penetration);
+  measured("place_error", row.place_error);
+  measured("angle_error_degrees", row.angle_error);
+  if (row.lost >= 0) out["lost"] = row.lost;
+  if (row.bounces >= 0) out["bounces"] = row.bounces;
+  measured("ns", row.ns);
+  return out;
+}
+
 }  // namespace
 
 std::string table(const Scene& scene, const RunResult& result, const Report& report) {
@@ -134,7 +163,8 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   out["field"] = {{"method", method_of(scene)},
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
-                  {"bytes", fields.bytes}};
+                  {"bytes", fields.bytes},
+                  {"bytes_compressed", report.bytes_compressed}};
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited ? "each step" : "last step";
@@ -145,6 +175,8 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   out["result_hash"] = fmt::format("{:016x}", end.hash);
   out["rows"] = nlohmann::ordered_json::array();
   for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
+  out["study"] = nlohmann::ordered_json::array();
+  for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
   return out.dump(2) + "\n";
 }
 

@@ -3,6 +3,7 @@
 
 #include "apps/particles/scene.hpp"
 #include "apps/particles/simulate.hpp"
+#include "apps/particles/study.hpp"
 
 #include <string>
 
@@ -12,6 +13,8 @@ namespace particles {
 struct Report {
   std::string machine;
   std::int32_t pes = 0, processes = 0;
+  std::uint64_t bytes_compressed = 0;  ///< of all fields, within usual_bound()
+  std::vector<StudyRow> study{};
 };
 
 [[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);

@@ -30,6 +30,14 @@ struct Stage {
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
 };
 
+/// What the fields would take compressed, within usual_bound().
+[[nodiscard]] inline std::uint64_t compressed_bytes(const Stage& stage) {
+  std::uint64_t bytes = 0;
+  for (const FieldInTheMaking& of : stage.fields)
+    bytes += compress(of.field(), usual_bound(of.field())).bytes();
+  return bytes;
+}
+
 struct StageHandle {
   std::shared_ptr<Stage> stage;
 

@@ -56,10 +56,12 @@ Samples samples_of(const Subject& subject, std::size_t n) {
   return samples;
 }
 
-void compare(const Field& field, LookUp kind, const Samples& samples, StudyRow& row) {
+/// `ask(points, answers)` fills in what a field says of the samples.
+template <class Ask>
+void compare(const Ask& ask, const Samples& samples, StudyRow& row) {
   const std::size_t n = samples.distance.size();
   std::vector<float> distance(n), nx(n), ny(n), nz(n);
-  look_up(field, kind, {samples.x, samples.y, samples.z}, {distance, nx, ny, nz});
+  ask(Points{samples.x, samples.y, samples.z}, Answers{distance, nx, ny, nz});
   double sum = 0, largest = 0, angles = 0;
   std::size_t n_normals = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -216,12 +218,66 @@ void study_fields(const Subject& subject,
       for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
         row.look_up = look_up_names[static_cast<std::size_t>(kind)];
         const Rules rules = impact_alone(kind, Sweep::on);
-        compare(built.field, kind, samples, row);
+        const auto ask = [&](const Points& points, const Answers& answers) {
+          look_up(built.field, kind, points, answers);
+        };
+        compare(ask, samples, row);
         bounce(built.field, rules, step * subject.thickness, subject, row);
         row.ns = ns_of(&built.field, rules, subject, options.n_timed);
         rows.push_back(row);
       }
     }
+}
+
+/// Nearest look-ups of a flat and a compressed field, by themselves: the step loop takes flat ones.
+void study_compression(const Subject& subject,
+                       const StudyOptions& options,
+                       std::vector<StudyRow>& rows) {
+  const Samples samples = samples_of(subject, options.n_samples);
+  const Particles crowded = crowd(subject, options.n_timed);
+  const auto floats = [](const std::vector<double>& values) {
+    return std::vector<float>(values.begin(), values.end());
+  };
+  const std::vector<float> x = floats(crowded.x), y = floats(crowded.y), z = floats(crowded.z);
+  std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
+  for (const int resolution : options.resolutions) {
+    StudyRow row;
+    row.part = "memory";
+    row.resolution = resolution;
+    row.method = method_names.front();
+    row.look_up = "nearest";
+    const BuiltField built = built_or_empty(subject.object, resolution, Method::exact, row.note);
+    if (!row.note.empty()) {
+      rows.push_back(row);
+      continue;
+    }
+    const auto measure = [&](const char* name, std::size_t bytes, double seconds, const auto& ask) {
+      row.rule = name;
+      row.bytes = bytes;
+      row.build_seconds = seconds;
+      compare(ask, samples, row);
+      const Points points{x, y, z};
+      const Answers answers{distance, nx, ny, nz};
+      row.ns = fastest_seconds([&] { ask(points, answers); }) * 1e9 / static_cast<double>(x.size());
+      rows.push_back(row);
+    };
+    measure("flat, look-up alone",
+            built.field.bytes(),
+            built.seconds,
+            [&](const Points& points, const Answers& answers) {
+              look_up(built.field, LookUp::nearest, points, answers);
+            });
+    const auto begin = std::chrono::steady_clock::now();
+    const CompressedField compressed = compress(built.field, usual_bound(built.field));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    measure("compressed, look-up alone",
+            compressed.bytes(),
+            seconds,
+            [&](const Points& points, const Answers& answers) {
+              nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
+            });
+  }
 }
 
 void study_rules(const Subject& subject, const BuiltField& built, std::vector<StudyRow>& rows) {
@@ -302,6 +358,7 @@ std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options) {
                ": objects[0].shape: no triangle can be met from its front; turn the triangles");
   std::vector<StudyRow> rows;
   study_fields(subject, options, rows);
+  study_compression(subject, options, rows);
   const BuiltField built = build_alone(object, Content::distance_and_normal);
   study_rules(subject, built, rows);
   study_cost(subject, built, options, rows);

@@ -13,7 +13,7 @@ namespace particles {
 
 /// One choice. Lengths are in the object's units; a negative value was not measured in this row.
 struct StudyRow {
-  std::string part;  ///< field, rule, cost
+  std::string part;  ///< field, memory, rule, cost
   int resolution = 0;
   std::string method, look_up, rule;
   double step = -1;  ///< speed × dt as a part of the thickness
@@ -39,8 +39,8 @@ struct StudyOptions {
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with
-/// swept impact), rules (rule × step, at the object's resolution), and cost beside a tree of boxes.
-/// Throws Error(bad_value) for a scene without an object.
+/// swept impact), memory (flat and compressed), rules (rule × step, at the object's resolution),
+/// and cost beside a tree of boxes. Throws Error(bad_value) for a scene without an object.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options);
 
 [[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows);

@@ -73,7 +73,7 @@ TEST_CASE("a run gives the same bits on any PEs, under any schedule and any cut 
     if (seed % 3 == 1) scene.block = 0.2;
     if (seed % 3 == 2) scene.exchange = 1;
     scene.outputs.audit = seed % 2 == 0;
-    check_same(run_scene(scene, fmt::format("--sim=pes=5,per-process=2,migrate=0.1,seed={}", seed)),
+    check_same(run_scene(scene, fmt::format("--sim=pes=6,per-process=2,migrate=0.1,seed={}", seed)),
                first);
   }
   for (const double edge : {0.05, 0.7, 100.0})
