@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <unistd.h>
 
 namespace particles {
 namespace {
@@ -157,6 +158,29 @@ void check_rules(const Scene& scene, const std::string& file) {
   }
 }
 
+/// Refuses fields that all the machine's memory cannot hold, before it is tried.
+void check_memory(const Scene& scene, const std::string& file) {
+  constexpr double bytes_per_voxel = 8;
+  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                       static_cast<double>(sysconf(_SC_PAGESIZE));
+  double wanted = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    wanted += bytes_per_voxel * std::pow(scene.objects[i].resolution, 3);
+    if (wanted > there)
+      tess::fail(tess::ErrorCode::environment,
+                 file,
+                 ": objects[",
+                 i,
+                 "].resolution: ",
+                 scene.objects[i].resolution,
+                 " makes the fields ",
+                 wanted / 1e9,
+                 " GB large, and this machine has ",
+                 there / 1e9,
+                 " GB");
+  }
+}
+
 Scene read(const JsonFile& file, const std::string& name) {
   const Keys keys = file.root().keys(
       {"dt", "steps", "block", "exchange", "objects", "emitters", "rules", "outputs"});
@@ -178,6 +202,7 @@ Scene read(const JsonFile& file, const std::string& name) {
   if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
   check_rules(scene, name);
+  check_memory(scene, name);
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include "apps/particles/block.hpp"
 
 #include <map>
+#include <new>
 #include <utility>
 
 namespace particles {
@@ -36,8 +37,23 @@ void Station::take(StageHandle handle) {
 void Station::begin_fields() {
   const auto [first, n] = pes_of_process();
   const auto mine = static_cast<std::size_t>(pe().value - first);
-  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
-    stage_->fields[i].begin(stage_->scene.objects[i], content_of(stage_->scene), n);
+  const Scene& scene = stage_->scene;
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n)) {
+    const SceneObject& object = scene.objects[i];
+    try {
+      stage_->fields[i].begin(object, content_of(scene), n);
+    } catch (const tess::Error& error) {
+      tess::fail(error.code(), scene.name, ": objects[", i, "]: ", error.what());
+    } catch (const std::bad_alloc&) {
+      tess::fail(tess::ErrorCode::environment,
+                 scene.name,
+                 ": objects[",
+                 i,
+                 "].resolution: memory does not hold a field of ",
+                 object.resolution,
+                 "³ voxels; lower it");
+    }
+  }
 }
 
 void Station::fill_fields() {

@@ -119,6 +119,16 @@ TEST_CASE("without swept look-up a step that passes the field is refused", "[par
         std::string::npos);
 }
 
+TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
+  const std::string large = R"({"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 1024})";
+  std::string objects = large;
+  for (int i = 0; i < 999; ++i) objects += "," + large;  // 8.6 TB
+  const std::string told = refusal(R"({"dt": 1, "steps": 0, "objects": [)" + objects +
+                                   R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
+  CHECK(told.find("].resolution: 1024 makes the fields ") != std::string::npos);
+  CHECK(told.find("scene.json: objects[") == 0);
+}
+
 TEST_CASE("a scene is what its file says", "[particles][scene]") {
   const Scene scene =
       parse_scene(scene_with("\"count\": 5", "\"count\": 5, \"mass\": 2"), "a/b.json");
