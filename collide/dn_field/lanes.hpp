@@ -86,6 +86,17 @@ inline bool any(L mask) {
 #endif
 }
 
+/// One bit a lane.
+inline unsigned bits(I mask) {
+#ifdef __AVX2__
+  return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
+#else
+  unsigned found = 0;
+  for (int i = 0; i < width; ++i) found |= mask[i] != 0 ? 1U << i : 0U;
+  return found;
+#endif
+}
+
 inline D sqrt(D v) {
 #ifdef __AVX512F__
   return (D)_mm512_maskz_sqrt_pd(0xFF, (__m512d)v);  // the plain one warns in g++ 12

@@ -80,22 +80,23 @@ inline D3 refined(D3 n) {
 }
 
 /// The velocity w turned toward the tangent of the surface with normal n by min(alpha dt/|w|, what
-/// is left); by a negative alpha away from it. |w| is kept to rounding.
+/// is left); by a negative alpha away from it. |w| is kept to rounding; 1e-100 is no speed.
 inline D3 turned_to_surface(const RuleConstants& c, D3 w, D3 n, L where) {
   const D alpha = dot(w, n);
   const D3 tangent = w - alpha * n;
   const D w2 = dot(w, w), t2 = dot(tangent, tangent);
-  where = where & (t2 > 1e-24 * w2) & (w2 > 0.0) & (w2 < HUGE_VAL);
-  const D speed = sqrt(w2), t = sqrt(t2);
+  where = where & (t2 > 1e-24 * w2) & (w2 > 1e-200) & (w2 < 1e200);
+  const D speed = sqrt(w2), t = sqrt(t2), per_both = 1.0 / (speed * t);
   const D rate = alpha < 0.0 ? all(c.turn_in) : all(c.turn_out);
-  const Turn by = turn(max(min(rate / speed, all(0.5 * pi)), all(-0.5 * pi)));
+  const D angle = rate * (t * per_both);
+  const Turn by = turn(max(min(angle, all(0.5 * pi)), all(-0.5 * pi)));
   const D sine = abs(alpha) * by.cosine - t * by.sine,
           cosine = t * by.cosine + abs(alpha) * by.sine;
   const L arrived = sine < 0.0, upright = cosine < 0.0;
   D along = arrived ? speed : only(cosine >= 0.0, cosine);
   D across = arrived ? D{} : (upright ? speed : sine);
   across = alpha < 0.0 ? -across : across;
-  along = along / t;
+  along = along * (speed * per_both);
   return select(where, along * tangent + across * n, w);
 }
 
@@ -167,7 +168,17 @@ void rule_loop(const RuleConstants& c,
         energy = rate * rate + c.spring.stiffness * depth * depth - 2.0 * g * z0;
       }
       if (any(touches)) {
-        const SpringMotion motion = spring_motion(c.spring, z0, e, g, dt);
+        SpringMotion motion{};
+        L stays{};
+        if (c.spring.soft) {
+          const SpringStay stay = spring_stay(c.spring, z0, e, g);
+          motion = stay.motion, stays = stay.stays;
+        }
+        if (any(touches & ~stays)) {
+          const SpringMotion whole = spring_motion(c.spring, z0, e, g, dt);
+          motion.end = stays ? motion.end : whole.end;
+          motion.rate = stays ? motion.rate : whole.rate;
+        }
         v1 = select(touches, v1 + (motion.rate - before) * n, v1);
         const D change = (motion.end - z0) * (1 / dt) - rises(mean);
         mean = select(touches, mean + change * n, mean);

@@ -12,6 +12,9 @@ namespace tess::dn {
 
 struct SpringConstants {
   double stiffness = 1, omega = 1, gamma = 0, reach = 0;
+  // Of a whole step in contact, where it is short against the contact; else `soft` is false.
+  bool soft = false;
+  double cosine = 1, sine = 0, kept = 1;
 };
 
 namespace lanes {
@@ -63,6 +66,19 @@ struct SpringMotion {
   D end;   ///< z at the end of the step
   D rate;  ///< its rate there
 };
+
+/// Which of the lanes in contact stay so through the step, where a step is short against the
+/// contact, and their motion: a fixed linear map.
+struct SpringStay {
+  SpringMotion motion;
+  L stays;
+};
+inline SpringStay spring_stay(const SpringConstants& c, D z, D e, D g) {
+  const D balance = g * (1 / c.stiffness), a = z - balance, b = (e + c.gamma * a) * (1 / c.omega);
+  const D end = balance + c.kept * (a * c.cosine + b * c.sine);
+  const D rate = c.kept * (e * c.cosine - (c.gamma * b + c.omega * a) * c.sine);
+  return {{end, rate}, (z < 0.0) & (end <= 0.0)};
+}
 
 /// Lanes that do not come into contact return what is of no use.
 inline SpringMotion spring_motion(const SpringConstants& c, D z0, D e, D g, double dt) {

@@ -1,6 +1,7 @@
 #include "collide/dn_field/stepper.hpp"
 
 #include "collide/dn_field/rule_table.hpp"
+#include "collide/dn_field/screen.hpp"
 #include "collide/dn_field/spring_limit.hpp"
 #include "collide/dn_field/trace.hpp"
 #include "collide/dn_field/velocity_rules.hpp"
@@ -12,7 +13,8 @@
 namespace tess::dn {
 namespace {
 
-constexpr int steps_at_once = 64;  // for which the objects' positions are made in advance
+constexpr int steps_unscreened = 7;  // of a block whose particles were mostly near
+constexpr int steps_at_once = 64;    // for which the objects' positions are made in advance
 
 LinearFlow linear_flow(double rate, double step) {
   const double x = rate * step;
@@ -66,7 +68,11 @@ RuleConstants constants_of(const Rules& rules, double step) {
   }
   if (rules.spring) {
     const double gamma = 0.5 * rules.spring->damping, k = rules.spring->stiffness;
-    c.spring = {k, std::sqrt(k - gamma * gamma), gamma, rules.spring->reach};
+    const double omega = std::sqrt(k - gamma * gamma), phase = omega * step;
+    c.spring = {k, omega, gamma, rules.spring->reach};
+    c.spring.soft = phase < 1.5;
+    c.spring.cosine = std::cos(phase), c.spring.sine = std::sin(phase);
+    c.spring.kept = std::exp(-gamma * step);
   }
   return c;
 }
@@ -78,8 +84,10 @@ struct Stepper::Plan {
   double step = 0;
   RuleConstants constants;
   bool looks_up = false;
+  Sweep sweep = Sweep::off;
   ClosestPass look_up_at_rest = nullptr, look_up_general = nullptr;
   RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
+  RuleLoop loop_without = nullptr;  ///< for particles that feel no surface
 };
 
 namespace {
@@ -94,6 +102,7 @@ double steps_before(double time, double step) {
 /// What a block needs besides its particles; made once a run.
 struct Buffers {
   Closest closest, after;
+  Near near;
   Scratch scratch;
 };
 
@@ -102,12 +111,13 @@ struct Run {
   const Stepper::Plan& plan;
   RuleConstants constants;
   Setting setting = Setting::general;
+  Reach reach;
   ClosestPass look_up = nullptr;
   RuleLoop loop = nullptr;
 };
 
 Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
-  Run run{plan, plan.constants};
+  Run run{plan, plan.constants, Setting::general, {}, nullptr, nullptr};
   const bool simple =
       objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
   run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
@@ -122,7 +132,35 @@ Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
   run.constants.slack =
       (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest;
   run.constants.stride = 0.5 * finest;
+  // Moved outward by what rounding could hide.
+  const RuleConstants& c = run.constants;
+  const double added = plan.step * std::max(c.air.gain, c.surface.gain) * norm(c.acceleration);
+  run.reach = {static_cast<float>(reach(plan.rules) + added + 1e-3 * finest),
+               static_cast<float>(plan.step)};
   return run;
+}
+
+/// The rules of the surface, for particles that may feel it.
+void meet_surface(const Run& run,
+                  std::span<const Placed> objects,
+                  const ParticleSpan& particles,
+                  Buffers& buffers) {
+  const Stepper::Plan& plan = run.plan;
+  auto& [closest, after, near, scratch] = buffers;
+  if (run.setting == Setting::general) clear(closest, particles.count);
+  for (const Placed& object : objects) run.look_up(object, particles, closest);
+  if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
+    drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, particles, closest);
+  run.loop(run.constants, particles, closest, scratch);
+  for (const Untraced& from : scratch.untraced)
+    scratch.energy[from.particle] +=
+        trace(run.constants, objects, plan.rules.look_up, from, particles);
+  scratch.untraced.clear();
+  if (plan.rules.spring) {
+    if (run.setting == Setting::general) clear(after, particles.count);
+    for (const Placed& object : objects) run.look_up(object, particles, after);
+    limit_spring(run.constants.spring, run.setting, particles, closest, after, scratch);
+  }
 }
 
 void one_step(const Run& run,
@@ -130,28 +168,31 @@ void one_step(const Run& run,
               double time,
               const ParticleSpan& block,
               Buffers& buffers) {
-  auto& [closest, after, scratch] = buffers;
   const Stepper::Plan& plan = run.plan;
   for (const Explosion& explosion : plan.rules.explosions)
     if (const double active = active_within(explosion, time, plan.step); active > 0)
       explode(explosion, active, block);
   if (plan.rules.air_drag && plan.rules.air_drag->law == DragLaw::quadratic)
     drag_quadratic(plan.rules.air_drag->rate * plan.step, block);
+  Near& near = buffers.near;
+  near.count = 0;
   if (plan.looks_up) {
-    if (run.setting == Setting::general) clear(closest, block.count);
-    for (const Placed& object : objects) run.look_up(object, block, closest);
-    if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
-      drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, block, closest);
+    if (near.unscreened > 0) {
+      --near.unscreened;
+      return meet_surface(run, objects, block, buffers);
+    }
+    screen(objects, plan.rules.look_up, plan.sweep, run.reach, block, near);
+    // Packing pays where few are near, and screening where not most are. The bound that lets others
+    // stay is exact for the look-ups of one voxel, so that they come out the same either way.
+    const bool most = plan.rules.look_up != LookUp::trilinear && 2 * near.count > block.count;
+    if (most) near.unscreened = steps_unscreened;
+    if (most || near.count == block.count) return meet_surface(run, objects, block, buffers);
+    pack(block, near);
   }
-  run.loop(run.constants, block, closest, scratch);
-  for (const Untraced& from : scratch.untraced)
-    scratch.energy[from.particle] += trace(run.constants, objects, plan.rules.look_up, from, block);
-  scratch.untraced.clear();
-  if (plan.rules.spring) {
-    if (run.setting == Setting::general) clear(after, block.count);
-    for (const Placed& object : objects) run.look_up(object, block, after);
-    limit_spring(run.constants.spring, run.setting, block, closest, after, scratch);
-  }
+  plan.loop_without(run.constants, block, buffers.closest, buffers.scratch);
+  if (near.count == 0) return;
+  meet_surface(run, objects, near.packed(), buffers);
+  near.unpack(block);
 }
 
 /// Where all objects stand at each of the next n_steps steps, and after them.
@@ -204,6 +245,7 @@ void Stepper::run(ParticleSpan particles,
     const int now = std::min(steps_at_once, n_steps - done);
     const auto places = placed_for(standing, plan, now);
     const auto step_all = [&](const ParticleSpan& block) {
+      buffers->near.unscreened = 0;
       for (int i = 0; i < now; ++i)
         one_step(run,
                  places[static_cast<std::size_t>(i)],
@@ -237,10 +279,15 @@ Stepper make_stepper(const Rules& rules, double step) {
            step,
            constants_of(rules, step),
            needs_field(rules),
+           sweep,
            closest_pass(rules.look_up, ask, Setting::one_at_rest, sweep),
            closest_pass(rules.look_up, ask, Setting::general, sweep),
            rule_loop_at_rest(key),
-           rule_loop_general(key)};
+           rule_loop_general(key),
+           rule_loop_at_rest({rules.gravity || rules.wind ||
+                                      (rules.air_drag && rules.air_drag->law == DragLaw::linear)
+                                  ? Flight::air
+                                  : Flight::none})};
   return Stepper(std::move(plan));
 }
 

@@ -18,17 +18,20 @@ void set_velocities(const ParticleSpan& particles, std::size_t p, D3 v) {
 
 void explode(const Explosion& explosion, double active, const ParticleSpan& particles) {
   const Vec3 c = explosion.centre;
-  const double kick = explosion.strength * active, per_radius = 1 / explosion.radius;
+  const auto kick = static_cast<float>(explosion.strength * active),
+             per_radius = static_cast<float>(1 / explosion.radius);
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const D3 from{load<D>(particles.x + p) - c.x,
-                  load<D>(particles.y + p) - c.y,
-                  load<D>(particles.z + p) - c.z};
-    const D r = sqrt(dot(from, from));
-    const L reached = (r > 0.0) & (r < explosion.radius);  // the centre has no direction
-    if (!any(reached)) continue;
-    const D scale = only(reached, kick * (1.0 - r * per_radius) / r);
+    // Seven digits are enough for a kick; the velocity keeps its own.
+    const F3 from{to_float(load<D>(particles.x + p) - c.x),
+                  to_float(load<D>(particles.y + p) - c.y),
+                  to_float(load<D>(particles.z + p) - c.z)};
+    const F per_r = 1.0F / sqrt(dot(from, from));
+    const I reached = (per_r > per_radius) & (per_r < HUGE_VALF);  // the centre has no direction
+    const L wide = widen(reached);
+    if (!any(wide)) continue;
+    const F3 added = (kick * (per_r - per_radius)) * from;
     const D3 v = velocities(particles, p);
-    set_velocities(particles, p, select(reached, v + scale * from, v));
+    set_velocities(particles, p, select(wide, v + to_double(added), v));
   }
 }
 

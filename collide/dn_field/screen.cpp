@@ -1,0 +1,113 @@
+#include "collide/dn_field/screen.hpp"
+
+#include <array>
+
+namespace tess::dn {
+namespace {
+
+using namespace lanes;
+
+constexpr float rounding = 1.0001F;  // of float speeds
+
+/// Lower bound of every look-up's distance, less the way of the surface; minimum over objects.
+template <bool Turned, bool Moves, bool First>
+void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& block, Near& near) {
+  const Sampler& field = object.field;
+  const Vec3 c = object.centre;
+  const auto& m = object.to_grid;
+  const F ox = all(object.middle[0] + 0.5F), oy = all(object.middle[1] + 0.5F),
+          oz = all(object.middle[2] + 0.5F);
+  const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
+             nz = static_cast<float>(field.n[2]);
+  const F speed = all(static_cast<float>(norm(object.frame.velocity))),
+          spin = all(static_cast<float>(norm(object.frame.angular_velocity)));
+  const F shift = all(static_cast<float>(norm(c - object.frame.position)));
+  for (std::size_t p = 0; p < block.count; p += width) {
+    const F3 q{to_float(load<D>(block.x + p) - c.x),
+               to_float(load<D>(block.y + p) - c.y),
+               to_float(load<D>(block.z + p) - c.z)};
+    F3 h;
+    if constexpr (Turned)
+      h = {q.x * m[0][0] + q.y * m[0][1] + q.z * m[0][2] + ox,
+           q.x * m[1][0] + q.y * m[1][1] + q.z * m[1][2] + oy,
+           q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
+    else
+      h = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
+    const I in =
+        (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
+    const I i = __builtin_convertvector(only(in, h.x), I),
+            j = __builtin_convertvector(only(in, h.y), I),
+            k = __builtin_convertvector(only(in, h.z), I);
+    const F found = gather(field.distance, k * field.layer + j * field.row + i);
+    const F beyond = max(max(max(-h.x, h.x - nx), max(-h.y, h.y - ny)), max(-h.z, h.z - nz));
+    F room = in ? found * object.scale - doubt : object.cell * (beyond - 1.0F);
+    if constexpr (Moves)
+      room = room - (reach.step * rounding) * (speed + spin * (sqrt(dot(q, q)) + shift));
+    if constexpr (!First) room = min(room, load<F>(near.room + p));
+    store(near.room + p, room);
+  }
+}
+
+using RoomTo = void (*)(const Placed&, F, Reach, const ParticleSpan&, Near&);
+
+template <bool First>
+RoomTo choose(const Frame& frame) {
+  if (frame.is_moving()) return &room_to<true, true, First>;
+  return frame.is_turned() ? &room_to<true, false, First> : &room_to<false, false, First>;
+}
+
+}  // namespace
+
+void screen(std::span<const Placed> objects,
+            LookUp kind,
+            Sweep sweep,
+            Reach reach,
+            const ParticleSpan& block,
+            Near& near) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Placed& object = objects[i];
+    // Nearest is this voxel's value, the tangent leaves it by half a diagonal, trilinear reads
+    // corners up to a diagonal away; a sweep doubts any of them by half a diagonal.
+    const float halves = kind == LookUp::trilinear                       ? 2.0F
+                         : kind == LookUp::tangent || sweep == Sweep::on ? 1.0F
+                                                                         : 0.0F;
+    const float doubt = halves * object.doubt + object.padding;
+    const RoomTo room_to = i == 0 ? choose<true>(object.frame) : choose<false>(object.frame);
+    room_to(object, all(doubt * rounding), reach, block, near);
+  }
+  near.count = 0;
+  if (objects.empty()) return;
+  const F step = all(reach.step * rounding);
+  for (std::size_t p = 0; p < block.count; p += width) {
+    const F3 v{to_float(load<D>(block.vx + p)),
+               to_float(load<D>(block.vy + p)),
+               to_float(load<D>(block.vz + p))};
+    const F free = load<F>(near.room + p) - reach.distance;
+    unsigned may = bits(~(free >= step * sqrt(dot(v, v))));
+    for (; may != 0; may &= may - 1)
+      near.index[near.count++] =
+          static_cast<std::uint32_t>(p) + static_cast<std::uint32_t>(std::countr_zero(may));
+  }
+}
+
+void pack(const ParticleSpan& block, Near& near) {
+  const std::array<const double*, 6> from{block.x, block.y, block.z, block.vx, block.vy, block.vz};
+  const std::size_t whole = (near.count + width - 1) / width * width;
+  for (std::size_t a = 0; a < 6; ++a) {
+    for (std::size_t i = 0; i < near.count; ++i) near.values[a][i] = from[a][near.index[i]];
+    for (std::size_t i = near.count; i < whole; ++i) near.values[a][i] = 0;
+  }
+}
+
+ParticleSpan Near::packed() {
+  const std::size_t whole = (count + width - 1) / width * width;
+  return {values[0], values[1], values[2], values[3], values[4], values[5], whole};
+}
+
+void Near::unpack(const ParticleSpan& block) {
+  const std::array<double*, 6> to{block.x, block.y, block.z, block.vx, block.vy, block.vz};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t i = 0; i < count; ++i) to[a][index[i]] = values[a][i];
+}
+
+}  // namespace tess::dn
