@@ -161,8 +161,8 @@ void check_rules(const Scene& scene, const std::string& file) {
 /// Refuses fields that all the machine's memory cannot hold, before it is tried.
 void check_memory(const Scene& scene, const std::string& file) {
   constexpr double bytes_per_voxel = 8;
-  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-                       static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   double wanted = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     wanted += bytes_per_voxel * std::pow(scene.objects[i].resolution, 3);
