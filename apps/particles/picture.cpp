@@ -31,22 +31,37 @@ class Canvas {
   }
   [[nodiscard]] double x(double right) const { return (right - left_) * scale_; }
   [[nodiscard]] double y(double up) const { return (top_ - up) * scale_; }
-  void raw(const std::string& text) { out_ += text; }
-  void box(double right, double up, double width, double height, const std::string& fill) {
-    out_ += fmt::format(
-        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
-        x(right),
-        y(up + height),
-        width * scale_ + 0.2,
-        height * scale_ + 0.2,
-        fill);
+  /// What is drawn after boxes lies on them.
+  void raw(const std::string& text) {
+    flush();
+    out_ += text;
   }
-  [[nodiscard]] std::string done() { return out_ + "</svg>\n"; }
+  /// Boxes of one fill are one path.
+  void box(double right, double up, double width, double height, const std::string& fill) {
+    const double overlap = 0.2;  // else their seams show
+    boxes_[fill] += fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}",
+                                x(right),
+                                y(up + height),
+                                width * scale_ + overlap,
+                                height * scale_ + overlap,
+                                -width * scale_ - overlap);
+  }
+  [[nodiscard]] std::string done() {
+    flush();
+    return out_ + "</svg>\n";
+  }
 
  private:
+  void flush() {
+    for (const auto& [fill, path] : boxes_)
+      out_ += fmt::format("<path fill=\"{}\" d=\"{}\"/>\n", fill, path);
+    boxes_.clear();
+  }
+
   static constexpr double pixels = 640;
   double left_, top_, scale_;
   std::string out_;
+  std::map<std::string, std::string> boxes_;
 };
 
 /// Shades in steps, so that runs of one shade are one rectangle: grey inside, blue outside.

@@ -34,7 +34,7 @@ struct RunResult {
   std::vector<Snapshot> trajectories;
   std::vector<FieldCost> fields;
   double seconds = 0;       ///< of all steps, exchanges included, looking excluded
-  double loop_seconds = 0;  ///< in the step loops, summed over PEs
+  double loop_seconds = 0;  ///< CPU in the step loops, summed over PEs
   double emit_seconds = 0;
   bool audited = false;
   double block = 0;

@@ -121,7 +121,7 @@ void Station::give_samples(tess::Callback<std::vector<Sample>> target) {
 }
 
 void Station::give_seconds(tess::Callback<double> target) {
-  contribute(tess::sum, std::chrono::duration<double>(spent_).count(), std::move(target));
+  contribute(tess::in_order(tess::sum), spent_, std::move(target));
 }
 
 void Station::give_build_seconds(tess::Callback<std::vector<double>> target) {

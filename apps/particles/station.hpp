@@ -49,12 +49,12 @@ class Station : public tess::Group<Station> {
   [[nodiscard]] const std::vector<tess::dn::Object>& objects(std::int32_t step);
   [[nodiscard]] Measured& measured() { return measured_; }
   [[nodiscard]] std::vector<Sample>& samples() { return samples_; }
-  void spent(tess::Time time) { spent_ += time; }
+  void spent(double seconds) { spent_ += seconds; }
 
   // Reductions; each empties what it gives.
   void give_measured(tess::Callback<Measured> target);
   void give_samples(tess::Callback<std::vector<Sample>> target);
-  /// Seconds in the step loop on this PE.
+  /// Seconds of CPU in the step loop on this PE.
   void give_seconds(tess::Callback<double> target);
   /// Seconds of building each field, as its process measured them.
   void give_build_seconds(tess::Callback<std::vector<double>> target);
@@ -67,7 +67,7 @@ class Station : public tess::Group<Station> {
   std::int32_t at_step_ = 0;  // where objects_ stand
   Measured measured_;
   std::vector<Sample> samples_;
-  tess::Time spent_{0};
+  double spent_ = 0;
 };
 
 }  // namespace particles
