@@ -127,18 +127,20 @@ Rules all_rules(double cell) {
 }
 
 /// Gravity alone, as one would write it: the parabola.
-void gravity_by_hand(const ParticleSpan& all, double g) {
+void gravity_by_hand(const ParticleSpan& all, Vec3 g) {
   constexpr std::size_t block = 256;
-  const double dv = g * step;
+  const Vec3 dv = step * g, half_dv = 0.5 * dv;
   for (std::size_t first = 0; first < all.count; first += block) {
     const ParticleSpan b = all.part(first, std::min(block, all.count - first));
     for (int i = 0; i < n_steps; ++i) {
 #pragma GCC ivdep
       for (std::size_t p = 0; p < b.count; ++p) {
-        b.x[p] += step * b.vx[p];
-        b.y[p] += step * b.vy[p];
-        b.z[p] += step * (b.vz[p] + 0.5 * dv);
-        b.vz[p] += dv;
+        b.x[p] += step * (b.vx[p] + half_dv.x);
+        b.y[p] += step * (b.vy[p] + half_dv.y);
+        b.z[p] += step * (b.vz[p] + half_dv.z);
+        b.vx[p] += dv.x;
+        b.vy[p] += dv.y;
+        b.vz[p] += dv.z;
       }
     }
   }
@@ -241,10 +243,11 @@ void measure(const Report& report, const Options& options) {
 
   // One rule against the loop written by hand.
   Rules gravity;
-  gravity.gravity = Gravity{{0, 0, -1}};
+  gravity.gravity = Gravity{{0.1, 0.2, -1}};
   Particles by_hand;
-  Samples hand =
-      measured(options, spread, by_hand, [](Particles& p) { gravity_by_hand(p.span(), -1); });
+  Samples hand = measured(options, spread, by_hand, [](Particles& p) {
+    gravity_by_hand(p.span(), {0.1, 0.2, -1});
+  });
   samples = measured(options, spread, end, with(gravity));
   for (std::size_t p = 0; p < end.size(); p += 1000)
     require(norm(end.position(p) - by_hand.position(p)) < 1e-12, "gravity");

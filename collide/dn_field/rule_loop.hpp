@@ -19,9 +19,9 @@
 
 namespace tess::dn {
 
-/// none: straight; air: accelerations and linear drags that are the same everywhere; surface: also
-/// a linear drag near the surface.
-enum class Flight : std::uint32_t { none, air, surface };
+/// none: straight; fall: accelerations that are the same everywhere; air: also linear drags that
+/// are; surface: also a linear drag near the surface.
+enum class Flight : std::uint32_t { none, fall, air, surface };
 enum class Impacts : std::uint32_t { none, plain, swept };
 enum class Springs : std::uint32_t { none, exact };
 enum class Flows : std::uint32_t { none, turned };
@@ -152,8 +152,13 @@ void rule_loop(const RuleConstants& c,
         mean_gain = near ? all(c.surface.mean_gain) : mean_gain;
         if constexpr (moves) a = a + only(near, times(c.surface_rate, u));
       }
-      v1 = keep * v0 + gain * a;
-      mean = mean_keep * v0 + mean_gain * a;
+      if constexpr (Flies == Flight::fall) {
+        v1 = v0 + gain * a;
+        mean = v0 + mean_gain * a;
+      } else {
+        v1 = keep * v0 + gain * a;
+        mean = mean_keep * v0 + mean_gain * a;
+      }
     }
 
     [[maybe_unused]] const D3 flight_end = v1, flight_mean = mean;

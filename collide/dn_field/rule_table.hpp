@@ -34,6 +34,8 @@ template <Setting Where>
 RuleLoop chosen(const LoopKey& key) {
   if (key.flight == Flight::none)
     return chosen<Where, Flight::none>(key.impacts, key.springs, key.flows);
+  if (key.flight == Flight::fall)
+    return chosen<Where, Flight::fall>(key.impacts, key.springs, key.flows);
   if (key.flight == Flight::air)
     return chosen<Where, Flight::air>(key.impacts, key.springs, key.flows);
   return chosen<Where, Flight::surface>(key.impacts, key.springs, key.flows);

@@ -27,12 +27,16 @@ LinearFlow linear_flow(double rate, double step) {
   return {1 - lost, lost / rate, mean_keep, mean_lost / rate};
 }
 
+/// What flies far from all surfaces.
+Flight flight_of(const Rules& rules) {
+  if (rules.wind || (rules.air_drag && rules.air_drag->law == DragLaw::linear)) return Flight::air;
+  return rules.gravity ? Flight::fall : Flight::none;
+}
+
 LoopKey key_of(const Rules& rules) {
   LoopKey key;
-  const bool linear_air = rules.air_drag && rules.air_drag->law == DragLaw::linear;
-  if (rules.gravity || rules.wind || linear_air) key.flight = Flight::air;
-  if (rules.surface_drag && rules.surface_drag->law == DragLaw::linear)
-    key.flight = Flight::surface;
+  const bool drags = rules.surface_drag && rules.surface_drag->law == DragLaw::linear;
+  key.flight = drags ? Flight::surface : flight_of(rules);
   if (rules.impact)
     key.impacts = rules.impact->sweep == Sweep::on ? Impacts::swept : Impacts::plain;
   if (rules.spring) key.springs = Springs::exact;
@@ -284,10 +288,7 @@ Stepper make_stepper(const Rules& rules, double step) {
            closest_pass(rules.look_up, ask, Setting::general, sweep),
            rule_loop_at_rest(key),
            rule_loop_general(key),
-           rule_loop_at_rest({rules.gravity || rules.wind ||
-                                      (rules.air_drag && rules.air_drag->law == DragLaw::linear)
-                                  ? Flight::air
-                                  : Flight::none})};
+           rule_loop_at_rest({flight_of(rules)})};
   return Stepper(std::move(plan));
 }
 
@@ -318,6 +319,16 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            i,
            " stores no normals and a rule or the tangent look-up needs them; build its field with "
            "distance and normal");
+    const double thickness = object.field->thickness * frame.scale;
+    if (reach(rules) > thickness)
+      fail(ErrorCode::bad_argument,
+           "a rule reaches ",
+           reach(rules),
+           " from the surface, and the field of object ",
+           i,
+           " only ",
+           thickness,
+           "; build a thicker field or shorten the rule's distance");
     if (!(frame.scale > 0) || !std::isfinite(frame.scale))
       fail(ErrorCode::bad_argument,
            "object ",

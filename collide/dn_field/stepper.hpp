@@ -31,7 +31,8 @@ struct Object {
 void advance(std::span<Object> objects, double step, int n_steps);
 
 /// Throws Error(bad_argument) where `objects` cannot serve `rules`: a field without distances or
-/// without the normals that a rule needs, a scale that is not positive and finite.
+/// without the normals that a rule needs, or thinner than a rule reaches; a scale that is not
+/// positive and finite.
 void validate(const Rules& rules, std::span<const Object> objects);
 
 class Stepper {

@@ -150,6 +150,13 @@ TEST_CASE("objects that cannot serve are refused with a reason", "[dn_field][rul
   object.frame.scale = 0;
   CHECK_THROWS_AS(validate(rules, {&object, 1}), tess::Error);
   object.frame.scale = 1;
+  Field thin = ball;
+  thin.thickness = 0.1;
+  object.field = &thin;
+  rules.surface_drag = SurfaceDrag{1, 0.2, DragLaw::linear};
+  CHECK_THROWS_AS(validate(rules, {&object, 1}), tess::Error);
+  object.frame.scale = 2;
+  CHECK_NOTHROW(validate(rules, {&object, 1}));
   object.frame.velocity.x = std::nan("");
   CHECK_THROWS_AS(validate(rules, {&object, 1}), tess::Error);
 }
