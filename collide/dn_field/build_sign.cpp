@@ -92,7 +92,7 @@ void Inside::decide(const Tile& tile,
                     int first,
                     std::span<const std::int16_t> winding,
                     std::span<std::uint8_t> inside) const {
-  const auto& [low, high] = tile;
+  const std::array<int, 3>&low = tile.low, &high = tile.high;
   const auto each = [&](const auto& visit) {
     for (int k = low[2]; k < high[2]; ++k)
       for (int j = low[1]; j < high[1]; ++j)

@@ -168,31 +168,45 @@ double furthest(const PointBlock& block) {
   return most;
 }
 
-/// Whether some point of the block is nearer to `box` than to what it has found.
-bool any_nearer(const PointBlock& block, const Bounds& box) {
-  int nearer = 0;
-  for (std::size_t l = 0; l < PointBlock::size; ++l) {
-    const double ax = box.low.x - block.x[l], bx = block.x[l] - box.high.x;
-    const double ay = box.low.y - block.y[l], by = block.y[l] - box.high.y;
-    const double az = box.low.z - block.z[l], bz = block.z[l] - box.high.z;
-    double dx = ax > bx ? ax : bx, dy = ay > by ? ay : by, dz = az > bz ? az : bz;
-    dx = dx > 0 ? dx : 0;
-    dy = dy > 0 ? dy : 0;
-    dz = dz > 0 ? dz : 0;
-    nearer |= dx * dx + dy * dy + dz * dz <= block.distance2[l] * slack ? 1 : 0;
+constexpr std::size_t layer_size = 16;  // the points of a block that are offered together
+
+using Layers = std::array<bool, PointBlock::size / layer_size>;
+
+/// Which layers of the block hold a point that is nearer to `box` than to what it has found.
+Layers nearer_layers(const PointBlock& block, const Bounds& box) {
+  Layers layers{};
+  for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+    int nearer = 0;
+    for (std::size_t l = layer * layer_size; l < (layer + 1) * layer_size; ++l) {
+      const double ax = box.low.x - block.x[l], bx = block.x[l] - box.high.x;
+      const double ay = box.low.y - block.y[l], by = block.y[l] - box.high.y;
+      const double az = box.low.z - block.z[l], bz = block.z[l] - box.high.z;
+      double dx = ax > bx ? ax : bx, dy = ay > by ? ay : by, dz = az > bz ? az : bz;
+      dx = dx > 0 ? dx : 0;
+      dy = dy > 0 ? dy : 0;
+      dz = dz > 0 ? dz : 0;
+      nearer |= dx * dx + dy * dy + dz * dz <= block.distance2[l] * slack ? 1 : 0;
+    }
+    layers[layer] = nearer != 0;
   }
-  return nearer != 0;
+  return layers;
 }
 
-void offer(PointBlock& block, const PreparedTriangle& candidate, std::uint64_t place) {
+void offer(PointBlock& block,
+           const Layers& layers,
+           const PreparedTriangle& candidate,
+           std::uint64_t place) {
   const PreparedTriangle t = candidate;  // a copy that the block's stores cannot change
-  for (std::size_t l = 0; l < PointBlock::size; ++l) {
-    const double d = distance2(t, block.x[l], block.y[l], block.z[l]);
-    const double known = block.distance2[l];
-    const std::uint64_t holder = block.place[l];
-    const bool wins = (d < known) | ((d == known) & (place < holder));
-    block.distance2[l] = wins ? d : known;
-    block.place[l] = wins ? place : holder;
+  for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+    if (!layers[layer]) continue;
+    for (std::size_t l = layer * layer_size; l < (layer + 1) * layer_size; ++l) {
+      const double d = distance2(t, block.x[l], block.y[l], block.z[l]);
+      const double known = block.distance2[l];
+      const std::uint64_t holder = block.place[l];
+      const bool wins = (d < known) | ((d == known) & (place < holder));
+      block.distance2[l] = wins ? d : known;
+      block.place[l] = wins ? place : holder;
+    }
   }
 }
 
@@ -219,9 +233,10 @@ void Bvh::closest(PointBlock& block) const {
       if (near.distance2 <= bound) stack[height++] = near;
       continue;
     }
-    if (!any_nearer(block, node.box)) continue;
+    const Layers layers = nearer_layers(block, node.box);
+    if (layers == Layers{}) continue;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      offer(block, prepared_[i], i);
+      offer(block, layers, prepared_[i], i);
     bound = furthest(block) * slack;
   }
 }

@@ -89,6 +89,24 @@ TEST_CASE("the sign of open, flipped and torn meshes is that of the exact windin
   }
 }
 
+TEST_CASE("a field of a mesh twenty doublings larger or smaller is the same field, scaled",
+          "[dn_field]") {
+  const Surface surface = with_flipped(without_last(make_torus(1, 0.4, 24), 60), 31);
+  const Grid grid = grid_around(bounds(surface), 20, 0.3);
+  const Field field = build_exact(surface, grid);
+  for (const int doublings : {-20, 20}) {
+    const double scale = std::ldexp(1.0, doublings);
+    Surface scaled = surface;
+    for (Vec3& p : scaled.vertices) p = scale * p;
+    const Field other = build_exact(scaled, {scale * grid.origin, scale * grid.cell, grid.n});
+    int different = 0;
+    for (std::size_t at = 0; at < grid.size(); ++at)
+      different += other.distance[at] != std::ldexp(field.distance[at], doublings);
+    CHECK(different == 0);
+    CHECK(other.normal == field.normal);
+  }
+}
+
 TEST_CASE("an estimated winding number is within its stated error all over its ball",
           "[dn_field]") {
   const Surface surface = torn(make_torus(1, 0.4, 28), 2e-3);
