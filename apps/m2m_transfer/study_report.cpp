@@ -47,7 +47,7 @@ plot::Chart chart_of(const Study& study, Against against) {
       .title = against == Against::seconds ? "transfer: error against run time"
                                            : "transfer: error against the source's edge length",
       .x_label = against == Against::seconds
-                     ? fmt::format("seconds a transfer ({} PEs)", study.reports.front().pes)
+                     ? fmt::format("seconds a transfer, PEs: {}", study.reports.front().pes)
                      : "edge length of the source",
       .y_label = "error",
       .x_log = true,

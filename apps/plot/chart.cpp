@@ -57,7 +57,7 @@ std::string script(const Chart& chart) {
       "set encoding utf8\n"
       "set terminal svg noenhanced size 720,480 background rgb 'white' font 'sans-serif,13'\n"
       "set grid linetype 1 linecolor rgb '#dddddd'\nset border 3\nset tics nomirror\n"
-      "set key outside right top Left reverse samplen 2\nset format '%g'\n";
+      "set key outside right top Left reverse samplen 2\nset format '%.3g'\n";
   Text to(out);
   fmt::format_to(to, "set title {}\n", gnuplot_string(chart.title));
   fmt::format_to(to, "set xlabel {}\n", gnuplot_string(chart.x_label));
@@ -65,7 +65,10 @@ std::string script(const Chart& chart) {
   if (chart.x_log) out += "set logscale x\n";
   if (chart.y_log) out += "set logscale y\n";
   if (chart.equal_axes) out += "set size ratio -1\n";
-  if (!chart.x_ticks.empty()) fmt::format_to(to, "set xtics ({})\n", fmt::join(chart.x_ticks, ","));
+  if (!chart.x_ticks.empty()) {
+    fmt::format_to(to, "set xtics ({})\n", fmt::join(chart.x_ticks, ","));
+    out += "set xrange [*:*] noextend\n";  // no further, to a round number without a label
+  }
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     fmt::format_to(to, "$data{} << END\n", i);
     for (const Point& p : chart.series[i].points) {
