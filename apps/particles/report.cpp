@@ -98,6 +98,7 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
   if (row.lost >= 0) out["lost"] = row.lost;
   if (row.bounces >= 0) out["bounces"] = row.bounces;
   measured("ns", row.ns);
+  measured("of_tree", row.relative);
   return out;
 }
 

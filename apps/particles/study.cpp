@@ -76,17 +76,31 @@ void study_fields(const Subject& subject,
     }
 }
 
+/// A crowd's positions as look-ups take them.
+struct Crowd {
+  Crowd(const Subject& subject, std::size_t n) {
+    const Particles particles = crowd(subject, n);
+    x.assign(particles.x.begin(), particles.x.end());
+    y.assign(particles.y.begin(), particles.y.end());
+    z.assign(particles.z.begin(), particles.z.end());
+  }
+  std::vector<float> x, y, z;
+};
+
+double look_up_ns(const Crowd& of, const Ask& ask) {
+  const std::size_t n = of.x.size();
+  std::vector<float> distance(n), nx(n), ny(n), nz(n);
+  const Points points{of.x, of.y, of.z};
+  const Answers answers{distance, nx, ny, nz};
+  return fastest_seconds([&] { ask(points, answers); }) * 1e9 / static_cast<double>(n);
+}
+
 /// Nearest look-ups of a flat and a compressed field, by themselves: the step loop takes flat ones.
 void study_compression(const Subject& subject,
                        const StudyOptions& options,
                        std::vector<StudyRow>& rows) {
   const Samples samples = samples_of(subject, options.n_samples);
-  const Particles crowded = crowd(subject, options.n_timed);
-  const auto floats = [](const std::vector<double>& values) {
-    return std::vector<float>(values.begin(), values.end());
-  };
-  const std::vector<float> x = floats(crowded.x), y = floats(crowded.y), z = floats(crowded.z);
-  std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
+  const Crowd crowded(subject, options.n_timed);
   for (const int resolution : options.resolutions) {
     StudyRow row;
     row.part = "memory";
@@ -103,9 +117,7 @@ void study_compression(const Subject& subject,
       row.bytes = bytes;
       row.build_seconds = seconds;
       compare(ask, samples, row);
-      const Points points{x, y, z};
-      const Answers answers{distance, nx, ny, nz};
-      row.ns = fastest_seconds([&] { ask(points, answers); }) * 1e9 / static_cast<double>(x.size());
+      row.ns = look_up_ns(crowded, ask);
       rows.push_back(row);
     };
     measure("flat, look-up alone",
@@ -150,12 +162,25 @@ void study_rules(const Subject& subject, const BuiltField& built, std::vector<St
     }
 }
 
+/// Nanoseconds to find the closest triangle nearer than `reach` of a particle by a tree of boxes.
+double tree_ns(const Subject& subject, std::size_t n, double reach) {
+  const std::size_t n_asked = std::min<std::size_t>(n, 20'000);
+  const Particles particles = crowd(subject, n_asked);
+  double sum = 0;
+  const double seconds = fastest_seconds([&] {
+    for (std::size_t p = 0; p < n_asked; ++p)
+      sum += subject.tree.closest(particles.position(p), reach * reach).distance2;
+  });
+  return sum < 0 ? 0 : seconds * 1e9 / static_cast<double>(n_asked);
+}
+
 /// The paper's table 1: what collision costs, beside a tree of boxes that finds the closest
 /// triangle of each particle.
 void study_cost(const Subject& subject,
                 const BuiltField& built,
                 const StudyOptions& options,
                 std::vector<StudyRow>& rows) {
+  const std::size_t first = rows.size();
   StudyRow row;
   row.part = "cost";
   row.resolution = subject.object.resolution;
@@ -172,18 +197,26 @@ void study_cost(const Subject& subject,
       rows.push_back(row);
     }
   }
-  row.rule = "closest triangle by a tree of boxes";
-  row.look_up.clear();
-  const std::size_t n_asked = std::min<std::size_t>(n, 20'000);
-  const Particles particles = crowd(subject, n_asked);
-  const double limit = subject.thickness * subject.thickness;
-  double sum = 0;
-  const double seconds = fastest_seconds([&] {
-    for (std::size_t p = 0; p < n_asked; ++p)
-      sum += subject.tree.closest(particles.position(p), limit).distance2;
+  row.look_up = look_up_names.front();
+  row.rule = "compressed, look-up alone";
+  const CompressedField compressed = compress(built.field, usual_bound(built.field));
+  row.ns = look_up_ns(Crowd(subject, n), [&](const Points& points, const Answers& answers) {
+    nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
   });
-  row.ns = sum < 0 ? 0 : seconds * 1e9 / static_cast<double>(n_asked);
   rows.push_back(row);
+  row.look_up.clear();
+  row.rule = "tree of boxes, whole thickness";
+  row.ns = tree_ns(subject, n, subject.thickness);
+  rows.push_back(row);
+  row.rule = "tree of boxes, way of a step";
+  row.ns = tree_ns(subject, n, 0.1 * subject.thickness);
+  rows.push_back(row);
+  const double none = rows[first].ns, tree = row.ns;
+  for (std::size_t i = first; i < rows.size(); ++i) {
+    const bool steps = rows[i].rule.starts_with("impact");
+    rows[i].relative = (rows[i].ns - (steps ? none : 0)) / tree;
+  }
+  rows[first].relative = -1;
 }
 
 }  // namespace

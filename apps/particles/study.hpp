@@ -28,6 +28,7 @@ struct StudyRow {
   std::int64_t lost = -1;          ///< particles that went in, or on as if nothing were there
   std::int64_t bounces = -1;       ///< out of so many
   double ns = -1;                  ///< a particle and step; fastest of three
+  double relative = -1;            ///< cost of collision, as a part of that by a tree of boxes
   std::string note;                ///< why a choice is refused
 };
 

@@ -58,7 +58,7 @@ void draw(const std::string& path,
 std::string study_table(const std::vector<StudyRow>& rows) {
   std::string out = fmt::format(
       "{:<6} {:>5} {:<9} {:<9} {:<35} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} {:>9} {:>7} "
-      "{:>9} {:>8}\n",
+      "{:>9} {:>8} {:>8}\n",
       "study",
       "n",
       "method",
@@ -75,7 +75,8 @@ std::string study_table(const std::vector<StudyRow>& rows) {
       "place",
       "angle",
       "lost",
-      "ns");
+      "ns",
+      "of tree");
   for (const StudyRow& row : rows) {
     if (!row.note.empty()) {
       out += fmt::format(
@@ -85,7 +86,7 @@ std::string study_table(const std::vector<StudyRow>& rows) {
     const std::string lost = row.lost < 0 ? "-" : fmt::format("{}/{}", row.lost, row.bounces);
     out += fmt::format(
         "{:<6} {:>5} {:<9} {:<9} {:<35} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} {:>9} "
-        "{:>7} {:>9} {:>8}\n",
+        "{:>7} {:>9} {:>8} {:>8}\n",
         row.part,
         row.resolution,
         row.method,
@@ -102,7 +103,8 @@ std::string study_table(const std::vector<StudyRow>& rows) {
         cell(row.place_error, "{:.2e}"),
         cell(row.angle_error, "{:.3f}"),
         lost,
-        cell(row.ns, "{:.3f}"));
+        cell(row.ns, "{:.3f}"),
+        cell(row.relative, "{:.4f}"));
   }
   out +=
       "lengths in the object's units, angles in degrees, RMS but for max and depth; step: speed x "
@@ -115,12 +117,12 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
   std::string out =
       "part,resolution,method,look_up,rule,step,build_seconds,bytes,distance_error,"
       "distance_error_max,normal_error_degrees,penetration,place_error,angle_error_degrees,lost,"
-      "bounces,ns,note\n";
+      "bounces,ns,of_tree,note\n";
   const auto number = [](double value) {
     return value < 0 ? std::string() : fmt::format("{}", value);
   };
   for (const StudyRow& row : rows)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                        row.part,
                        row.resolution,
                        row.method,
@@ -138,6 +140,7 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
                        row.lost < 0 ? "" : cell(row.lost),
                        row.bounces < 0 ? "" : cell(row.bounces),
                        number(row.ns),
+                       number(row.relative),
                        plot::csv_field(row.note));
   return out;
 }

@@ -31,13 +31,13 @@ TEST_CASE("exact bounces lie on the surface and mirror the velocity", "[particle
 TEST_CASE("the study finds the orders of the look-ups, and no particle lost where none may be",
           "[particles][study]") {
   const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
-    "objects": [{"shape": {"sphere": {"radius": 1, "rings": 60}}, "resolution": 24, "thickness": 1}],
+    "objects": [{"shape": {"sphere": {"radius": 1, "rings": 30}}, "resolution": 24, "thickness": 1}],
     "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
                                   "scene.json");
   StudyOptions options;
   options.resolutions = {12, 23};
   options.n_samples = 1000;
-  options.n_bounces = 40;
+  options.n_bounces = 30;
   options.n_timed = 100;
   const std::vector<StudyRow> rows = study(scene, options);
   const auto row_of = [&](int resolution, const char* look_up) {
