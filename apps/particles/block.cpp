@@ -17,6 +17,17 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Whether an explosion acts in these steps, or in one before or after: rounding of times aside.
+bool explodes_within(const Scene& scene, const Stretch& stretch) {
+  const double begin = (stretch.first - 1) * scene.dt,
+               end = (stretch.first + stretch.n_steps + 1) * scene.dt;
+  return std::any_of(scene.rules.explosions.begin(),
+                     scene.rules.explosions.end(),
+                     [=](const tess::dn::Explosion& explosion) {
+                       return explosion.start < end && explosion.start + explosion.duration > begin;
+                     });
+}
+
 /// Whether any particle stands outside of the box: one pass without branches, since most stretches
 /// end with none.
 bool any_outside(const tess::dn::Particles& motion, const tess::dn::Bounds& box) {
@@ -68,7 +79,7 @@ void Block::advance(std::size_t species, const Stretch& stretch, Station& statio
   }
   // An explosion begins at a time: asked step by step, it is the same time for every exchange.
   const Scene& scene = station.stage().scene;
-  const std::int32_t at_once = scene.rules.explosions.empty() ? stretch.n_steps : 1;
+  const std::int32_t at_once = explodes_within(scene, stretch) ? 1 : stretch.n_steps;
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);
   const double begin = cpu_seconds();
   for (std::int32_t done = 0; done < stretch.n_steps; done += at_once) {

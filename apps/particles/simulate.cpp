@@ -3,6 +3,7 @@
 #include "apps/particles/block.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace particles {
 namespace {
@@ -40,11 +41,12 @@ bool is_audited(const Scene& scene) {
 }
 
 double block_edge(const Scene& scene) {
-  constexpr double blocks_an_axis = 4;
+  constexpr double particles_a_block = 2000, most_an_axis = 8;
   if (scene.block > 0) return scene.block;
   const tess::dn::Vec3 size = Source(scene).bounds().size();
   const double longest = std::max({size.x, size.y, size.z});
-  return longest > 0 ? longest / blocks_an_axis : 1;
+  const double an_axis = std::cbrt(static_cast<double>(scene.n_particles()) / particles_a_block);
+  return longest > 0 ? longest / std::clamp(an_axis, 1.0, most_an_axis) : 1;
 }
 
 std::int32_t exchange_interval(const Scene& scene) {
