@@ -1,11 +1,9 @@
 #include "collide/dn_field/stepper.hpp"
 
-#include "collide/dn_field/rule_table.hpp"
-#include "collide/dn_field/screen.hpp"
 #include "collide/dn_field/spring_limit.hpp"
+#include "collide/dn_field/step_plan.hpp"
 #include "collide/dn_field/trace.hpp"
 #include "collide/dn_field/velocity_rules.hpp"
-#include "runtime/error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,86 +13,6 @@ namespace {
 
 constexpr int steps_unscreened = 7;  // of a block whose particles were mostly near
 constexpr int steps_at_once = 64;    // for which the objects' positions are made in advance
-
-LinearFlow linear_flow(double rate, double step) {
-  const double x = rate * step;
-  if (!(x > 0)) return {1, step, 1, 0.5 * step};
-  const double lost = -std::expm1(-x), mean_keep = lost / x;
-  // 1 − (1 − exp(−x))/x, by its series where it cancels
-  const double mean_lost =
-      x < 0.02 ? x * (1.0 / 2 - x * (1.0 / 6 - x * (1.0 / 24 - x * (1.0 / 120 - x / 720))))
-               : 1 - mean_keep;
-  return {1 - lost, lost / rate, mean_keep, mean_lost / rate};
-}
-
-/// What flies far from all surfaces.
-Flight flight_of(const Rules& rules) {
-  if (rules.wind || (rules.air_drag && rules.air_drag->law == DragLaw::linear)) return Flight::air;
-  return rules.gravity ? Flight::fall : Flight::none;
-}
-
-LoopKey key_of(const Rules& rules) {
-  LoopKey key;
-  const bool drags = rules.surface_drag && rules.surface_drag->law == DragLaw::linear;
-  key.flight = drags ? Flight::surface : flight_of(rules);
-  if (rules.impact)
-    key.impacts = rules.impact->sweep == Sweep::on ? Impacts::swept : Impacts::plain;
-  if (rules.spring) key.springs = Springs::exact;
-  if (rules.surface_flow) key.flows = Flows::turned;
-  return key;
-}
-
-RuleConstants constants_of(const Rules& rules, double step) {
-  RuleConstants c;
-  c.step = step;
-  double rate = 0;
-  if (rules.gravity) c.acceleration += rules.gravity->acceleration;
-  if (rules.wind) {
-    rate += rules.wind->rate;
-    c.acceleration += rules.wind->rate * rules.wind->velocity;
-  }
-  if (rules.air_drag && rules.air_drag->law == DragLaw::linear) rate += rules.air_drag->rate;
-  if (rules.surface_drag && rules.surface_drag->law == DragLaw::linear) {
-    c.surface_rate = rules.surface_drag->rate;
-    c.surface_threshold = rules.surface_drag->threshold;
-  }
-  c.air = linear_flow(rate, step);
-  c.surface = linear_flow(rate + c.surface_rate, step);
-  c.curved = rate + c.surface_rate > 0 ? 0 : 1;
-  if (rules.impact) {
-    c.restitution = rules.impact->restitution;
-    c.threshold = rules.impact->threshold;
-  }
-  if (rules.surface_flow) {
-    c.turn_in = rules.surface_flow->alpha_in * step;
-    c.turn_out = rules.surface_flow->alpha_out * step;
-    c.flow_distance = rules.surface_flow->distance;
-  }
-  if (rules.spring) {
-    const double gamma = 0.5 * rules.spring->damping, k = rules.spring->stiffness;
-    const double omega = std::sqrt(k - gamma * gamma), phase = omega * step;
-    c.spring = {k, omega, gamma, rules.spring->reach};
-    c.spring.soft = phase < 1.5;
-    c.spring.cosine = std::cos(phase), c.spring.sine = std::sin(phase);
-    c.spring.kept = std::exp(-gamma * step);
-  }
-  return c;
-}
-
-}  // namespace
-
-struct Stepper::Plan {
-  Rules rules;
-  double step = 0;
-  RuleConstants constants;
-  bool looks_up = false;
-  Sweep sweep = Sweep::off;
-  ClosestPass look_up_at_rest = nullptr, look_up_general = nullptr;
-  RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
-  RuleLoop loop_without = nullptr;  ///< for particles that feel no surface
-};
-
-namespace {
 
 /// The number of steps since time 0, whole where `time` is meant to be a sum or multiple of steps:
 /// then a run from there sees the same times to the bit as one that came by.
@@ -269,103 +187,6 @@ const Rules& Stepper::rules() const {
 }
 double Stepper::step() const {
   return plan_->step;
-}
-
-Stepper make_stepper(const Rules& rules, double step) {
-  validate(rules);
-  if (!(step > 0) || !std::isfinite(step))
-    fail(ErrorCode::bad_value, "step is ", step, "; give a positive, finite time");
-  const LoopKey key = key_of(rules);
-  const Sweep sweep = key.impacts == Impacts::swept ? Sweep::on : Sweep::off;
-  const Ask ask = needed_content(rules) == Content::distance_and_normal ? Ask::both : Ask::distance;
-  auto plan = std::make_shared<Stepper::Plan>();
-  *plan = {rules,
-           step,
-           constants_of(rules, step),
-           needs_field(rules),
-           sweep,
-           closest_pass(rules.look_up, ask, Setting::one_at_rest, sweep),
-           closest_pass(rules.look_up, ask, Setting::general, sweep),
-           rule_loop_at_rest(key),
-           rule_loop_general(key),
-           rule_loop_at_rest({flight_of(rules)})};
-  return Stepper(std::move(plan));
-}
-
-void advance(std::span<Object> objects, double step, int n_steps) {
-  for (Object& object : objects)
-    if (object.frame.is_moving())
-      for (int i = 0; i < n_steps; ++i) object.frame.advance(step);
-}
-
-void validate(const Rules& rules, std::span<const Object> objects) {
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const Object& object = objects[i];
-    const Frame& frame = object.frame;
-    if (object.field == nullptr || object.field->distance.size() != object.field->grid.size() ||
-        object.field->distance.empty())
-      fail(ErrorCode::bad_argument, "object ", i, " has no field; build one");
-    if (object.field->grid.size() >= std::size_t{1} << 31U)
-      fail(ErrorCode::bad_argument,
-           "object ",
-           i,
-           " has ",
-           object.field->grid.size(),
-           " voxels, above 2^31; lower its resolution");
-    if (needed_content(rules) == Content::distance_and_normal &&
-        object.field->normal.size() != object.field->grid.size())
-      fail(ErrorCode::bad_argument,
-           "object ",
-           i,
-           " stores no normals and a rule or the tangent look-up needs them; build its field with "
-           "distance and normal");
-    const double thickness = object.field->thickness * frame.scale;
-    if (reach(rules) > thickness)
-      fail(ErrorCode::bad_argument,
-           "a rule reaches ",
-           reach(rules),
-           " from the surface, and the field of object ",
-           i,
-           " only ",
-           thickness,
-           "; build a thicker field or shorten the rule's distance");
-    if (!(frame.scale > 0) || !std::isfinite(frame.scale))
-      fail(ErrorCode::bad_argument,
-           "object ",
-           i,
-           " is scaled by ",
-           frame.scale,
-           "; give a positive, finite scale");
-    for (const Vec3 v : {frame.position, frame.velocity, frame.angular_velocity})
-      if (!is_finite(v))
-        fail(ErrorCode::bad_argument,
-             "object ",
-             i,
-             " has (",
-             v.x,
-             ", ",
-             v.y,
-             ", ",
-             v.z,
-             ") as position or velocity; give finite numbers");
-  }
-}
-
-double kinetic_energy(ParticleSpan particles) {
-  double twice = 0;
-  for (std::size_t p = 0; p < particles.count; ++p) {
-    const Vec3 v{particles.vx[p], particles.vy[p], particles.vz[p]};
-    if (const double square = dot(v, v); std::isfinite(square)) twice += square;
-  }
-  return 0.5 * twice;
-}
-
-std::size_t count_nonfinite(ParticleSpan particles) {
-  std::size_t found = 0;
-  for (std::size_t p = 0; p < particles.count; ++p)
-    found += !is_finite({particles.x[p], particles.y[p], particles.z[p]}) ||
-             !is_finite({particles.vx[p], particles.vy[p], particles.vz[p]});
-  return found;
 }
 
 }  // namespace tess::dn

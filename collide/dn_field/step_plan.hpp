@@ -1,0 +1,21 @@
+// What make_stepper() works out once for a scene: the constants of its rules and the loops that
+// hold them. Private to the step loop.
+#pragma once
+
+#include "collide/dn_field/rule_table.hpp"
+#include "collide/dn_field/screen.hpp"
+
+namespace tess::dn {
+
+struct Stepper::Plan {
+  Rules rules;
+  double step = 0;
+  RuleConstants constants;
+  bool looks_up = false;
+  Sweep sweep = Sweep::off;
+  ClosestPass look_up_at_rest = nullptr, look_up_general = nullptr;
+  RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
+  RuleLoop loop_without = nullptr;  ///< for particles that feel no surface
+};
+
+}  // namespace tess::dn
