@@ -32,16 +32,19 @@ void require_blur(const Blur& blur) {
     fail(ErrorCode::bad_argument, "blur of ", blur.rounds, " rounds; it takes at least one");
 }
 
-Plan choose_plan(const Bounds& box, const Demand& demand, Sweep sweep, std::size_t max_voxels) {
+FieldPlan choose_plan(const Bounds& box,
+                      const Demand& demand,
+                      Coverage coverage,
+                      std::size_t max_voxels) {
   Demand asked = demand;
-  if (sweep == Sweep::along_step) asked.max_speed = 0;
+  if (coverage == Coverage::swept) asked.max_speed = 0;
   const Choice choice = choose(box, asked, max_voxels);
   // The cell came out a little smaller than asked for: two cells are still covered.
   return {choice.grid, choice.thickness, choose_blur(choice.grid, choice.thickness)};
 }
 
-void require_reach(const Demand& demand, Sweep sweep, double thickness) {
-  if (sweep == Sweep::none) require_covered(demand, thickness);
+void require_reach(const Demand& demand, Coverage coverage, double thickness) {
+  if (coverage == Coverage::step) require_covered(demand, thickness);
 }
 
 }  // namespace tess::dn

@@ -6,8 +6,9 @@
 
 namespace tess::dn {
 
-/// Whether look-ups search along a particle's step. Then no speed passes through the field.
-enum class Sweep { none, along_step };
+/// What a field has to cover: the way of a whole step, or, where look-ups are swept along the step
+/// and no speed passes through, its own few cells.
+enum class Coverage { step, swept };
 
 /// A 3D blur with linear attenuation: weight 1 − r / (radius + 1) for voxels at most radius away.
 struct Blur {
@@ -21,7 +22,7 @@ struct Blur {
 /// Throws Error(bad_argument) for a radius outside 2 … 4 or no round.
 void require_blur(const Blur& blur);
 
-struct Plan {
+struct FieldPlan {
   Grid grid;
   double thickness = 0;
   Blur blur;
@@ -29,13 +30,13 @@ struct Plan {
 
 /// Resolution from the smallest feature, thickness from speed × step (two cells, where look-ups are
 /// swept), blur from both. Throws Error(bad_argument) where more than `max_voxels` would be needed.
-[[nodiscard]] Plan choose_plan(const Bounds& box,
-                               const Demand& demand,
-                               Sweep sweep,
-                               std::size_t max_voxels);
+[[nodiscard]] FieldPlan choose_plan(const Bounds& box,
+                                    const Demand& demand,
+                                    Coverage coverage,
+                                    std::size_t max_voxels);
 
 /// Throws Error(bad_argument) where a given thickness is passed in one step and look-ups are not
 /// swept.
-void require_reach(const Demand& demand, Sweep sweep, double thickness);
+void require_reach(const Demand& demand, Coverage coverage, double thickness);
 
 }  // namespace tess::dn

@@ -14,38 +14,8 @@ constexpr int min_shift = 2, max_shift = 4;
 constexpr int min_normal_bits = 4, max_normal_bits = 11;
 constexpr double entry_share = 0.4;  // of the angle's bound that writing an entry may take
 
-Vec3 to_vec3(const Normal& n) {
-  return {static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
-}
-
 double angle_between(Vec3 a, Vec3 b) {
   return std::atan2(norm(cross(a, b)), dot(a, b));
-}
-
-/// The two coordinates of `normal` on the octahedral map that decode closest to it.
-std::uint32_t narrow_normal(const EntryDecoder& decoder, Vec3 normal) {
-  const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-  if (!(sum > 0)) return decoder.mask << decoder.bits;
-  double u = normal.x / sum, v = normal.y / sum;
-  if (normal.z < 0) {
-    const double folded = (1 - std::abs(v)) * (u >= 0 ? 1 : -1);
-    v = (1 - std::abs(u)) * (v >= 0 ? 1 : -1);
-    u = folded;
-  }
-  const auto low = [&](double t) {
-    return std::clamp(
-        static_cast<int>(std::floor((t + 1) * decoder.middle)), 0, 2 * decoder.middle - 1);
-  };
-  std::uint32_t best = 0;
-  double closest = -2;
-  for (int corner = 0; corner < 4; ++corner) {
-    const auto cu = static_cast<std::uint32_t>(low(u) + (corner & 1));
-    const auto cv = static_cast<std::uint32_t>(low(v) + (corner >> 1));
-    const std::uint32_t word = cu << decoder.bits | cv;
-    const double agree = dot(to_vec3(decoder.narrow(word).normal), normal);
-    if (agree > closest) closest = agree, best = word;
-  }
-  return best;
 }
 
 struct Entry {

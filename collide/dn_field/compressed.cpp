@@ -30,12 +30,12 @@ struct Reader {
 };
 
 template <bool wide, Want want>
-void look_up(const CompressedField& field,
-             const Points& points,
-             float* __restrict distance,
-             float* __restrict out_x,
-             float* __restrict out_y,
-             float* __restrict out_z) {
+void read_planes(const CompressedField& field,
+                 const Points& points,
+                 float* __restrict distance,
+                 float* __restrict out_x,
+                 float* __restrict out_y,
+                 float* __restrict out_z) {
   const Reader r(field);
   const EntryDecoder decoder(field.layout);
   const std::uint32_t* __restrict const block = field.block.data();
@@ -86,7 +86,7 @@ void check_sizes(const Points& points, std::size_t count) {
   TESS_CHECK(count < (std::size_t{1} << 31U), "points are numbered in 31 bits");
 }
 
-void check_normals(const CompressedField& field, const NormalSpans3& normal, std::size_t count) {
+void check_normals(const CompressedField& field, const NormalColumns& normal, std::size_t count) {
   TESS_CHECK(normal.x.size() == count && normal.y.size() == count && normal.z.size() == count,
              "expected room for ",
              count,
@@ -101,26 +101,28 @@ void nearest_distance(const CompressedField& field,
                       std::span<float> distance) {
   check_sizes(points, distance.size());
   const auto run =
-      field.layout.wide ? look_up<true, Want::distance> : look_up<false, Want::distance>;
+      field.layout.wide ? read_planes<true, Want::distance> : read_planes<false, Want::distance>;
   run(field, points, distance.data(), nullptr, nullptr, nullptr);
 }
 
 void nearest_normal(const CompressedField& field,
                     const Points& points,
-                    const NormalSpans3& normal) {
+                    const NormalColumns& normal) {
   check_sizes(points, points.x.size());
   check_normals(field, normal, points.x.size());
-  const auto run = field.layout.wide ? look_up<true, Want::normal> : look_up<false, Want::normal>;
+  const auto run =
+      field.layout.wide ? read_planes<true, Want::normal> : read_planes<false, Want::normal>;
   run(field, points, nullptr, normal.x.data(), normal.y.data(), normal.z.data());
 }
 
 void nearest(const CompressedField& field,
              const Points& points,
              std::span<float> distance,
-             const NormalSpans3& normal) {
+             const NormalColumns& normal) {
   check_sizes(points, distance.size());
   check_normals(field, normal, distance.size());
-  const auto run = field.layout.wide ? look_up<true, Want::both> : look_up<false, Want::both>;
+  const auto run =
+      field.layout.wide ? read_planes<true, Want::both> : read_planes<false, Want::both>;
   run(field, points, distance.data(), normal.x.data(), normal.y.data(), normal.z.data());
 }
 

@@ -56,7 +56,7 @@ struct CompressedField {
                                        int block_shift = 0);
 
 /// Unit normals of n points, or zero where there is none.
-struct NormalSpans3 {
+struct NormalColumns {
   std::span<float> x, y, z;
 };
 
@@ -67,12 +67,14 @@ void nearest_distance(const CompressedField& field,
 
 /// The normal of the nearest voxel; zero outside the grid and for NaN points. The field must have
 /// content distance_and_normal.
-void nearest_normal(const CompressedField& field, const Points& points, const NormalSpans3& normal);
+void nearest_normal(const CompressedField& field,
+                    const Points& points,
+                    const NormalColumns& normal);
 
 /// Both.
 void nearest(const CompressedField& field,
              const Points& points,
              std::span<float> distance,
-             const NormalSpans3& normal);
+             const NormalColumns& normal);
 
 }  // namespace tess::dn

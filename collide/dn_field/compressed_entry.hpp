@@ -47,6 +47,14 @@ struct EntryDecoder {
   float per_middle, step;
 };
 
+/// The two coordinates of `normal` on the octahedral map that decode closest to it, or the code of
+/// no normal for zero.
+[[nodiscard]] std::uint32_t narrow_normal(const EntryDecoder& decoder, Vec3 normal);
+
+inline Vec3 to_vec3(const Normal& n) {
+  return {static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
+}
+
 /// The distance of a voxel whose centre is (x, y, z) from the cell's middle.
 inline float distance_to(const Plane& plane, float x, float y, float z, float thickness) {
   const float d = plane.distance + (plane.normal.x * x + plane.normal.y * y + plane.normal.z * z);

@@ -59,6 +59,7 @@ TEST_CASE("the fast sign of a closed mesh is that of the winding number", "[dn_f
   const Bvh tree(torus);
   int wrong = 0;
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
+    if (at % 3 != 0) return;  // a lost crossing is wrong from there to the end of its line
     if (std::abs(field.distance[at]) > 1e-6F)
       wrong += (field.distance[at] < 0) != (tree.winding_number(p, 0) > 0.5);
   });

@@ -75,13 +75,14 @@ TEST_CASE("the sign of open, flipped and torn meshes is that of the exact windin
                                  without_last(make_sphere(1, 16), 256),
                                  without_last(make_box({1, 0.7, 0.5}), 2),
                                  make_plate(1, 6)}) {
-    const Grid grid = grid_around(bounds(surface), 22, 0.25);
+    const Grid grid = grid_around(bounds(surface), 15, 0.25);
     const Bvh tree(surface);
     const Field field = build_exact(surface, grid);
     int wrong = 0, inside = 0;
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
       const double w = tree.winding_number(p, 0);
       inside += w > 0.5;
+      if (std::abs(field.distance[at]) < 1e-9F) return;  // on the surface: neither side
       if (std::abs(w - 0.5) > 0.01) wrong += (field.distance[at] < 0) != (w > 0.5);
     });
     INFO(surface.triangles.size() << " triangles, " << inside << " voxels inside");
