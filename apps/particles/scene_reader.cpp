@@ -2,6 +2,7 @@
 #include "apps/particles/rules_reader.hpp"
 #include "apps/particles/scene.hpp"
 #include "apps/particles/shape_reader.hpp"
+#include "collide/dn_field/grid.hpp"
 #include "runtime/error.hpp"
 
 #include <cmath>
@@ -102,6 +103,14 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
     slice.read("object", object, 0, static_cast<int>(objects.size()) - 1);
     outputs.slice = Outputs::Slice{static_cast<std::size_t>(object), 0};
     slice.read("at", outputs.slice->at);
+    const SceneObject& of = objects[outputs.slice->object];
+    const tess::dn::Grid grid =
+        tess::dn::grid_around(bounds(of.surface), of.resolution, of.thickness);
+    const double low = component(grid.origin, outputs.axis),
+                 high = low + grid.cell * (of.resolution - 1), at = outputs.slice->at;
+    if (at < low || at > high)
+      keys["slice"].refuse(
+          tess::text("cuts at ", at, ", which is not within the field: ", low, " … ", high));
   }
   return outputs;
 }

@@ -119,6 +119,18 @@ TEST_CASE("without swept look-up a step that passes the field is refused", "[par
         std::string::npos);
 }
 
+TEST_CASE("a picture outside of the field is refused", "[particles][scene]") {
+  const std::string end = "\"restitution\": 0.7}}";
+  const auto cut_at = [&](const std::string& at) {
+    return refusal(scene_with(
+        end,
+        end + ", \"outputs\": {\"axis\": \"x\", \"slice\": {\"object\": 1, \"at\": " + at + "}}"));
+  };
+  CHECK(cut_at("1.4") == "accepted");
+  CHECK(cut_at("1.6").find("outputs.slice: {\"at\":1.6,\"object\":1} cuts at 1.6, which is not "
+                           "within the field: -1.5 … 1.5") != std::string::npos);
+}
+
 TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
   const std::string large = R"({"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 1024})";
   std::string objects = large;
