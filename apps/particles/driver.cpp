@@ -1,0 +1,76 @@
+#include "apps/particles/driver.hpp"
+
+#include "apps/particles/picture.hpp"
+#include "apps/particles/report.hpp"
+#include "apps/particles/simulate.hpp"
+#include "apps/particles/study.hpp"
+#include "apps/particles/vtp.hpp"
+#include "apps/plot/write_file.hpp"
+
+#include <filesystem>
+
+namespace particles {
+namespace {
+
+/// Lives on process 0; other processes hold it, too, but do not use it.
+struct Problem {
+  const DriverOptions& options;
+  Scene scene;
+  Report report;
+};
+
+void write_pictures(const std::string& folder, const Stage& stage, const RunResult& result) {
+  const Scene& scene = stage.scene;
+  const std::filesystem::path in(folder);
+  if (const auto& slice = scene.outputs.slice)
+    plot::write_file((in / "field.svg").string(),
+                     slice_svg(stage.fields[slice->object].field(), scene.outputs.axis, slice->at));
+  if (result.trajectories.empty()) return;
+  write_series(folder, result.trajectories, scene.dt);
+  plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));
+}
+
+tess::Task run(Problem& problem) {
+  const auto stage = std::make_shared<Stage>(std::move(problem.scene));
+  RunResult result;
+  co_await simulate(stage, result);
+  const DriverOptions& options = problem.options;
+  tess::print(table(stage->scene, result, problem.report));
+  if (options.study) {
+    problem.report.study = study(stage->scene, {});
+    tess::print(study_table(problem.report.study));
+    if (!options.out.empty()) write_study(options.out, problem.report.study);
+  }
+  if (!options.json.empty()) {
+    problem.report.bytes_compressed = compressed_bytes(*stage);
+    plot::write_file(options.json, json(stage->scene, result, problem.report));
+  }
+  if (!options.out.empty()) write_pictures(options.out, *stage, result);
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error)
+    tess::fail(tess::ErrorCode::environment, "--out ", path, ": cannot be made: ", error.message());
+}
+
+}  // namespace
+
+int drive(tess::Setup& setup, const DriverOptions& options) {
+  Problem problem{options, read_scene(options.scene), {}};
+  if (options.steps >= 0) problem.scene.steps = options.steps;
+  if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
+  if (options.out.empty()) problem.scene.outputs.slice.reset();
+  const tess::Machine& machine = *setup.machine;
+  problem.report = {machine.describe(), machine.n_pes(), machine.n_processes()};
+  if (!options.out.empty()) make_folder(options.out);
+  if (options.study && problem.scene.objects.empty())
+    tess::fail(tess::ErrorCode::bad_value,
+               options.scene,
+               ": objects: is empty; --study needs an object to bounce off");
+  if (options.explain && machine.process().value == 0) tess::print(explanation(problem.scene));
+  return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });
+}
+
+}  // namespace particles

@@ -1,0 +1,144 @@
+#include "apps/particles/emit.hpp"
+
+#include "runtime/base/mix.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace particles {
+namespace {
+using tess::dn::Bounds;
+using tess::dn::Vec3;
+
+/// The random numbers of one particle: the k-th is mixed from seed, number and k.
+class Numbers {
+ public:
+  Numbers(std::uint64_t seed, std::uint64_t number) : state_(tess::mix(tess::mix(seed) + number)) {}
+  double unit() {
+    constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
+    return static_cast<double>(tess::mix(state_ += golden) >> 11U) * 0x1p-53;
+  }
+  double between(double low, double high) { return low + (high - low) * unit(); }
+  Vec3 direction() {  // uniform on the sphere (Archimedes)
+    const double z = between(-1, 1), turn = 2 * std::numbers::pi * unit();
+    const double r = std::sqrt(std::max(0.0, 1 - z * z));
+    return {r * std::cos(turn), r * std::sin(turn), z};
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+double lattice_at(double low, double high, std::uint64_t i, std::uint64_t n) {
+  return n == 1 ? 0.5 * (low + high)
+                : low + (high - low) * (static_cast<double>(i) / static_cast<double>(n - 1));
+}
+
+std::vector<double> area_sums(const tess::dn::Surface& surface) {
+  std::vector<double> sums;
+  double sum = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    sums.push_back(sum += 0.5 * norm(cross(b - a, c - a)));
+  }
+  return sums;
+}
+
+void add_random_velocity(Start& start, double spread, Numbers& random) {
+  if (spread == 0) return;
+  const double x = random.between(-spread, spread), y = random.between(-spread, spread),
+               z = random.between(-spread, spread);
+  start.velocity += {x, y, z};
+}
+
+}  // namespace
+
+Source::Source(const Scene& scene) : scene_(scene), first_{0}, areas_(scene.objects.size()) {
+  for (const Emitter& emitter : scene.emitters) {
+    first_.push_back(first_.back() + emitter.count);
+    if (emitter.where == Emitter::Where::surface && areas_[emitter.object].empty())
+      areas_[emitter.object] = area_sums(scene.objects[emitter.object].surface);
+  }
+}
+
+Start Source::from_surface(const Emitter& emitter, std::uint64_t number) const {
+  Numbers random(emitter.seed, number);
+  const SceneObject& object = scene_.objects[emitter.object];
+  const std::vector<double>& sums = areas_[emitter.object];
+  const double area = random.unit() * sums.back();
+  const auto at = std::upper_bound(sums.begin(), sums.end() - 1, area) - sums.begin();
+  const auto [a, b, c] = object.surface.corners(static_cast<std::size_t>(at));
+  const double root = std::sqrt(random.unit()), v = random.unit();
+  const Vec3 on = (1 - root) * a + (root * (1 - v)) * b + (root * v) * c;
+  const Vec3 normal = direction(cross(b - a, c - a));
+  const tess::dn::Frame& frame = object.frame;
+  Start start;
+  start.position =
+      frame.to_world(on) + random.between(emitter.inner, emitter.outer) * frame.rotate(normal);
+  start.velocity = emitter.velocity + emitter.outward * frame.rotate(normal);
+  add_random_velocity(start, emitter.spread, random);
+  return start;
+}
+
+Start Source::particle(std::uint64_t id) const {
+  const auto after = std::upper_bound(first_.begin(), first_.end(), id);
+  const auto which = static_cast<std::size_t>(after - first_.begin()) - 1;
+  const Emitter& emitter = scene_.emitters[which];
+  const std::uint64_t number = id - first_[which];
+  Numbers random(emitter.seed, number);
+  Start start;
+  start.velocity = emitter.velocity;
+  switch (emitter.where) {
+    case Emitter::Where::box: {
+      const double x = random.between(emitter.low.x, emitter.high.x),
+                   y = random.between(emitter.low.y, emitter.high.y),
+                   z = random.between(emitter.low.z, emitter.high.z);
+      start.position = {x, y, z};
+      break;
+    }
+    case Emitter::Where::lattice: {
+      const auto [nx, ny, nz] = emitter.lattice;
+      start.position = {lattice_at(emitter.low.x, emitter.high.x, number % nx, nx),
+                        lattice_at(emitter.low.y, emitter.high.y, number / nx % ny, ny),
+                        lattice_at(emitter.low.z, emitter.high.z, number / nx / ny, nz)};
+      break;
+    }
+    case Emitter::Where::sphere: {
+      const Vec3 towards = random.direction();
+      const double inner = emitter.inner * emitter.inner * emitter.inner,
+                   outer = emitter.outer * emitter.outer * emitter.outer;
+      start.position = emitter.centre + std::cbrt(random.between(inner, outer)) * towards;
+      start.velocity += emitter.outward * towards;
+      break;
+    }
+    case Emitter::Where::surface:
+      start = from_surface(emitter, number);
+      break;
+  }
+  if (emitter.where != Emitter::Where::surface) add_random_velocity(start, emitter.spread, random);
+  start.mass = emitter.mass;
+  return start;
+}
+
+Bounds Source::bounds() const {
+  Bounds box;
+  for (const Emitter& emitter : scene_.emitters) {
+    const Vec3 r{emitter.outer, emitter.outer, emitter.outer};
+    if (emitter.where == Emitter::Where::sphere) {
+      box.extend(emitter.centre - r);
+      box.extend(emitter.centre + r);
+    } else if (emitter.where == Emitter::Where::surface) {
+      const SceneObject& object = scene_.objects[emitter.object];
+      for (const Vec3 p : object.surface.vertices) {
+        box.extend(object.frame.to_world(p) - r);
+        box.extend(object.frame.to_world(p) + r);
+      }
+    } else {
+      box.extend(emitter.low);
+      box.extend(emitter.high);
+    }
+  }
+  return box;
+}
+
+}  // namespace particles

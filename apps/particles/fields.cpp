@@ -1,0 +1,144 @@
+#include "apps/particles/fields.hpp"
+
+#include "apps/particles/blurred_field.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace particles {
+namespace {
+using namespace tess::dn;
+
+/// Whether the segment crosses the triangle (Möller and Trumbore 1997), from either side.
+bool crosses(Vec3 from, Vec3 to, const std::array<Vec3, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  const Vec3 along = to - from, ab = b - a, ac = c - a;
+  const Vec3 h = cross(along, ac);
+  const double determinant = dot(ab, h);
+  if (determinant == 0) return false;
+  const Vec3 s = from - a;
+  const double u = dot(s, h) / determinant;
+  const Vec3 q = cross(s, ab);
+  const double v = dot(along, q) / determinant, t = dot(ac, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t <= 1;
+}
+
+}  // namespace
+
+Content content_of(const Scene& scene) {
+  return scene.outputs.slice ? Content::distance_and_normal : needed_content(scene.rules);
+}
+
+void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
+  start_ = std::chrono::steady_clock::now();
+  const Grid grid = grid_around(bounds(object.surface), object.resolution, object.thickness);
+  if (object.method != Method::exact) {
+    field_ = blurred_field(object.surface, grid, object.method, object.sides, object.thickness);
+    if (content == Content::distance) field_.normal = {};
+    return;
+  }
+  ExactOptions options;
+  options.sides = object.sides;
+  options.content = content;
+  options.thickness = object.thickness;
+  builder_.emplace(object.surface, grid, options);
+  field_ = builder_->empty_field();
+  furthest_.assign(static_cast<std::size_t>(n_parts), 0);
+}
+
+void FieldInTheMaking::fill(int part) {
+  if (!builder_) return;
+  const auto n_parts = static_cast<int>(furthest_.size());
+  constexpr int block = 4;  // layers that are built together
+  const int layers = field_.grid.n[2], blocks = (layers + block - 1) / block;
+  const auto edge = [&](int of) {
+    return std::min(layers, block * static_cast<int>(std::int64_t{blocks} * of / n_parts));
+  };
+  const int first = edge(part), last = edge(part + 1);
+  if (first == last) return;
+  furthest_[static_cast<std::size_t>(part)] = builder_->build(slab_of(field_, first, last));
+}
+
+void FieldInTheMaking::finish() {
+  if (builder_) builder_->finish(field_, *std::max_element(furthest_.begin(), furthest_.end()));
+  builder_.reset();
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+BuiltField build_alone(const SceneObject& object, Content content) {
+  FieldInTheMaking making;
+  making.begin(object, content, 1);
+  making.fill(0);
+  making.finish();
+  return {making.field(), making.seconds()};
+}
+
+ErrorBound usual_bound(const Field& field) {
+  constexpr double cells = 0.125, degrees = 3;
+  return {cells * field.grid.cell, degrees * std::numbers::pi / 180};
+}
+
+double distance_at(const Field& field, Vec3 p) {
+  const Grid& grid = field.grid;
+  std::array<std::size_t, 3> low{};
+  std::array<double, 3> part{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = (component(p, axis) - component(grid.origin, axis)) / grid.cell;
+    const int last = grid.n[static_cast<std::size_t>(axis)] - 1;
+    if (!(at >= 0 && at <= last)) return HUGE_VAL;
+    const double floor = std::min(std::floor(at), last - 1.0);
+    low[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(floor);
+    part[static_cast<std::size_t>(axis)] = at - floor;
+  }
+  const auto value = [&](std::size_t i, std::size_t j, std::size_t k) {
+    const auto index = grid.index(
+        static_cast<int>(low[0] + i), static_cast<int>(low[1] + j), static_cast<int>(low[2] + k));
+    return static_cast<double>(field.distance[index]);
+  };
+  const auto along_x = [&](std::size_t j, std::size_t k) {
+    return (1 - part[0]) * value(0, j, k) + part[0] * value(1, j, k);
+  };
+  const auto in_plane = [&](std::size_t k) {
+    return (1 - part[1]) * along_x(0, k) + part[1] * along_x(1, k);
+  };
+  return (1 - part[2]) * in_plane(0) + part[2] * in_plane(1);
+}
+
+bool passes_surface(const Field& field, const Surface& surface, Vec3 from, Vec3 to) {
+  const double length = norm(to - from), cell = field.grid.cell;
+  if (!std::isfinite(length)) return false;
+  const double begin = distance_at(field, from);
+  if (begin < HUGE_VAL && std::abs(begin) > length + 2 * cell) return false;
+  if (field.sides == Sides::two) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      if (crosses(from, to, surface.corners(t))) return true;
+    return false;
+  }
+  if (begin < -cell) return false;
+  // The part of the way that lies in the grid, cut into pieces of half a cell.
+  const Vec3 low = field.grid.origin, along = to - from;
+  const Vec3 high =
+      field.grid.centre(field.grid.n[0] - 1, field.grid.n[1] - 1, field.grid.n[2] - 1);
+  double first = 0, last = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = component(from, axis), d = component(along, axis);
+    if (d == 0) {
+      if (a < component(low, axis) || a > component(high, axis)) return false;
+      continue;
+    }
+    const double one = (component(low, axis) - a) / d, other = (component(high, axis) - a) / d;
+    first = std::max(first, std::min(one, other));
+    last = std::min(last, std::max(one, other));
+  }
+  if (!(first <= last)) return false;
+  const auto pieces =
+      static_cast<std::size_t>(std::ceil((last - first) * length / (0.5 * cell))) + 1;
+  for (std::size_t i = 0; i <= pieces; ++i) {
+    const double t =
+        first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
+    if (distance_at(field, from + t * along) < -cell) return true;
+  }
+  return false;
+}
+
+}  // namespace particles

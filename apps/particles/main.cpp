@@ -1,0 +1,49 @@
+// particles SCENE.json: moves particles among objects by distance/normal fields, and says what came
+// of it: energies, particles that tunnelled, time a particle and step.
+#include "apps/command_line.hpp"
+#include "apps/particles/driver.hpp"
+#include "apps/particles/scene.hpp"
+#include "apps/particles/stability.hpp"
+#include "runtime/runtime.hpp"
+
+#include <cstring>
+
+namespace {
+
+int run(tess::Setup& setup, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help-scene") != 0) continue;
+    tess::print(particles::scene_help());
+    return 0;
+  }
+  particles::DriverOptions options;
+  CLI::App app("Particles against objects of any shape, by distance/normal fields.", "particles");
+  app.add_option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");
+  app.add_option("--steps", options.steps, "steps instead of the scene's")
+      ->check(CLI::Range(0, 1'000'000'000));
+  app.add_option("--json", options.json, "write the result as JSON");
+  app.add_option("--out", options.out, "folder for trajectories and pictures");
+  app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
+  app.add_flag(
+      "--study", options.study, "error against run time of every choice, on the first object");
+  bool stability = false;
+  app.add_flag("--stability",
+               stability,
+               "stiff and extreme cases of every rule; exit code 1 if one fails. Needs no SCENE");
+  bool help_scene = false;
+  app.add_flag("--help-scene", help_scene, "describe the keys of a scene file");
+  if (!apps::parse(app, argc, argv)) return 0;
+  const bool speaks = setup.machine->process().value == 0;
+  if (stability && !particles::print_stability(speaks)) return 1;
+  if (options.scene.empty()) {
+    if (stability) return 0;
+    tess::fail(tess::ErrorCode::bad_argument, "SCENE is missing; give a scene file (--help)");
+  }
+  return particles::drive(setup, options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return run(setup, argc, argv); });
+}

@@ -1,0 +1,101 @@
+#include "apps/particles/observe.hpp"
+
+#include "runtime/base/mix.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace particles {
+namespace {
+using tess::dn::Object;
+using tess::dn::Vec3;
+
+std::uint64_t hash_of(std::uint64_t id, Vec3 position, Vec3 velocity) {
+  std::uint64_t hash = tess::mix(id);
+  for (const double value :
+       {position.x, position.y, position.z, velocity.x, velocity.y, velocity.z})
+    hash = tess::mix(hash ^ std::bit_cast<std::uint64_t>(value));
+  return hash;
+}
+
+/// The least signed distance to an object that reaches here; HUGE_VAL where none does.
+double least_distance(const std::vector<Object>& objects, Vec3 p) {
+  double least = HUGE_VAL;
+  for (const Object& object : objects)
+    least =
+        std::min(least, object.frame.scale * distance_at(*object.field, object.frame.to_object(p)));
+  return least;
+}
+
+}  // namespace
+
+void measure(const Stage& stage,
+             const std::vector<Object>& objects,
+             const Flock& flock,
+             std::size_t species,
+             Measured& into) {
+  const double mass = stage.masses[species];
+  const auto& gravity = stage.scene.rules.gravity;
+  const Vec3 down = gravity ? gravity->acceleration : Vec3{};
+  for (std::size_t p = 0; p < flock.size(); ++p) {
+    const Vec3 position = flock.motion.position(p), velocity = flock.motion.velocity(p);
+    ++into.particles;
+    into.tunnelled += flock.tunnelled[p];
+    into.hash += hash_of(flock.ids[p], position, velocity);
+    if (!is_finite(position) || !is_finite(velocity)) {
+      ++into.nonfinite;
+      continue;
+    }
+    const double distance = least_distance(objects, position);
+    into.inside += static_cast<std::uint64_t>(distance < 0);
+    into.nearest = std::min(into.nearest, distance);
+    into.fastest = std::max(into.fastest, norm(velocity));
+    into.kinetic.add(0.5 * mass * dot(velocity, velocity));
+    into.potential.add(-mass * dot(down, position));
+  }
+}
+
+bool is_traced(std::uint64_t id, std::uint64_t n, std::uint64_t traced) {
+  if (traced >= n) return true;
+  return id * traced % n < traced;  // below 1e18: there are at most 1e9 particles
+}
+
+void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into) {
+  const std::uint64_t n = stage.source.size(), traced = stage.scene.outputs.traced;
+  for (std::size_t p = 0; p < flock.size(); ++p)
+    if (is_traced(flock.ids[p], n, traced))
+      into.push_back({flock.ids[p], flock.motion.position(p), flock.motion.velocity(p)});
+}
+
+void note_tunnelled(const Stage& stage,
+                    const std::vector<Object>& at_begin,
+                    const std::vector<Object>& at_end,
+                    const tess::dn::Particles& before,
+                    Flock& flock) {
+  for (std::size_t o = 0; o < at_begin.size(); ++o) {
+    const tess::dn::Field& field = *at_begin[o].field;
+    const tess::dn::Surface& surface = stage.scene.objects[o].surface;
+    for (std::size_t p = 0; p < flock.size(); ++p) {
+      if (flock.tunnelled[p] != 0) continue;
+      const Vec3 from = at_begin[o].frame.to_object(before.position(p)),
+                 to = at_end[o].frame.to_object(flock.motion.position(p));
+      if (passes_surface(field, surface, from, to)) flock.tunnelled[p] = 1;
+    }
+  }
+}
+
+void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& flock) {
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    const tess::dn::Field& field = *objects[o].field;
+    if (field.sides == tess::dn::Sides::two) continue;
+    for (std::size_t p = 0; p < flock.size(); ++p) {
+      const Vec3 now = objects[o].frame.to_object(flock.motion.position(p));
+      if (!(distance_at(field, now) < -field.grid.cell)) continue;
+      const Vec3 start =
+          stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
+      if (!(distance_at(field, start) < -field.grid.cell)) flock.tunnelled[p] = 1;
+    }
+  }
+}
+
+}  // namespace particles

@@ -1,0 +1,197 @@
+#include "apps/particles/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+namespace particles {
+namespace {
+
+constexpr std::array method_names{"exact", "normals", "potential"};
+
+std::string method_of(const Scene& scene) {
+  if (scene.objects.empty()) return "none";
+  const auto name = [](const SceneObject& object) {
+    return std::string(method_names[static_cast<std::size_t>(object.method)]);
+  };
+  for (const SceneObject& object : scene.objects)
+    if (object.method != scene.objects.front().method) return "mixed";
+  return name(scene.objects.front());
+}
+
+FieldCost total(const std::vector<FieldCost>& fields) {
+  FieldCost sum;
+  for (const FieldCost& field : fields) {
+    sum.build_seconds += field.build_seconds;
+    sum.cells += field.cells;
+    sum.bytes += field.bytes;
+  }
+  return sum;
+}
+
+double per_particle_step(const Scene& scene, double seconds) {
+  const double n = static_cast<double>(scene.n_particles()) * scene.steps;
+  return n > 0 ? seconds * 1e9 / n : 0;
+}
+
+std::string distance_text(double distance) {
+  return distance < HUGE_VAL ? fmt::format("{:.4g}", distance) : "-";
+}
+
+std::string row_text(const Row& row, double dt) {
+  const Measured& m = row.measured;
+  return fmt::format(
+      "  {:>9} {:>10.4g} {:>9} {:>7} {:>13.6e} {:>13.6e} {:>10.4g} {:>10} {:>8} {:>9} {:>9}\n",
+      row.step,
+      row.step * dt,
+      m.particles,
+      m.blocks,
+      m.kinetic.value(),
+      m.energy(),
+      m.fastest,
+      distance_text(m.nearest),
+      m.inside,
+      m.tunnelled,
+      m.nonfinite);
+}
+
+nlohmann::ordered_json json_of(const Row& row, double dt) {
+  const Measured& m = row.measured;
+  nlohmann::ordered_json out;
+  out["step"] = row.step;
+  out["time"] = row.step * dt;
+  out["blocks"] = m.blocks;
+  out["kinetic"] = m.kinetic.value();
+  out["energy"] = m.energy();
+  out["fastest"] = m.fastest;
+  if (m.nearest < HUGE_VAL) out["nearest"] = m.nearest;
+  out["inside"] = m.inside;
+  out["tunnelled"] = m.tunnelled;
+  out["nonfinite"] = m.nonfinite;
+  return out;
+}
+
+nlohmann::ordered_json json_of(const StudyRow& row) {
+  nlohmann::ordered_json out;
+  out["part"] = row.part;
+  out["resolution"] = row.resolution;
+  out["method"] = row.method;
+  if (!row.note.empty()) {
+    out["refused"] = row.note;
+    return out;
+  }
+  out["look_up"] = row.look_up;
+  out["rule"] = row.rule;
+  const auto measured = [&out](const char* key, double value) {
+    if (value >= 0) out[key] = value;
+  };
+  measured("step", row.step);
+  measured("build_seconds", row.build_seconds);
+  if (row.bytes != 0) out["bytes"] = row.bytes;
+  measured("distance_error", row.distance_error);
+  measured("distance_error_max", row.distance_error_max);
+  measured("normal_error_degrees", row.normal_error);
+  measured("penetration", row.penetration);
+  measured("place_error", row.place_error);
+  measured("angle_error_degrees", row.angle_error);
+  if (row.lost >= 0) out["lost"] = row.lost;
+  if (row.bounces >= 0) out["bounces"] = row.bounces;
+  measured("ns", row.ns);
+  measured("of_tree", row.relative);
+  return out;
+}
+
+}  // namespace
+
+std::string table(const Scene& scene, const RunResult& result, const Report& report) {
+  const FieldCost fields = total(result.fields);
+  std::string out = fmt::format(
+      "{}: {} particles, {} steps of {}\n", scene.name, scene.n_particles(), scene.steps, scene.dt);
+  const auto line = [&out](const char* name, const std::string& value) {
+    out += fmt::format("  {:<10} {}\n", name, value);
+  };
+  line("machine", report.machine);
+  if (!result.fields.empty())
+    line("fields",
+         fmt::format("{} of method {}, {} cells, {:.3f} MB, built in {:.3f} s",
+                     result.fields.size(),
+                     method_of(scene),
+                     fields.cells,
+                     static_cast<double>(fields.bytes) / 1e6,
+                     fields.build_seconds));
+  line("blocks",
+       fmt::format(
+           "of {:.4g}, particles change them every {} steps", result.block, result.exchange));
+  out += fmt::format("  {:>9} {:>10} {:>9} {:>7} {:>13} {:>13} {:>10} {:>10} {:>8} {:>9} {:>9}\n",
+                     "step",
+                     "time",
+                     "particles",
+                     "blocks",
+                     "kinetic",
+                     "energy",
+                     "fastest",
+                     "nearest",
+                     "inside",
+                     "tunnelled",
+                     "nonfinite");
+  for (const Row& row : result.rows) out += row_text(row, scene.dt);
+  line("time",
+       fmt::format("{:.4f} s, {:.3f} ns a particle and step, {:.3f} ns of it in the rules{}",
+                   result.seconds,
+                   per_particle_step(scene, result.seconds),
+                   per_particle_step(scene, result.loop_seconds),
+                   result.audited ? "; each step looked at" : ""));
+  line("result", fmt::format("{:016x}", result.rows.back().measured.hash));
+  return out;
+}
+
+std::string json(const Scene& scene, const RunResult& result, const Report& report) {
+  const Measured& begin = result.rows.front().measured;
+  const Measured& end = result.rows.back().measured;
+  const FieldCost fields = total(result.fields);
+  nlohmann::ordered_json out;
+  out["scene"] = scene.name;
+  out["particles"] = scene.n_particles();
+  out["steps"] = scene.steps;
+  out["dt"] = scene.dt;
+  out["pes"] = report.pes;
+  out["processes"] = report.processes;
+  out["machine"] = report.machine;
+  out["ns_per_particle_step"] = per_particle_step(scene, result.seconds);
+  out["ns_in_rules"] = per_particle_step(scene, result.loop_seconds);
+  out["seconds"] = result.seconds;
+  out["field"] = {{"method", method_of(scene)},
+                  {"cells", fields.cells},
+                  {"build_seconds", fields.build_seconds},
+                  {"bytes", fields.bytes},
+                  {"bytes_compressed", report.bytes_compressed}};
+  out["nonfinite"] = end.nonfinite;
+  out["tunnelled"] = end.tunnelled;
+  out["tunnelled_found_by"] = result.audited ? "each step" : "last step";
+  out["energy_start"] = begin.energy();
+  out["energy_end"] = end.energy();
+  out["block"] = result.block;
+  out["exchange"] = result.exchange;
+  out["result_hash"] = fmt::format("{:016x}", end.hash);
+  out["rows"] = nlohmann::ordered_json::array();
+  for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
+  out["study"] = nlohmann::ordered_json::array();
+  for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
+  return out.dump(2) + "\n";
+}
+
+std::string explanation(const Scene& scene) {
+  std::string out = "this scene, rule by rule\n";
+  for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
+  if (!needs_field(scene.rules) && !scene.objects.empty())
+    out += "  fields: left out, no rule asks for a surface\n";
+  const std::size_t n_species = species_of(scene).size();
+  out += fmt::format("  step loops: {}, one for each mass\n", n_species);
+  out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"
+                           : "  looking at each step for particles that tunnel: left out\n";
+  if (scene.outputs.trajectories == 0) out += "  trajectories: left out\n";
+  return out;
+}
+
+}  // namespace particles

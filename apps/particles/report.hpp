@@ -1,0 +1,26 @@
+// What a run of a scene has to show: a table for people, JSON for programs.
+#pragma once
+
+#include "apps/particles/scene.hpp"
+#include "apps/particles/simulate.hpp"
+#include "apps/particles/study.hpp"
+
+#include <string>
+
+namespace particles {
+
+/// The run beside the machine it ran on.
+struct Report {
+  std::string machine;
+  std::int32_t pes = 0, processes = 0;
+  std::uint64_t bytes_compressed = 0;  ///< of all fields, within usual_bound()
+  std::vector<StudyRow> study{};
+};
+
+[[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);
+[[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);
+
+/// What the scene uses and what it leaves out, for --explain.
+[[nodiscard]] std::string explanation(const Scene& scene);
+
+}  // namespace particles

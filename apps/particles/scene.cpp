@@ -1,0 +1,38 @@
+#include "apps/particles/scene.hpp"
+
+#include <algorithm>
+
+namespace particles {
+
+std::uint64_t Scene::n_particles() const {
+  std::uint64_t n = 0;
+  for (const Emitter& emitter : emitters) n += emitter.count;
+  return n;
+}
+
+tess::dn::Rules for_mass(tess::dn::Rules rules, double mass) {
+  if (mass == 1) return rules;
+  if (rules.spring) {
+    rules.spring->stiffness /= mass;
+    rules.spring->damping /= mass;
+  }
+  if (rules.surface_drag) rules.surface_drag->rate /= mass;
+  if (rules.surface_flow) {
+    rules.surface_flow->alpha_in /= mass;
+    rules.surface_flow->alpha_out /= mass;
+  }
+  if (rules.wind) rules.wind->rate /= mass;
+  if (rules.air_drag) rules.air_drag->rate /= mass;
+  for (tess::dn::Explosion& explosion : rules.explosions) explosion.strength /= mass;
+  return rules;
+}
+
+std::vector<double> species_of(const Scene& scene) {
+  std::vector<double> masses;
+  for (const Emitter& emitter : scene.emitters)
+    if (std::find(masses.begin(), masses.end(), emitter.mass) == masses.end())
+      masses.push_back(emitter.mass);
+  return masses;
+}
+
+}  // namespace particles

@@ -1,0 +1,228 @@
+#include "apps/particles/json_reader.hpp"
+#include "apps/particles/rules_reader.hpp"
+#include "apps/particles/scene.hpp"
+#include "apps/particles/shape_reader.hpp"
+#include "collide/dn_field/grid.hpp"
+#include "runtime/error.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <unistd.h>
+
+namespace particles {
+namespace {
+using tess::dn::Vec3;
+
+constexpr std::int64_t most_particles = 1'000'000'000, most_steps = 1'000'000'000;
+
+void read_region(const Keys& keys, std::string_view kind, std::size_t n_objects, Emitter& emitter) {
+  const Node node = keys[kind];
+  if (kind == "box" || kind == "lattice") {
+    const bool is_box = kind == "box";
+    emitter.where = is_box ? Emitter::Where::box : Emitter::Where::lattice;
+    const Keys of = is_box ? node.keys({"low", "high"}) : node.keys({"low", "high", "n"});
+    emitter.low = of.need("low", "a corner [x, y, z]").vector();
+    emitter.high = of.need("high", "the other corner [x, y, z]").vector();
+    const Vec3 size = emitter.high - emitter.low;
+    if (!(size.x >= 0 && size.y >= 0 && size.z >= 0)) of["high"].refuse("is below low");
+    if (is_box) return;
+    const std::vector<Node> n = of.need("n", "points along each axis [nx, ny, nz]").items();
+    if (n.size() != 3) of["n"].refuse("is not a list of three numbers");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      emitter.lattice[axis] = static_cast<std::uint64_t>(n[axis].whole(1, 1'000'000));
+    const double points = static_cast<double>(emitter.lattice[0]) *
+                          static_cast<double>(emitter.lattice[1]) *
+                          static_cast<double>(emitter.lattice[2]);
+    if (points > static_cast<double>(most_particles))
+      of["n"].refuse(tess::text("makes more than ", most_particles, " particles"));
+    emitter.count = emitter.lattice[0] * emitter.lattice[1] * emitter.lattice[2];
+    return;
+  }
+  if (kind == "sphere") {
+    emitter.where = Emitter::Where::sphere;
+    const Keys of = node.keys({"centre", "radius", "inner"});
+    of.read("centre", emitter.centre);
+    emitter.outer = of.need("radius", "the radius").number(not_negative);
+    of.read("inner", emitter.inner, {0, emitter.outer});
+    return;
+  }
+  emitter.where = Emitter::Where::surface;
+  const Keys of = node.keys({"object", "low", "high"});
+  if (n_objects == 0) node.refuse("needs an object, and the scene has none");
+  int object = 0;
+  of.read("object", object, 0, static_cast<int>(n_objects) - 1);
+  emitter.object = static_cast<std::size_t>(object);
+  emitter.outer = of.need("high", "the largest distance from the surface").number(not_negative);
+  of.read("low", emitter.inner, {-HUGE_VAL, emitter.outer});
+}
+
+Emitter read_emitter(const Node& node, std::size_t n_objects) {
+  const Keys keys = node.keys({"count",
+                               "box",
+                               "sphere",
+                               "lattice",
+                               "surface",
+                               "velocity",
+                               "spread",
+                               "outward",
+                               "mass",
+                               "seed"});
+  Emitter emitter;
+  const std::string_view kind = keys.one_of({"box", "sphere", "lattice", "surface"});
+  read_region(keys, kind, n_objects, emitter);
+  if (kind == "lattice") {
+    if (keys.has("count")) keys["count"].refuse("stands beside a lattice, which has its own n");
+  } else {
+    emitter.count = static_cast<std::uint64_t>(
+        keys.need("count", "how many particles").whole(1, most_particles));
+  }
+  keys.read("velocity", emitter.velocity);
+  keys.read("spread", emitter.spread, not_negative);
+  keys.read("outward", emitter.outward);
+  if (emitter.outward != 0 && kind != "sphere" && kind != "surface")
+    keys["outward"].refuse("has no direction in a " + std::string(kind) + "; use velocity");
+  keys.read("mass", emitter.mass, positive);
+  if (keys.has("seed")) emitter.seed = keys["seed"].seed();
+  return emitter;
+}
+
+Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) {
+  constexpr int most = static_cast<int>(most_steps);
+  const Keys keys = node.keys({"statistics", "trajectories", "traced", "axis", "slice", "audit"});
+  Outputs outputs;
+  keys.read("statistics", outputs.statistics, 0, most);
+  keys.read("trajectories", outputs.trajectories, 0, most);
+  if (keys.has("traced"))
+    outputs.traced = static_cast<std::uint64_t>(keys["traced"].whole(1, most_particles));
+  if (keys.has("axis")) outputs.axis = static_cast<int>(keys["axis"].word({"x", "y", "z"}));
+  if (keys.has("audit")) outputs.audit = keys["audit"].yes_or_no();
+  if (keys.has("slice")) {
+    if (objects.empty()) keys["slice"].refuse("needs an object, and the scene has none");
+    const Keys slice = keys["slice"].keys({"object", "at"});
+    int object = 0;
+    slice.read("object", object, 0, static_cast<int>(objects.size()) - 1);
+    outputs.slice = Outputs::Slice{static_cast<std::size_t>(object), 0};
+    slice.read("at", outputs.slice->at);
+    const SceneObject& of = objects[outputs.slice->object];
+    const tess::dn::Grid grid =
+        tess::dn::grid_around(bounds(of.surface), of.resolution, of.thickness);
+    const double low = component(grid.origin, outputs.axis),
+                 high = low + grid.cell * (of.resolution - 1), at = outputs.slice->at;
+    if (at < low || at > high)
+      keys["slice"].refuse(
+          tess::text("cuts at ", at, ", which is not within the field: ", low, " … ", high));
+  }
+  return outputs;
+}
+
+/// What no key by itself can say: the rules fit the masses, the fields cover the rules.
+void check_rules(const Scene& scene, const std::string& file) {
+  for (const double mass : species_of(scene)) {
+    try {
+      validate(for_mass(scene.rules, mass));
+    } catch (const tess::Error& error) {
+      tess::fail(tess::ErrorCode::bad_value, file, ": rules.", error.what(), " (mass ", mass, ")");
+    }
+  }
+  const bool sweeps = scene.rules.impact && scene.rules.impact->sweep == tess::dn::Sweep::on;
+  const double reach = tess::dn::reach(scene.rules);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    const tess::dn::Frame& frame = object.frame;
+    const double covered = object.thickness * frame.scale;
+    if (reach > covered)
+      tess::fail(tess::ErrorCode::bad_value,
+                 file,
+                 ": objects[",
+                 i,
+                 "].thickness: ",
+                 object.thickness,
+                 " times scale ",
+                 frame.scale,
+                 " is below the distance ",
+                 reach,
+                 " at which a rule begins to act");
+    if (sweeps || !needs_field(scene.rules)) continue;
+    const double surface = norm(frame.velocity) + norm(frame.angular_velocity) * frame.scale *
+                                                      norm(bounds(object.surface).size());
+    for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
+      const Emitter& emitter = scene.emitters[e];
+      const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
+                           std::abs(emitter.outward) + surface;
+      if (speed * scene.dt > covered)
+        tess::fail(tess::ErrorCode::bad_value,
+                   file,
+                   ": emitters[",
+                   e,
+                   "]: speed ",
+                   speed,
+                   " times dt ",
+                   scene.dt,
+                   " passes the field of objects[",
+                   i,
+                   "], ",
+                   covered,
+                   " thick, in one step; use impact with sweep, a thicker field or a shorter step");
+    }
+  }
+}
+
+/// Refuses fields that all the machine's memory cannot hold, before it is tried.
+void check_memory(const Scene& scene, const std::string& file) {
+  constexpr double bytes_per_voxel = 8;
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  double wanted = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    wanted += bytes_per_voxel * std::pow(scene.objects[i].resolution, 3);
+    if (wanted > there)
+      tess::fail(tess::ErrorCode::environment,
+                 file,
+                 ": objects[",
+                 i,
+                 "].resolution: ",
+                 scene.objects[i].resolution,
+                 " makes the fields ",
+                 wanted / 1e9,
+                 " GB large, and this machine has ",
+                 there / 1e9,
+                 " GB");
+  }
+}
+
+Scene read(const JsonFile& file, const std::string& name) {
+  const Keys keys = file.root().keys(
+      {"dt", "steps", "block", "exchange", "objects", "emitters", "rules", "outputs"});
+  constexpr int most = static_cast<int>(most_steps);
+  Scene scene;
+  scene.name = name;
+  scene.dt = keys.need("dt", "the time step").number(positive);
+  scene.steps = static_cast<int>(keys.need("steps", "how many steps").whole(0, most));
+  keys.read("block", scene.block, positive);
+  keys.read("exchange", scene.exchange, 1, most);
+  const std::string folder = std::filesystem::path(name).parent_path().string();
+  if (keys.has("objects"))
+    for (const Node& item : keys["objects"].items())
+      scene.objects.push_back(read_object(item, folder, scene.dt));
+  for (const Node& item : keys.need("emitters", "a list of at least one emitter").items(1))
+    scene.emitters.push_back(read_emitter(item, scene.objects.size()));
+  if (scene.n_particles() > static_cast<std::uint64_t>(most_particles))
+    keys["emitters"].refuse(tess::text("makes more than ", most_particles, " particles"));
+  if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
+  if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
+  check_rules(scene, name);
+  check_memory(scene, name);
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path) {
+  return read(JsonFile(path), path);
+}
+
+Scene parse_scene(const std::string& text, const std::string& name) {
+  return read(JsonFile(text, name), name);
+}
+
+}  // namespace particles

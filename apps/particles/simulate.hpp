@@ -1,0 +1,54 @@
+// One run of a scene on the runtime: fields are built, particles sent to their blocks, and moved
+// stretch by stretch, each closed by an epoch. What it gives does not depend on PEs, processes,
+// blocks or schedule, times excepted.
+#pragma once
+
+#include "apps/particles/measured.hpp"
+#include "apps/particles/scene.hpp"
+#include "apps/particles/station.hpp"
+#include "runtime/runtime.hpp"
+
+#include <vector>
+
+namespace particles {
+
+/// What is measured after so many steps.
+struct Row {
+  std::int32_t step = 0;
+  Measured measured;
+};
+
+/// Where the traced particles are after so many steps; in the order of ids.
+struct Snapshot {
+  std::int32_t step = 0;
+  std::vector<Sample> samples;
+};
+
+struct FieldCost {
+  double build_seconds = 0;
+  std::uint64_t cells = 0, bytes = 0;
+};
+
+struct RunResult {
+  std::vector<Row> rows;  ///< the first before the first step, the last after the last
+  std::vector<Snapshot> trajectories;
+  std::vector<FieldCost> fields;
+  double seconds = 0;       ///< of all steps, exchanges included, looking excluded
+  double loop_seconds = 0;  ///< CPU in the step loops, summed over PEs
+  double emit_seconds = 0;
+  bool audited = false;
+  double block = 0;
+  std::int32_t exchange = 0;
+};
+
+/// Whether a run of this scene looks at each step for particles that tunnel.
+[[nodiscard]] bool is_audited(const Scene& scene);
+
+/// The edge of blocks and the steps between exchanges that a run of this scene uses.
+[[nodiscard]] double block_edge(const Scene& scene);
+[[nodiscard]] std::int32_t exchange_interval(const Scene& scene);
+
+/// Runs the scene from PE 0. `stage`: of this process; its fields are there afterwards.
+tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result);
+
+}  // namespace particles

@@ -1,0 +1,54 @@
+// What all blocks of a process share, read-only once it is set up: the scene, its particles'
+// source, the fields. It is handed from PE to PE within a process as a pointer; on its way to
+// another process it becomes the scene, and the fields are built there again.
+#pragma once
+
+#include "apps/particles/emit.hpp"
+#include "apps/particles/fields.hpp"
+#include "apps/particles/scene.hpp"
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace particles {
+
+struct Stage {
+  explicit Stage(Scene of)
+      : scene(std::move(of)),
+        source(scene),
+        masses(species_of(scene)),
+        fields(needs_field(scene.rules) || scene.outputs.slice ? scene.objects.size() : 0) {}
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  const Scene scene;
+  const Source source;
+  const std::vector<double> masses;      ///< a species is an index into this
+  std::vector<FieldInTheMaking> fields;  ///< of the objects; empty where no rule asks for a surface
+
+  [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
+};
+
+/// What the fields would take compressed, within usual_bound().
+[[nodiscard]] inline std::uint64_t compressed_bytes(const Stage& stage) {
+  std::uint64_t bytes = 0;
+  for (const FieldInTheMaking& of : stage.fields)
+    bytes += compress(of.field(), usual_bound(of.field())).bytes();
+  return bytes;
+}
+
+struct StageHandle {
+  std::shared_ptr<Stage> stage;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (Ar::is_reading) {
+      stage = std::make_shared<Stage>(ar.template take<Scene>());
+    } else {
+      ar(stage->scene);
+    }
+  }
+};
+
+}  // namespace particles

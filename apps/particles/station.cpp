@@ -1,0 +1,133 @@
+#include "apps/particles/station.hpp"
+
+#include "apps/particles/block.hpp"
+
+#include <map>
+#include <new>
+#include <utility>
+
+namespace particles {
+namespace {
+
+/// The PEs of this process: the first and how many.
+std::pair<std::int32_t, std::int32_t> pes_of_process() {
+  tess::Pe& pe = tess::current_pe();
+  const std::int32_t each = pe.machine().pes_per_process();
+  return {pe.id().value / each * each, each};
+}
+
+/// Where no frame of an object is given a field yet, it has none.
+std::vector<tess::dn::Object> objects_of(const Stage& stage) {
+  std::vector<tess::dn::Object> objects;
+  if (!stage.collides()) return objects;
+  for (std::size_t i = 0; i < stage.fields.size(); ++i)
+    objects.push_back({&stage.fields[i].field(), stage.scene.objects[i].frame});
+  return objects;
+}
+
+}  // namespace
+
+void Station::take(StageHandle handle) {
+  stage_ = handle.stage;
+  const auto [first, n] = pes_of_process();
+  if (pe().value != first) return;
+  for (std::int32_t i = 1; i < n; ++i) group()[tess::PeId{first + i}].send<&Station::take>(handle);
+}
+
+void Station::begin_fields() {
+  const auto [first, n] = pes_of_process();
+  const auto mine = static_cast<std::size_t>(pe().value - first);
+  const Scene& scene = stage_->scene;
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n)) {
+    const SceneObject& object = scene.objects[i];
+    try {
+      stage_->fields[i].begin(object, content_of(scene), n);
+    } catch (const tess::Error& error) {
+      tess::fail(error.code(), scene.name, ": objects[", i, "]: ", error.what());
+    } catch (const std::bad_alloc&) {
+      tess::fail(tess::ErrorCode::environment,
+                 scene.name,
+                 ": objects[",
+                 i,
+                 "].resolution: memory does not hold a field of ",
+                 object.resolution,
+                 "³ voxels; lower it");
+    }
+  }
+}
+
+void Station::fill_fields() {
+  const auto [first, n] = pes_of_process();
+  for (FieldInTheMaking& field : stage_->fields) field.fill(pe().value - first);
+}
+
+void Station::finish_fields() {
+  const auto [first, n] = pes_of_process();
+  const auto mine = static_cast<std::size_t>(pe().value - first);
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
+    stage_->fields[i].finish();
+}
+
+void Station::prepare(double block_edge) {
+  space_ = Space::around(stage_->source.bounds(), block_edge);
+  objects_ = objects_of(*stage_);
+  for (const double mass : stage_->masses) {
+    const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
+    validate(rules, objects_);
+    steppers_.push_back(tess::dn::make_stepper(rules, stage_->scene.dt));
+  }
+}
+
+void Station::emit(tess::ArrayProxy<Block> blocks) {
+  constexpr std::size_t most_a_message = 16384;
+  const Stage& stage = *stage_;
+  const std::uint64_t n = stage.source.size();
+  const auto rank = static_cast<std::uint64_t>(pe().value),
+             n_pes = static_cast<std::uint64_t>(tess::current_pe().n_pes());
+  const std::uint64_t begin = n * rank / n_pes, end = n * (rank + 1) / n_pes;
+  std::map<tess::Index3, Arrivals> leaving;
+  const auto send = [&](tess::Index3 to, Arrivals& arrivals) {
+    blocks[to].send_or_create_home<&Block::enter>(std::move(arrivals));
+  };
+  for (std::uint64_t id = begin; id < end; ++id) {
+    const Start start = stage.source.particle(id);
+    const tess::Index3 to = space_.block_of(start.position);
+    Arrivals& arrivals = leaving[to];
+    arrivals.stations = group();
+    arrivals.flocks.resize(stage.masses.size());
+    const auto species = static_cast<std::size_t>(
+        std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
+    arrivals.flocks[species].add(id, start.position, start.velocity, 0);
+    if (arrivals.flocks[species].size() < most_a_message) continue;
+    send(to, arrivals);
+    leaving.erase(to);
+  }
+  for (auto& [to, arrivals] : leaving) send(to, arrivals);
+}
+
+const std::vector<tess::dn::Object>& Station::objects(std::int32_t step) {
+  TESS_CHECK(step >= at_step_, "the objects stand at step ", at_step_, ", not back at ", step);
+  if (step > at_step_) tess::dn::advance(objects_, stage_->scene.dt, step - at_step_);
+  at_step_ = step;
+  return objects_;
+}
+
+void Station::give_measured(tess::Callback<Measured> target) {
+  contribute(JoinMeasured{}, std::exchange(measured_, {}), std::move(target));
+}
+
+void Station::give_samples(tess::Callback<std::vector<Sample>> target) {
+  contribute(tess::concatenate, std::exchange(samples_, {}), std::move(target));
+}
+
+void Station::give_seconds(tess::Callback<double> target) {
+  contribute(tess::in_order(tess::sum), spent_, std::move(target));
+}
+
+void Station::give_build_seconds(tess::Callback<std::vector<double>> target) {
+  std::vector<double> seconds;
+  for (const FieldInTheMaking& field : stage_->fields) seconds.push_back(field.seconds());
+  contribute(tess::max, std::move(seconds), std::move(target));
+}
+
+}  // namespace particles

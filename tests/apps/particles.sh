@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# The particle program from outside: one answer for any PEs, processes and blocks; a result file with every key; bad
+# scenes and options in one line with exit code 2.
+set -uo pipefail
+bin=$1
+scenes=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed=0
+passed=0
+mpirun=(mpirun --allow-run-as-root --oversubscribe)
+particles=$bin/particles
+
+check() {  # check WHAT TRUE: counts.
+  if [[ $2 == 0 ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $1"
+  fi
+}
+
+cat >"$scratch/scene.json" <<'SCENE'
+{"dt": 0.01, "steps": 60,
+ "objects": [{"shape": {"file": "wedge.obj"}, "resolution": 24, "thickness": 0.4, "motion": {"spin": [0, 1, 0]}}],
+ "emitters": [{"count": 500, "box": {"low": [-1, -1, 1], "high": [1, 1, 2]}, "velocity": [0, 0, -3], "spread": 0.5}],
+ "rules": {"gravity": [0, 0, -9.81], "impact": {"restitution": 0.6}},
+ "outputs": {"statistics": 20, "trajectories": 20, "slice": {}}}
+SCENE
+printf 'v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 1\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n' >"$scratch/wedge.obj"
+
+hash_of() { grep -o '"result_hash": "[0-9a-f]*"' "$1"; }
+"$particles" "$scratch/scene.json" --pes 1 --json "$scratch/first.json" --out "$scratch/out" >"$scratch/table" || exit 1
+want=$(hash_of "$scratch/first.json")
+echo "one PE: $want"
+
+for key in scene particles steps pes ns_per_particle_step field method cells build_seconds bytes bytes_compressed \
+  nonfinite tunnelled energy_start energy_end result_hash study; do
+  grep -q "\"$key\":" "$scratch/first.json"
+  check "the result has the key $key" $?
+done
+for file in field.svg paths.svg trajectories.pvd trajectories/step_000000060.vtp; do
+  [[ -s $scratch/out/$file ]]
+  check "--out writes $file" $?
+done
+[[ $(grep -c DataSet "$scratch/out/trajectories.pvd") == 4 ]]
+check "the series has a snapshot for each time" $?
+
+# same COMMAND…: gives the same hash.
+same() {
+  rm -f "$scratch/again.json"
+  timeout 60 "$@" --json "$scratch/again.json" >"$scratch/out.txt" 2>&1
+  [[ $? == 0 && $(hash_of "$scratch/again.json") == "$want" ]]
+  check "$*" $?
+}
+for pes in 2 4; do same "$particles" "$scratch/scene.json" --pes $pes; done
+for ranks in 1 2 4; do same "${mpirun[@]}" -n $ranks "$particles" "$scratch/scene.json" --pes 1; done
+same "${mpirun[@]}" -n 2 "$particles" "$scratch/scene.json" --pes 2
+for block in 0.15 0.6 50; do
+  sed "s/\"steps\": 60/\"steps\": 60, \"block\": $block, \"exchange\": 3/" "$scratch/scene.json" >"$scratch/cut.json"
+  same "$particles" "$scratch/cut.json" --pes 2
+done
+for seed in 1 2; do same "$particles" "$scratch/scene.json" --sim "pes=4,seed=$seed,migrate=0.1"; done
+
+# refuses WORD COMMAND…: exit code 2, one line with WORD, nothing written.
+refuses() {
+  local word=$1
+  shift
+  rm -f "$scratch/none.json"
+  "$@" --json "$scratch/none.json" >"$scratch/out.txt" 2>"$scratch/err" </dev/null
+  [[ $? == 2 && $(wc -l <"$scratch/err") == 1 && ! -e $scratch/none.json ]] && grep -q -- "$word" "$scratch/err"
+  check "$* ($(cat "$scratch/err"))" $?
+}
+edited() {  # edited SED-COMMAND: a scene with a mistake.
+  sed "$1" "$scratch/scene.json" >"$scratch/bad.json"
+  echo "$scratch/bad.json"
+}
+refuses 'resolution: 0 is not within 4 … 1024' "$particles" "$(edited 's/"resolution": 24/"resolution": 0/')"
+refuses 'unknown key' "$particles" "$(edited 's/"resolution"/"resolutoin"/')"
+refuses 'none.obj: cannot be opened' "$particles" "$(edited 's/wedge.obj/none.obj/')"
+refuses 'is not JSON' "$particles" "$(edited 's/"dt": 0.01,/"dt": 0.01/')"
+printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >"$scratch/nan.obj"
+printf 'v 0 0 0\n' >"$scratch/empty.obj"
+refuses 'vertex 2 of triangle 0' "$particles" "$(edited 's/wedge.obj/nan.obj/')"
+refuses 'holds no faces' "$particles" "$(edited 's/wedge.obj/empty.obj/')"
+refuses 'shear' "$particles" \
+  "$(edited 's/"motion"/"transform": {"matrix": [[1, 1, 0], [0, 1, 0], [0, 0, 1]]}, "motion"/')"
+refuses 'near-zero\|thin\|nothing inside' "$particles" "$(edited 's/{"file": "wedge.obj"}/{"plate": {"half": 1}}/; s/"motion"/"method": "normals", "motion"/')"
+refuses 'missing.json' "$particles" "$scratch/missing.json"
+refuses SCENE "$particles"
+refuses --steps "$particles" "$scratch/scene.json" --steps=-1
+refuses --out "$particles" "$scratch/scene.json" --out "$scratch/wedge.obj"
+refuses 'unknown key' "${mpirun[@]}" -n 2 "$particles" "$(edited 's/"resolution"/"resolutoin"/')" --pes 1
+
+"$particles" --stability >"$scratch/out.txt" 2>&1 && grep -q ' 0 failed' "$scratch/out.txt"
+check "--stability" $?
+"$particles" --help-scene | grep -q surface_flow
+check "--help-scene" $?
+for scene in "$scenes"/*.json; do
+  timeout 60 "$particles" "$scene" --steps 0 --pes 2 --explain >"$scratch/out.txt" 2>&1 && grep -q 'impact: used' "$scratch/out.txt"
+  check "$scene ($(tail -1 "$scratch/out.txt"))" $?
+done
+
+echo "$passed passed, $failed failed"
+((failed == 0))

@@ -1,0 +1,142 @@
+// What runs of scenes must show: energies that rules keep, particles that go through a surface or
+// cannot, and the paper's three regimes of flow around a shaft.
+#include "tests/particles/run_scene.hpp"
+
+#include <fmt/core.h>
+
+using namespace particles;
+using tess::dn::Vec3;
+
+namespace {
+
+Scene falling_on_box(const std::string& rules, const std::string& outputs) {
+  return parse_scene(R"({"dt": 0.02, "steps": 60,
+    "objects": [{"shape": {"box": {"half": [1, 1, 0.5]}}, "resolution": 32, "thickness": 0.5}],
+    "emitters": [{"count": 200, "box": {"low": [-0.7, -0.7, 1], "high": [0.7, 0.7, 1.2]}, "velocity": [0, 0, -2]}],
+    "rules": )" + rules + R"(, "outputs": )" +
+                         outputs + "}",
+                     "scene.json");
+}
+
+double relative(const Ran& ran) {
+  const double begin = ran.result.rows.front().measured.energy();
+  return std::abs(ran.last().energy() - begin) / std::abs(begin);
+}
+
+}  // namespace
+
+TEST_CASE("without losses the energy stays, with losses it falls", "[particles][physics]") {
+  const std::string fall = R"("gravity": [0, 0, -5])";
+  const auto of = [&](const std::string& rule) {
+    return run_scene(falling_on_box("{" + fall + rule + "}", "{}"), "--pes=1");
+  };
+  CHECK(relative(of("")) < 1e-12);
+  // A bounce in the midst of a step keeps the energy to the depth that gravity works on in it.
+  const Ran bouncy = of(R"(, "impact": {"restitution": 1})");
+  CHECK(relative(bouncy) < 1e-2);
+  CHECK(bouncy.last().tunnelled == 0);
+  const Ran dull = of(R"(, "impact": {"restitution": 0.2})");
+  CHECK(dull.last().energy() < 0.8 * dull.result.rows.front().measured.energy());
+  CHECK(dull.last().tunnelled == 0);
+}
+
+TEST_CASE("swept impact lets nothing through at any speed, and bounces it back",
+          "[particles][physics]") {
+  for (const double speed : {3.0, 300.0, 3e5}) {
+    Scene scene = falling_on_box(R"({"impact": {"restitution": 1}})", R"({"audit": true})");
+    scene.emitters[0].velocity = {0, 0, -speed};
+    const Ran ran = run_scene(scene, "--pes=1");
+    CHECK(ran.last().tunnelled == 0);
+    CHECK(ran.last().inside == 0);
+    CHECK(relative(ran) < 1e-6);
+    CHECK(ran.result.audited);
+  }
+}
+
+TEST_CASE("particles that go through a surface are counted, each once", "[particles][physics]") {
+  // A spring too weak to hold anything: all 200 go in at the top and leave at the bottom.
+  const std::string weak = R"({"spring": {"stiffness": 1e-6, "reach": 0.1}})";
+  const Ran each_step = run_scene(falling_on_box(weak, R"({"audit": true})"), "--pes=2");
+  CHECK(each_step.last().tunnelled == 200);
+  CHECK(each_step.last().inside == 0);
+  // Whoever looks at the last step alone misses those that have left again.
+  Scene scene = falling_on_box(weak, R"({"audit": false})");
+  CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
+  scene.steps = 30;  // in the midst of the box
+  const Ran last_step = run_scene(scene, "--pes=2");
+  CHECK(last_step.last().tunnelled == 200);
+  CHECK(last_step.last().inside == 200);
+  // Who begins inside has not gone through anything.
+  scene.emitters[0].low = {-0.5, -0.5, -0.2}, scene.emitters[0].high = {0.5, 0.5, 0.2};
+  scene.emitters[0].velocity = {};
+  CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
+}
+
+TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negative one away",
+          "[particles][physics]") {
+  struct Regime {
+    const char* file;
+    double in, out;
+  };
+  const auto regime = GENERATE(Regime{"shaft_in12_out3", 1, 1},
+                               Regime{"shaft_in3_out6", 1, 1},
+                               Regime{"shaft_in3_out_minus3", 1, -1});
+  Scene scene = read_scene(fmt::format("{}/{}.json", TESS_PARTICLE_SCENES, regime.file));
+  scene.rules.impact.reset();
+  scene.outputs.trajectories = 1;
+  const double radius = 0.5, reach = scene.rules.surface_flow->distance;
+  const Ran ran = run_scene(std::move(scene), "--pes=1");
+  const auto& path = ran.result.trajectories;
+  std::size_t n_in = 0, n_out = 0, n_close = 0;
+  for (std::size_t i = 1; i < path.size(); ++i)
+    for (std::size_t p = 0; p < path[i].samples.size(); ++p) {
+      const Sample &from = path[i - 1].samples[p], &to = path[i].samples[p];
+      CHECK(norm(to.velocity) == Approx(2).epsilon(1e-12));  // the flow keeps the speed
+      const Vec3 at{from.position.x, from.position.y, 0};
+      const double distance = norm(at) - radius;
+      // Off the rim of the reach and off the surface, where a voxel decides who is in.
+      if (distance < 0.1 || distance > reach - 0.1) continue;
+      const Vec3 normal = direction(at);
+      const double along = dot(normal, from.velocity) / 2;
+      const double turned = dot(normal, to.velocity - from.velocity);
+      if (std::abs(along) < 0.2 || std::abs(along) > 0.98) continue;  // at the tangent, head on
+      ++(along < 0 ? n_in : n_out);
+      CHECK((along < 0 ? turned * regime.in : -turned * regime.out) > 0);
+      n_close += static_cast<std::size_t>(i + 1 == path.size());
+    }
+  CHECK(n_in > 100);
+  CHECK(n_out > 100);
+}
+
+TEST_CASE("the shaft's three pairs of coefficients give three regimes", "[particles][physics]") {
+  const auto run = [](const char* file) {
+    Scene scene = read_scene(fmt::format("{}/{}.json", TESS_PARTICLE_SCENES, file));
+    scene.outputs.trajectories = 1;
+    return run_scene(std::move(scene), "--pes=1");
+  };
+  /// How many come closer than 0.1, and how many are still held (closer than 0.45) at the end.
+  const auto close_and_held = [](const Ran& ran) {
+    std::vector<double> nearest(41, HUGE_VAL), last(41);
+    for (const Snapshot& snapshot : ran.result.trajectories)
+      for (const Sample& sample : snapshot.samples) {
+        last[sample.id] = std::hypot(sample.position.x, sample.position.y) - 0.5;
+        nearest[sample.id] = std::min(nearest[sample.id], last[sample.id]);
+      }
+    const auto below = [](const std::vector<double>& of, double limit) {
+      return std::count_if(of.begin(), of.end(), [limit](double d) { return d < limit; });
+    };
+    return std::pair(below(nearest, 0.1), below(last, 0.45));
+  };
+  const auto [close_kept_off, held_kept_off] = close_and_held(run("shaft_in12_out3"));
+  const auto [close_wrapped, held_wrapped] = close_and_held(run("shaft_in3_out6"));
+  const auto [close_thrown, held_thrown] = close_and_held(run("shaft_in3_out_minus3"));
+  // (12, 3): turned away in time: hardly any comes close, none stays.
+  CHECK(close_kept_off <= 1);
+  CHECK(held_kept_off == 0);
+  // (3, 6): more come close, and are led around the back and held.
+  CHECK(close_wrapped >= 5);
+  CHECK(held_wrapped >= 15);
+  // (3, −3): as many come close, for on the way in it is the same; then they are thrown off.
+  CHECK(close_thrown >= 5);
+  CHECK(held_thrown == 0);
+}

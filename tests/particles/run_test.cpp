@@ -1,0 +1,106 @@
+// Whole runs: the same bits on any number of PEs, under any schedule and any cut of space, and the
+// bits of a plain loop over all particles.
+#include "tests/particles/run_scene.hpp"
+
+#include <fmt/core.h>
+
+using namespace particles;
+
+namespace {
+
+/// Two masses, two objects of which one moves and spins, every kind of rule, an explosion that
+/// begins and ends within steps.
+Scene lively_scene() {
+  return parse_scene(R"({"dt": 0.01, "steps": 40,
+    "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 8}}, "resolution": 20, "thickness": 0.3,
+                 "motion": {"velocity": [0.2, 0, 0], "spin": [0, 2, 1]}},
+                {"shape": {"box": {"half": [1, 1, 0.2]}}, "resolution": 16, "thickness": 0.4,
+                 "transform": {"position": [0, 0, -1.2], "rotation": [10, 0, 0], "scale": 1.5}}],
+    "emitters": [{"count": 60, "box": {"low": [-1, -1, 0.6], "high": [1, 1, 1.5]}, "spread": 2, "mass": 2},
+                 {"count": 60, "sphere": {"centre": [0, 0, 0], "radius": 1.2, "inner": 0.8}, "outward": -3}],
+    "rules": {"gravity": [0, 0, -9.81], "impact": {"restitution": 0.8},
+              "surface_drag": {"rate": 3, "threshold": 0.1},
+              "surface_flow": {"alpha_in": 5, "alpha_out": -2, "distance": 0.2},
+              "air_drag": {"rate": 0.1, "law": "quadratic"},
+              "explosions": [{"centre": [0, 0, -0.5], "strength": 50, "radius": 2, "start": 0.123, "duration": 0.0571}]},
+    "outputs": {"statistics": 15, "trajectories": 20, "traced": 30, "audit": false}})",
+                     "scene.json");
+}
+
+void check_same(const Ran& ran, const Ran& first) {
+  REQUIRE(ran.result.rows.size() == first.result.rows.size());
+  for (std::size_t i = 0; i < ran.result.rows.size(); ++i) {
+    const Measured &a = ran.result.rows[i].measured, &b = first.result.rows[i].measured;
+    CHECK(a.particles == b.particles);
+    CHECK(a.hash == b.hash);
+    CHECK(a.kinetic.value() == b.kinetic.value());
+    CHECK(a.energy() == b.energy());
+    CHECK(a.nearest == b.nearest);
+    CHECK(a.inside == b.inside);
+  }
+  REQUIRE(ran.result.trajectories.size() == first.result.trajectories.size());
+  for (std::size_t i = 0; i < ran.result.trajectories.size(); ++i) {
+    const auto &a = ran.result.trajectories[i].samples, &b = first.result.trajectories[i].samples;
+    REQUIRE(a.size() == b.size());
+    for (std::size_t p = 0; p < a.size(); ++p)
+      CHECK((a[p].id == b[p].id && a[p].position == b[p].position));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a run gives the bits of a plain loop over all particles", "[particles][run]") {
+  const Ran ran = run_scene(lively_scene(), "--pes=1");
+  CHECK(ran.result.rows.front().measured.particles == 120);
+  CHECK(ran.last().particles == 120);
+  CHECK(ran.last().nonfinite == 0);
+  const Measured want = run_serially(*ran.stage);
+  CHECK(ran.last().hash == want.hash);
+  CHECK(ran.last().energy() == want.energy());
+  CHECK(ran.last().hash != ran.result.rows.front().measured.hash);
+}
+
+TEST_CASE("a run gives the same bits on any PEs, under any schedule and any cut of space",
+          "[particles][run]") {
+  const Ran first = run_scene(lively_scene(), "--pes=1");
+  CHECK(first.result.trajectories.size() == 3);
+  CHECK(first.result.trajectories.back().samples.size() == 30);
+  for (const char* option : {"--pes=2", "--pes=4"})
+    check_same(run_scene(lively_scene(), option), first);
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    INFO("seed " << seed);
+    Scene scene = lively_scene();
+    if (seed % 3 == 1) scene.block = 0.2;
+    if (seed % 3 == 2) scene.exchange = 1;
+    scene.outputs.audit = seed % 2 == 0;
+    check_same(run_scene(scene, fmt::format("--sim=pes=6,per-process=2,migrate=0.1,seed={}", seed)),
+               first);
+  }
+  for (const double edge : {0.05, 0.7, 100.0})
+    for (const int exchange : {1, 7, 1000}) {
+      Scene scene = lively_scene();
+      scene.block = edge;
+      scene.exchange = exchange;
+      check_same(run_scene(scene, "--sim=pes=3"), first);
+    }
+}
+
+TEST_CASE("a block ends when it is empty and is made again by who enters it", "[particles][run]") {
+  // One particle to and fro between two walls, through ten blocks.
+  const Scene scene = parse_scene(R"({"dt": 0.1, "steps": 200, "block": 0.2, "exchange": 1,
+    "objects": [{"shape": {"boxes": [{"low": [-2, -1, -1], "high": [-1, 1, 1]}, {"low": [1, -1, -1], "high": [2, 1, 1]}]},
+                 "resolution": 40, "thickness": 0.5}],
+    "emitters": [{"lattice": {"low": [0, 0, 0], "high": [0, 0, 0], "n": [1, 1, 1]}, "velocity": [1.05, 0, 0]}],
+    "rules": {"impact": {"restitution": 1}}, "outputs": {"statistics": 1, "audit": true}})",
+                                  "scene.json");
+  for (const char* option : {"--pes=2", "--sim=pes=4,seed=5,migrate=0.2"}) {
+    const Ran ran = run_scene(scene, option);
+    REQUIRE(ran.result.rows.size() == 201);
+    for (const Row& row : ran.result.rows) {
+      CHECK(row.measured.blocks == 1);
+      CHECK(row.measured.particles == 1);
+      CHECK(row.measured.kinetic.value() == Approx(0.5 * 1.05 * 1.05).epsilon(1e-6));
+    }
+    CHECK(ran.last().tunnelled == 0);
+  }
+}

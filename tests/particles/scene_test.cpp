@@ -1,0 +1,206 @@
+#include "apps/particles/scene.hpp"
+
+#include "apps/particles/emit.hpp"
+#include "runtime/error.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+using namespace particles;
+
+namespace {
+
+/// A small scene in which one piece of text is replaced.
+std::string scene_with(const std::string& what, const std::string& by) {
+  std::string scene = R"({"dt": 0.01, "steps": 10,
+    "objects": [{"shape": {"box": {"half": [1, 1, 1]}}},
+                {"shape": {"sphere": {"radius": 1}}, "resolution": 20, "thickness": 0.5}],
+    "emitters": [{"count": 5, "box": {"low": [2, 2, 2], "high": [3, 3, 3]}}],
+    "rules": {"gravity": [0, 0, -9.81], "impact": {"restitution": 0.7}}})";
+  const auto at = scene.find(what);
+  REQUIRE(at != std::string::npos);
+  return scene.replace(at, what.size(), by);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    (void)parse_scene(text, "scene.json");
+  } catch (const tess::Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("a bad scene is refused in one line that names the key, the value and what is allowed",
+          "[particles][scene]") {
+  const auto [what, by, message] = GENERATE(table<std::string, std::string, std::string>({
+      {"\"resolution\": 20",
+       "\"resolution\": 0",
+       "objects[1].resolution: 0 is not within 4 … 1024"},
+      {"\"resolution\": 20",
+       "\"resolution\": 2.5",
+       "objects[1].resolution: 2.5 is not a whole number"},
+      {"\"resolution\": 20",
+       "\"resolutoin\": 20",
+       "objects[1].resolutoin: unknown key; allowed here: shape"},
+      {"\"thickness\": 0.5", "\"thickness\": 0", "objects[1].thickness: 0 is not above 0"},
+      {"\"thickness\": 0.5",
+       "\"thickness\": 0.1",
+       "objects[1].thickness: 0.1 is thinner than two cells"},
+      {"\"thickness\": 0.5", "\"method\": \"magic\"", "\"magic\" is not one of exact"},
+      {"\"thickness\": 0.5",
+       "\"transform\": {\"scale\": 0}",
+       "objects[1].transform.scale: 0 is not above 0"},
+      {"\"thickness\": 0.5",
+       "\"transform\": {\"matrix\": [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}",
+       "objects[1].transform.matrix: [[1,0.5,0],[0,1,0],[0,0,1]] cannot be used: transform"},
+      {"\"thickness\": 0.5",
+       "\"transform\": {\"matrix\": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}",
+       "mirrors the object"},
+      {"\"thickness\": 0.5",
+       "\"thickness\": 0.5, \"thickness\": 1",
+       "key \"thickness\" stands twice"},
+      {"\"thickness\": 0.5",
+       "\"choose\": {\"max_speed\": 1, \"detail\": 1}",
+       "stands beside resolution"},
+      {"{\"box\": {\"half\": [1, 1, 1]}}",
+       "{\"box\": {\"half\": [1, 1]}}",
+       "objects[0].shape.box.half: [1,1] is not a list of three numbers"},
+      {"{\"box\": {\"half\": [1, 1, 1]}}", "{}", "needs exactly one of sphere, box"},
+      {"{\"box\": {\"half\": [1, 1, 1]}}",
+       "{\"file\": \"none.obj\"}",
+       "none.obj: cannot be opened"},
+      {"\"count\": 5, ", "", "emitters[0].count: is missing; give how many particles"},
+      {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
+      {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},
+      {"\"count\": 5",
+       "\"count\": 5, \"seed\": -1",
+       "emitters[0].seed: -1 is not a whole number of at least 0"},
+      {"\"count\": 5",
+       "\"count\": 5, \"outward\": 1",
+       "emitters[0].outward: 1 has no direction in a box"},
+      {"\"restitution\": 0.7",
+       "\"restitution\": 1.5",
+       "rules.impact.restitution: 1.5 is not within 0 … 1"},
+      {"\"restitution\": 0.7",
+       "\"restitution\": 1, \"threshold\": 0.6",
+       "objects[0].thickness: 0.5 times scale 1 is below the distance 0.6"},
+      {"\"restitution\": 0.7}",
+       "\"restitution\": 1}, \"spring\": {\"stiffness\": 1, \"reach\": 0.1, \"damping\": 5}",
+       "rules.spring.damping is 5"},
+      {"\"restitution\": 0.7}",
+       "\"restitution\": 1, \"sweep\": false}, \"wind\": {\"velocity\": [0, 0, 1]}",
+       "rules.wind.rate: is missing"},
+      {"\"high\": [3, 3, 3]}",
+       "\"high\": [3, 3, 3]}, \"velocity\": [0, \"fast\", 0]",
+       "emitters[0].velocity[1]: \"fast\" is not a number"},
+      {"\"dt\": 0.01", "\"dt\": 1e999", "is not JSON"},
+      {"\"dt\": 0.01, ", "", "dt: is missing; give the time step"},
+      {"\"steps\": 10", "\"steps\": -1", "steps: -1 is not within 0 … 1000000000"},
+      {"\"dt\": 0.01, ", "\"dt\": 0.01 ", "is not JSON: parse error at line 1"},
+  }));
+  const std::string told = refusal(scene_with(what, by));
+  INFO(told);
+  CHECK(told.find(message) != std::string::npos);
+  CHECK(told.find("scene.json: ") == (message.find("none.obj") == 0 ? std::string::npos : 0));
+  CHECK(told.find('\n') == std::string::npos);
+}
+
+TEST_CASE("without swept look-up a step that passes the field is refused", "[particles][scene]") {
+  const std::string fast = "\"count\": 5, \"velocity\": [0, 0, -100]";
+  std::string text = scene_with("\"count\": 5", fast);
+  CHECK(refusal(text) == "accepted");
+  const std::string swept = "\"restitution\": 0.7";
+  text.replace(text.find(swept), swept.size(), swept + ", \"sweep\": false");
+  CHECK(refusal(text).find("emitters[0]: speed 100 times dt 0.01 passes the field of objects[0]") !=
+        std::string::npos);
+}
+
+TEST_CASE("a picture outside of the field is refused", "[particles][scene]") {
+  const std::string end = "\"restitution\": 0.7}}";
+  const auto cut_at = [&](const std::string& at) {
+    return refusal(scene_with(
+        end,
+        end + ", \"outputs\": {\"axis\": \"x\", \"slice\": {\"object\": 1, \"at\": " + at + "}}"));
+  };
+  CHECK(cut_at("1.4") == "accepted");
+  CHECK(cut_at("1.6").find("outputs.slice: {\"at\":1.6,\"object\":1} cuts at 1.6, which is not "
+                           "within the field: -1.5 … 1.5") != std::string::npos);
+}
+
+TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
+  const std::string large = R"({"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 1024})";
+  std::string objects = large;
+  for (int i = 0; i < 999; ++i) objects += "," + large;  // 8.6 TB
+  const std::string told = refusal(R"({"dt": 1, "steps": 0, "objects": [)" + objects +
+                                   R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
+  CHECK(told.find("].resolution: 1024 makes the fields ") != std::string::npos);
+  CHECK(told.find("scene.json: objects[") == 0);
+}
+
+TEST_CASE("a scene is what its file says", "[particles][scene]") {
+  const Scene scene =
+      parse_scene(scene_with("\"count\": 5", "\"count\": 5, \"mass\": 2"), "a/b.json");
+  CHECK(scene.dt == 0.01);
+  CHECK(scene.steps == 10);
+  REQUIRE(scene.objects.size() == 2);
+  CHECK(scene.objects[0].surface.triangles.size() == 12);
+  CHECK(scene.objects[0].resolution == 60);
+  CHECK(scene.objects[0].thickness == 0.5);
+  CHECK(scene.objects[1].resolution == 20);
+  CHECK(scene.n_particles() == 5);
+  CHECK(species_of(scene) == std::vector<double>{2});
+  REQUIRE(scene.rules.impact);
+  CHECK(scene.rules.impact->restitution == 0.7);
+  REQUIRE(scene.rules.gravity);
+  CHECK(scene.rules.gravity->acceleration == tess::dn::Vec3{0, 0, -9.81});
+  CHECK_FALSE(scene.rules.spring);
+}
+
+TEST_CASE("forces act by mass, gravity does not", "[particles][scene]") {
+  tess::dn::Rules rules;
+  rules.gravity = tess::dn::Gravity{{0, 0, -2}};
+  rules.spring = tess::dn::Spring{8, 2, 1};
+  rules.air_drag = tess::dn::AirDrag{6, tess::dn::DragLaw::linear};
+  const tess::dn::Rules heavy = for_mass(rules, 2);
+  CHECK(heavy.gravity->acceleration.z == -2);
+  CHECK(heavy.spring->stiffness == 4);
+  CHECK(heavy.spring->damping == 1);
+  CHECK(heavy.spring->reach == 1);
+  CHECK(heavy.air_drag->rate == 3);
+}
+
+TEST_CASE("emitted particles lie where their emitter says", "[particles][scene]") {
+  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+    "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "transform": {"position": [0, 0, 5], "scale": 2}}],
+    "emitters": [{"count": 300, "box": {"low": [1, 2, 3], "high": [2, 2, 5]}, "velocity": [1, 0, 0], "spread": 0.5},
+                 {"count": 300, "sphere": {"centre": [9, 0, 0], "radius": 2, "inner": 1}, "outward": 3},
+                 {"lattice": {"low": [0, 0, 0], "high": [1, 1, 0], "n": [3, 2, 1]}},
+                 {"count": 300, "surface": {"low": 0.25, "high": 0.5}, "mass": 3}]})",
+                                  "scene.json");
+  const Source source(scene);
+  REQUIRE(source.size() == 906);
+  const tess::dn::Bounds all = source.bounds();
+  double sum = 0;
+  for (std::uint64_t id = 0; id < 300; ++id) {
+    const Start a = source.particle(id), b = source.particle(300 + id),
+                c = source.particle(606 + id);
+    CHECK(all.distance2(a.position) == 0);
+    CHECK((a.position.x >= 1 && a.position.x < 2 && a.position.y == 2));
+    CHECK((std::abs(a.velocity.x - 1) <= 0.5 && std::abs(a.velocity.y) <= 0.5));
+    sum += a.position.z;
+    const tess::dn::Vec3 out = b.position - tess::dn::Vec3{9, 0, 0};
+    CHECK((norm(out) >= 1 - 1e-12 && norm(out) <= 2 + 1e-12));
+    CHECK(norm(b.velocity - 3 * direction(out)) < 1e-12);
+    const tess::dn::Vec3 from = c.position - tess::dn::Vec3{0, 0, 5};
+    const double beyond = std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)}) - 2;
+    CHECK((beyond >= 0.25 - 1e-12 && beyond <= 0.5 + 1e-12));
+    CHECK(c.mass == 3);
+  }
+  CHECK(sum / 300 == Approx(4).margin(0.15));
+  CHECK(source.particle(605).position == tess::dn::Vec3{1, 1, 0});
+  CHECK(source.particle(601).position == tess::dn::Vec3{0.5, 0, 0});
+}
