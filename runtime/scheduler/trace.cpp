@@ -59,15 +59,14 @@ class TraceWriter {
               "message",
               of.pe,
               begin,
-              fmt::format(",\"bp\":\"e\",\"cat\":\"m\",\"id\":{}",
-                          arrow(slice.source, slice.number)));
+              fmt::format(R"(,"bp":"e","cat":"m","id":{})", arrow(slice.source, slice.number)));
     }
     for (const Trace::Send& send : of.trace->sends())
       event("s",
             "message",
             of.pe,
             micros(of, send.at),
-            fmt::format(",\"cat\":\"m\",\"id\":{}", arrow(of.pe, send.number)));
+            fmt::format(R"(,"cat":"m","id":{})", arrow(of.pe, send.number)));
     if (of.trace->n_dropped() != 0)
       std::fprintf(stderr,
                    "tessera: --trace %s: PE %d had %llu records more than fit\n",
