@@ -98,7 +98,9 @@ void Barrier::at_sync(Element& element) {
 
 void Barrier::contribute(SyncState& sync) {
   sync.waits_for = sync.next;
-  const EpochId before = std::exchange(pe_.context().epoch, sync.epoch);
+  // The wait itself is on the account of the element's epoch; what a round sends is on none: every
+  // PE would tell that epoch's coordinator of each of its messages.
+  const EpochId before = std::exchange(pe_.context().epoch, EpochId{});
   tree_.contribute(sync.next++, std::make_unique<MergedPartial<std::uint64_t, Sum>>(1, reached_));
   pe_.context().epoch = before;
 }

@@ -1,7 +1,6 @@
 #include "runtime/balance/rounds/exchange.hpp"
 
 #include "runtime/balance/strategies/diffusion.hpp"
-#include "runtime/epoch.hpp"
 #include "runtime/future.hpp"
 
 #include <bit>
@@ -139,11 +138,18 @@ void Exchange::hear(Talk talk) {
 Task Exchange::run_gossip(double average_time) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   const auto n_rounds = static_cast<int>((std::bit_width(n_pes) + 1) / 2);
-  co_await epoch([&] { group().broadcast<&Exchange::begin_gossip>(average_time); });
+  Future<std::uint64_t> begun;
+  group().broadcast<&Exchange::begin_gossip>(average_time, begun.callback());
+  co_await begun;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    co_await epoch([&] { group().broadcast<&Exchange::begin_iteration>(); });
-    for (int round = 0; round < n_rounds; ++round)
-      co_await epoch([&] { group().broadcast<&Exchange::spread>(); });
+    Future<std::uint64_t> forgot;
+    group().broadcast<&Exchange::begin_iteration>(forgot.callback());
+    co_await forgot;
+    for (int round = 0; round < n_rounds; ++round) {
+      Future<std::uint64_t> told;
+      group().broadcast<&Exchange::spread>(told.callback());
+      co_await told;
+    }
     Future<std::uint64_t> trades;
     group().broadcast<&Exchange::offer_all>(trades.callback());
     const std::uint64_t n = co_await trades;
@@ -152,23 +158,25 @@ Task Exchange::run_gossip(double average_time) {
   }
 }
 
-void Exchange::begin_gossip(double average_time) {
+void Exchange::begin_gossip(double average_time, Callback<std::uint64_t> done) {
   gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), average_time, 1);
+  contribute(sum, std::uint64_t{0}, std::move(done));
 }
 
-void Exchange::begin_iteration() {
+void Exchange::begin_iteration(Callback<std::uint64_t> done) {
   gossip_->begin_iteration();
+  contribute(sum, std::uint64_t{0}, std::move(done));
 }
 
-void Exchange::spread() {
-  if (gossip_->tell().empty()) return;
+void Exchange::spread(Callback<std::uint64_t> done) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
-  for (std::size_t k = 0; k < fanout; ++k)
+  for (std::size_t k = 0; k < fanout && !gossip_->tell().empty(); ++k)
     group()[pe_at(gossip_->random_peer(n_pes))].send<&Exchange::rumour>(gossip_->tell());
+  contribute(sum, std::uint64_t{0}, std::move(done));
 }
 
 void Exchange::rumour(std::vector<Rumour> rumours) {
-  gossip_->hear(rumours);
+  if (gossip_) gossip_->hear(rumours);  // else: word of a round that is over
 }
 
 Task Exchange::offer_all(Callback<std::uint64_t> n_trades) {

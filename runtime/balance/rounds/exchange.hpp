@@ -5,7 +5,8 @@
 //
 //   diffusion   in each stage two PEs talk:  greet <-> greet,  offer -> answer, offer -> answer …
 //               (the later of the two offers); a reduction a sweep tells whether to go on
-//   gossip      spread word (an epoch a round), then  offer -> answer  until nobody offers
+//   gossip      spread word, then  offer -> answer  until nobody offers; a reduction after each
+//               step, which does not wait for word under way: late word is word all the same
 #pragma once
 
 #include "runtime/balance/rounds/pe_report.hpp"
@@ -74,9 +75,9 @@ class Exchange final : public Group<Exchange> {
   // Entry methods.
   Task sweep(std::uint64_t number, Callback<std::uint64_t> n_trades);
   void hear(Talk talk);
-  void begin_gossip(double average_time);
-  void begin_iteration();
-  void spread();
+  void begin_gossip(double average_time, Callback<std::uint64_t> done);
+  void begin_iteration(Callback<std::uint64_t> done);
+  void spread(Callback<std::uint64_t> done);
   void rumour(std::vector<Rumour> rumours);
   Task offer_all(Callback<std::uint64_t> n_trades);
   void propose(Proposal proposal);
