@@ -21,7 +21,9 @@ class Chatter : public Group<Chatter> {
     group()[next].send<&Chatter::hear>(std::vector<std::uint8_t>(n_bytes));
     group()[pe()].send<&Chatter::talk>(left - 1);
   }
-  void hear(std::vector<std::uint8_t> bytes) { CHECK(bytes.size() == n_bytes); }
+  void hear(std::vector<std::uint8_t> bytes) {
+    TESS_CHECK(bytes.size() == n_bytes, bytes.size(), " bytes came");
+  }
 };
 
 Task compare(Footprint& before, Footprint& after) {
