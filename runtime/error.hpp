@@ -2,10 +2,10 @@
 // one line and exit with 2. A bug is not an Error: see check.hpp.
 #pragma once
 
-#include <sstream>
+#include "runtime/base/text.hpp"
+
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 namespace tess {
 
@@ -21,14 +21,6 @@ class Error : public std::runtime_error {
  private:
   ErrorCode code_;
 };
-
-/// The parts, written one behind the other.
-template <class... Parts>
-[[nodiscard]] std::string text(const Parts&... parts) {
-  std::ostringstream out;
-  (out << ... << parts);
-  return out.str();
-}
 
 /// Throws an Error whose message is the parts in a row.
 template <class... Parts>

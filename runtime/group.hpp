@@ -175,7 +175,7 @@ class MemberProxy {
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
     const auto [id, pe] = from_bytes<std::tuple<CollectionId, PeId>>(callback.where());
-    MemberProxy(id, pe).template send<F>(std::move(value));
+    MemberProxy(id, pe).template send<F>(std::forward<T>(value));
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{

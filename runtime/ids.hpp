@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <ostream>
+#include <iosfwd>
 
 namespace tess {
 
@@ -15,36 +15,28 @@ struct PeId {
   std::int32_t value = 0;
   friend constexpr auto operator<=>(const PeId&, const PeId&) = default;
 };
-inline std::ostream& operator<<(std::ostream& out, PeId pe) {
-  return out << "PE " << pe.value;
-}
+std::ostream& operator<<(std::ostream& out, PeId pe);
 
 /// A process of the job (an MPI rank): 0 … n_processes − 1.
 struct ProcessId {
   std::int32_t value = 0;
   friend constexpr auto operator<=>(const ProcessId&, const ProcessId&) = default;
 };
-inline std::ostream& operator<<(std::ostream& out, ProcessId p) {
-  return out << "process " << p.value;
-}
+std::ostream& operator<<(std::ostream& out, ProcessId p);
 
 /// An array or a group, the same number on every PE.
 struct CollectionId {
   std::uint64_t value = 0;
   friend constexpr auto operator<=>(const CollectionId&, const CollectionId&) = default;
 };
-inline std::ostream& operator<<(std::ostream& out, CollectionId id) {
-  return out << "collection " << id.value;
-}
+std::ostream& operator<<(std::ostream& out, CollectionId id);
 
 /// A scoped epoch; 0 is the whole run.
 struct EpochId {
   std::uint64_t value = 0;
   friend constexpr auto operator<=>(const EpochId&, const EpochId&) = default;
 };
-inline std::ostream& operator<<(std::ostream& out, EpochId id) {
-  return out << "epoch " << id.value;
-}
+std::ostream& operator<<(std::ostream& out, EpochId id);
 
 }  // namespace tess
 

@@ -4,11 +4,11 @@
 #pragma once
 
 #include "runtime/base/mix.hpp"
+#include "runtime/base/text.hpp"
 #include "runtime/serialize.hpp"
 
 #include <array>
 #include <cstdint>
-#include <ostream>
 #include <string>
 #include <string_view>
 
@@ -65,13 +65,13 @@ template <class Index>
 [[nodiscard]] std::string index_text(const Index& index) {
   if constexpr (std::is_convertible_v<const Index&, std::string_view>) {
     return text("[\"", std::string_view(index), "\"]");
-  } else if constexpr (requires(std::ostream & out) { out << index; }) {
+  } else if constexpr (Writable<Index>) {
     return text("[", index, "]");
   } else if constexpr (std::is_aggregate_v<Index>) {
     std::string out = "[";
     const auto add = [&out](const auto& field) {
       if (out.size() > 1) out += ",";
-      if constexpr (requires(std::ostream & o) { o << field; }) {
+      if constexpr (Writable<std::remove_cvref_t<decltype(field)>>) {
         out += text(field);
       } else if constexpr (requires { field.begin(); }) {
         for (bool first = true; const auto& item : field) {

@@ -12,7 +12,7 @@
 
 #include "runtime/error.hpp"
 
-#include <boost/pfr.hpp>
+#include <boost/pfr/core.hpp>
 
 #include <array>
 #include <cstddef>

@@ -5,7 +5,7 @@
 namespace tess::fuzz {
 namespace {
 
-constexpr std::array all{
+constexpr std::array known{
     Scenario{"create_at_once",
              "of all PEs that demand an index at once one creates it, and no message is lost",
              &create_at_once},
@@ -43,12 +43,12 @@ constexpr std::array all{
 }  // namespace
 
 std::span<const Scenario> scenarios() {
-  return all;
+  return known;
 }
 
 const Scenario& scenario(std::string_view name) {
   std::string names;
-  for (const Scenario& one : all) {
+  for (const Scenario& one : known) {
     if (one.name == name) return one;
     names += (names.empty() ? "" : ", ") + std::string(one.name);
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr double on_surface =
     1e-3;  // of a cell: nearer, the direction to the closest point is rounding
 constexpr int block_edge = 4;
-constexpr int tile_edge = 4 * block_edge;  // voxels in x and y that are asked for at once
+constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are asked for at once
 constexpr double just_beyond = 1 + 1e-9;
 
 const Surface& validated(const Surface& surface, const Grid& grid, const ExactOptions& options) {
@@ -110,15 +110,15 @@ double ExactBuilder::build_shelf(const Slab& slab, int first, int last) const {
   }
   std::fill(shelf.normal.begin(), shelf.normal.end(), no_normal);
   const double limit2 = options_.thickness * options_.thickness * just_beyond;
-  for (int tj = 0; tj < grid_.n[1]; tj += tile_edge)
-    for (int ti = 0; ti < grid_.n[0]; ti += tile_edge) {
+  for (int tj = 0; tj < grid_.n[1]; tj += query_edge)
+    for (int ti = 0; ti < grid_.n[0]; ti += query_edge) {
       Bounds tile;
       tile.extend(grid_.centre(ti, tj, shelf.block_first));
-      tile.extend(
-          grid_.centre(ti + tile_edge - 1, tj + tile_edge - 1, shelf.block_first + block_edge - 1));
+      tile.extend(grid_.centre(
+          ti + query_edge - 1, tj + query_edge - 1, shelf.block_first + block_edge - 1));
       if (!tree_.may_reach(tile, limit2)) continue;
-      for (int j = tj; j < up_to(tj, tile_edge, grid_.n[1]); j += block_edge)
-        for (int i = ti; i < up_to(ti, tile_edge, grid_.n[0]); i += block_edge)
+      for (int j = tj; j < up_to(tj, query_edge, grid_.n[1]); j += block_edge)
+        for (int i = ti; i < up_to(ti, query_edge, grid_.n[0]); i += block_edge)
           fill_block(i, j, shelf);
     }
   float furthest = 0;

@@ -9,8 +9,8 @@ namespace {
 enum class Want { distance, normal, both };
 
 /// The field's numbers, in registers: the stores of a look-up cannot change them.
-struct Reader {
-  explicit Reader(const CompressedField& f)
+struct FieldReader {
+  explicit FieldReader(const CompressedField& f)
       : per_cell(static_cast<float>(1 / f.grid.cell)),
         // Half a voxel is added once here, so that truncation rounds to the nearest centre.
         ox(static_cast<float>(0.5 - f.grid.origin.x / f.grid.cell)),
@@ -36,7 +36,7 @@ void read_planes(const CompressedField& field,
                  float* __restrict out_x,
                  float* __restrict out_y,
                  float* __restrict out_z) {
-  const Reader r(field);
+  const FieldReader r(field);
   const EntryDecoder decoder(field.layout);
   const std::uint32_t* __restrict const block = field.block.data();
   const std::uint32_t* __restrict const entry = field.entry.data();

@@ -116,9 +116,9 @@ void save(const auto& field, Kind kind, const std::string& path) {
 }
 
 /// Fills a field from the body, and sums it up on the way.
-class Reader {
+class FileReader {
  public:
-  Reader(std::istream& file, std::string path) : path_(std::move(path)), file_(file) {}
+  FileReader(std::istream& file, std::string path) : path_(std::move(path)), file_(file) {}
 
   void head(Kind wanted) {
     file_.seekg(0, std::ios::end);
@@ -188,11 +188,11 @@ class Reader {
   Checksum checksum_;
 };
 
-void require(bool condition, const Reader& reader, const char* what) {
+void require(bool condition, const FileReader& reader, const char* what) {
   if (!condition) reader.refuse(text("holds a field that cannot be: ", what));
 }
 
-void require_sound(const Reader& reader, const Grid& grid, Method method, Sides sides) {
+void require_sound(const FileReader& reader, const Grid& grid, Method method, Sides sides) {
   require(grid.n[0] > 0 && grid.n[1] > 0 && grid.n[2] > 0 && grid.cell > 0,
           reader,
           "a grid without voxels");
@@ -200,7 +200,7 @@ void require_sound(const Reader& reader, const Grid& grid, Method method, Sides 
 }
 
 /// That every voxel's entry is there: a file made by hand may have any checksum.
-void require_sound(const Reader& reader, const CompressedField& field) {
+void require_sound(const FileReader& reader, const CompressedField& field) {
   const int e = field.block_shift;
   require(e >= 0 && e <= 4, reader, "blocks of another size");
   std::size_t n_blocks = 1;
@@ -241,7 +241,7 @@ void save_field(const CompressedField& field, const std::string& path) {
 }
 
 Field read_field(std::istream& file, const std::string& name) {
-  Reader reader(file, name);
+  FileReader reader(file, name);
   Field field;
   reader.head(Kind::flat);
   each_member(reader, field);
@@ -255,7 +255,7 @@ Field read_field(std::istream& file, const std::string& name) {
 }
 
 CompressedField read_compressed_field(std::istream& file, const std::string& name) {
-  Reader reader(file, name);
+  FileReader reader(file, name);
   CompressedField field;
   reader.head(Kind::compressed);
   each_member(reader, field);

@@ -6,14 +6,10 @@
 #include "tests/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 
-#include <numbers>
-
 namespace {
 
 using namespace tess::dn;
 using namespace tess::dn::test;
-
-constexpr double degree = std::numbers::pi / 180;
 
 TEST_CASE("the voxels of a surface are those its triangles cut", "[dn_field]") {
   const Surface sphere = make_sphere(1, 32);

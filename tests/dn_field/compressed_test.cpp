@@ -5,14 +5,10 @@
 #include "tests/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 
-#include <numbers>
-
 namespace {
 
 using namespace tess::dn;
 using namespace tess::dn::test;
-
-constexpr double degree = std::numbers::pi / 180;
 
 struct Columns {
   std::vector<float> x, y, z;

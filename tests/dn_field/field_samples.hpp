@@ -8,10 +8,13 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <random>
 #include <string>
 
 namespace tess::dn::test {
+
+inline constexpr double degree = std::numbers::pi / 180;
 
 template <class Visit>
 void for_each_voxel(const Grid& grid, const Visit& visit) {

@@ -22,14 +22,14 @@ class Relay : public tess::Chare<Relay, tess::Index1> {
   }
 };
 
-int run_relay(const std::string& trace, int n_pes) {
+int run_relay(const std::string& path, int n_pes) {
   tess::Setup setup;
   tess::SimulatedOptions options;
   options.n_pes = n_pes;
   options.pes_per_process = n_pes % 2 == 0 ? n_pes / 2 : n_pes;
   options.cost = tess::Time(100);
   setup.machine = tess::make_simulated_machine(options);
-  setup.options.trace = trace;
+  setup.options.trace = path;
   return tess::run(setup, [] { tess::create<Relay>(tess::range(8))[{0}].send<&Relay::pass>(40); });
 }
 
@@ -43,11 +43,11 @@ TEST_CASE("a trace has a slice for each message, and an arrow from the send that
   for (const int n_pes : {1, 3, 4}) {
     REQUIRE(run_relay(path, n_pes) == 0);
     std::ifstream file(path);
-    const auto trace = nlohmann::json::parse(file);
+    const auto written = nlohmann::json::parse(file);
     std::map<std::uint64_t, double> sent, ran;
     std::map<int, double> busy_until;
     int n_passes = 0;
-    for (const auto& event : trace.at("traceEvents")) {
+    for (const auto& event : written.at("traceEvents")) {
       const std::string phase = event.at("ph");
       if (phase == "M") continue;
       const double at = event.at("ts");

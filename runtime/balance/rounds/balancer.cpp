@@ -225,7 +225,7 @@ void Balancer::collect(Callback<std::vector<PeReport>> target) {
   contribute(in_order(concatenate), std::move(mine), std::move(target));
 }
 
-void Balancer::move(std::vector<Move> moves) {
+void Balancer::move(const std::vector<Move>& moves) {
   outcome_.n_moved += moves.size();
   outcome_.moved_bytes += measured_.move(moves);
 }

@@ -61,7 +61,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Task due(std::uint64_t round);
   void sum_up(Callback<PhaseSums> target);
   void collect(Callback<std::vector<PeReport>> target);
-  void move(std::vector<Move> moves);
+  void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
   void forget();
   void prepare(Callback<PhaseSums> target);

@@ -175,7 +175,7 @@ void Exchange::spread(Callback<std::uint64_t> done) {
   contribute(sum, std::uint64_t{0}, std::move(done));
 }
 
-void Exchange::rumour(std::vector<Rumour> rumours) {
+void Exchange::rumour(const std::vector<Rumour>& rumours) {
   if (gossip_) gossip_->hear(rumours);  // else: word of a round that is over
 }
 
@@ -183,8 +183,8 @@ Task Exchange::offer_all(Callback<std::uint64_t> n_trades) {
   n_trades_ = 0;
   while (const auto offer = gossip_->propose()) {
     const std::uint64_t key = n_offers_++;
-    Proposal proposal{pe(), key, *offer};
-    group()[pe_at(offer->to)].send<&Exchange::propose>(std::move(proposal));
+    const Proposal proposal{pe(), key, *offer};
+    group()[pe_at(offer->to)].send<&Exchange::propose>(proposal);
     Reply answer = co_await replies_.take(key);
     if (answer.taken != 0) {
       give(gossip_->local(), offer->item, answer.change);

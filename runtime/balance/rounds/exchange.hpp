@@ -78,7 +78,7 @@ class Exchange final : public Group<Exchange> {
   void begin_gossip(double average_time, Callback<std::uint64_t> done);
   void begin_iteration(Callback<std::uint64_t> done);
   void spread(Callback<std::uint64_t> done);
-  void rumour(std::vector<Rumour> rumours);
+  void rumour(const std::vector<Rumour>& rumours);
   Task offer_all(Callback<std::uint64_t> n_trades);
   void propose(Proposal proposal);
   void reply(Reply reply);

@@ -8,7 +8,7 @@
 namespace tess::balance {
 namespace {
 
-constexpr double tolerance = 1.02;  // of the average: above it a PE is overloaded
+constexpr double overloaded_above = 1.02;  // times the average a PE is overloaded
 constexpr std::size_t fanout = 4;
 constexpr std::size_t n_iterations = 8;
 
@@ -64,13 +64,13 @@ void GossipPe::hear(const std::vector<Rumour>& rumours) {
 }
 
 double GossipPe::gap(const PeSummary& pe) const {
-  return std::max(0.0, (tolerance * average_ - pe.time()) * pe.speed);
+  return std::max(0.0, (overloaded_above * average_ - pe.time()) * pe.speed);
 }
 
 std::optional<Offer> GossipPe::propose() {
   const PeSummary& now = local_.summary();
   const double excess = (now.time() - average_) * now.speed;
-  if (now.time() <= tolerance * average_) return std::nullopt;
+  if (now.time() <= overloaded_above * average_) return std::nullopt;
   while (!known_.empty()) {
     double total = 0;
     for (const Rumour& rumour : known_) total += gap(rumour.summary);

@@ -1,0 +1,38 @@
+#include "runtime/base/text.hpp"
+
+#include <array>
+#include <charconv>
+#include <sstream>
+
+namespace tess::detail {
+namespace {
+
+template <class... Format>
+void append_characters(std::string& out, auto value, Format... format) {
+  std::array<char, 32> digits{};
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, format...).ptr;
+  out.append(digits.data(), end);
+}
+
+}  // namespace
+
+void append_number(std::string& out, std::int64_t value) {
+  append_characters(out, value);
+}
+void append_number(std::string& out, std::uint64_t value) {
+  append_characters(out, value);
+}
+void append_number(std::string& out, double value) {
+  append_characters(out, value, std::chars_format::general, 6);
+}
+
+void append_streamed(std::string& out,
+                     const void* value,
+                     void (*write)(std::ostream& out, const void* value)) {
+  std::ostringstream stream;
+  write(stream, value);
+  out += std::move(stream).str();
+}
+
+}  // namespace tess::detail

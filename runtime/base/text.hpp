@@ -1,0 +1,62 @@
+// Values written one behind the other, for messages to people. Needs no stream header: the headers
+// that all programs include are meant to compile fast.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+namespace tess {
+
+namespace detail {
+
+void append_number(std::string& out, std::int64_t value);
+void append_number(std::string& out, std::uint64_t value);
+void append_number(std::string& out, double value);  // six digits
+
+/// What `write` puts into a stream.
+void append_streamed(std::string& out,
+                     const void* value,
+                     void (*write)(std::ostream& out, const void* value));
+
+template <class Part>
+void append(std::string& out, const Part& part) {
+  if constexpr (std::same_as<Part, char>) {
+    out += part;
+  } else if constexpr (std::unsigned_integral<Part>) {
+    append_number(out, std::uint64_t{part});
+  } else if constexpr (std::integral<Part>) {
+    append_number(out, std::int64_t{part});
+  } else if constexpr (std::floating_point<Part>) {
+    append_number(out, static_cast<double>(part));
+  } else if constexpr (std::convertible_to<const Part&, std::string_view>) {
+    out += std::string_view(part);
+  } else {
+    append_streamed(out, &part, [](std::ostream& to, const void* value) {
+      to << *static_cast<const Part*>(value);
+    });
+  }
+}
+
+}  // namespace detail
+
+/// What text() can write.
+template <class Part>
+concept Writable = std::integral<Part> || std::floating_point<Part> ||
+    std::convertible_to<const Part&, std::string_view> ||
+    requires(std::ostream& out, const Part& part) {
+  out << part;
+};
+
+/// The parts, written one behind the other: characters, numbers, strings, and whatever has an
+/// operator<< of its own.
+template <Writable... Parts>
+[[nodiscard]] std::string text(const Parts&... parts) {
+  std::string out;
+  (detail::append(out, parts), ...);
+  return out;
+}
+
+}  // namespace tess
