@@ -150,6 +150,7 @@ double ExactBuilder::build(const Slab& slab) const {
 
 void ExactBuilder::finish(Field& field, double furthest) const {
   field.thickness = std::min(options_.thickness, furthest);
+  field.jump = greatest_jump(field);
 }
 
 Field build_exact(const Surface& surface, const Grid& grid, const ExactOptions& options) {

@@ -51,7 +51,7 @@ class ExactBuilder {
   /// others are done twice.
   double build(const Slab& slab) const;
 
-  /// Cuts the field's thickness to the greatest distance that its slabs found.
+  /// Cuts the field's thickness to the greatest distance that its slabs found, and sets its jump.
   void finish(Field& field, double furthest) const;
 
  private:

@@ -15,6 +15,27 @@ F outside_by(const Placed& object, F3 g) {
                            max(beyond(g.z, object.field.n[2]), F{}));
 }
 
+constexpr std::int32_t unknown = -1;
+
+/// sample() for particle p and its neighbours; fetches from the field where one has changed its
+/// voxel. The others get what they would have got.
+template <LookUp Kind, Ask Asked>
+Sample sample_again(const Sampler& field, F3 g, Closest& closest, std::size_t p) {
+  const Voxel voxel = voxel_of(field, g);
+  const I key = voxel.in ? voxel.at : I{} + unknown;
+  Stored stored{};
+  if (any(~voxel.in | (key != load<I>(closest.voxel + p)))) {
+    stored = read<Kind, Asked>(field, voxel);
+    store(closest.voxel + p, key);
+    store(closest.stored + p, stored.distance);
+  } else {
+    stored.distance = load<F>(closest.stored + p);
+    if constexpr (Asked == Ask::both)
+      stored.normal = {load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)};
+  }
+  return answer<Kind, Asked>(field, voxel, stored, g);
+}
+
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept>
 void pass(const Placed& object, const ParticleSpan& particles, Closest& closest) {
   const Sampler field = object.field;
@@ -34,7 +55,11 @@ void pass(const Placed& object, const ParticleSpan& particles, Closest& closest)
       g = {q.x * m[0][0] + q.y * m[0][1] + q.z * m[0][2] + ox,
            q.x * m[1][0] + q.y * m[1][1] + q.z * m[1][2] + oy,
            q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
-    Sample found = sample<Kind, Asked>(field, g);
+    Sample found;
+    if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear)
+      found = sample_again<Kind, Asked>(field, g, closest, p);
+    else
+      found = sample<Kind, Asked>(field, g);
     const I in = found.distance < out_of_reach;
     found.distance = in ? found.distance * object.scale - object.padding : found.distance;
     F free{};
@@ -87,9 +112,10 @@ ClosestPass choose(Setting setting, Sweep sweep) {
                                      : choose<Kind, Asked, Setting::one_at_rest>(sweep);
 }
 template <LookUp Kind>
-ClosestPass choose(Ask asked, Setting setting, Sweep sweep) {
-  return asked == Ask::distance ? choose<Kind, Ask::distance>(setting, sweep)
-                                : choose<Kind, Ask::both>(setting, sweep);
+ClosestPass choose([[maybe_unused]] Ask asked, Setting setting, Sweep sweep) {
+  if constexpr (Kind != LookUp::tangent)  // which needs the normal itself
+    if (asked == Ask::distance) return choose<Kind, Ask::distance>(setting, sweep);
+  return choose<Kind, Ask::both>(setting, sweep);
 }
 
 }  // namespace
@@ -122,8 +148,13 @@ Placed placed(const Object& object, LookUp kind) {
   result.two_sided = field.sides == Sides::two;
   result.padding = result.two_sided && kind != LookUp::tangent ? static_cast<float>(cell) : 0.0F;
   result.doubt = static_cast<float>(0.5 * std::sqrt(3.0) * cell);
+  result.jump = field.jump * result.scale;
   result.frame = frame;
   return result;
+}
+
+void forget(Closest& closest, std::size_t count) {
+  std::fill_n(closest.voxel, count, unknown);
 }
 
 void clear(Closest& closest, std::size_t count) {

@@ -15,6 +15,10 @@ struct alignas(64) Closest {
   float distance[block_size];                            ///< out_of_reach where no field is
   float nx[block_size], ny[block_size], nz[block_size];  ///< unit or zero
   float free[block_size];  ///< no surface of any object is nearer than this (swept impact only)
+  // One object at rest, look-ups of one voxel: most particles are still in the voxel of the step
+  // before, whose distance and normal then need not be fetched and decoded again.
+  std::int32_t voxel[block_size];                         ///< that the above is of, see forget()
+  float stored[block_size];                               ///< its distance
   double ux[block_size], uy[block_size], uz[block_size];  ///< the surface's velocity (General only)
 };
 
@@ -32,6 +36,7 @@ struct Placed {
                   ///< cannot see it closer than this
   bool two_sided;
   float doubt;  ///< half a voxel's diagonal, in world units
+  float jump;   ///< Field::jump, in world units
   Frame frame;
 };
 
@@ -44,6 +49,9 @@ using ClosestPass = void (*)(const Placed&, const ParticleSpan&, Closest&);
 
 /// The pass for one object; `general` passes keep what is closer and start from clear().
 [[nodiscard]] ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep);
+
+/// To be called where lanes get other particles: no voxel is known.
+void forget(Closest& closest, std::size_t count);
 
 /// No surface anywhere.
 void clear(Closest& closest, std::size_t count);

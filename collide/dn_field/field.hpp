@@ -6,6 +6,7 @@
 
 #include "collide/dn_field/grid.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -28,9 +29,16 @@ struct Field {
   std::vector<float> distance;        ///< grid.size()
   std::vector<std::uint32_t> normal;  ///< grid.size() codes of normal_code.hpp, or empty
 
+  /// By no more than this do distances of voxels that touch differ, at faces, edges or corners;
+  /// infinite where nobody looked. It lets the step loop leave distant particles alone for a while.
+  float jump = HUGE_VALF;
+
   [[nodiscard]] std::size_t bytes() const {
     return distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
   }
 };
+
+/// Field::jump of these distances; where they are the surface's, a voxel's diagonal at most.
+[[nodiscard]] float greatest_jump(const Field& field);
 
 }  // namespace tess::dn

@@ -251,6 +251,7 @@ Field read_field(std::istream& file, const std::string& name) {
               (field.normal.empty() || field.normal.size() == field.grid.size()),
           reader,
           "another number of voxels");
+  field.jump = greatest_jump(field);
   return field;
 }
 

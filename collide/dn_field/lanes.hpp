@@ -86,6 +86,16 @@ inline bool any(L mask) {
 #endif
 }
 
+inline bool any(I mask) {
+#ifdef __AVX2__
+  return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
+#else
+  std::int32_t found = 0;
+  for (int i = 0; i < width; ++i) found |= mask[i];
+  return found != 0;
+#endif
+}
+
 /// One bit a lane.
 inline unsigned bits(I mask) {
 #ifdef __AVX2__

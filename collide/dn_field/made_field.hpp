@@ -27,6 +27,7 @@ template <class Formula>
         field.distance.push_back(static_cast<float>(here.distance));
         field.normal.push_back(encode_normal(here.normal));
       }
+  field.jump = greatest_jump(field);
   return field;
 }
 

@@ -57,8 +57,14 @@ inline F3 unit(F3 n) {
   return scale * n;
 }
 
-template <LookUp Kind, Ask Asked>
-requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
+/// The voxel that a look-up of one voxel reads.
+struct Voxel {
+  I in;       ///< whether there is one; the first one stands in else
+  I i, j, k;  ///< along the axes
+  I at;       ///< in the field's arrays
+};
+
+inline Voxel voxel_of(const Sampler& field, F3 g) {
   const F3 h{g.x + 0.5F, g.y + 0.5F, g.z + 0.5F};
   const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
              nz = static_cast<float>(field.n[2]);
@@ -66,22 +72,44 @@ requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F
   const I i = __builtin_convertvector(only(in, h.x), I),
           j = __builtin_convertvector(only(in, h.y), I),
           k = __builtin_convertvector(only(in, h.z), I);
-  const I at = k * field.layer + j * field.row + i;
-  Sample found{};
+  return {in, i, j, k, k * field.layer + j * field.row + i};
+}
+
+/// What a voxel stores: its distance, and its normal, unit or zero.
+struct Stored {
+  F distance;
+  F3 normal;
+};
+
+template <LookUp Kind, Ask Asked>
+inline Stored read(const Sampler& field, const Voxel& voxel) {
+  Stored stored{};
   if constexpr (Asked != Ask::distance || Kind == LookUp::tangent)
-    found.normal = only(in, unit(decode(gather(field.normal, at))));
+    stored.normal = only(voxel.in, unit(decode(gather(field.normal, voxel.at))));
   if constexpr (Asked != Ask::normal) {
-    found.voxel = found.distance = gather(field.distance, at);
-    if constexpr (Kind == LookUp::tangent) {
-      const F3 off{g.x - __builtin_convertvector(i, F),
-                   g.y - __builtin_convertvector(j, F),
-                   g.z - __builtin_convertvector(k, F)};
-      found.distance += field.cell * dot(found.normal, off);
-    }
-    found.distance = in ? found.distance : all(out_of_reach);
-    found.voxel = in ? found.voxel : all(out_of_reach);
+    stored.distance = gather(field.distance, voxel.at);
+    stored.distance = voxel.in ? stored.distance : all(out_of_reach);
+  }
+  return stored;
+}
+
+template <LookUp Kind, Ask Asked>
+inline Sample answer(const Sampler& field, const Voxel& voxel, const Stored& stored, F3 g) {
+  Sample found{stored.distance, stored.normal, stored.distance};
+  if constexpr (Kind == LookUp::tangent && Asked != Ask::normal) {
+    const F3 off{g.x - __builtin_convertvector(voxel.i, F),
+                 g.y - __builtin_convertvector(voxel.j, F),
+                 g.z - __builtin_convertvector(voxel.k, F)};
+    const F there = stored.distance + field.cell * dot(stored.normal, off);
+    found.distance = voxel.in ? there : stored.distance;
   }
   return found;
+}
+
+template <LookUp Kind, Ask Asked>
+requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
+  const Voxel voxel = voxel_of(field, g);
+  return answer<Kind, Asked>(field, voxel, read<Kind, Asked>(field, voxel), g);
 }
 
 template <LookUp Kind, Ask Asked>

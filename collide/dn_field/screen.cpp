@@ -9,9 +9,10 @@ using namespace lanes;
 
 constexpr float rounding = 1.0001F;  // of float speeds
 
-/// Lower bound of every look-up's distance, less the way of the surface; minimum over objects.
+/// Lower bound of every look-up's distance, less what rules reach and the way of the surface;
+/// minimum over objects.
 template <bool Turned, bool Moves, bool First>
-void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& block, Near& near) {
+void room_to(const Placed& object, F taken, Reach reach, const ParticleSpan& block, Near& near) {
   const Sampler& field = object.field;
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
@@ -22,6 +23,9 @@ void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& blo
   const F speed = all(static_cast<float>(norm(object.frame.velocity))),
           spin = all(static_cast<float>(norm(object.frame.angular_velocity)));
   const F shift = all(static_cast<float>(norm(c - object.frame.position)));
+  const F time = all(reach.time * rounding);
+  // A way of one cell may lead two voxels on.
+  const F share = all(reach.ahead ? 1 / (1 + object.jump / object.cell) : 1.0F);
   for (std::size_t p = 0; p < block.count; p += width) {
     const F3 q{to_float(load<D>(block.x + p) - c.x),
                to_float(load<D>(block.y + p) - c.y),
@@ -40,9 +44,14 @@ void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& blo
             k = __builtin_convertvector(only(in, h.z), I);
     const F found = gather(field.distance, k * field.layer + j * field.row + i);
     const F beyond = max(max(max(-h.x, h.x - nx), max(-h.y, h.y - ny)), max(-h.z, h.z - nz));
-    F room = in ? found * object.scale - doubt : object.cell * (beyond - 1.0F);
-    if constexpr (Moves)
-      room = room - (reach.step * rounding) * (speed + spin * (sqrt(dot(q, q)) + shift));
+    F room = in ? (found * object.scale - taken) * share
+                : object.cell * (0.999F * beyond - 1.0F) - reach.distance;
+    if constexpr (Moves) {
+      // As seen from the surface a particle at distance r from the object's origin goes
+      // (v + speed)(1 + spin time) + spin r in unit time at most.
+      const F turned = spin * time * (sqrt(dot(q, q)) + shift);
+      room = (room - turned) / (1.0F + spin * time) - time * speed;
+    }
     if constexpr (!First) room = min(room, load<F>(near.room + p));
     store(near.room + p, room);
   }
@@ -71,19 +80,18 @@ void screen(std::span<const Placed> objects,
     const float halves = kind == LookUp::trilinear                       ? 2.0F
                          : kind == LookUp::tangent || sweep == Sweep::on ? 1.0F
                                                                          : 0.0F;
-    const float doubt = halves * object.doubt + object.padding;
+    const float doubt = halves * object.doubt + object.padding + (reach.ahead ? object.jump : 0.0F);
     const RoomTo room_to = i == 0 ? choose<true>(object.frame) : choose<false>(object.frame);
-    room_to(object, all(doubt * rounding), reach, block, near);
+    room_to(object, all(doubt * rounding + reach.distance), reach, block, near);
   }
   near.count = 0;
   if (objects.empty()) return;
-  const F step = all(reach.step * rounding);
+  const F time = all(reach.time * rounding), gain = all(reach.gain);
   for (std::size_t p = 0; p < block.count; p += width) {
     const F3 v{to_float(load<D>(block.vx + p)),
                to_float(load<D>(block.vy + p)),
                to_float(load<D>(block.vz + p))};
-    const F free = load<F>(near.room + p) - reach.distance;
-    unsigned may = bits(~(free >= step * sqrt(dot(v, v))));
+    unsigned may = bits(~(load<F>(near.room + p) >= time * (sqrt(dot(v, v)) + gain)));
     for (; may != 0; may &= may - 1)
       near.index[near.count++] =
           static_cast<std::uint32_t>(p) + static_cast<std::uint32_t>(std::countr_zero(may));

@@ -1,7 +1,8 @@
-// Who can feel a surface in this step at all. A cheap look at one voxel gives a lower bound of what
-// the look-ups will say; most particles of a scene are further away than every rule reaches and
-// than they fly, and are left to the loop without surfaces. The others are packed together, so that
-// vectors are full of particles that need the work. Private to the step loop.
+// Who can feel a surface at all in the next step, or in several. A cheap look at one voxel gives a
+// lower bound of what the look-ups will say; most particles of a scene are further away than every
+// rule reaches and than they fly, and are left to the loop without surfaces. The others are packed
+// together, so that vectors are full of particles that need the work. The bound of later look-ups
+// counts with Field::jump for every voxel that the particle may come to. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/closest.hpp"
@@ -13,9 +14,8 @@ namespace tess::dn {
 /// The particles of a block that may be near, packed.
 struct Near {
   std::size_t count = 0;
-  int unscreened = 0;                  ///< steps for which the block's particles all count as near
   std::uint32_t index[block_size];     ///< in the block, ascending
-  alignas(64) float room[block_size];  ///< to the closest surface less what it moves in the step
+  alignas(64) float room[block_size];  ///< may be flown without feeling a surface
   alignas(64) double values[6][block_size];
 
   /// The packed particles, rounded up to whole vectors.
@@ -26,11 +26,14 @@ struct Near {
 
 /// How far rules reach and particles fly.
 struct Reach {
-  float distance = 0;  ///< of the rules, and what the acceleration adds to the way of a step
-  float step = 0;
+  float distance = 0;  ///< of the rules
+  float time = 0;      ///< of the steps
+  float gain = 0;      ///< of speed in that time, at most
+  bool ahead = false;  ///< there are look-ups after the first: of later steps, of the step's end
 };
 
-/// Lists who may be near; a NaN may.
+/// Lists who may be near within `reach.time` from now; a NaN may. Ahead only for look-ups of one
+/// voxel.
 void screen(std::span<const Placed> objects,
             LookUp kind,
             Sweep sweep,

@@ -4,13 +4,14 @@ namespace tess::dn {
 
 using namespace lanes;
 
-void limit_spring(const SpringConstants& spring,
-                  Setting setting,
-                  const ParticleSpan& particles,
-                  const Closest& before,
-                  const Closest& after,
-                  const Scratch& scratch) {
+Moved limit_spring(const SpringConstants& spring,
+                   Setting setting,
+                   const ParticleSpan& particles,
+                   const Closest& before,
+                   const Closest& after,
+                   const Scratch& scratch) {
   constexpr double noise = 1e-6;  // of float distances; cut, it would eat a soft spring's energy
+  Moved moved = Moved::none;
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D depth = spring.reach - to_double(load<F>(after.distance + p));
     if (!any(depth > 0.0)) continue;
@@ -30,12 +31,15 @@ void limit_spring(const SpringConstants& spring,
     store(particles.vz + p, slowed.z);
     const D paid = sqrt(energy * (1 / spring.stiffness));
     const L deeper = over & (depth > paid);
+    if (!any(deeper)) continue;
+    moved = Moved::some;
     const D push = depth - paid;
     const D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
     const D3 pushed = select(deeper, x + push * n, x);
     store(particles.x + p, pushed.x), store(particles.y + p, pushed.y);
     store(particles.z + p, pushed.z);
   }
+  return moved;
 }
 
 }  // namespace tess::dn

@@ -9,13 +9,16 @@
 
 namespace tess::dn {
 
+/// Whether a particle was put elsewhere.
+enum class Moved : std::uint32_t { none, some };
+
 /// before, after: the closest surfaces at the step's start and end; scratch.energy: twice the
 /// energy of each particle, spring and way included, as the rule loop left it.
-void limit_spring(const SpringConstants& spring,
-                  Setting setting,
-                  const ParticleSpan& particles,
-                  const Closest& before,
-                  const Closest& after,
-                  const Scratch& scratch);
+Moved limit_spring(const SpringConstants& spring,
+                   Setting setting,
+                   const ParticleSpan& particles,
+                   const Closest& before,
+                   const Closest& after,
+                   const Scratch& scratch);
 
 }  // namespace tess::dn

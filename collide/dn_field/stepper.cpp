@@ -11,8 +11,9 @@
 namespace tess::dn {
 namespace {
 
-constexpr int steps_unscreened = 7;  // of a block whose particles were mostly near
-constexpr int steps_at_once = 64;    // for which the objects' positions are made in advance
+constexpr int steps_at_once = 64;     // for which the objects' positions are made in advance
+constexpr int furthest_ahead = 16;    // steps that one screening may serve
+constexpr int steps_unscreened = 16;  // for which all count as near where screening did not pay
 
 /// The number of steps since time 0, whole where `time` is meant to be a sum or multiple of steps:
 /// then a run from there sees the same times to the bit as one that came by.
@@ -23,9 +24,17 @@ double steps_before(double time, double step) {
 
 /// What a block needs besides its particles; made once a run.
 struct Buffers {
-  Closest closest, after;
+  Closest first, second;
+  Closest *closest = &first, *after = &second;  ///< at the step's start and end
+  bool known = false;                           ///< `closest` is up to date
   Near near;
   Scratch scratch;
+
+  void new_particles(std::size_t count) {
+    forget(first, count);
+    forget(second, count);
+    known = false;
+  }
 };
 
 /// What is the same for all blocks of a run.
@@ -33,13 +42,20 @@ struct Run {
   const Stepper::Plan& plan;
   RuleConstants constants;
   Setting setting = Setting::general;
-  Reach reach;
+  double reach = 0;    ///< of the rules, and what rounding could hide
+  int look_ahead = 1;  ///< steps that a screening may serve
   ClosestPass look_up = nullptr;
   RuleLoop loop = nullptr;
 };
 
+/// What a blend says of a particle that is not near may differ from what the screening says in its
+/// last bit. So the screening decides, in each step.
+bool is_blend(const Stepper::Plan& plan) {
+  return plan.rules.look_up == LookUp::trilinear;
+}
+
 Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
-  Run run{plan, plan.constants, Setting::general, {}, nullptr, nullptr};
+  Run run{plan, plan.constants};
   const bool simple =
       objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
   run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
@@ -54,12 +70,20 @@ Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
   run.constants.slack =
       (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest;
   run.constants.stride = 0.5 * finest;
-  // Moved outward by what rounding could hide.
-  const RuleConstants& c = run.constants;
-  const double added = plan.step * std::max(c.air.gain, c.surface.gain) * norm(c.acceleration);
-  run.reach = {static_cast<float>(reach(plan.rules) + added + 1e-3 * finest),
-               static_cast<float>(plan.step)};
+  run.reach = reach(plan.rules) + 1e-3 * finest;
+  if (!is_blend(plan)) run.look_ahead = furthest_ahead;
+  for (const Object& object : objects)
+    if (!(static_cast<double>(object.field->jump) < 4 * object.field->grid.cell))
+      run.look_ahead = 1;
   return run;
+}
+
+void look_up_all(const Run& run,
+                 std::span<const Placed> objects,
+                 const ParticleSpan& particles,
+                 Closest& closest) {
+  if (run.setting == Setting::general) clear(closest, particles.count);
+  for (const Placed& object : objects) run.look_up(object, particles, closest);
 }
 
 /// The rules of the surface, for particles that may feel it.
@@ -68,9 +92,9 @@ void meet_surface(const Run& run,
                   const ParticleSpan& particles,
                   Buffers& buffers) {
   const Stepper::Plan& plan = run.plan;
-  auto& [closest, after, near, scratch] = buffers;
-  if (run.setting == Setting::general) clear(closest, particles.count);
-  for (const Placed& object : objects) run.look_up(object, particles, closest);
+  Scratch& scratch = buffers.scratch;
+  Closest& closest = *buffers.closest;
+  if (!buffers.known) look_up_all(run, objects, particles, closest);
   if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
     drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, particles, closest);
   run.loop(run.constants, particles, closest, scratch);
@@ -78,43 +102,97 @@ void meet_surface(const Run& run,
     scratch.energy[from.particle] +=
         trace(run.constants, objects, plan.rules.look_up, from, particles);
   scratch.untraced.clear();
-  if (plan.rules.spring) {
-    if (run.setting == Setting::general) clear(after, particles.count);
-    for (const Placed& object : objects) run.look_up(object, particles, after);
-    limit_spring(run.constants.spring, run.setting, particles, closest, after, scratch);
-  }
+  if (!plan.rules.spring) return;
+  look_up_all(run, objects, particles, *buffers.after);
+  const Moved moved =
+      limit_spring(run.constants.spring, run.setting, particles, closest, *buffers.after, scratch);
+  // Objects that do not move say the same at the start of the next step.
+  buffers.known = run.setting == Setting::one_at_rest && moved == Moved::none;
+  if (buffers.known) std::swap(buffers.closest, buffers.after);
 }
 
-void one_step(const Run& run,
-              std::span<const Placed> objects,
-              double time,
-              const ParticleSpan& block,
-              Buffers& buffers) {
+/// The rules that the surface has no part in and that are not in the rule loops.
+void change_velocities(const Rules& rules,
+                       double time,
+                       double step,
+                       const ParticleSpan& particles) {
+  for (const Explosion& explosion : rules.explosions)
+    if (const double active = active_within(explosion, time, step); active > 0)
+      explode(explosion, active, particles);
+  if (rules.air_drag && rules.air_drag->law == DragLaw::quadratic)
+    drag_quadratic(rules.air_drag->rate * step, particles);
+}
+
+/// The speed that a particle away from all surfaces gains in n_steps from `time`, at most.
+double speed_gained(const Run& run, double time, int n_steps) {
+  const double span = n_steps * run.plan.step;
+  double gained = span * norm(run.constants.acceleration);
+  for (const Explosion& explosion : run.plan.rules.explosions)
+    gained += std::abs(explosion.strength) * active_within(explosion, time, span);
+  return gained;
+}
+
+/// Whether to take the near ones apart. The costs are nanoseconds a particle, measured roughly:
+/// they decide how fast the result is there, never which.
+bool screening_pays(const Stepper::Plan& plan, std::size_t near, std::size_t all, int n_steps) {
+  if (near == all) return false;
+  if (is_blend(plan)) return true;
+  constexpr double to_screen = 2.4, to_pack = 2, free_step = 0.6;
+  const double near_step = plan.rules.spring || plan.rules.surface_flow ? 8 : 2;
+  const double part = static_cast<double>(near) / static_cast<double>(all);
+  return (to_screen + part * to_pack) / n_steps + part * near_step + free_step < near_step;
+}
+
+/// Takes one block through the steps for which the objects are `placed`, the first at `time(0)`.
+/// Who may feel a surface in the next few steps is packed and taken through them alone, the others
+/// fly free; where not enough fly free to pay for that, all are taken as near.
+template <class Time>
+void fly(const Run& run,
+         std::span<const std::vector<Placed>> places,
+         const Time& time,
+         const ParticleSpan& block,
+         Buffers& buffers) {
   const Stepper::Plan& plan = run.plan;
-  for (const Explosion& explosion : plan.rules.explosions)
-    if (const double active = active_within(explosion, time, plan.step); active > 0)
-      explode(explosion, active, block);
-  if (plan.rules.air_drag && plan.rules.air_drag->law == DragLaw::quadratic)
-    drag_quadratic(plan.rules.air_drag->rate * plan.step, block);
+  const int n_steps = static_cast<int>(places.size());
   Near& near = buffers.near;
-  near.count = 0;
-  if (plan.looks_up) {
-    if (near.unscreened > 0) {
-      --near.unscreened;
-      return meet_surface(run, objects, block, buffers);
+  const auto step_free = [&](int i) {
+    change_velocities(plan.rules, time(i), plan.step, block);
+    plan.loop_without(run.constants, block, buffers.first, buffers.scratch);
+  };
+  const auto step_near = [&](int i, const ParticleSpan& particles) {
+    change_velocities(plan.rules, time(i), plan.step, particles);
+    meet_surface(run, places[static_cast<std::size_t>(i)], particles, buffers);
+  };
+  int ahead = run.look_ahead;
+  for (int i = 0; i < n_steps;) {
+    int next = std::min(i + ahead, n_steps);
+    near.count = 0;
+    if (plan.looks_up) {
+      const double gained = speed_gained(run, time(i), next - i);
+      screen(places[static_cast<std::size_t>(i)],
+             plan.rules.look_up,
+             plan.sweep,
+             {static_cast<float>(run.reach),
+              static_cast<float>((next - i) * plan.step),
+              static_cast<float>(gained),
+              next - i > 1 || plan.rules.spring.has_value()},
+             block,
+             near);
     }
-    screen(objects, plan.rules.look_up, plan.sweep, run.reach, block, near);
-    // Packing pays where few are near, and screening where not most are. The bound that lets others
-    // stay is exact for the look-ups of one voxel, so that they come out the same either way.
-    const bool most = plan.rules.look_up != LookUp::trilinear && 2 * near.count > block.count;
-    if (most) near.unscreened = steps_unscreened;
-    if (most || near.count == block.count) return meet_surface(run, objects, block, buffers);
+    buffers.new_particles(block.count);
+    const bool pays = screening_pays(plan, near.count, block.count, next - i);
+    if (!pays) {
+      ahead = std::max(1, ahead / 2);
+      if (!is_blend(plan)) next = std::min(i + steps_unscreened, n_steps);
+      for (; i < next; ++i) step_near(i, block);
+      continue;
+    }
+    if (8 * near.count < block.count) ahead = std::min(run.look_ahead, 2 * ahead);
     pack(block, near);
+    for (int k = i; k < next; ++k) step_near(k, near.packed());
+    for (; i < next; ++i) step_free(i);
+    near.unpack(block);
   }
-  plan.loop_without(run.constants, block, buffers.closest, buffers.scratch);
-  if (near.count == 0) return;
-  meet_surface(run, objects, near.packed(), buffers);
-  near.unpack(block);
 }
 
 /// Where all objects stand at each of the next n_steps steps, and after them.
@@ -141,7 +219,8 @@ void Stepper::run(ParticleSpan particles,
   if (!plan.looks_up) standing.clear();
   const double before = steps_before(time, plan.step);
   const auto buffers = std::make_unique<Buffers>();
-  clear(buffers->closest, block_size);
+  clear(buffers->first, block_size);
+  clear(buffers->second, block_size);
   // The last particles, fewer than a vector, are stepped in room of their own.
   const std::size_t whole = particles.count / lanes::width * lanes::width;
   std::array<std::array<double, lanes::width>, 6> room{};
@@ -166,14 +245,9 @@ void Stepper::run(ParticleSpan particles,
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
     const auto places = placed_for(standing, plan, now);
+    const auto step_time = [&](int i) { return (before + done + i) * plan.step; };
     const auto step_all = [&](const ParticleSpan& block) {
-      buffers->near.unscreened = 0;
-      for (int i = 0; i < now; ++i)
-        one_step(run,
-                 places[static_cast<std::size_t>(i)],
-                 (before + done + i) * plan.step,
-                 block,
-                 *buffers);
+      fly(run, places, step_time, block, *buffers);
     };
     for (std::size_t first = 0; first < whole; first += block_size)
       step_all(particles.part(first, std::min(block_size, whole - first)));

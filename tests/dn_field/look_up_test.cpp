@@ -39,4 +39,22 @@ TEST_CASE(
   CHECK(inside > 100);
 }
 
+TEST_CASE("no two voxels that touch differ by more than the field's jump", "[dn_field]") {
+  const Surface box = make_box({0.5, 0.3, 0.2});
+  const Field field = build_exact(box, grid_around(bounds(box), 19, 0.3));
+  const auto [nx, ny, nz] = field.grid.n;
+  float largest = 0;
+  for (int at = 0; at < nx * ny * nz; ++at)
+    for (int way = 0; way < 27; ++way) {
+      const int i = at % nx, j = at / nx % ny, k = at / (nx * ny);
+      const int u = i + way % 3 - 1, v = j + way / 3 % 3 - 1, w = k + way / 9 - 1;
+      if (u < 0 || v < 0 || w < 0 || u >= nx || v >= ny || w >= nz) continue;
+      largest = std::max(largest,
+                         std::fabs(field.distance[field.grid.index(i, j, k)] -
+                                   field.distance[field.grid.index(u, v, w)]));
+    }
+  CHECK(field.jump == largest);
+  CHECK(static_cast<double>(field.jump) < 1.7321 * field.grid.cell);
+}
+
 }  // namespace

@@ -81,6 +81,39 @@ TEST_CASE("trajectories are bit-identical however particles and steps are cut",
   }
 }
 
+TEST_CASE("who is far from a surface, and for how long, leaves no trace in a trajectory",
+          "[dn_field][rules]") {
+  // Particles are left alone for many steps where the surface is far. Alone in its block each takes
+  // the look-ups of all its steps, or of none; by the nearest look-up distances jump between
+  // voxels.
+  const Field ball = sphere_field(cube_grid(1.5, 24), 0.6);
+  Field holed = ball;  // as of a mesh with a hole: neighbours of opposite sign
+  for (std::size_t at = 0; at < holed.distance.size(); at += 7) holed.distance[at] *= -1;
+  holed.jump = greatest_jump(holed);
+  for (const Field* field : {&ball, &static_cast<const Field&>(holed)})
+    for (const LookUp look_up : {LookUp::nearest, LookUp::tangent})
+      for (const Vec3 spin : {Vec3{}, Vec3{3, 0, 1}}) {
+        Object object{field, {}};
+        object.frame.angular_velocity = spin;
+        Rules rules = everything();
+        rules.look_up = look_up;
+        rules.impact->sweep = Sweep::off;
+        const Stepper stepper = make_stepper(rules, 0.004);
+        const std::size_t count = 600;
+        Particles together = some(count), alone = some(count);
+        stepper.run(together.span(), {&object, 1}, 0, 100);
+        for (std::size_t p = 0; p < count; p += 7)
+          stepper.run(alone.span().part(p, 1), {&object, 1}, 0, 100);
+        int different = 0;
+        for (std::size_t p = 0; p < count; p += 7)
+          different +=
+              alone.position(p) == together.position(p) && alone.velocity(p) == together.velocity(p)
+                  ? 0
+                  : 1;
+        CHECK(different == 0);
+      }
+}
+
 TEST_CASE("a scene in a moving, turned, scaled frame is the scene at rest seen from there",
           "[dn_field][rules]") {
   const Field ball = sphere_field(cube_grid(1.5, 32), 0.6);
