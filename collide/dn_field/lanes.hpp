@@ -34,13 +34,21 @@ inline void store(T* to, V v) {
 }
 
 inline D to_double(F v) {
+#ifdef __AVX512F__
+  return (D)_mm512_maskz_cvtps_pd(0xFF, (__m256)v);  // g++ 12 converts in halves
+#else
   return __builtin_convertvector(v, D);
+#endif
 }
 inline F to_float(D v) {
   return __builtin_convertvector(v, F);
 }
 inline L widen(I mask) {
+#ifdef __AVX512F__
+  return (L)_mm512_maskz_cvtepi32_epi64(0xFF, (__m256i)mask);
+#else
   return __builtin_convertvector(mask, L);
+#endif
 }
 
 inline D all(double v) {
@@ -68,6 +76,15 @@ inline F min(F a, F b) {
 inline F max(F a, F b) {
   return a > b ? a : b;
 }
+/// The mask as a value of its own. g++ 12 else follows a conjunction of comparisons to where it is
+/// used, and works it out there lane by lane.
+inline L settled(L mask) {
+#ifdef __AVX512F__
+  asm("" : "+v"(mask));
+#endif
+  return mask;
+}
+
 /// v where the mask holds, else zero.
 inline D only(L mask, D v) {
   return (D)(mask & (L)v);
@@ -173,17 +190,36 @@ inline D3 to_double(F3 v) {
   return {to_double(v.x), to_double(v.y), to_double(v.z)};
 }
 
+inline D3 load3(const double* x, const double* y, const double* z) {
+  return {load<D>(x), load<D>(y), load<D>(z)};
+}
+
+/// One Newton step takes a normal that is unit to float precision to double precision.
+inline D3 refined(D3 n) {
+  return (1.5 - 0.5 * dot(n, n)) * n;
+}
+
+inline constexpr double pi = 3.14159265358979323846;
+
 /// tan(x/2) = p/q for |x| <= pi/2, good to 3e-11 (the continued fraction, six terms). Sine and
 /// cosine from it have squares that add up to 1 to rounding, whatever its error: lengths are kept.
+struct TurnRatio {
+  D cosine, sine;  ///< times square
+  D square;        ///< p² + q²
+};
+inline TurnRatio turn_ratio(D angle) {
+  const D x = 0.5 * angle, xx = x * x;
+  const D p = x * (10395.0 + xx * (-1260.0 + xx * 21.0));
+  const D q = 10395.0 + xx * (-4725.0 + xx * (210.0 - xx));
+  return {q * q - p * p, 2.0 * p * q, q * q + p * p};
+}
 struct Turn {
   D cosine, sine;
 };
 inline Turn turn(D angle) {
-  const D x = 0.5 * angle, xx = x * x;
-  const D p = x * (10395.0 + xx * (-1260.0 + xx * 21.0));
-  const D q = 10395.0 + xx * (-4725.0 + xx * (210.0 - xx));
-  const D scale = 1.0 / (q * q + p * p);
-  return {(q * q - p * p) * scale, 2.0 * p * q * scale};
+  const TurnRatio ratio = turn_ratio(angle);
+  const D scale = 1.0 / ratio.square;
+  return {ratio.cosine * scale, ratio.sine * scale};
 }
 
 }  // namespace tess::dn::lanes

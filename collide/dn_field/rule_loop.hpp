@@ -12,7 +12,7 @@
 // lanes their bits, the sign of a zero too, so that no particle depends on its neighbours.
 #pragma once
 
-#include "collide/dn_field/closest.hpp"
+#include "collide/dn_field/flow_lanes.hpp"
 #include "collide/dn_field/spring_lanes.hpp"
 
 #include <vector>
@@ -24,7 +24,6 @@ namespace tess::dn {
 enum class Flight : std::uint32_t { none, fall, air, surface };
 enum class Impacts : std::uint32_t { none, plain, swept };
 enum class Springs : std::uint32_t { none, exact };
-enum class Flows : std::uint32_t { none, turned };
 
 /// The exact flow of v' = -rate v + a over a step: v1 = keep v + gain a, mean = mean_keep v +
 /// mean_gain a.
@@ -53,7 +52,7 @@ struct RuleConstants {
   double restitution = 0, threshold = 0;
   double slack = 0;   ///< depth below the threshold that is taken for the look-up's error
   double stride = 0;  ///< ways shorter than this are not traced
-  double turn_in = 0, turn_out = 0, flow_distance = 0;  ///< alpha × step
+  FlowConstants flow;
   SpringConstants spring;
 };
 
@@ -61,9 +60,6 @@ using RuleLoop = void (*)(const RuleConstants&, const ParticleSpan&, const Close
 
 namespace lanes {
 
-inline D3 load3(const double* x, const double* y, const double* z) {
-  return {load<D>(x), load<D>(y), load<D>(z)};
-}
 inline D3 times(double s, D3 a) {
   return {s * a.x, s * a.y, s * a.z};
 }
@@ -74,51 +70,24 @@ inline D dot(D3 a, Vec3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// One Newton step takes a normal that is unit to float precision to double precision.
-inline D3 refined(D3 n) {
-  return (1.5 - 0.5 * dot(n, n)) * n;
-}
-
-/// The velocity w turned toward the tangent of the surface with normal n by min(alpha dt/|w|, what
-/// is left); by a negative alpha away from it. |w| is kept to rounding; 1e-100 is no speed.
-inline D3 turned_to_surface(const RuleConstants& c, D3 w, D3 n, L where) {
-  const D alpha = dot(w, n);
-  const D3 tangent = w - alpha * n;
-  const D w2 = dot(w, w), t2 = dot(tangent, tangent);
-  where = where & (t2 > 1e-24 * w2) & (w2 > 1e-200) & (w2 < 1e200);
-  const D speed = sqrt(w2), t = sqrt(t2), per_both = 1.0 / (speed * t);
-  const D rate = alpha < 0.0 ? all(c.turn_in) : all(c.turn_out);
-  const D angle = rate * (t * per_both);
-  const Turn by = turn(max(min(angle, all(0.5 * pi)), all(-0.5 * pi)));
-  const D sine = abs(alpha) * by.cosine - t * by.sine,
-          cosine = t * by.cosine + abs(alpha) * by.sine;
-  const L arrived = sine < 0.0, upright = cosine < 0.0;
-  D along = arrived ? speed : only(cosine >= 0.0, cosine);
-  D across = arrived ? D{} : (upright ? speed : sine);
-  across = alpha < 0.0 ? -across : across;
-  along = along * (speed * per_both);
-  return select(where, along * tangent + across * n, w);
-}
-
-template <Flight Flies, Impacts Hits, Springs Springy, Flows Turns, Setting Where>
+template <Flight Flies, Impacts Hits, Springs Springy, Setting Where>
 void rule_loop(const RuleConstants& c,
                const ParticleSpan& particles,
                const Closest& closest,
                Scratch& scratch) {
-  constexpr bool asks_normal =
-      Hits != Impacts::none || Springy != Springs::none || Turns != Flows::none;
+  constexpr bool asks_normal = Hits != Impacts::none || Springy != Springs::none;
   constexpr bool asks_distance = asks_normal || Flies == Flight::surface;
   constexpr bool moves = asks_distance && Where == Setting::general;
   const double dt = c.step;
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D3 x0 = load3(particles.x + p, particles.y + p, particles.z + p);
-    D3 v0 = load3(particles.vx + p, particles.vy + p, particles.vz + p);
+    const D3 v0 = load3(particles.vx + p, particles.vy + p, particles.vz + p);
     D d{};
     D3 n{}, u{};
     if constexpr (asks_distance) d = to_double(load<F>(closest.distance + p));
     if constexpr (asks_normal) {
       n = to_double(F3{load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)});
-      if constexpr (Springy != Springs::none || Turns != Flows::none) n = refined(n);
+      if constexpr (Springy != Springs::none) n = refined(n);
     }
     if constexpr (moves) u = load3(closest.ux + p, closest.uy + p, closest.uz + p);
     // Relative to the surface.
@@ -127,16 +96,7 @@ void rule_loop(const RuleConstants& c,
       return v;
     };
     const auto rises = [&](D3 v) { return dot(n, relative(v)); };
-    const L has_normal = asks_normal ? (dot(n, n) > 0.25) : L{};
-
-    if constexpr (Turns != Flows::none) {
-      const L near = has_normal & (d < c.flow_distance);
-      if (any(near)) {
-        D3 turned = turned_to_surface(c, relative(v0), n, near);
-        if constexpr (moves) turned = turned + u;
-        v0 = select(near, turned, v0);
-      }
-    }
+    const L has_normal = asks_normal ? settled(dot(n, n) > 0.25) : L{};
 
     D3 v1 = v0, mean = v0, a{};
     D keep = all(1.0), gain{}, mean_keep = keep, mean_gain{};
@@ -167,7 +127,7 @@ void rule_loop(const RuleConstants& c,
       z0 = d - c.spring.reach;
       const D an = dot(n, a), g = an * gain * (1 / dt), before = rises(v1);
       const D e = before - gain * an;
-      const L touches = has_normal & ((z0 < 0.0) | ((z0 + dt * (e + 0.5 * dt * g)) < 0.0));
+      const L touches = settled(has_normal & ((z0 < 0.0) | ((z0 + dt * (e + 0.5 * dt * g)) < 0.0)));
       if constexpr (Hits != Impacts::none) {
         const D depth = min(z0, D{}), rate = rises(v0);
         energy = rate * rate + c.spring.stiffness * depth * depth - 2.0 * g * z0;
@@ -194,12 +154,12 @@ void rule_loop(const RuleConstants& c,
     if constexpr (Hits != Impacts::none) {
       const D rise = dt * rises(mean);
       const L known = has_normal & (d < static_cast<double>(out_of_reach));
-      L hits = known & (rise < 0.0) & (d + rise < c.threshold);
-      L deep = known & (d < c.threshold - c.slack);
+      L hits = settled(known & (rise < 0.0) & (d + rise < c.threshold));
+      L deep = settled(known & (d < c.threshold - c.slack));
       if constexpr (Hits == Impacts::swept) {
         const D3 path = times(dt, relative(mean));
         const D free = max(to_double(load<F>(closest.free + p)), all(c.stride));
-        const L far = dot(path, path) > free * free;
+        const L far = settled(dot(path, path) > free * free);
         hits = hits & ~far;
         deep = deep & ~far;
         if (any(far))
@@ -211,7 +171,7 @@ void rule_loop(const RuleConstants& c,
             }
       }
       if (any(hits | deep)) {
-        if constexpr (Springy == Springs::none && Turns == Flows::none) n = refined(n);
+        if constexpr (Springy == Springs::none) n = refined(n);
         D3 shift = only(deep, c.threshold - c.slack - d) * n;
         const D s = only(hits, max((c.threshold - d) / rise, D{}));
         const D rest = 1.0 - s;
@@ -258,8 +218,7 @@ void rule_loop(const RuleConstants& c,
     }
     const D3 x1 = x0 + way;
     store(particles.x + p, x1.x), store(particles.y + p, x1.y), store(particles.z + p, x1.z);
-    constexpr bool stored =
-        Flies == Flight::none && Springy == Springs::none && Turns == Flows::none;
+    constexpr bool stored = Flies == Flight::none && Springy == Springs::none;
     if constexpr (!stored) {
       store(particles.vx + p, v1.x), store(particles.vy + p, v1.y), store(particles.vz + p, v1.z);
     }

@@ -1,5 +1,6 @@
 #include "collide/dn_field/screen.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace tess::dn {
@@ -87,15 +88,28 @@ void screen(std::span<const Placed> objects,
   near.count = 0;
   if (objects.empty()) return;
   const F time = all(reach.time * rounding), gain = all(reach.gain);
+  // Who is near only if voxels on the way should say so comes last, so that whole vectors of them
+  // have nothing to do.
+  const F at_once =
+      all(reach.ahead ? -objects[0].jump / (1 + objects[0].jump / objects[0].cell) : 0.0F);
+  std::array<std::uint32_t, block_size> later;
+  std::size_t n_later = 0;
   for (std::size_t p = 0; p < block.count; p += width) {
     const F3 v{to_float(load<D>(block.vx + p)),
                to_float(load<D>(block.vy + p)),
                to_float(load<D>(block.vz + p))};
-    unsigned may = bits(~(load<F>(near.room + p) >= time * (sqrt(dot(v, v)) + gain)));
-    for (; may != 0; may &= may - 1)
-      near.index[near.count++] =
-          static_cast<std::uint32_t>(p) + static_cast<std::uint32_t>(std::countr_zero(may));
+    const F room = load<F>(near.room + p), way = time * (sqrt(dot(v, v)) + gain);
+    const unsigned may = bits(~(room >= way)), may_later = may & bits(room - at_once >= way);
+    const auto list = [p](unsigned lanes, std::uint32_t* to, std::size_t& count) {
+      for (; lanes != 0; lanes &= lanes - 1)
+        to[count++] =
+            static_cast<std::uint32_t>(p) + static_cast<std::uint32_t>(std::countr_zero(lanes));
+    };
+    list(may & ~may_later, near.index, near.count);
+    list(may_later, later.data(), n_later);
   }
+  std::copy_n(later.data(), n_later, near.index + near.count);
+  near.count += n_later;
 }
 
 void pack(const ParticleSpan& block, Near& near) {

@@ -14,7 +14,7 @@ namespace tess::dn {
 /// The particles of a block that may be near, packed.
 struct Near {
   std::size_t count = 0;
-  std::uint32_t index[block_size];     ///< in the block, ascending
+  std::uint32_t index[block_size];     ///< in the block; first who may be near at once
   alignas(64) float room[block_size];  ///< may be flown without feeling a surface
   alignas(64) double values[6][block_size];
 

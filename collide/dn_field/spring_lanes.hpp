@@ -19,8 +19,6 @@ struct SpringConstants {
 
 namespace lanes {
 
-inline constexpr double pi = 3.14159265358979323846;
-
 /// Nearest integer, for |v| < 2^51.
 inline D round(D v) {
   constexpr double magic = 6755399441055744.0;  // 1.5 × 2^52

@@ -15,16 +15,16 @@ Moved limit_spring(const SpringConstants& spring,
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D depth = spring.reach - to_double(load<F>(after.distance + p));
     if (!any(depth > 0.0)) continue;
-    const D3 n =
-        refined(to_double(F3{load<F>(after.nx + p), load<F>(after.ny + p), load<F>(after.nz + p)}));
     D3 u{};
     if (setting == Setting::general) u = load3(before.ux + p, before.uy + p, before.uz + p);
     const D3 v = load3(particles.vx + p, particles.vy + p, particles.vz + p), w = v - u;
     const D energy = max(load<D>(scratch.energy + p), D{});
     const D kinetic = dot(w, w), left = energy - spring.stiffness * depth * depth;
-    const L over = (depth > 0.0) & (dot(n, n) > 0.25) & (kinetic - left > noise * energy) &
-                   (kinetic < HUGE_VAL);
+    L over = (depth > 0.0) & (kinetic - left > noise * energy) & (kinetic < HUGE_VAL);
     if (!any(over)) continue;
+    const D3 n =
+        refined(to_double(F3{load<F>(after.nx + p), load<F>(after.ny + p), load<F>(after.nz + p)}));
+    over = over & (dot(n, n) > 0.25);
     const D scale = sqrt(only(left > 0.0, left / kinetic));
     const D3 slowed = select(over, u + scale * w, v);
     store(particles.vx + p, slowed.x), store(particles.vy + p, slowed.y);

@@ -29,7 +29,6 @@ LoopKey key_of(const Rules& rules) {
   if (rules.impact)
     key.impacts = rules.impact->sweep == Sweep::on ? Impacts::swept : Impacts::plain;
   if (rules.spring) key.springs = Springs::exact;
-  if (rules.surface_flow) key.flows = Flows::turned;
   return key;
 }
 
@@ -55,9 +54,9 @@ RuleConstants constants_of(const Rules& rules, double step) {
     c.threshold = rules.impact->threshold;
   }
   if (rules.surface_flow) {
-    c.turn_in = rules.surface_flow->alpha_in * step;
-    c.turn_out = rules.surface_flow->alpha_out * step;
-    c.flow_distance = rules.surface_flow->distance;
+    c.flow = {rules.surface_flow->alpha_in * step,
+              rules.surface_flow->alpha_out * step,
+              rules.surface_flow->distance};
   }
   if (rules.spring) {
     const double gamma = 0.5 * rules.spring->damping, k = rules.spring->stiffness;

@@ -97,6 +97,7 @@ void meet_surface(const Run& run,
   if (!buffers.known) look_up_all(run, objects, particles, closest);
   if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
     drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, particles, closest);
+  if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, closest);
   run.loop(run.constants, particles, closest, scratch);
   for (const Untraced& from : scratch.untraced)
     scratch.energy[from.particle] +=

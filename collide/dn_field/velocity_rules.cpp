@@ -27,11 +27,11 @@ void explode(const Explosion& explosion, double active, const ParticleSpan& part
                   to_float(load<D>(particles.z + p) - c.z)};
     const F per_r = 1.0F / sqrt(dot(from, from));
     const I reached = (per_r > per_radius) & (per_r < HUGE_VALF);  // the centre has no direction
-    const L wide = widen(reached);
-    if (!any(wide)) continue;
-    const F3 added = (kick * (per_r - per_radius)) * from;
-    const D3 v = velocities(particles, p);
-    set_velocities(particles, p, select(wide, v + to_double(added), v));
+    if (!any(reached)) continue;
+    const F3 pushed = (kick * (per_r - per_radius)) * from;
+    const F none = all(-0.0F);  // leaves every number its bits, zeros too
+    const F3 added = select(reached, pushed, F3{none, none, none});
+    set_velocities(particles, p, velocities(particles, p) + to_double(added));
   }
 }
 
@@ -57,6 +57,16 @@ void drag_quadratic(double rate_step,
     const D3 slowed = u + (1.0 / (1.0 + rate_step * sqrt(dot(w, w)))) * w;
     set_velocities(particles, p, select(near, slowed, v));
   }
+}
+
+void turn_to_surface(const FlowConstants& flow,
+                     Setting setting,
+                     const ParticleSpan& particles,
+                     const Closest& closest) {
+  if (setting == Setting::general)
+    flow_loop<Setting::general>(flow, particles, closest);
+  else
+    flow_loop<Setting::one_at_rest>(flow, particles, closest);
 }
 
 double active_within(const Explosion& explosion, double time, double step) {

@@ -1,8 +1,8 @@
-// The rules that few scenes have and that change nothing but the velocity, each a loop of its own
-// over a block, before the rule loop: explosions and quadratic drags. Private to the step loop.
+// The rules that change nothing but the velocity, each a loop of its own over a block, before the
+// rule loop: explosions, quadratic drags and the surface flow. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/closest.hpp"
+#include "collide/dn_field/flow_lanes.hpp"
 
 namespace tess::dn {
 
@@ -18,6 +18,12 @@ void drag_quadratic(double rate_step,
                     Setting setting,
                     const ParticleSpan& particles,
                     const Closest& closest);
+
+/// The surface flow of the particles in its reach.
+void turn_to_surface(const FlowConstants& flow,
+                     Setting setting,
+                     const ParticleSpan& particles,
+                     const Closest& closest);
 
 /// How much of [time, time + step] the explosion lasts.
 [[nodiscard]] double active_within(const Explosion& explosion, double time, double step);

@@ -1,5 +1,6 @@
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/rule_table.hpp"
+#include "collide/dn_field/velocity_rules.hpp"
 #include "tests/dn_field/plain_lanes.hpp"
 #include "tests/support/catch.hpp"
 
@@ -41,7 +42,7 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
   c.acceleration = {0.1, 0, -1};
   c.surface_rate = 10, c.surface_threshold = 0.2;
   c.restitution = 0.7, c.threshold = 0.01, c.slack = 1e-4, c.stride = 0.01;
-  c.turn_in = 0.01, c.turn_out = -0.02, c.flow_distance = 0.3;
+  c.flow = {0.01, -0.02, 0.3};
   c.spring = {1e4, 99, 10, 0.1};
   const auto closest = std::make_unique<Closest>();
   std::mt19937 random(2);
@@ -59,7 +60,8 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
   }
   narrow = wide;
   const auto a = std::make_unique<Scratch>(), b = std::make_unique<Scratch>();
-  rule_loop_general({Flight::surface, Impacts::swept, Springs::exact, Flows::turned})(
+  turn_to_surface(c.flow, Setting::general, wide.span(), *closest);
+  rule_loop_general({Flight::surface, Impacts::swept, Springs::exact})(
       c, wide.span(), *closest, *a);
   plain::loop(c, narrow.span(), *closest, *b);
   const auto same = [](const std::vector<double>& x, const std::vector<double>& y) {

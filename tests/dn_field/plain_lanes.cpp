@@ -14,9 +14,9 @@ void loop(const RuleConstants& c,
           const ParticleSpan& particles,
           const Closest& closest,
           Scratch& scratch) {
-  lanes::
-      rule_loop<Flight::surface, Impacts::swept, Springs::exact, Flows::turned, Setting::general>(
-          c, particles, closest, scratch);
+  lanes::flow_loop<Setting::general>(c.flow, particles, closest);
+  lanes::rule_loop<Flight::surface, Impacts::swept, Springs::exact, Setting::general>(
+      c, particles, closest, scratch);
 }
 
 template <LookUp Kind>
