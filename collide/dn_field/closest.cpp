@@ -37,7 +37,9 @@ Sample sample_again(const Sampler& field, F3 g, Closest& closest, std::size_t p)
 }
 
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept>
-void pass(const Placed& object, const ParticleSpan& particles, Closest& closest) {
+void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
+  const Placed object = placed;  // copies, which no store can change
+  const ParticleSpan particles = span;
   const Sampler field = object.field;
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;

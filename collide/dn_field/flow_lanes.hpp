@@ -48,7 +48,9 @@ inline D3 turned_to_surface(const FlowConstants& c, D3 w, D3 n, L where) {
 }
 
 template <Setting Where>
-void flow_loop(const FlowConstants& c, const ParticleSpan& particles, const Closest& closest) {
+void flow_loop(const FlowConstants& constants, const ParticleSpan& span, const Closest& closest) {
+  const FlowConstants c = constants;  // copies, which no store to a particle can change
+  const ParticleSpan particles = span;
   for (std::size_t p = 0; p < particles.count; p += width) {
     const L near = to_double(load<F>(closest.distance + p)) < c.distance;
     if (!any(near)) continue;

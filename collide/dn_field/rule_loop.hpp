@@ -71,10 +71,13 @@ inline D dot(D3 a, Vec3 b) {
 }
 
 template <Flight Flies, Impacts Hits, Springs Springy, Setting Where>
-void rule_loop(const RuleConstants& c,
-               const ParticleSpan& particles,
+void rule_loop(const RuleConstants& constants,
+               const ParticleSpan& span,
                const Closest& closest,
                Scratch& scratch) {
+  // Copies, which no store to a particle can change.
+  const RuleConstants c = constants;
+  const ParticleSpan particles = span;
   constexpr bool asks_normal = Hits != Impacts::none || Springy != Springs::none;
   constexpr bool asks_distance = asks_normal || Flies == Flight::surface;
   constexpr bool moves = asks_distance && Where == Setting::general;

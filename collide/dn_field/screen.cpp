@@ -13,7 +13,9 @@ constexpr float rounding = 1.0001F;  // of float speeds
 /// Lower bound of every look-up's distance, less what rules reach and the way of the surface;
 /// minimum over objects.
 template <bool Turned, bool Moves, bool First>
-void room_to(const Placed& object, F taken, Reach reach, const ParticleSpan& block, Near& near) {
+void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& span, Near& near) {
+  const Placed object = placed;  // copies, which no store can change
+  const ParticleSpan block = span;
   const Sampler& field = object.field;
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;

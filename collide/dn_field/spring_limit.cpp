@@ -4,13 +4,15 @@ namespace tess::dn {
 
 using namespace lanes;
 
-Moved limit_spring(const SpringConstants& spring,
+Moved limit_spring(const SpringConstants& constants,
                    Setting setting,
-                   const ParticleSpan& particles,
+                   const ParticleSpan& span,
                    const Closest& before,
                    const Closest& after,
                    const Scratch& scratch) {
   constexpr double noise = 1e-6;  // of float distances; cut, it would eat a soft spring's energy
+  const SpringConstants spring = constants;  // copies, which no store to a particle can change
+  const ParticleSpan particles = span;
   Moved moved = Moved::none;
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D depth = spring.reach - to_double(load<F>(after.distance + p));

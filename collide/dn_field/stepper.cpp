@@ -133,15 +133,18 @@ double speed_gained(const Run& run, double time, int n_steps) {
   return gained;
 }
 
-/// Whether to take the near ones apart. The costs are nanoseconds a particle, measured roughly:
-/// they decide how fast the result is there, never which.
-bool screening_pays(const Stepper::Plan& plan, std::size_t near, std::size_t all, int n_steps) {
+/// Whether to take the near ones apart for the next `ahead` of `left` steps. The costs are
+/// nanoseconds a particle, measured roughly: they decide how fast the result is there, never which.
+bool screening_pays(
+    const Stepper::Plan& plan, std::size_t near, std::size_t all, int ahead, int left) {
   if (near == all) return false;
   if (is_blend(plan)) return true;
-  constexpr double to_screen = 2.4, to_pack = 2, free_step = 0.6;
+  constexpr double to_screen = 2.4, to_pack = 2, first_look_up = 4, free_step = 0.6;
   const double near_step = plan.rules.spring || plan.rules.surface_flow ? 8 : 2;
   const double part = static_cast<double>(near) / static_cast<double>(all);
-  return (to_screen + part * to_pack) / n_steps + part * near_step + free_step < near_step;
+  const double packed =
+      (to_screen + part * (to_pack + first_look_up)) / ahead + part * near_step + free_step;
+  return packed < near_step + first_look_up / std::min(left, steps_unscreened);
 }
 
 /// Takes one block through the steps for which the objects are `placed`, the first at `time(0)`.
@@ -181,7 +184,7 @@ void fly(const Run& run,
              near);
     }
     buffers.new_particles(block.count);
-    const bool pays = screening_pays(plan, near.count, block.count, next - i);
+    const bool pays = screening_pays(plan, near.count, block.count, next - i, n_steps - i);
     if (!pays) {
       ahead = std::max(1, ahead / 2);
       if (!is_blend(plan)) next = std::min(i + steps_unscreened, n_steps);

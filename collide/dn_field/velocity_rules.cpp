@@ -16,7 +16,8 @@ void set_velocities(const ParticleSpan& particles, std::size_t p, D3 v) {
 
 }  // namespace
 
-void explode(const Explosion& explosion, double active, const ParticleSpan& particles) {
+void explode(const Explosion& explosion, double active, const ParticleSpan& span) {
+  const ParticleSpan particles = span;  // which no store can change
   const Vec3 c = explosion.centre;
   const auto kick = static_cast<float>(explosion.strength * active),
              per_radius = static_cast<float>(1 / explosion.radius);
