@@ -6,8 +6,10 @@
 // memory; where the library was found its own rows stand beside ours.
 //
 //     bench_dn_build --repeat 5
-#include "apps/bench/openvdb_build.hpp"
+#include "apps/bench/openvdb_field.hpp"
+#include "apps/bench/openvdb_look_up.hpp"
 #include "apps/bench/report.hpp"
+#include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
 #include "collide/dn_field/build_blurred.hpp"
 #include "collide/dn_field/build_exact.hpp"
@@ -16,7 +18,6 @@
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/runtime.hpp"
 
-#include <ctime>
 #include <fmt/core.h>
 #include <numbers>
 #include <random>
@@ -36,21 +37,6 @@ struct Bench {
   Surface torus = make_torus(major_radius, minor_radius, 188);
 
   [[nodiscard]] Grid grid(int n) const { return grid_around(bounds(torus), n, margin); }
-};
-
-/// CPU time of this thread.
-class ThreadWatch {
- public:
-  ThreadWatch() : begin_(now()) {}
-  [[nodiscard]] double nanoseconds() const { return now() - begin_; }
-
- private:
-  static double now() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
-  }
-  double begin_;
 };
 
 double torus_distance(Vec3 p) {
@@ -82,14 +68,13 @@ void check_exact(const Field& field) {
       }
 }
 
-/// Milliseconds of `build`, and the last field it made. OpenVDB has threads of its own: its time is
-/// that of the clock.
-template <class Watch = ThreadWatch, class Build>
+/// Milliseconds of `build`, and the last field it made.
+template <class Build>
 auto timed(const Bench& bench, const std::string& name, double reference, const Build& build) {
   Samples samples;
   auto made = build();  // the first run also fetches memory and code
   for (int k = 0; k < bench.repeat; ++k) {
-    const Watch watch;
+    const ThreadWatch watch;
     made = build();
     samples.add(1e-6 * watch.nanoseconds());
   }
@@ -109,14 +94,14 @@ void exact_rows(const Bench& bench) {
     timed(bench, fmt::format("exact field {}^3 of 3 cells", n), openvdb, [&] {
       return build_exact(bench.torus, grid, options);
     });
-    if (!openvdb_build(bench.torus, grid, band)) continue;
-    timed<Stopwatch>(bench, fmt::format("OpenVDB level set {}^3 of 3 cells", n), 0, [&] {
-      const auto active = openvdb_build(bench.torus, grid, band);
-      TESS_CHECK(*active > 0, "OpenVDB made an empty grid");
-      return *active;
+    if (!OpenVdbField::build(bench.torus, grid, band)) continue;
+    timed(bench, fmt::format("OpenVDB level set {}^3 of 3 cells", n), 0, [&] {
+      auto made = OpenVdbField::build(bench.torus, grid, band);
+      TESS_CHECK(made->n_voxels() > 0, "OpenVDB made an empty grid");
+      return made;
     });
   }
-  if (!openvdb_build(bench.torus, bench.grid(8), 1))
+  if (!OpenVdbField::build(bench.torus, bench.grid(8), 1))
     tess::print(
         "# OpenVDB's own rows are left out: libopenvdb-dev was not found when this was built\n");
 }
@@ -231,6 +216,8 @@ void measure(const Bench& bench) {
   exact_rows(bench);
   other_rows(bench);
   for (const int n : {60, 128}) compressed_rows(bench, n);
+  for (const int n : {60, 128})
+    look_up_beside_openvdb(bench.report, bench.torus, bench.grid(n), band, bench.repeat);
 }
 
 }  // namespace

@@ -10,12 +10,12 @@
 //     bench_dn_field --pes 1 [--particles 1000000] [--repeat 5]
 #include "apps/bench/dn_by_hand.hpp"
 #include "apps/bench/report.hpp"
+#include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
 #include "collide/dn_field/build_exact.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "runtime/runtime.hpp"
 
-#include <ctime>
 #include <functional>
 
 namespace bench {
@@ -27,13 +27,6 @@ struct Options {
   std::size_t particles = 1'000'000;
   int repeat = 5;
 };
-
-/// Processor time of this thread, so that other programs on the machine count less.
-double cpu_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
 
 using Run = std::function<void(Particles&)>;
 
@@ -51,9 +44,9 @@ std::vector<Measured> measured(int repeat, const Particles& from, const std::vec
     for (std::size_t k = 0; k < runs.size(); ++k) {
       const std::size_t turn = (k + static_cast<std::size_t>(i)) % runs.size();
       particles = from;
-      const double begin = cpu_nanoseconds();
+      const ThreadWatch watch;
       runs[turn](particles);
-      const double took = cpu_nanoseconds() - begin;
+      const double took = watch.nanoseconds();
       result[turn].samples.add(1e3 * took / (n_steps * static_cast<double>(from.size())));
       if (i + 1 == repeat) result[turn].end = particles;
     }

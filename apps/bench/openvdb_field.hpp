@@ -1,0 +1,36 @@
+// OpenVDB's construction and look-up of the same field, to stand beside ours; nothing where the
+// build did not find the library. Both on the calling thread alone, so that its processor time is
+// all they take.
+#pragma once
+
+#include "collide/dn_field/grid.hpp"
+#include "collide/dn_field/look_up.hpp"
+#include "collide/dn_field/surface.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+namespace bench {
+
+class OpenVdbField {
+ public:
+  /// The narrow band of `half_width` cells around `surface`, its voxels at multiples of the cell.
+  [[nodiscard]] static std::optional<OpenVdbField> build(const tess::dn::Surface& surface,
+                                                         const tess::dn::Grid& grid,
+                                                         double half_width);
+
+  [[nodiscard]] std::size_t n_voxels() const;
+
+  /// Distances by the nearest voxel or trilinear, cut off at the band.
+  void look_up(tess::dn::LookUp kind,
+               const tess::dn::Points& points,
+               std::span<float> distance) const;
+
+ private:
+  struct Library;
+  explicit OpenVdbField(std::shared_ptr<const Library> library) : library_(std::move(library)) {}
+  std::shared_ptr<const Library> library_;
+};
+
+}  // namespace bench
