@@ -147,7 +147,7 @@ bool screening_pays(
   return packed < near_step + first_look_up / std::min(left, steps_unscreened);
 }
 
-/// Takes one block through the steps for which the objects are `placed`, the first at `time(0)`.
+/// Takes one block through the steps of `places`, the first at `time(0)`.
 /// Who may feel a surface in the next few steps is packed and taken through them alone, the others
 /// fly free; where not enough fly free to pay for that, all are taken as near.
 template <class Time>
@@ -167,33 +167,35 @@ void fly(const Run& run,
     change_velocities(plan.rules, time(i), plan.step, particles);
     meet_surface(run, places[static_cast<std::size_t>(i)], particles, buffers);
   };
+  int i = 0;
+  if (!plan.looks_up)
+    for (; i < n_steps; ++i) step_free(i);
   int ahead = run.look_ahead;
-  for (int i = 0; i < n_steps;) {
+  while (i < n_steps) {
     int next = std::min(i + ahead, n_steps);
-    near.count = 0;
-    if (plan.looks_up) {
-      const double gained = speed_gained(run, time(i), next - i);
-      screen(places[static_cast<std::size_t>(i)],
-             plan.rules.look_up,
-             plan.sweep,
-             {static_cast<float>(run.reach),
-              static_cast<float>((next - i) * plan.step),
-              static_cast<float>(gained),
-              next - i > 1 || plan.rules.spring.has_value()},
-             block,
-             near);
-    }
-    buffers.new_particles(block.count);
+    const double gained = speed_gained(run, time(i), next - i);
+    screen(places[static_cast<std::size_t>(i)],
+           plan.rules.look_up,
+           plan.sweep,
+           {static_cast<float>(run.reach),
+            static_cast<float>((next - i) * plan.step),
+            static_cast<float>(gained),
+            next - i > 1 || plan.rules.spring.has_value()},
+           block,
+           near);
     const bool pays = screening_pays(plan, near.count, block.count, next - i, n_steps - i);
     if (!pays) {
       ahead = std::max(1, ahead / 2);
       if (!is_blend(plan)) next = std::min(i + steps_unscreened, n_steps);
+      buffers.new_particles(block.count);
       for (; i < next; ++i) step_near(i, block);
       continue;
     }
     if (8 * near.count < block.count) ahead = std::min(run.look_ahead, 2 * ahead);
     pack(block, near);
-    for (int k = i; k < next; ++k) step_near(k, near.packed());
+    const ParticleSpan packed = near.packed();
+    buffers.new_particles(packed.count);
+    for (int k = i; k < next && packed.count > 0; ++k) step_near(k, packed);
     for (; i < next; ++i) step_free(i);
     near.unpack(block);
   }
