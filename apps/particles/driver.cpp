@@ -33,8 +33,8 @@ void write_pictures(const std::string& folder, const Stage& stage, const RunResu
 tess::Task run(Problem& problem) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
   RunResult result;
-  co_await simulate(stage, result);
   const DriverOptions& options = problem.options;
+  co_await simulate(stage, result, options.run);
   tess::print(table(stage->scene, result, problem.report));
   if (options.study) {
     problem.report.study = study(stage->scene, {});
@@ -63,13 +63,14 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
   if (options.out.empty()) problem.scene.outputs.slice.reset();
   const tess::Machine& machine = *setup.machine;
-  problem.report = {machine.describe(), machine.n_pes(), machine.n_processes()};
+  problem.report = {machine.describe(), machine.n_pes(), machine.n_processes(), options.run};
   if (!options.out.empty()) make_folder(options.out);
   if (options.study && problem.scene.objects.empty())
     tess::fail(tess::ErrorCode::bad_value,
                options.scene,
                ": objects: is empty; --study needs an object to bounce off");
-  if (options.explain && machine.process().value == 0) tess::print(explanation(problem.scene));
+  if (options.explain && machine.process().value == 0)
+    tess::print(explanation(problem.scene, options.run));
   return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });
 }
 

@@ -2,6 +2,7 @@
 // with the input is found before the run starts.
 #pragma once
 
+#include "apps/particles/simulate.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -15,6 +16,7 @@ struct DriverOptions {
   std::string json, out;
   bool explain = false;
   bool study = false;
+  RunOptions run{};
 };
 
 /// Returns the exit code. Throws tess::Error for bad input.

@@ -62,6 +62,23 @@ for block in 0.15 0.6 50; do
 done
 for seed in 1 2; do same "$particles" "$scratch/scene.json" --sim "pes=4,seed=$seed,migrate=0.1"; done
 
+# A balancer moves blocks (cut small: there are many), and changes nothing.
+sed 's/"steps": 60/"steps": 60, "block": 0.3, "exchange": 3/' "$scratch/scene.json" >"$scratch/cut.json"
+balanced() {  # balanced STRATEGY COMMAND…
+  local strategy=$1
+  shift
+  same "$@" "$scratch/cut.json" --balance "$strategy"
+  grep -A6 '"balance":' "$scratch/again.json" | tr -d ' \n' | grep -qE '"rounds":[1-9][0-9]*,"moves":[1-9]'
+  check "the balancer of $* moves blocks" $?
+}
+balanced rotate "$particles" --pes 2
+balanced greedy "$particles" --pes 4
+balanced rotate "${mpirun[@]}" -n 2 "$particles" --pes 1
+balanced rotate,when=periodic,period=1ms "${mpirun[@]}" -n 2 "$particles" --pes 2
+balanced random "$particles" --sim pes=8,seed=3,migrate=0.1
+grep -q 'balance":' "$scratch/first.json"
+check "no balancer, no rounds" $((! $?))
+
 # refuses WORD COMMAND…: exit code 2, one line with WORD, nothing written.
 refuses() {
   local word=$1
@@ -88,10 +105,15 @@ refuses 'shear' "$particles" \
 refuses 'near-zero\|thin\|nothing inside' "$particles" "$(edited 's/{"file": "wedge.obj"}/{"plate": {"half": 1}}/; s/"motion"/"method": "normals", "motion"/')"
 refuses 'missing.json' "$particles" "$scratch/missing.json"
 refuses SCENE "$particles"
+refuses greedy_refine "$particles" "$scratch/scene.json" --balance nonsense
+refuses sometimes "$particles" "$scratch/scene.json" --balance rotate,when=sometimes
 refuses --steps "$particles" "$scratch/scene.json" --steps=-1
 refuses --out "$particles" "$scratch/scene.json" --out "$scratch/wedge.obj"
 refuses 'unknown key' "${mpirun[@]}" -n 2 "$particles" "$(edited 's/"resolution"/"resolutoin"/')" --pes 1
 
+"$particles" "$scratch/scene.json" --steps 0 --balance rotate --explain >"$scratch/out.txt" &&
+  grep -q 'balancer: used, rotate, a round at each exchange' "$scratch/out.txt"
+check "--explain names the balancer" $?
 "$particles" --stability >"$scratch/out.txt" 2>&1 && grep -q ' 0 failed' "$scratch/out.txt"
 check "--stability" $?
 "$particles" --help-scene | grep -q surface_flow

@@ -1,5 +1,7 @@
 // Whole runs: the same bits on any number of PEs, under any schedule and any cut of space, and the
 // bits of a plain loop over all particles.
+#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "tests/particles/run_scene.hpp"
 
 #include <fmt/core.h>
@@ -103,4 +105,55 @@ TEST_CASE("a block ends when it is empty and is made again by who enters it", "[
     }
     CHECK(ran.last().tunnelled == 0);
   }
+}
+
+TEST_CASE("a run gives the same bits whatever a balancer moves", "[particles][run][balance]") {
+  const Ran first = run_scene(lively_scene(), "--pes=1");
+  CHECK(first.result.rounds.empty());
+  const auto moves_of = [&](const std::string& machine, const std::string& balance) {
+    INFO(machine << " --balance " << balance);
+    Scene scene = lively_scene();
+    scene.block = 0.3;
+    scene.exchange = 2;
+    RunOptions how;
+    how.balance = tess::parse_balance(balance);
+    const Ran ran = run_scene(scene, machine, how);
+    check_same(ran, first);
+    std::size_t moves = 0;
+    for (const auto& round : ran.result.rounds) moves += round.n_moved;
+    return moves;
+  };
+  std::uint64_t seed = 0;
+  for (const std::string& strategy : tess::balance::strategy_names())
+    for (const char* when : {"at_sync", "automatic", "periodic,period=2ms"}) {
+      ++seed;
+      const std::string balance = fmt::format("{},when={},seed={}", strategy, when, seed);
+      (void)moves_of(fmt::format("--sim=pes=6,per-process=2,cost=1us,migrate={},seed={}",
+                                 seed % 2 == 0 ? "0.1" : "0",
+                                 seed),
+                     balance);
+    }
+  // Every block of every round.
+  const std::size_t none = moves_of("--sim=pes=3,seed=5", "none"),
+                    rotated = moves_of("--sim=pes=3,seed=5", "rotate");
+  CHECK(none == 0);
+  CHECK(rotated > 500);
+  CHECK(moves_of("--pes=2", "rotate") > 500);
+  CHECK(moves_of("--pes=4", "greedy,when=periodic,period=1ms") < 1'000'000);
+}
+
+TEST_CASE("a balancer spreads blocks that are born on one PE", "[particles][run][balance]") {
+  // All particles begin in one block, and fly apart.
+  Scene scene = parse_scene(R"({"dt": 0.01, "steps": 80, "block": 0.25, "exchange": 4,
+    "emitters": [{"count": 4000, "sphere": {"radius": 0.01}, "outward": 2, "spread": 0.5}],
+    "rules": {"gravity": [0, 0, -1]}})",
+                            "scene.json");
+  RunOptions how;
+  how.balance = tess::parse_balance("greedy");
+  const Ran ran = run_scene(scene, "--sim=pes=4,cost=1us", how);
+  REQUIRE(ran.result.rounds.size() == 20);
+  CHECK(ran.result.rounds.front().n_elements < 30);
+  CHECK(ran.result.rounds.back().n_elements > 40);
+  CHECK(ran.result.rounds.back().predicted < 1.2);
+  CHECK(ran.last().hash == run_scene(scene, "--pes=1").last().hash);
 }
