@@ -19,12 +19,17 @@ struct Problem {
   Report report;
 };
 
+tess::dn::Field flat_field(const FieldInTheMaking& of) {
+  return of.compressed() ? expanded(*of.compressed()) : of.field();
+}
+
 void write_pictures(const std::string& folder, const Stage& stage, const RunResult& result) {
   const Scene& scene = stage.scene;
   const std::filesystem::path in(folder);
   if (const auto& slice = scene.outputs.slice)
-    plot::write_file((in / "field.svg").string(),
-                     slice_svg(stage.fields[slice->object].field(), scene.outputs.axis, slice->at));
+    plot::write_file(
+        (in / "field.svg").string(),
+        slice_svg(flat_field(stage.fields[slice->object]), scene.outputs.axis, slice->at));
   if (result.trajectories.empty()) return;
   write_series(folder, result.trajectories, scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));
@@ -60,6 +65,7 @@ void make_folder(const std::string& path) {
 int drive(tess::Setup& setup, const DriverOptions& options) {
   Problem problem{options, read_scene(options.scene), {}};
   if (options.steps >= 0) problem.scene.steps = options.steps;
+  if (options.compressed) compress_fields(problem.scene);
   if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
   if (options.out.empty()) problem.scene.outputs.slice.reset();
   const tess::Machine& machine = *setup.machine;

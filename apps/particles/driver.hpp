@@ -16,6 +16,7 @@ struct DriverOptions {
   std::string json, out;
   bool explain = false;
   bool study = false;
+  bool compressed = false;  ///< also where the scene does not say so
   RunOptions run{};
 };
 

@@ -28,6 +28,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
   app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
   app.add_flag(
       "--study", options.study, "error against run time of every choice, on the first object");
+  app.add_flag("--compressed",
+               options.compressed,
+               "steps look up in compressed fields (as the scene's key compression)");
   std::string balance;
   app.add_option(
       "--balance",

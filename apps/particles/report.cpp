@@ -44,6 +44,7 @@ FieldCost total(const std::vector<FieldCost>& fields) {
     sum.build_seconds += field.build_seconds;
     sum.cells += field.cells;
     sum.bytes += field.bytes;
+    sum.bytes_used += field.bytes_used;
   }
   return sum;
 }
@@ -132,11 +133,14 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
   line("machine", report.machine);
   if (!result.fields.empty())
     line("fields",
-         fmt::format("{} of method {}, {} cells, {:.3f} MB, built in {:.3f} s",
+         fmt::format("{} of method {}, {} cells, {:.3f} MB{}, built in {:.3f} s",
                      result.fields.size(),
                      method_of(scene),
                      fields.cells,
                      static_cast<double>(fields.bytes) / 1e6,
+                     scene.compression ? fmt::format(" compressed to {:.3f} MB",
+                                                     static_cast<double>(fields.bytes_used) / 1e6)
+                                       : "",
                      fields.build_seconds));
   line("blocks",
        fmt::format(
@@ -193,7 +197,8 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
                   {"bytes", fields.bytes},
-                  {"bytes_compressed", report.bytes_compressed}};
+                  {"bytes_compressed", report.bytes_compressed},
+                  {"stored", scene.compression ? "compressed" : "flat"}};
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited ? "each step" : "last step";
@@ -223,6 +228,11 @@ std::string explanation(const Scene& scene, const RunOptions& options) {
   for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
   if (!needs_field(scene.rules) && !scene.objects.empty())
     out += "  fields: left out, no rule asks for a surface\n";
+  if (needs_field(scene.rules) && !scene.objects.empty())
+    out += scene.compression ? fmt::format("  compression: used, within {} cells and {} degrees\n",
+                                           scene.compression->cells,
+                                           scene.compression->degrees)
+                             : "  compression: left out, flat fields\n";
   const std::size_t n_species = species_of(scene).size();
   out += fmt::format("  step loops: {}, one for each mass\n", n_species);
   out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"

@@ -14,7 +14,7 @@ struct Report {
   std::string machine;
   std::int32_t pes = 0, processes = 0;
   RunOptions run{};
-  std::uint64_t bytes_compressed = 0;  ///< of all fields, within usual_bound()
+  std::uint64_t bytes_compressed = 0;  ///< of all fields, see compressed_bytes()
   std::vector<StudyRow> study{};
 };
 

@@ -115,6 +115,15 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
   return outputs;
 }
 
+Compression read_compression(const Node& node) {
+  constexpr double most_cells = 0.5, most_degrees = 45;  // a rule would see another surface
+  const Keys keys = node.keys({"cells", "degrees"});
+  Compression compression;
+  keys.read("cells", compression.cells, {0, most_cells});
+  keys.read("degrees", compression.degrees, {0, most_degrees});
+  return compression;
+}
+
 /// What no key by itself can say: the rules fit the masses, the fields cover the rules.
 void check_rules(const Scene& scene, const std::string& file) {
   for (const double mass : species_of(scene)) {
@@ -191,8 +200,15 @@ void check_memory(const Scene& scene, const std::string& file) {
 }
 
 Scene read(const JsonFile& file, const std::string& name) {
-  const Keys keys = file.root().keys(
-      {"dt", "steps", "block", "exchange", "objects", "emitters", "rules", "outputs"});
+  const Keys keys = file.root().keys({"dt",
+                                      "steps",
+                                      "block",
+                                      "exchange",
+                                      "compression",
+                                      "objects",
+                                      "emitters",
+                                      "rules",
+                                      "outputs"});
   constexpr int most = static_cast<int>(most_steps);
   Scene scene;
   scene.name = name;
@@ -200,6 +216,7 @@ Scene read(const JsonFile& file, const std::string& name) {
   scene.steps = static_cast<int>(keys.need("steps", "how many steps").whole(0, most));
   keys.read("block", scene.block, positive);
   keys.read("exchange", scene.exchange, 1, most);
+  if (keys.has("compression")) scene.compression = read_compression(keys["compression"]);
   const std::string folder = std::filesystem::path(name).parent_path().string();
   if (keys.has("objects"))
     for (const Node& item : keys["objects"].items())
@@ -210,6 +227,7 @@ Scene read(const JsonFile& file, const std::string& name) {
     keys["emitters"].refuse(tess::text("makes more than ", most_particles, " particles"));
   if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
+  if (scene.compression) compress_fields(scene);
   check_rules(scene, name);
   check_memory(scene, name);
   return scene;

@@ -134,7 +134,9 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const std::vector<double> built = co_await build_seconds;
   for (std::size_t i = 0; i < built.size(); ++i) {
     const tess::dn::Field& field = stage->fields[i].field();
-    result.fields.push_back({built[i], field.grid.size(), field.bytes()});
+    result.fields.push_back({built[i], field.grid.size(), stage->fields[i].flat_bytes()});
+    if (const auto& compressed = stage->fields[i].compressed())
+      result.fields.back().bytes_used = compressed->bytes();
   }
 }
 

@@ -29,7 +29,8 @@ struct Snapshot {
 
 struct FieldCost {
   double build_seconds = 0;
-  std::uint64_t cells = 0, bytes = 0;
+  std::uint64_t cells = 0, bytes = 0;  ///< of the flat field
+  std::uint64_t bytes_used = 0;        ///< of the compressed one, where the run uses that
 };
 
 struct RunResult {

@@ -127,7 +127,7 @@ void study_compression(const Subject& subject,
               look_up(built.field, LookUp::nearest, points, answers);
             });
     const auto begin = std::chrono::steady_clock::now();
-    const CompressedField compressed = compress(built.field, usual_bound(built.field));
+    const CompressedField compressed = compress(built.field, bound_of({}, built.field));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     measure("compressed, look-up alone",
@@ -199,7 +199,7 @@ void study_cost(const Subject& subject,
   }
   row.look_up = look_up_names.front();
   row.rule = "compressed, look-up alone";
-  const CompressedField compressed = compress(built.field, usual_bound(built.field));
+  const CompressedField compressed = compress(built.field, bound_of({}, built.field));
   row.ns = look_up_ns(Crowd(subject, n), [&](const Points& points, const Answers& answers) {
     nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
   });

@@ -15,9 +15,18 @@ F outside_by(const Placed& object, F3 g) {
                            max(beyond(g.z, object.field.n[2]), F{}));
 }
 
-template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept>
+template <Stored How>
+auto sampler_in(const Placed& object) {
+  if constexpr (How == Stored::compressed) {
+    return object.planes;
+  } else {
+    return object.field;
+  }
+}
+
+template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Stored How>
 void pass(const Placed& object, const ParticleSpan& particles, Closest& closest) {
-  const Sampler field = object.field;
+  const auto field = sampler_in<How>(object);
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
   const auto& r = object.to_world;
@@ -76,28 +85,32 @@ void pass(const Placed& object, const ParticleSpan& particles, Closest& closest)
   }
 }
 
-template <LookUp Kind, Ask Asked, Setting Where>
+template <LookUp Kind, Stored How, Ask Asked, Setting Where>
 ClosestPass choose(Sweep sweep) {
-  return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on>
-                            : &pass<Kind, Asked, Where, Sweep::off>;
+  return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on, How>
+                            : &pass<Kind, Asked, Where, Sweep::off, How>;
 }
-template <LookUp Kind, Ask Asked>
+template <LookUp Kind, Stored How, Ask Asked>
 ClosestPass choose(Setting setting, Sweep sweep) {
-  return setting == Setting::general ? choose<Kind, Asked, Setting::general>(sweep)
-                                     : choose<Kind, Asked, Setting::one_at_rest>(sweep);
+  return setting == Setting::general ? choose<Kind, How, Asked, Setting::general>(sweep)
+                                     : choose<Kind, How, Asked, Setting::one_at_rest>(sweep);
 }
-template <LookUp Kind>
+template <LookUp Kind, Stored How>
 ClosestPass choose(Ask asked, Setting setting, Sweep sweep) {
-  return asked == Ask::distance ? choose<Kind, Ask::distance>(setting, sweep)
-                                : choose<Kind, Ask::both>(setting, sweep);
+  return asked == Ask::distance ? choose<Kind, How, Ask::distance>(setting, sweep)
+                                : choose<Kind, How, Ask::both>(setting, sweep);
 }
 
 }  // namespace
 
-ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep) {
-  if (kind == LookUp::nearest) return choose<LookUp::nearest>(asked, setting, sweep);
-  if (kind == LookUp::tangent) return choose<LookUp::tangent>(asked, setting, sweep);
-  return choose<LookUp::trilinear>(asked, setting, sweep);
+ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, Stored stored) {
+  if (stored == Stored::compressed)
+    return kind == LookUp::nearest
+               ? choose<LookUp::nearest, Stored::compressed>(asked, setting, sweep)
+               : choose<LookUp::tangent, Stored::compressed>(asked, setting, sweep);
+  if (kind == LookUp::nearest) return choose<LookUp::nearest, Stored::flat>(asked, setting, sweep);
+  if (kind == LookUp::tangent) return choose<LookUp::tangent, Stored::flat>(asked, setting, sweep);
+  return choose<LookUp::trilinear, Stored::flat>(asked, setting, sweep);
 }
 
 Placed placed(const Object& object, LookUp kind) {
@@ -122,6 +135,11 @@ Placed placed(const Object& object, LookUp kind) {
   result.two_sided = field.sides == Sides::two;
   result.padding = result.two_sided && kind != LookUp::tangent ? static_cast<float>(cell) : 0.0F;
   result.doubt = static_cast<float>(0.5 * std::sqrt(3.0) * cell);
+  result.compressed = object.compressed != nullptr;
+  if (result.compressed) {
+    result.planes = sampler_of(*object.compressed);
+    result.doubt += static_cast<float>(object.compressed->measured.distance * frame.scale);
+  }
   result.frame = frame;
   return result;
 }

@@ -3,7 +3,7 @@
 // cache. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/sample.hpp"
+#include "collide/dn_field/compressed_sample.hpp"
 #include "collide/dn_field/stepper.hpp"
 
 namespace tess::dn {
@@ -22,6 +22,7 @@ struct alignas(64) Closest {
 /// double precision before they are rounded to float.
 struct Placed {
   Sampler field;
+  PlaneSampler planes;   ///< of a compressed field; then `field` gives sizes alone
   Vec3 centre;           ///< of the grid, in the world
   float to_grid[3][3];   ///< rows: grid coordinates of a world vector
   float middle[3];       ///< grid coordinates of the centre
@@ -31,7 +32,9 @@ struct Placed {
   float padding;  ///< taken off the distance: a look-up that blends the sides of a thin sheet
                   ///< cannot see it closer than this
   bool two_sided;
-  float doubt;  ///< half a voxel's diagonal, in world units
+  bool compressed;
+  float doubt;  ///< half a voxel's diagonal, and how far a compressed voxel may be off; in world
+                ///< units
   Frame frame;
 };
 
@@ -40,10 +43,18 @@ struct Placed {
 /// Whether positions must be turned, surfaces move, or several objects be compared.
 enum class Setting : std::uint32_t { one_at_rest, general };
 
+/// How the fields of a scene are stored.
+enum class Stored : std::uint32_t { flat, compressed };
+[[nodiscard]] inline Stored stored(std::span<const Object> objects) {
+  return !objects.empty() && objects[0].compressed != nullptr ? Stored::compressed : Stored::flat;
+}
+
 using ClosestPass = void (*)(const Placed&, const ParticleSpan&, Closest&);
 
 /// The pass for one object; `general` passes keep what is closer and start from clear().
-[[nodiscard]] ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep);
+/// Compressed fields have no trilinear one.
+[[nodiscard]] ClosestPass closest_pass(
+    LookUp kind, Ask asked, Setting setting, Sweep sweep, Stored stored);
 
 /// No surface anywhere.
 void clear(Closest& closest, std::size_t count);

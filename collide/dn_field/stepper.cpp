@@ -43,16 +43,22 @@ Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
   const bool simple =
       objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
   run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
-  run.look_up = simple ? plan.look_up_at_rest : plan.look_up_general;
+  run.look_up = closest_pass(plan.rules.look_up,
+                             plan.asked,
+                             simple ? Setting::one_at_rest : Setting::general,
+                             plan.sweep,
+                             stored(objects));
   run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
-  double coarsest = 0, finest = HUGE_VAL;
+  double coarsest = 0, finest = HUGE_VAL, off = 0;
   for (const Object& object : objects) {
     const double cell = object.frame.scale * object.field->grid.cell;
     coarsest = std::max(coarsest, cell);
     finest = std::min(finest, cell);
+    if (object.compressed != nullptr)
+      off = std::max(off, object.frame.scale * object.compressed->measured.distance);
   }
   run.constants.slack =
-      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest;
+      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest + off;
   run.constants.stride = 0.5 * finest;
   // Moved outward by what rounding could hide.
   const RuleConstants& c = run.constants;

@@ -25,8 +25,12 @@ Here ask(const Placed& object, LookUp kind, Vec3 p) {
   const float gx = grid(0), gy = grid(1), gz = grid(2);
   const F3 g{all(gx), all(gy), all(gz)};
   Sample found{};
-  if (kind == LookUp::nearest) found = sample<LookUp::nearest, Ask::both>(object.field, g);
-  if (kind == LookUp::tangent) found = sample<LookUp::tangent, Ask::both>(object.field, g);
+  if (kind == LookUp::nearest)
+    found = object.compressed ? sample<LookUp::nearest, Ask::both>(object.planes, g)
+                              : sample<LookUp::nearest, Ask::both>(object.field, g);
+  if (kind == LookUp::tangent)
+    found = object.compressed ? sample<LookUp::tangent, Ask::both>(object.planes, g)
+                              : sample<LookUp::tangent, Ask::both>(object.field, g);
   if (kind == LookUp::trilinear) found = sample<LookUp::trilinear, Ask::both>(object.field, g);
   if (!(found.distance[0] < out_of_reach)) {
     const auto beyond = [](float at, int n) {

@@ -79,6 +79,21 @@ balanced random "$particles" --sim pes=8,seed=3,migrate=0.1
 grep -q 'balance":' "$scratch/first.json"
 check "no balancer, no rounds" $((! $?))
 
+# Compressed fields: another answer, the same for all PEs and processes.
+"$particles" "$scratch/scene.json" --pes 1 --compressed --json "$scratch/compressed.json" --out "$scratch/out" >"$scratch/table" || exit 1
+flat=$want
+want=$(hash_of "$scratch/compressed.json")
+[[ $want != "$flat" && -s $scratch/out/field.svg ]] && grep -q compressed "$scratch/table"
+check "--compressed is another run" $?
+bytes_of() { grep -o "\"$1\": [0-9]*" "$scratch/compressed.json" | head -1 | grep -o '[0-9]*$'; }
+(($(bytes_of bytes) == 24 * 24 * 24 * 8 && $(bytes_of bytes_compressed) > 0 && $(bytes_of bytes_compressed) < $(bytes_of bytes)))
+check "bytes of a compressed run" $?
+same "$particles" "$scratch/scene.json" --compressed --pes 4
+same "${mpirun[@]}" -n 2 "$particles" "$scratch/scene.json" --compressed --pes 1 --balance rotate
+sed 's/"steps": 60/"steps": 60, "compression": {}/' "$scratch/scene.json" >"$scratch/cut.json"
+same "$particles" "$scratch/cut.json" --pes 2
+want=$flat
+
 # refuses WORD COMMAND…: exit code 2, one line with WORD, nothing written.
 refuses() {
   local word=$1
@@ -94,6 +109,8 @@ edited() {  # edited SED-COMMAND: a scene with a mistake.
 }
 refuses 'resolution: 0 is not within 4 … 1024' "$particles" "$(edited 's/"resolution": 24/"resolution": 0/')"
 refuses 'unknown key' "$particles" "$(edited 's/"resolution"/"resolutoin"/')"
+refuses 'compression.cells: 0.6 is not within 0 … 0.5' "$particles" "$(edited 's/"steps": 60/"steps": 60, "compression": {"cells": 0.6}/')"
+refuses 'trilinear' "$particles" --compressed "$(edited 's/"rules": {/"rules": {"look_up": "trilinear", /')"
 refuses 'none.obj: cannot be opened' "$particles" "$(edited 's/wedge.obj/none.obj/')"
 refuses 'is not JSON' "$particles" "$(edited 's/"dt": 0.01,/"dt": 0.01/')"
 printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >"$scratch/nan.obj"

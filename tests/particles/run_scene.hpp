@@ -36,7 +36,7 @@ inline Measured run_serially(const Stage& stage) {
   const Scene& scene = stage.scene;
   std::vector<tess::dn::Object> objects;
   for (std::size_t i = 0; i < stage.fields.size(); ++i)
-    objects.push_back({&stage.fields[i].field(), scene.objects[i].frame});
+    objects.push_back(stage.fields[i].object(scene.objects[i].frame));
   std::vector<Flock> flocks(stage.masses.size());
   for (std::uint64_t id = 0; id < stage.source.size(); ++id) {
     const Start start = stage.source.particle(id);
