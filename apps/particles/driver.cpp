@@ -64,7 +64,10 @@ void make_folder(const std::string& path) {
 
 int drive(tess::Setup& setup, const DriverOptions& options) {
   Problem problem{options, read_scene(options.scene), {}};
-  if (options.steps >= 0) problem.scene.steps = options.steps;
+  if (options.steps >= 0) {
+    problem.scene.steps = options.steps;
+    check_scene(problem.scene);
+  }
   if (options.compressed) compress_fields(problem.scene);
   if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
   if (options.out.empty()) problem.scene.outputs.slice.reset();

@@ -233,6 +233,15 @@ std::string explanation(const Scene& scene, const RunOptions& options) {
                                            scene.compression->cells,
                                            scene.compression->degrees)
                              : "  compression: left out, flat fields\n";
+  const auto count = [&scene](bool (tess::dn::Frame::*holds)() const) {
+    return std::count_if(scene.objects.begin(),
+                         scene.objects.end(),
+                         [holds](const SceneObject& object) { return (object.frame.*holds)(); });
+  };
+  out += fmt::format("  objects: {}, of which {} move, {} of these grow\n",
+                     scene.objects.size(),
+                     count(&tess::dn::Frame::is_moving),
+                     count(&tess::dn::Frame::is_growing));
   const std::size_t n_species = species_of(scene).size();
   out += fmt::format("  step loops: {}, one for each mass\n", n_species);
   out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"

@@ -93,6 +93,10 @@ struct Scene {
 /// The same from a text; files that it names are looked for beside `name`.
 [[nodiscard]] Scene parse_scene(const std::string& text, const std::string& name);
 
+/// What keys say together: rules, masses, motions, steps and fields must fit one another. Done by
+/// those that read; to be done again by who changes a scene. Throws tess::Error.
+void check_scene(const Scene& scene);
+
 /// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's
 /// look-up cannot ask compressed fields.
 void compress_fields(Scene& scene);

@@ -31,7 +31,10 @@ objects     a list (default: none); of each:
   sides       one (default): negative distances inside; two: thin shells, distances from either side
   transform   {"position": [x, y, z], "rotation": [x, y, z] (degrees about that vector), "scale": s}
               or {"position": …, "matrix": [row, row, row]}: rotation times uniform scale, no shear
-  motion      {"velocity": [x, y, z], "spin": [x, y, z] (radians a second about that vector)}
+  motion      {"velocity": [x, y, z], "spin": [x, y, z] (radians a second about that vector), "scale": r}:
+              the transform's scale grows by r a second, uniformly about the position; a surface at the
+              distance a from there, in the object's units, moves outward at r a, and particles feel that
+              velocity. Negative: it shrinks; the scale must stay above 0 for the whole run
 emitters    a list of at least one; of each:
   one of      "box": {"low": …, "high": …}                uniform
               "sphere": {"centre": …, "radius": r, "inner": 0}   uniform between two radii

@@ -124,6 +124,12 @@ Compression read_compression(const Node& node) {
   return compression;
 }
 
+/// Of the object in the whole run.
+double least_scale(const Scene& scene, const SceneObject& object) {
+  const tess::dn::Frame& frame = object.frame;
+  return frame.scale + std::min(0.0, frame.scale_rate) * scene.dt * scene.steps;
+}
+
 /// What no key by itself can say: the rules fit the masses, the fields cover the rules.
 void check_rules(const Scene& scene, const std::string& file) {
   for (const double mass : species_of(scene)) {
@@ -138,7 +144,24 @@ void check_rules(const Scene& scene, const std::string& file) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     const tess::dn::Frame& frame = object.frame;
-    const double covered = object.thickness * frame.scale;
+    const double least = least_scale(scene, object);
+    if (!(least > 0))
+      tess::fail(tess::ErrorCode::bad_value,
+                 file,
+                 ": objects[",
+                 i,
+                 "].motion.scale: ",
+                 frame.scale_rate,
+                 " a second takes the scale from ",
+                 frame.scale,
+                 " to ",
+                 least,
+                 " in ",
+                 scene.steps,
+                 " steps of ",
+                 scene.dt,
+                 "; it must stay above 0");
+    const double covered = object.thickness * least;
     if (reach > covered)
       tess::fail(tess::ErrorCode::bad_value,
                  file,
@@ -147,13 +170,15 @@ void check_rules(const Scene& scene, const std::string& file) {
                  "].thickness: ",
                  object.thickness,
                  " times scale ",
-                 frame.scale,
+                 least,
                  " is below the distance ",
                  reach,
                  " at which a rule begins to act");
     if (sweeps || !needs_field(scene.rules)) continue;
-    const double surface = norm(frame.velocity) + norm(frame.angular_velocity) * frame.scale *
-                                                      norm(bounds(object.surface).size());
+    const double extent = norm(bounds(object.surface).size());
+    const double surface = norm(frame.velocity) +
+                           norm(frame.angular_velocity) * frame.scale * extent +
+                           std::abs(frame.scale_rate) * extent;
     for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
       const Emitter& emitter = scene.emitters[e];
       const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
@@ -228,12 +253,16 @@ Scene read(const JsonFile& file, const std::string& name) {
   if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
   if (scene.compression) compress_fields(scene);
-  check_rules(scene, name);
+  check_scene(scene);
   check_memory(scene, name);
   return scene;
 }
 
 }  // namespace
+
+void check_scene(const Scene& scene) {
+  check_rules(scene, scene.name);
+}
 
 Scene read_scene(const std::string& path) {
   return read(JsonFile(path), path);

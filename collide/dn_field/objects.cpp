@@ -58,13 +58,15 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            " only ",
            thickness,
            "; build a thicker field or shorten the rule's distance");
-    if (!(frame.scale > 0) || !std::isfinite(frame.scale))
+    if (!(frame.scale > 0) || !std::isfinite(frame.scale) || !std::isfinite(frame.scale_rate))
       fail(ErrorCode::bad_argument,
            "object ",
            i,
            " is scaled by ",
            frame.scale,
-           "; give a positive, finite scale");
+           ", which grows by ",
+           frame.scale_rate,
+           " a second; give a positive, finite scale and a finite rate");
     for (const Vec3 v : {frame.position, frame.velocity, frame.angular_velocity})
       if (!is_finite(v))
         fail(ErrorCode::bad_argument,

@@ -10,7 +10,7 @@ using namespace lanes;
 constexpr float rounding = 1.0001F;  // of float speeds
 
 /// Lower bound of every look-up's distance, less the way of the surface; minimum over objects.
-template <bool Turned, bool Moves, bool First, Stored How>
+template <bool Turned, bool Moves, bool First, Storage How>
 void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& block, Near& near) {
   const Sampler& field = object.field;
   const Vec3 c = object.centre;
@@ -19,7 +19,7 @@ void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& blo
           oz = all(object.middle[2] + 0.5F);
   const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
              nz = static_cast<float>(field.n[2]);
-  const F speed = all(static_cast<float>(norm(object.frame.velocity))),
+  const F speed = all(static_cast<float>(norm(object.frame.velocity) + object.swell)),
           spin = all(static_cast<float>(norm(object.frame.angular_velocity)));
   const F shift = all(static_cast<float>(norm(c - object.frame.position)));
   for (std::size_t p = 0; p < block.count; p += width) {
@@ -39,7 +39,7 @@ void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& blo
             j = __builtin_convertvector(only(in, h.y), I),
             k = __builtin_convertvector(only(in, h.z), I);
     F found;
-    if constexpr (How == Stored::compressed)
+    if constexpr (How == Storage::compressed)
       found = voxels(object.planes, i, j, k).distance;
     else
       found = gather(field.distance, k * field.layer + j * field.row + i);
@@ -54,15 +54,15 @@ void room_to(const Placed& object, F doubt, Reach reach, const ParticleSpan& blo
 
 using RoomTo = void (*)(const Placed&, F, Reach, const ParticleSpan&, Near&);
 
-template <bool First, Stored How>
+template <bool First, Storage How>
 RoomTo choose(const Frame& frame) {
   if (frame.is_moving()) return &room_to<true, true, First, How>;
   return frame.is_turned() ? &room_to<true, false, First, How> : &room_to<false, false, First, How>;
 }
 template <bool First>
 RoomTo choose(const Placed& object) {
-  return object.compressed ? choose<First, Stored::compressed>(object.frame)
-                           : choose<First, Stored::flat>(object.frame);
+  return object.compressed ? choose<First, Storage::compressed>(object.frame)
+                           : choose<First, Storage::flat>(object.frame);
 }
 
 }  // namespace

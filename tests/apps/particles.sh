@@ -125,6 +125,7 @@ refuses SCENE "$particles"
 refuses greedy_refine "$particles" "$scratch/scene.json" --balance nonsense
 refuses sometimes "$particles" "$scratch/scene.json" --balance rotate,when=sometimes
 refuses --steps "$particles" "$scratch/scene.json" --steps=-1
+refuses 'motion.scale: -1 a second takes the scale' "$particles" --steps 150 "$(edited 's/"motion": {/"motion": {"scale": -1, /')"
 refuses --out "$particles" "$scratch/scene.json" --out "$scratch/wedge.obj"
 refuses 'unknown key' "${mpirun[@]}" -n 2 "$particles" "$(edited 's/"resolution"/"resolutoin"/')" --pes 1
 
@@ -133,7 +134,7 @@ refuses 'unknown key' "${mpirun[@]}" -n 2 "$particles" "$(edited 's/"resolution"
 check "--explain names the balancer" $?
 "$particles" --stability >"$scratch/out.txt" 2>&1 && grep -q ' 0 failed' "$scratch/out.txt"
 check "--stability" $?
-"$particles" --help-scene | grep -q surface_flow
+"$particles" --help-scene >"$scratch/out.txt" && grep -q surface_flow "$scratch/out.txt"
 check "--help-scene" $?
 for scene in "$scenes"/*.json; do
   timeout 60 "$particles" "$scene" --steps 0 --pes 2 --explain >"$scratch/out.txt" 2>&1 && grep -q 'impact: used' "$scratch/out.txt"

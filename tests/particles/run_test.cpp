@@ -10,14 +10,15 @@ using namespace particles;
 
 namespace {
 
-/// Two masses, two objects of which one moves and spins, every kind of rule, an explosion that
-/// begins and ends within steps.
+/// Two masses, two objects of which one moves and spins and one shrinks, every kind of rule, an
+/// explosion that begins and ends within steps.
 Scene lively_scene() {
   return parse_scene(R"({"dt": 0.01, "steps": 40,
     "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 8}}, "resolution": 20, "thickness": 0.3,
                  "motion": {"velocity": [0.2, 0, 0], "spin": [0, 2, 1]}},
                 {"shape": {"box": {"half": [1, 1, 0.2]}}, "resolution": 16, "thickness": 0.4,
-                 "transform": {"position": [0, 0, -1.2], "rotation": [10, 0, 0], "scale": 1.5}}],
+                 "transform": {"position": [0, 0, -1.2], "rotation": [10, 0, 0], "scale": 1.5},
+                 "motion": {"scale": -0.4}}],
     "emitters": [{"count": 60, "box": {"low": [-1, -1, 0.6], "high": [1, 1, 1.5]}, "spread": 2, "mass": 2},
                  {"count": 60, "sphere": {"centre": [0, 0, 0], "radius": 1.2, "inner": 0.8}, "outward": -3}],
     "rules": {"gravity": [0, 0, -9.81], "impact": {"restitution": 0.8},
