@@ -42,7 +42,9 @@ tess::Task run(Problem& problem) {
   co_await simulate(stage, result, options.run);
   tess::print(table(stage->scene, result, problem.report));
   if (options.study) {
-    problem.report.study = study(stage->scene, {});
+    StudyOptions study_options;
+    if (!options.resolutions.empty()) study_options.resolutions = options.resolutions;
+    problem.report.study = study(stage->scene, study_options);
     tess::print(study_table(problem.report.study));
     if (!options.out.empty()) write_study(options.out, problem.report.study);
   }

@@ -16,7 +16,8 @@ struct DriverOptions {
   std::string json, out;
   bool explain = false;
   bool study = false;
-  bool compressed = false;  ///< also where the scene does not say so
+  std::vector<int> resolutions;  ///< of the study; empty: the usual ones
+  bool compressed = false;       ///< also where the scene does not say so
   RunOptions run{};
 };
 

@@ -28,6 +28,12 @@ int run(tess::Setup& setup, int argc, char** argv) {
   app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
   app.add_flag(
       "--study", options.study, "error against run time of every choice, on the first object");
+  app.add_option("--resolutions",
+                 options.resolutions,
+                 "voxels an axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
+                 "16,32,64)")
+      ->delimiter(',')
+      ->check(CLI::Range(4, 1024));
   app.add_flag("--compressed",
                options.compressed,
                "steps look up in compressed fields (as the scene's key compression)");

@@ -100,6 +100,7 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
     out["refused"] = row.note;
     return out;
   }
+  out["stored"] = row.stored;
   out["look_up"] = row.look_up;
   out["rule"] = row.rule;
   const auto measured = [&out](const char* key, double value) {

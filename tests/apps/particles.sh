@@ -126,6 +126,7 @@ refuses greedy_refine "$particles" "$scratch/scene.json" --balance nonsense
 refuses sometimes "$particles" "$scratch/scene.json" --balance rotate,when=sometimes
 refuses --steps "$particles" "$scratch/scene.json" --steps=-1
 refuses 'motion.scale: -1 a second takes the scale' "$particles" --steps 150 "$(edited 's/"motion": {/"motion": {"scale": -1, /')"
+refuses --resolutions "$particles" "$scratch/scene.json" --study --resolutions 16,2
 refuses --out "$particles" "$scratch/scene.json" --out "$scratch/wedge.obj"
 refuses 'unknown key' "${mpirun[@]}" -n 2 "$particles" "$(edited 's/"resolution"/"resolutoin"/')" --pes 1
 
