@@ -38,27 +38,39 @@ struct Run {
   RuleLoop loop = nullptr;
 };
 
-Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
-  Run run{plan, plan.constants, Setting::general, {}, nullptr, nullptr};
-  const bool simple =
-      objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
-  run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
-  run.look_up = simple ? plan.look_up_at_rest : plan.look_up_general;
-  run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
-  double coarsest = 0, finest = HUGE_VAL;
+/// What depends on the size of the objects.
+void set_lengths(Run& run, std::span<const Object> objects) {
+  const Stepper::Plan& plan = run.plan;
+  double coarsest = 0, finest = HUGE_VAL, off = 0;
   for (const Object& object : objects) {
     const double cell = object.frame.scale * object.field->grid.cell;
     coarsest = std::max(coarsest, cell);
     finest = std::min(finest, cell);
+    if (object.compressed != nullptr)
+      off = std::max(off, object.frame.scale * object.compressed->measured.distance);
   }
   run.constants.slack =
-      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest;
+      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest + off;
   run.constants.stride = 0.5 * finest;
   // Moved outward by what rounding could hide.
   const RuleConstants& c = run.constants;
   const double added = plan.step * std::max(c.air.gain, c.surface.gain) * norm(c.acceleration);
   run.reach = {static_cast<float>(reach(plan.rules) + added + 1e-3 * finest),
                static_cast<float>(plan.step)};
+}
+
+Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
+  Run run{plan, plan.constants, Setting::general, {}, nullptr, nullptr};
+  const bool simple =
+      objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
+  run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
+  run.look_up = closest_pass(plan.rules.look_up,
+                             plan.asked,
+                             simple ? Setting::one_at_rest : Setting::general,
+                             plan.sweep,
+                             storage_of(objects));
+  run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
+  set_lengths(run, objects);
   return run;
 }
 
@@ -117,13 +129,31 @@ void one_step(const Run& run,
   near.unpack(block);
 }
 
-/// Where all objects stand at each of the next n_steps steps, and after them.
-std::vector<std::vector<Placed>> placed_for(std::vector<Object>& objects,
-                                            const Stepper::Plan& plan,
-                                            int n_steps) {
-  std::vector<std::vector<Placed>> result(static_cast<std::size_t>(n_steps));
-  for (auto& now : result) {
-    for (const Object& object : objects) now.push_back(placed(object, plan.rules.look_up));
+/// The next steps of a run: where objects stand at each, and what depends on their size.
+struct Moments {
+  std::vector<std::vector<Placed>> objects;
+  std::vector<Run> grown;  ///< empty where no object grows
+
+  [[nodiscard]] const Run& run(std::size_t i, const Run& all) const {
+    return grown.empty() ? all : grown[i];
+  }
+};
+
+/// The objects are left where they stand after the steps.
+Moments moments_of(const Run& run, std::vector<Object>& objects, int n_steps) {
+  const Stepper::Plan& plan = run.plan;
+  bool restless = false, growing = false;
+  for (const Object& object : objects) {
+    restless = restless || object.frame.is_moving();
+    growing = growing || object.frame.is_growing();
+  }
+  Moments result;
+  result.objects.resize(static_cast<std::size_t>(n_steps));
+  for (auto& now : result.objects) {
+    if (growing) set_lengths(result.grown.emplace_back(run), objects);
+    now.reserve(objects.size());
+    for (const Object& object : objects)
+      now.push_back(placed(object, plan.rules.look_up, plan.step, restless));
     advance(objects, plan.step, 1);
   }
   return result;
@@ -165,15 +195,17 @@ void Stepper::run(ParticleSpan particles,
   copy(true);
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
-    const auto places = placed_for(standing, plan, now);
+    const Moments moments = moments_of(run, standing, now);
     const auto step_all = [&](const ParticleSpan& block) {
       buffers->near.unscreened = 0;
-      for (int i = 0; i < now; ++i)
-        one_step(run,
-                 places[static_cast<std::size_t>(i)],
+      for (int i = 0; i < now; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        one_step(moments.run(at, run),
+                 moments.objects[at],
                  (before + done + i) * plan.step,
                  block,
                  *buffers);
+      }
     };
     for (std::size_t first = 0; first < whole; first += block_size)
       step_all(particles.part(first, std::min(block_size, whole - first)));
