@@ -2,6 +2,7 @@
 // exit 2 for what is wrong (tess::guarded), --help with the runtime's options below the program's.
 #pragma once
 
+#include "runtime/machine/mpi.hpp"
 #include "runtime/run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -15,7 +16,7 @@ namespace apps {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    tess::print(app.help());
+    if (tess::speaks_for_job()) tess::print(app.help());
     return false;
   } catch (const CLI::ParseError& error) {
     tess::fail(tess::ErrorCode::bad_argument, error.what(), " (--help lists the options)");

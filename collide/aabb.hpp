@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace tess {
 
@@ -36,6 +38,14 @@ struct Aabb {
     out.lo[k] = std::min(a.lo[k], b.lo[k]);
     out.hi[k] = std::max(a.hi[k], b.hi[k]);
   }
+  return out;
+}
+
+/// The smallest box that holds all points; of none, lo = +inf and hi = -inf.
+[[nodiscard]] inline Aabb box_around(std::span<const Point> points) noexcept {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Aabb out{{inf, inf, inf}, {-inf, -inf, -inf}};
+  for (const Point& point : points) out = merged(out, box_of(point));
   return out;
 }
 

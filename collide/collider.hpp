@@ -7,7 +7,11 @@
 // submit() is a plain call to the local Manager. Whoever runs the collision first awaits an epoch
 // in which the clients submit. collide() awaits delivery, then the voxels' work and the owners'
 // handling of the hits: each by an epoch, no receipt is counted. The voxels stay for the next
-// collision.
+// collision; one that it finds without objects ends.
+//
+// The voxels can be balanced: tess::start_balancing(collider.voxels, options) before the first
+// collision, and co_await balancer.round() between two of them. What is measured and predicted of a
+// voxel is remembered by its index.
 #pragma once
 
 #include "collide/parallel/manager.hpp"

@@ -10,12 +10,12 @@
 
 namespace tess::m2m {
 
-Formula make_formula(const std::string& name, const Box& domain) {
+Formula make_formula(const std::string& name, const Aabb& domain) {
   double side = 0;
   Point centre{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    side = std::max(side, domain.high[axis] - domain.low[axis]);
-    centre[axis] = domain.low[axis] + 0.5 * (domain.high[axis] - domain.low[axis]);
+    side = std::max(side, domain.hi[axis] - domain.lo[axis]);
+    centre[axis] = domain.lo[axis] + 0.5 * (domain.hi[axis] - domain.lo[axis]);
   }
   if (!(side > 0)) side = 1;
   if (name == "gaussian") {
@@ -30,7 +30,7 @@ Formula make_formula(const std::string& name, const Box& domain) {
     return [](const Point& p) { return 1 + 2 * p[0] - 3 * p[1] + 5 * p[2]; };
   }
   if (name == "sin") {
-    return [low = domain.low, k = 2 * std::numbers::pi / side](const Point& p) {
+    return [low = domain.lo, k = 2 * std::numbers::pi / side](const Point& p) {
       return std::sin(k * (p[0] - low[0])) * std::sin(k * (p[1] - low[1])) *
              std::sin(k * (p[2] - low[2]));
     };

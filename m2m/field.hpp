@@ -26,7 +26,7 @@ using Formula = std::function<double(const Point&)>;
 /// centre), "linear" (1 + 2x - 3y + 5z), "sin" (sin kx sin ky sin kz, one period over the longest
 /// side from its low corner), or an expression such as "x^2 + sin(pi*y)" (fields/expression.hpp).
 /// Throws Error (bad_argument) naming the place of the mistake.
-[[nodiscard]] Formula make_formula(const std::string& name, const Box& domain);
+[[nodiscard]] Formula make_formula(const std::string& name, const Aabb& domain);
 
 /// The formula at every vertex. Throws Error (bad_value) where it is not finite, naming the vertex.
 [[nodiscard]] Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula);

@@ -8,16 +8,8 @@
 
 namespace tess::m2m {
 
-Box bounds(const TetMesh& mesh) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{{inf, inf, inf}, {-inf, -inf, -inf}};
-  for (const Point& p : mesh.points) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], p[axis]);
-      box.high[axis] = std::max(box.high[axis], p[axis]);
-    }
-  }
-  return box;
+Aabb bounds(const TetMesh& mesh) {
+  return box_around(mesh.points);
 }
 
 double signed_volume(const TetMesh& mesh, std::size_t tet) {

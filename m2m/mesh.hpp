@@ -5,6 +5,8 @@
 // so one mesh holds at most 2^31 - 1 vertices.
 #pragma once
 
+#include "collide/aabb.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,18 +15,14 @@
 
 namespace tess::m2m {
 
-using Point = std::array<double, 3>;
+using tess::Aabb;
+using tess::Point;
 /// A vertex within one mesh or one part.
 using VertexId = std::int32_t;
 /// A vertex or tetrahedron in the numbering of the whole mesh.
 using GlobalId = std::int64_t;
 /// The four vertices of a tetrahedron; its orientation may be of either sign.
 using Tet = std::array<VertexId, 4>;
-
-/// A closed axis-parallel box; empty while low > high.
-struct Box {
-  Point low, high;
-};
 
 struct TetMesh {
   std::string name;  ///< where it came from: a path, "kuhn:8", or what the application says
@@ -40,7 +38,7 @@ struct MeshCensus {
   std::size_t n_flat = 0;      ///< tetrahedra without volume, or with two equal vertices
   std::size_t n_inverted = 0;  ///< tetrahedra of negative orientation
   std::size_t n_unused = 0;    ///< vertices that no tetrahedron uses
-  Box bounds{};                ///< of all points
+  Aabb bounds{};               ///< of all points
 };
 
 /// Throws Error (bad_mesh), naming the mesh, the element and the remedy, on no tetrahedra, a
@@ -49,7 +47,7 @@ struct MeshCensus {
 MeshCensus validate(const TetMesh& mesh);
 
 /// The box around all points.
-[[nodiscard]] Box bounds(const TetMesh& mesh);
+[[nodiscard]] Aabb bounds(const TetMesh& mesh);
 
 /// Volume with sign, from edges relative to the first vertex (absolute coordinates would cancel far
 /// from the origin).

@@ -57,19 +57,19 @@ Task transfer(DistributedMesh source,
 
 Point suggest_voxel_size(const TetMesh& source, const TetMesh& target) {
   constexpr double tets_per_voxel = 100;
-  const Box box = bounds(source), other = bounds(target);
+  const Aabb box = bounds(source), other = bounds(target);
   double volume = 1;
   double longest = 0, farthest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    longest = std::max(longest, box.high[axis] - box.low[axis]);
+    longest = std::max(longest, box.hi[axis] - box.lo[axis]);
     farthest = std::max({farthest,
-                         std::abs(box.low[axis]),
-                         std::abs(box.high[axis]),
-                         std::abs(other.low[axis]),
-                         std::abs(other.high[axis])});
+                         std::abs(box.lo[axis]),
+                         std::abs(box.hi[axis]),
+                         std::abs(other.lo[axis]),
+                         std::abs(other.hi[axis])});
   }
   for (std::size_t axis = 0; axis < 3; ++axis)
-    volume *= std::max((box.high[axis] - box.low[axis]) / longest,
+    volume *= std::max((box.hi[axis] - box.lo[axis]) / longest,
                        1e-3);  // a flat mesh has some thickness
   const double by_density =
       longest * std::cbrt(volume * tets_per_voxel / static_cast<double>(source.n_tets()));

@@ -9,6 +9,11 @@
 //
 // Elements that exist where balancing starts are waited for from the first round on; later ones
 // from their first at_sync() on. An element that ends is no longer waited for.
+//
+// A program whose phases are epochs has a barrier already: between two of them it awaits
+// balancer.round(), and no element calls at_sync(). That is the way for arrays whose elements come
+// and go: at a barrier of theirs an element may be too new for the phase that ends, and would wait
+// for the next.
 #pragma once
 
 #include "runtime/array.hpp"
@@ -27,6 +32,11 @@ class BalancerProxy {
   [[nodiscard]] const std::vector<balance::Round>& history() const {
     return group_.local().history();
   }
+
+  /// Awaited between two phases, while no element of the array has work: a round (automatic: where
+  /// it is worth it); all that it moves has arrived. On the PE that called start_balancing() alone.
+  /// Not beside at_sync(), nor periodic rounds.
+  [[nodiscard]] Task round() const { return group_.local().phase_ends(); }
 
  private:
   GroupProxy<balance::Balancer> group_;

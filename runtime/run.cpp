@@ -137,15 +137,13 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
 }
 
 namespace detail {
-void refuse_rest(int argc, char** argv) {
-  if (argc <= 1) return;
+bool asks_for_help(int argc, char** argv) {
+  if (argc <= 1) return false;
   const std::string_view option = argv[1];
-  if (option == "--help" || option == "-h") {
-    std::printf("usage: %s [options]\n%s", argv[0], options_help().c_str());
-    std::fflush(stdout);
-    std::exit(0);  // NOLINT(concurrency-mt-unsafe): there are no threads yet
-  }
-  fail(ErrorCode::bad_argument, "unknown option ", option, " (--help lists them)");
+  if (option != "--help" && option != "-h")
+    fail(ErrorCode::bad_argument, "unknown option ", option, " (--help lists them)");
+  if (speaks_for_job()) print("usage: ", argv[0], " [options]\n", options_help());
+  return true;
 }
 }  // namespace detail
 

@@ -50,7 +50,9 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body);
 int guarded(const char* program, const std::function<int()>& body);
 
 namespace detail {
-void refuse_rest(int argc, char** argv);
+/// For a program without options: true if it was asked for help, which is printed then. Any other
+/// option is an Error.
+bool asks_for_help(int argc, char** argv);
 template <class Main>
 std::function<void()> as_message(Main main) {
   if constexpr (std::is_same_v<std::invoke_result_t<Main>, Task>) {
@@ -70,7 +72,7 @@ int run(Setup& setup, Main main) {
 template <class Main>
 int run(int argc, char** argv, Main main) {
   return guarded(argc, argv, [&](Setup& setup) {
-    detail::refuse_rest(argc, argv);
+    if (detail::asks_for_help(argc, argv)) return 0;
     return run_on(setup, detail::as_message(std::move(main)));
   });
 }

@@ -13,16 +13,19 @@ bash cmake/lint.sh
 mkdir -p build
 
 jobs=$(nproc)
+# stage NAME: what begins, and how long it has been going on.
+stage() { printf '== %s (%d s)\n' "$1" "$SECONDS"; }
 for preset in "${presets[@]}"; do
-  echo "== $preset: build"
+  stage "$preset: build"
   cmake --preset "$preset" >build/"$preset".log 2>&1 || { cat build/"$preset".log; exit 1; }
   targets=(all)
   if [[ $preset == release ]]; then targets+=(headers_alone); fi
   cmake --build --preset "$preset" --target "${targets[@]}" -j "$jobs" >build/"$preset".log 2>&1 || { tail -60 build/"$preset".log; exit 1; }
   if [[ $preset == release ]]; then
-    echo "== $preset: tidy"
+    stage "$preset: tidy"
     bash cmake/tidy.sh
   fi
-  echo "== $preset: test"
+  stage "$preset: test"
   ctest --preset "$preset" -j "$jobs"
 done
+stage done

@@ -1,25 +1,21 @@
 #include "apps/lb_lab/experiment.hpp"
 
-#include "apps/lb_lab/worker.hpp"
-#include "runtime/balance.hpp"
+#include "apps/lb_lab/balanced.hpp"
+#include "apps/lb_lab/kind.hpp"
 #include "runtime/balance/strategy.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace lb_lab {
 namespace {
 
-double seconds(tess::Time time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 double speed_of(const Plan& plan, std::size_t pe) {
   return plan.speeds.empty() ? 1 : plan.speeds[pe];
 }
 
-/// The named strategy, which notes what it is shown.
+}  // namespace
+
 tess::balance::Strategy noting(const tess::BalanceOptions& options,
                                std::vector<tess::balance::Phase>& phases) {
   return [named = tess::balance::make_strategy(options.strategy, options.seed),
@@ -29,38 +25,13 @@ tess::balance::Strategy noting(const tess::BalanceOptions& options,
   };
 }
 
-tess::Task start_and_wait(tess::ArrayProxy<Worker> workers, Outcome& outcome) {
-  tess::Pe& pe = tess::current_pe();
-  tess::Future<std::uint64_t> answer;
-  const tess::Time began = pe.now();
-  outcome.began = seconds(began);
-  workers.broadcast<&Worker::begin>(answer.callback());
-  outcome.answer = co_await answer;
-  outcome.seconds = seconds(pe.now() - began);
-}
-
-}  // namespace
-
 tess::Task run(const Experiment& experiment, Outcome& outcome) {
-  const Plan& plan = experiment.plan;
   tess::GroupProxy<Station> stations;
-  co_await tess::epoch([&] { stations = tess::create_group<Station>(plan); });
-  tess::ArrayProxy<Worker> workers;
-  tess::BalancerProxy balancer;
-  const bool balances = experiment.balance.strategy != "none";
-  co_await tess::epoch([&] {
-    workers = tess::create<Worker>(tess::range(plan.problem.domain.n_elements()), stations);
-    if (!balances) return;
-    balancer = experiment.keep == Keep::nothing
-                   ? tess::start_balancing(workers, experiment.balance)
-                   : tess::start_balancing(
-                         workers, experiment.balance, noting(experiment.balance, outcome.phases));
-  });
-  co_await tess::epoch([&] { const tess::Task waits = start_and_wait(workers, outcome); });
+  co_await tess::epoch([&] { stations = tess::create_group<Station>(experiment.plan); });
+  co_await workload_of(experiment.plan.problem).kind->run(experiment, stations, outcome);
   tess::Future<std::vector<PeRecord>> records;
   stations.broadcast<&Station::tell>(records.callback());
   outcome.records = co_await records;
-  if (balances) outcome.rounds = balancer.history();
 }
 
 double imbalance(const Outcome& outcome, const Plan& plan, std::int32_t first, std::int32_t last) {

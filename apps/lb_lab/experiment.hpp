@@ -7,6 +7,7 @@
 #include "runtime/balance/rounds/round.hpp"
 #include "runtime/task.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct Outcome {
   std::vector<tess::balance::Round> rounds;
   std::vector<tess::balance::Phase> phases;  ///< what the strategy saw, if it is kept
 };
+
+[[nodiscard]] inline double seconds(tess::Time time) {
+  return std::chrono::duration<double>(time).count();
+}
 
 /// Runs it to its end; PE 0 awaits it. Both arguments outlive the run.
 tess::Task run(const Experiment& experiment, Outcome& outcome);

@@ -1,5 +1,6 @@
 #include "apps/lb_lab/report.hpp"
 
+#include "apps/lb_lab/kind.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/run.hpp"
@@ -130,18 +131,12 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
     double speed = n_pes;
     if (!s.speeds.empty()) speed = 0;
     for (const double one : s.speeds) speed += one;
-    out += fmt::format(
-        "{}: {} x {} cells of {} bytes, {:.4g} s of work, {:.4g} s at best on {} PEs; {}\n",
-        name,
-        p.domain.width,
-        p.domain.height,
-        p.cell_bytes,
-        total,
-        total / speed,
-        n_pes,
-        workload_of(p).traffic == Traffic::silent
-            ? "elements are independent: no messages between them"
-            : fmt::format("edges and {} bytes to each neighbour an iteration", p.message_bytes));
+    out += fmt::format("{}: {}; {:.4g} s of work, {:.4g} s at best on {} PEs\n",
+                       name,
+                       workload_of(p).kind->describe(p),
+                       total,
+                       total / speed,
+                       n_pes);
   }
   out += fmt::format("{} runs of {} iterations",
                      s.workloads.size() * s.per_pe.size() * s.strategies.size() *

@@ -1,13 +1,14 @@
-// The oracle: the whole domain at once. It shares with the chares what a cell becomes, and nothing
+// The whole domain at once. It shares with the chares what a cell becomes, and nothing
 // of blocks, halos, messages and migrations.
-#include "apps/lb_lab/workload.hpp"
+#include "apps/lb_lab/serial.hpp"
+
 #include "runtime/base/mix.hpp"
 
 #include <algorithm>
 
 namespace lb_lab {
 
-std::uint64_t serial_answer(const Problem& p) {
+std::uint64_t serial_answer_of_cells(const Problem& p) {
   const Workload& workload = workload_of(p);
   const std::int32_t width = p.domain.width, height = p.domain.height;
   const bool looks = workload.traffic == Traffic::neighbours;
@@ -42,7 +43,7 @@ std::uint64_t serial_answer(const Problem& p) {
   return answer;
 }
 
-double total_seconds(const Problem& p) {
+double total_seconds_of_cells(const Problem& p) {
   const Block whole{{0, 0}, p.domain.width, p.domain.height};
   double sum = 0;
   for (std::int32_t t = 0; t < p.n_iterations; ++t) sum += block_seconds(p, whole, t);

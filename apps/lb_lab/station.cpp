@@ -2,6 +2,7 @@
 
 #include "apps/lb_lab/kernel.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -23,7 +24,12 @@ double& entry(std::vector<double>& values, std::int32_t at, double fill) {
 
 Station::Station(Plan plan)
     : plan_(std::move(plan)),
-      speed_(plan_.speeds.empty() ? 1 : plan_.speeds[static_cast<std::size_t>(pe().value)]) {}
+      speed_(plan_.speeds.empty() ? 1 : plan_.speeds[static_cast<std::size_t>(pe().value)]),
+      slowness_(plan_.speeds.empty() ? 1 : std::ranges::max(plan_.speeds) / speed_) {
+  const double before = clock();
+  walked_ = walk(1, 1000);
+  fixed_cost_ = tess::current_pe().machine().virtual_time() && clock() <= before;
+}
 
 double Station::clock() const {
   return std::chrono::duration<double>(tess::current_pe().now()).count();
@@ -46,8 +52,11 @@ void Station::begins() {
 
 void Station::ends(std::int32_t iteration) {
   entry(record_.seconds, iteration, 0) += cpu() - cpu_at_begin_;
+  draw(iteration, {began_, clock()});
+}
+
+void Station::draw(std::int32_t iteration, const Interval& now) {
   if (iteration >= plan_.n_drawn) return;
-  const Interval now{began_, clock()};
   if (!record_.busy.empty() && now.begin - record_.busy.back().end < gap * (now.end - now.begin)) {
     record_.busy.back().end = now.end;
   } else {
@@ -62,6 +71,39 @@ void Station::waits(std::int32_t phase) {
 void Station::resumes(std::int32_t phase) {
   double& at = entry(record_.resumes_at, phase, -1);
   if (at < 0) at = clock();
+}
+
+void Station::spend(double time) {
+  if (!tess::charge(std::chrono::nanoseconds(std::llround(1e9 * time))))
+    walked_ = walk(walked_, static_cast<std::uint64_t>(time * plan_.steps_a_second));
+}
+
+void Station::worked(double measured_seconds, double nominal_seconds) {
+  if (fixed_cost_) {
+    spend(nominal_seconds * slowness_);
+  } else if (slowness_ > 1) {
+    spend(measured_seconds * (slowness_ - 1));
+  }
+}
+
+void Station::first_begins() {
+  began_ = clock();
+  tess::Meter& meter = tess::current_pe().start_meter();
+  busy_at_begin_ = meter.seconds(meter.busy());
+}
+
+void Station::iteration_ends(std::int32_t iteration) {
+  const double before = busy_at_begin_, began = began_;
+  first_begins();
+  const double busy = busy_at_begin_ - before;
+  entry(record_.seconds, iteration, 0) += busy;
+  draw(iteration, {began, std::min(began + busy, began_)});
+}
+
+void Station::round_ends(std::int32_t phase) {
+  entry(record_.waits_from, phase, -1) = began_;
+  first_begins();
+  entry(record_.resumes_at, phase, -1) = began_;
 }
 
 void Station::tell(tess::Callback<std::vector<PeRecord>> target) {

@@ -50,17 +50,37 @@ class Station : public tess::Group<Station> {
   void waits(std::int32_t phase);
   void resumes(std::int32_t phase);
 
-  // Entry method.
+  /// Real work was done on this PE, in `measured_seconds`. A simulated machine of fixed cost is
+  /// charged the nominal ones; a PE that is slower than the fastest goes on for what it lacks.
+  void worked(double measured_seconds, double nominal_seconds);
+  /// The clock that worked() is measured on.
+  [[nodiscard]] double cpu() const;
+  /// Part of the answer, from a chare that ends here.
+  void take(std::uint64_t part) { answer_ += part; }
+
+  // Entry methods.
   void tell(tess::Callback<std::vector<PeRecord>> target);
+  void tell_answer(tess::Callback<std::uint64_t> target) { contribute(tess::sum, answer_, target); }
+  /// For workloads whose iterations end everywhere at once (stepped.hpp), between two of them: the
+  /// first begins; one is over; a round is over. What the PE did between is the iteration's.
+  void first_begins();
+  void iteration_ends(std::int32_t iteration);
+  void round_ends(std::int32_t phase);
 
  private:
   [[nodiscard]] double clock() const;
-  [[nodiscard]] double cpu() const;
+  void spend(double time);
+  void draw(std::int32_t iteration, const Interval& busy);
 
   const Plan plan_;
   const double speed_;
+  const double slowness_;    // how many times slower than the fastest PE
+  bool fixed_cost_ = false;  // a simulated machine whose clock does not see what code costs
   PeRecord record_;
   double began_ = 0, cpu_at_begin_ = 0;
+  double busy_at_begin_ = 0;  // as the PE's meter has it
+  std::uint64_t answer_ = 0;
+  std::uint64_t walked_ = 0;
 };
 
 }  // namespace lb_lab

@@ -1,6 +1,8 @@
 // What is computed: work that moves through a domain of cells, and an answer that does not depend
 // on where, when and in how many elements it is computed. One function says what a cell costs, one
-// what it becomes; the second never looks at the first. A new workload is a line in workloads.cpp.
+// what it becomes; the second never looks at the first. A new workload of cells is a line in
+// workloads.cpp; one whose chares are something else is a kind of its own (kind.hpp), to which the
+// domain is the space that its chares share.
 #pragma once
 
 #include "apps/lb_lab/domain.hpp"
@@ -32,15 +34,20 @@ struct Stencil {
 enum class Shape : std::uint8_t { line, plane };
 enum class Traffic : std::uint8_t { silent, neighbours };
 
+struct Kind;
+extern const Kind cells_kind;
+
 struct Workload {
   std::string name;
   std::string_view what;
   Shape shape = Shape::line;
   Traffic traffic = Traffic::silent;  ///< silent: a cell does not look at its neighbours
+  // Of cells alone:
   /// Relative work of a cell in an iteration, at least 0, about 1 on average.
   double (*work)(const Problem&, Cell, std::int32_t iteration) = nullptr;
   std::uint64_t (*first)(const Problem&, Cell) = nullptr;
   std::uint64_t (*next)(const Problem&, Cell, std::int32_t iteration, const Stencil&) = nullptr;
+  const Kind* kind = &cells_kind;
 };
 
 [[nodiscard]] const std::vector<Workload>& workloads();
@@ -66,10 +73,10 @@ struct Workload {
 /// What a cell carries along: `cell_bytes` / 8 words from its number, and their hash.
 [[nodiscard]] std::vector<std::uint64_t> cargo_of(const Problem& problem, Cell cell);
 
-/// The answer, computed without chares, messages and blocks: all cells in a row, two time levels.
+/// The answer, computed without chares and messages.
 [[nodiscard]] std::uint64_t serial_answer(const Problem& problem);
 
-/// Seconds at speed 1 of all iterations of all cells.
+/// Seconds at speed 1 of all iterations; nominal where the work is real.
 [[nodiscard]] double total_seconds(const Problem& problem);
 
 }  // namespace lb_lab

@@ -1,4 +1,5 @@
-#include "apps/lb_lab/workload.hpp"
+#include "apps/lb_lab/collision/collision.hpp"
+#include "apps/lb_lab/particles/particles.hpp"
 #include "runtime/base/mix.hpp"
 #include "runtime/error.hpp"
 
@@ -164,6 +165,14 @@ const std::vector<Workload>& workloads() {
                       refined_work,
                       warm,
                       diffuse});
+    result.push_back({.name = "collision",
+                      .what = "boxes in clusters that drift: their voxels are balanced",
+                      .shape = Shape::plane,
+                      .kind = &collision_kind});
+    result.push_back({.name = "particles",
+                      .what = "particles that bunch up round a moving attractor, in blocks",
+                      .shape = Shape::plane,
+                      .kind = &particles_kind});
     return result;
   }();
   return all;

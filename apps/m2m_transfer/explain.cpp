@@ -14,12 +14,6 @@ std::string mesh_line(const char* side, const TetMesh& mesh, const MeshCensus& c
   return line + '\n';
 }
 
-bool apart(const Box& a, const Box& b) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (a.high[axis] < b.low[axis] || b.high[axis] < a.low[axis]) return true;
-  return false;
-}
-
 }  // namespace
 
 std::string explain(const Problem& problem, Output output) {
@@ -48,7 +42,7 @@ std::string explain(const Problem& problem, Output output) {
   if (!std::holds_alternative<Nearest>(problem.policy))
     out += "  the search for nearest vertices (--policy nearest)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
-  if (apart(problem.source_census.bounds, problem.target_census.bounds))
+  if (!overlap(problem.source_census.bounds, problem.target_census.bounds, tess::Touching::counts))
     out += "the boxes of the meshes do not meet: every vertex will be outside\n";
   return out;
 }

@@ -26,7 +26,7 @@ Problem load(const Request& request, const Machine& machine) {
   problem.target = read_mesh(request.target);
   problem.source_census = validate(problem.source);
   problem.target_census = validate(problem.target);
-  const Box& domain = problem.source_census.bounds;
+  const Aabb& domain = problem.source_census.bounds;
   for (const std::string& name : request.fields) {
     const Formula formula = make_formula(name, domain);
     problem.source_fields.push_back(sample(problem.source, name, formula));

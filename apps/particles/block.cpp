@@ -60,10 +60,15 @@ void Block::move(const Stretch& stretch) {
   take_in(stretch.first);
   std::size_t n_particles = 0;
   for (const Flock& flock : flocks_) n_particles += flock.size();
-  if (n_particles == 0) {
-    if (arrivals_.empty()) destroy();
+  if (n_particles == 0 && arrivals_.empty()) {
+    destroy();
     return;
   }
+  if (n_particles != 0) work(stretch);
+  if (stretch.sync != 0) at_sync();
+}
+
+void Block::work(const Stretch& stretch) {
   Station& station = stations_.local();
   for (std::size_t s = 0; s < flocks_.size(); ++s) advance(s, stretch, station);
   if (stretch.ask != Stretch::nothing) look(stretch, station);

@@ -10,6 +10,7 @@
 #include "apps/particles/station.hpp"
 #include "runtime/runtime.hpp"
 
+#include <array>
 #include <vector>
 
 namespace particles {
@@ -31,6 +32,13 @@ class Block : public tess::Chare<Block, tess::Index3> {
   void enter(Arrivals arrivals);
   void move(const Stretch& stretch);
 
+  // For a balancer: blocks that stand side by side have neighbouring positions, and a block that
+  // has done its stretch may be moved until the next.
+  [[nodiscard]] std::array<double, 3> balance_position() const {
+    return {1.0 * index().x, 1.0 * index().y, 1.0 * index().z};
+  }
+  void resume_from_sync() {}
+
   template <class Ar>
   void serialize(Ar& ar) {
     ar(stations_, flocks_, arrivals_);
@@ -38,6 +46,7 @@ class Block : public tess::Chare<Block, tess::Index3> {
 
  private:
   void take_in(std::int32_t step);
+  void work(const Stretch& stretch);
   void advance(std::size_t species, const Stretch& stretch, Station& station);
   void advance_audited(Flock& flock, std::size_t species, const Stretch& stretch, Station& station);
   void look(const Stretch& stretch, Station& station);

@@ -19,12 +19,17 @@ struct Problem {
   Report report;
 };
 
+tess::dn::Field flat_field(const FieldInTheMaking& of) {
+  return of.compressed() ? expanded(*of.compressed()) : of.field();
+}
+
 void write_pictures(const std::string& folder, const Stage& stage, const RunResult& result) {
   const Scene& scene = stage.scene;
   const std::filesystem::path in(folder);
   if (const auto& slice = scene.outputs.slice)
-    plot::write_file((in / "field.svg").string(),
-                     slice_svg(stage.fields[slice->object].field(), scene.outputs.axis, slice->at));
+    plot::write_file(
+        (in / "field.svg").string(),
+        slice_svg(flat_field(stage.fields[slice->object]), scene.outputs.axis, slice->at));
   if (result.trajectories.empty()) return;
   write_series(folder, result.trajectories, scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));
@@ -33,11 +38,13 @@ void write_pictures(const std::string& folder, const Stage& stage, const RunResu
 tess::Task run(Problem& problem) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
   RunResult result;
-  co_await simulate(stage, result);
   const DriverOptions& options = problem.options;
+  co_await simulate(stage, result, options.run);
   tess::print(table(stage->scene, result, problem.report));
   if (options.study) {
-    problem.report.study = study(stage->scene, {});
+    StudyOptions study_options;
+    if (!options.resolutions.empty()) study_options.resolutions = options.resolutions;
+    problem.report.study = study(stage->scene, study_options);
     tess::print(study_table(problem.report.study));
     if (!options.out.empty()) write_study(options.out, problem.report.study);
   }
@@ -59,17 +66,22 @@ void make_folder(const std::string& path) {
 
 int drive(tess::Setup& setup, const DriverOptions& options) {
   Problem problem{options, read_scene(options.scene), {}};
-  if (options.steps >= 0) problem.scene.steps = options.steps;
+  if (options.steps >= 0) {
+    problem.scene.steps = options.steps;
+    check_scene(problem.scene);
+  }
+  if (options.compressed) compress_fields(problem.scene);
   if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
   if (options.out.empty()) problem.scene.outputs.slice.reset();
   const tess::Machine& machine = *setup.machine;
-  problem.report = {machine.describe(), machine.n_pes(), machine.n_processes()};
+  problem.report = {machine.describe(), machine.n_pes(), machine.n_processes(), options.run};
   if (!options.out.empty()) make_folder(options.out);
   if (options.study && problem.scene.objects.empty())
     tess::fail(tess::ErrorCode::bad_value,
                options.scene,
                ": objects: is empty; --study needs an object to bounce off");
-  if (options.explain && machine.process().value == 0) tess::print(explanation(problem.scene));
+  if (options.explain && machine.process().value == 0)
+    tess::print(explanation(problem.scene, options.run));
   return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });
 }
 

@@ -2,6 +2,7 @@
 // with the input is found before the run starts.
 #pragma once
 
+#include "apps/particles/simulate.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -15,6 +16,9 @@ struct DriverOptions {
   std::string json, out;
   bool explain = false;
   bool study = false;
+  std::vector<int> resolutions;  ///< of the study; empty: the usual ones
+  bool compressed = false;       ///< also where the scene does not say so
+  RunOptions run{};
 };
 
 /// Returns the exit code. Throws tess::Error for bad input.

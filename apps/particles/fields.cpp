@@ -59,9 +59,15 @@ void FieldInTheMaking::fill(int part) {
   furthest_[static_cast<std::size_t>(part)] = builder_->build(slab_of(field_, first, last));
 }
 
-void FieldInTheMaking::finish() {
+void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
   if (builder_) builder_->finish(field_, *std::max_element(furthest_.begin(), furthest_.end()));
   builder_.reset();
+  flat_bytes_ = field_.bytes();
+  if (compression) {
+    compressed_ = compress(field_, bound_of(*compression, field_));
+    field_.distance = {};
+    field_.normal = {};
+  }
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
@@ -73,41 +79,57 @@ BuiltField build_alone(const SceneObject& object, Content content) {
   return {making.field(), making.seconds()};
 }
 
-ErrorBound usual_bound(const Field& field) {
-  constexpr double cells = 0.125, degrees = 3;
-  return {cells * field.grid.cell, degrees * std::numbers::pi / 180};
+ErrorBound bound_of(const Compression& compression, const Field& field) {
+  return {compression.cells * field.grid.cell, compression.degrees * std::numbers::pi / 180};
 }
 
-double distance_at(const Field& field, Vec3 p) {
-  const Grid& grid = field.grid;
-  std::array<std::size_t, 3> low{};
+namespace {
+
+/// Interpolated between the voxels of a grid; value: double(int i, int j, int k).
+template <class Value>
+double interpolated(const Grid& grid, const Value& value, Vec3 p) {
+  std::array<int, 3> low{};
   std::array<double, 3> part{};
   for (int axis = 0; axis < 3; ++axis) {
     const double at = (component(p, axis) - component(grid.origin, axis)) / grid.cell;
     const int last = grid.n[static_cast<std::size_t>(axis)] - 1;
     if (!(at >= 0 && at <= last)) return HUGE_VAL;
     const double floor = std::min(std::floor(at), last - 1.0);
-    low[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(floor);
+    low[static_cast<std::size_t>(axis)] = static_cast<int>(floor);
     part[static_cast<std::size_t>(axis)] = at - floor;
   }
-  const auto value = [&](std::size_t i, std::size_t j, std::size_t k) {
-    const auto index = grid.index(
-        static_cast<int>(low[0] + i), static_cast<int>(low[1] + j), static_cast<int>(low[2] + k));
-    return static_cast<double>(field.distance[index]);
+  const auto along_x = [&](int j, int k) {
+    return (1 - part[0]) * value(low[0], low[1] + j, low[2] + k) +
+           part[0] * value(low[0] + 1, low[1] + j, low[2] + k);
   };
-  const auto along_x = [&](std::size_t j, std::size_t k) {
-    return (1 - part[0]) * value(0, j, k) + part[0] * value(1, j, k);
-  };
-  const auto in_plane = [&](std::size_t k) {
+  const auto in_plane = [&](int k) {
     return (1 - part[1]) * along_x(0, k) + part[1] * along_x(1, k);
   };
   return (1 - part[2]) * in_plane(0) + part[2] * in_plane(1);
 }
 
-bool passes_surface(const Field& field, const Surface& surface, Vec3 from, Vec3 to) {
+}  // namespace
+
+double distance_at(const Field& field, Vec3 p) {
+  const auto value = [&field](int i, int j, int k) {
+    return static_cast<double>(field.distance[field.grid.index(i, j, k)]);
+  };
+  return interpolated(field.grid, value, p);
+}
+
+double distance_at(const Object& object, Vec3 p) {
+  if (object.compressed == nullptr) return distance_at(*object.field, p);
+  const auto value = [&object](int i, int j, int k) {
+    return static_cast<double>(voxel_distance(*object.compressed, i, j, k));
+  };
+  return interpolated(object.field->grid, value, p);
+}
+
+bool passes_surface(const Object& object, const Surface& surface, Vec3 from, Vec3 to) {
+  const Field& field = *object.field;
   const double length = norm(to - from), cell = field.grid.cell;
   if (!std::isfinite(length)) return false;
-  const double begin = distance_at(field, from);
+  const double begin = distance_at(object, from);
   if (begin < HUGE_VAL && std::abs(begin) > length + 2 * cell) return false;
   if (field.sides == Sides::two) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
@@ -136,7 +158,7 @@ bool passes_surface(const Field& field, const Surface& surface, Vec3 from, Vec3 
   for (std::size_t i = 0; i <= pieces; ++i) {
     const double t =
         first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
-    if (distance_at(field, from + t * along) < -cell) return true;
+    if (distance_at(object, from + t * along) < -cell) return true;
   }
   return false;
 }

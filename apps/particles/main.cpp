@@ -4,9 +4,11 @@
 #include "apps/particles/driver.hpp"
 #include "apps/particles/scene.hpp"
 #include "apps/particles/stability.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstring>
+#include <fmt/ranges.h>
 
 namespace {
 
@@ -26,6 +28,22 @@ int run(tess::Setup& setup, int argc, char** argv) {
   app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
   app.add_flag(
       "--study", options.study, "error against run time of every choice, on the first object");
+  app.add_option("--resolutions",
+                 options.resolutions,
+                 "voxels an axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
+                 "16,32,64)")
+      ->delimiter(',')
+      ->check(CLI::Range(4, 1024));
+  app.add_flag("--compressed",
+               options.compressed,
+               "steps look up in compressed fields (as the scene's key compression)");
+  std::string balance;
+  app.add_option(
+      "--balance",
+      balance,
+      "blocks migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
+      "strategies: " +
+          fmt::format("{}", fmt::join(tess::balance::strategy_names(), ", ")));
   bool stability = false;
   app.add_flag("--stability",
                stability,
@@ -33,6 +51,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   bool help_scene = false;
   app.add_flag("--help-scene", help_scene, "describe the keys of a scene file");
   if (!apps::parse(app, argc, argv)) return 0;
+  if (!balance.empty()) options.run.balance = tess::parse_balance(balance);
   const bool speaks = setup.machine->process().value == 0;
   if (stability && !particles::print_stability(speaks)) return 1;
   if (options.scene.empty()) {

@@ -22,8 +22,7 @@ std::uint64_t hash_of(std::uint64_t id, Vec3 position, Vec3 velocity) {
 double least_distance(const std::vector<Object>& objects, Vec3 p) {
   double least = HUGE_VAL;
   for (const Object& object : objects)
-    least =
-        std::min(least, object.frame.scale * distance_at(*object.field, object.frame.to_object(p)));
+    least = std::min(least, object.frame.scale * distance_at(object, object.frame.to_object(p)));
   return least;
 }
 
@@ -73,13 +72,12 @@ void note_tunnelled(const Stage& stage,
                     const tess::dn::Particles& before,
                     Flock& flock) {
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
-    const tess::dn::Field& field = *at_begin[o].field;
     const tess::dn::Surface& surface = stage.scene.objects[o].surface;
     for (std::size_t p = 0; p < flock.size(); ++p) {
       if (flock.tunnelled[p] != 0) continue;
       const Vec3 from = at_begin[o].frame.to_object(before.position(p)),
                  to = at_end[o].frame.to_object(flock.motion.position(p));
-      if (passes_surface(field, surface, from, to)) flock.tunnelled[p] = 1;
+      if (passes_surface(at_begin[o], surface, from, to)) flock.tunnelled[p] = 1;
     }
   }
 }
@@ -90,10 +88,10 @@ void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& 
     if (field.sides == tess::dn::Sides::two) continue;
     for (std::size_t p = 0; p < flock.size(); ++p) {
       const Vec3 now = objects[o].frame.to_object(flock.motion.position(p));
-      if (!(distance_at(field, now) < -field.grid.cell)) continue;
+      if (!(distance_at(objects[o], now) < -field.grid.cell)) continue;
       const Vec3 start =
           stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
-      if (!(distance_at(field, start) < -field.grid.cell)) flock.tunnelled[p] = 1;
+      if (!(distance_at(objects[o], start) < -field.grid.cell)) flock.tunnelled[p] = 1;
     }
   }
 }

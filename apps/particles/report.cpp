@@ -9,6 +9,24 @@ namespace particles {
 namespace {
 
 constexpr std::array method_names{"exact", "normals", "potential"};
+// In the order of BalanceWhen.
+constexpr std::array when_names{"at_sync", "periodic", "automatic"};
+constexpr std::array when_texts{"a round at each exchange of particles",
+                                "rounds beside the work",
+                                "a round at an exchange of particles where it is worth it"};
+
+/// The balancer's rounds of a run, summed.
+struct Balanced {
+  explicit Balanced(const std::vector<tess::balance::Round>& of) : rounds(of.size()) {
+    for (const tess::balance::Round& round : of) {
+      moves += round.n_moved;
+      bytes += round.moved_bytes;
+      seconds += round.round_seconds;
+    }
+  }
+  std::uint64_t rounds, moves = 0, bytes = 0;
+  double seconds = 0;
+};
 
 std::string method_of(const Scene& scene) {
   if (scene.objects.empty()) return "none";
@@ -26,6 +44,7 @@ FieldCost total(const std::vector<FieldCost>& fields) {
     sum.build_seconds += field.build_seconds;
     sum.cells += field.cells;
     sum.bytes += field.bytes;
+    sum.bytes_used += field.bytes_used;
   }
   return sum;
 }
@@ -81,6 +100,7 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
     out["refused"] = row.note;
     return out;
   }
+  out["stored"] = row.stored;
   out["look_up"] = row.look_up;
   out["rule"] = row.rule;
   const auto measured = [&out](const char* key, double value) {
@@ -114,11 +134,14 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
   line("machine", report.machine);
   if (!result.fields.empty())
     line("fields",
-         fmt::format("{} of method {}, {} cells, {:.3f} MB, built in {:.3f} s",
+         fmt::format("{} of method {}, {} cells, {:.3f} MB{}, built in {:.3f} s",
                      result.fields.size(),
                      method_of(scene),
                      fields.cells,
                      static_cast<double>(fields.bytes) / 1e6,
+                     scene.compression ? fmt::format(" compressed to {:.3f} MB",
+                                                     static_cast<double>(fields.bytes_used) / 1e6)
+                                       : "",
                      fields.build_seconds));
   line("blocks",
        fmt::format(
@@ -142,6 +165,16 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
                    per_particle_step(scene, result.seconds),
                    per_particle_step(scene, result.loop_seconds),
                    result.audited ? "; each step looked at" : ""));
+  if (const auto& balance = report.run.balance) {
+    const Balanced of(result.rounds);
+    line("balance",
+         fmt::format("{}: {} rounds moved {} blocks, {:.3f} MB, in {:.4f} s",
+                     balance->strategy,
+                     of.rounds,
+                     of.moves,
+                     static_cast<double>(of.bytes) / 1e6,
+                     of.seconds));
+  }
   line("result", fmt::format("{:016x}", result.rows.back().measured.hash));
   return out;
 }
@@ -165,7 +198,8 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
                   {"bytes", fields.bytes},
-                  {"bytes_compressed", report.bytes_compressed}};
+                  {"bytes_compressed", report.bytes_compressed},
+                  {"stored", scene.compression ? "compressed" : "flat"}};
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited ? "each step" : "last step";
@@ -173,6 +207,15 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   out["energy_end"] = end.energy();
   out["block"] = result.block;
   out["exchange"] = result.exchange;
+  if (const auto& balance = report.run.balance) {
+    const Balanced of(result.rounds);
+    out["balance"] = {{"strategy", balance->strategy},
+                      {"when", when_names[static_cast<std::size_t>(balance->when)]},
+                      {"rounds", of.rounds},
+                      {"moves", of.moves},
+                      {"bytes", of.bytes},
+                      {"seconds", of.seconds}};
+  }
   out["result_hash"] = fmt::format("{:016x}", end.hash);
   out["rows"] = nlohmann::ordered_json::array();
   for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
@@ -181,15 +224,33 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   return out.dump(2) + "\n";
 }
 
-std::string explanation(const Scene& scene) {
+std::string explanation(const Scene& scene, const RunOptions& options) {
   std::string out = "this scene, rule by rule\n";
   for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
   if (!needs_field(scene.rules) && !scene.objects.empty())
     out += "  fields: left out, no rule asks for a surface\n";
+  if (needs_field(scene.rules) && !scene.objects.empty())
+    out += scene.compression ? fmt::format("  compression: used, within {} cells and {} degrees\n",
+                                           scene.compression->cells,
+                                           scene.compression->degrees)
+                             : "  compression: left out, flat fields\n";
+  const auto count = [&scene](bool (tess::dn::Frame::*holds)() const) {
+    return std::count_if(scene.objects.begin(),
+                         scene.objects.end(),
+                         [holds](const SceneObject& object) { return (object.frame.*holds)(); });
+  };
+  out += fmt::format("  objects: {}, of which {} move, {} of these grow\n",
+                     scene.objects.size(),
+                     count(&tess::dn::Frame::is_moving),
+                     count(&tess::dn::Frame::is_growing));
   const std::size_t n_species = species_of(scene).size();
   out += fmt::format("  step loops: {}, one for each mass\n", n_species);
   out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"
                            : "  looking at each step for particles that tunnel: left out\n";
+  out += options.balance ? fmt::format("  balancer: used, {}, {}\n",
+                                       options.balance->strategy,
+                                       when_texts[static_cast<std::size_t>(options.balance->when)])
+                         : "  balancer: left out, blocks stay and no load is measured\n";
   if (scene.outputs.trajectories == 0) out += "  trajectories: left out\n";
   return out;
 }

@@ -13,7 +13,8 @@ namespace particles {
 struct Report {
   std::string machine;
   std::int32_t pes = 0, processes = 0;
-  std::uint64_t bytes_compressed = 0;  ///< of all fields, within usual_bound()
+  RunOptions run{};
+  std::uint64_t bytes_compressed = 0;  ///< of all fields, see compressed_bytes()
   std::vector<StudyRow> study{};
 };
 
@@ -21,6 +22,6 @@ struct Report {
 [[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);
 
 /// What the scene uses and what it leaves out, for --explain.
-[[nodiscard]] std::string explanation(const Scene& scene);
+[[nodiscard]] std::string explanation(const Scene& scene, const RunOptions& options);
 
 }  // namespace particles

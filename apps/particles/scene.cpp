@@ -1,5 +1,7 @@
 #include "apps/particles/scene.hpp"
 
+#include "runtime/error.hpp"
+
 #include <algorithm>
 
 namespace particles {
@@ -25,6 +27,16 @@ tess::dn::Rules for_mass(tess::dn::Rules rules, double mass) {
   if (rules.air_drag) rules.air_drag->rate /= mass;
   for (tess::dn::Explosion& explosion : rules.explosions) explosion.strength /= mass;
   return rules;
+}
+
+void compress_fields(Scene& scene) {
+  if (!scene.compression) scene.compression.emplace();
+  if (needs_field(scene.rules) && scene.rules.look_up == tess::dn::LookUp::trilinear)
+    tess::fail(
+        tess::ErrorCode::bad_value,
+        scene.name,
+        ": rules.look_up: trilinear cannot ask compressed fields; choose nearest or tangent, "
+        "or leave out the compression");
 }
 
 std::vector<double> species_of(const Scene& scene) {

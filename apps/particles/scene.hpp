@@ -27,6 +27,13 @@ struct SceneObject {
   tess::dn::Frame frame;  ///< at the first step, with its velocities
 };
 
+/// How far the voxels of compressed fields may be off: by default no more than nearest look-up adds
+/// by itself.
+struct Compression {
+  double cells = 0.125;  ///< of the distance, in cells of the field
+  double degrees = 3;    ///< of the normal
+};
+
 /// Where particles begin. Particle i of the scene is the same on every PE: its random numbers are
 /// computed from the seed and i.
 struct Emitter {
@@ -66,7 +73,8 @@ struct Scene {
   int exchange = 0;  ///< particles change blocks every so many steps; 0: chosen
   std::vector<SceneObject> objects;
   std::vector<Emitter> emitters;
-  tess::dn::Rules rules;  ///< as forces: for_mass() makes accelerations of them
+  std::optional<Compression> compression;  ///< the fields are compressed; absent: they are flat
+  tess::dn::Rules rules;                   ///< as forces: for_mass() makes accelerations of them
   Outputs outputs;
 
   [[nodiscard]] std::uint64_t n_particles() const;
@@ -84,6 +92,14 @@ struct Scene {
 
 /// The same from a text; files that it names are looked for beside `name`.
 [[nodiscard]] Scene parse_scene(const std::string& text, const std::string& name);
+
+/// What keys say together: rules, masses, motions, steps and fields must fit one another. Done by
+/// those that read; to be done again by who changes a scene. Throws tess::Error.
+void check_scene(const Scene& scene);
+
+/// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's
+/// look-up cannot ask compressed fields.
+void compress_fields(Scene& scene);
 
 /// All keys of a scene file, with their units and defaults.
 [[nodiscard]] std::string scene_help();

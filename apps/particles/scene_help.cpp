@@ -11,6 +11,9 @@ dt          time step, above 0
 steps       how many, 0 … 1e9
 block       edge of the blocks of space that carry the particles (default: chosen)
 exchange    particles change blocks every so many steps (default: chosen); no result depends on it
+compression {"cells": 0.125, "degrees": 3}: fields are compressed, and steps look up in them; so far, in
+            cells and degrees, a voxel's distance (0 … 0.5) and normal (0 … 45) may be off. Not with trilinear
+            look-up. {} and --compressed take the defaults (default: flat fields)
 objects     a list (default: none); of each:
   shape       one of
                 {"sphere": {"radius": r, "rings": 48}}
@@ -28,7 +31,10 @@ objects     a list (default: none); of each:
   sides       one (default): negative distances inside; two: thin shells, distances from either side
   transform   {"position": [x, y, z], "rotation": [x, y, z] (degrees about that vector), "scale": s}
               or {"position": …, "matrix": [row, row, row]}: rotation times uniform scale, no shear
-  motion      {"velocity": [x, y, z], "spin": [x, y, z] (radians a second about that vector)}
+  motion      {"velocity": [x, y, z], "spin": [x, y, z] (radians a second about that vector), "scale": r}:
+              the transform's scale grows by r a second, uniformly about the position; a surface at the
+              distance a from there, in the object's units, moves outward at r a, and particles feel that
+              velocity. Negative: it shrinks; the scale must stay above 0 for the whole run
 emitters    a list of at least one; of each:
   one of      "box": {"low": …, "high": …}                uniform
               "sphere": {"centre": …, "radius": r, "inner": 0}   uniform between two radii

@@ -115,6 +115,21 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
   return outputs;
 }
 
+Compression read_compression(const Node& node) {
+  constexpr double most_cells = 0.5, most_degrees = 45;  // a rule would see another surface
+  const Keys keys = node.keys({"cells", "degrees"});
+  Compression compression;
+  keys.read("cells", compression.cells, {0, most_cells});
+  keys.read("degrees", compression.degrees, {0, most_degrees});
+  return compression;
+}
+
+/// Of the object in the whole run.
+double least_scale(const Scene& scene, const SceneObject& object) {
+  const tess::dn::Frame& frame = object.frame;
+  return frame.scale + std::min(0.0, frame.scale_rate) * scene.dt * scene.steps;
+}
+
 /// What no key by itself can say: the rules fit the masses, the fields cover the rules.
 void check_rules(const Scene& scene, const std::string& file) {
   for (const double mass : species_of(scene)) {
@@ -129,7 +144,24 @@ void check_rules(const Scene& scene, const std::string& file) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     const tess::dn::Frame& frame = object.frame;
-    const double covered = object.thickness * frame.scale;
+    const double least = least_scale(scene, object);
+    if (!(least > 0))
+      tess::fail(tess::ErrorCode::bad_value,
+                 file,
+                 ": objects[",
+                 i,
+                 "].motion.scale: ",
+                 frame.scale_rate,
+                 " a second takes the scale from ",
+                 frame.scale,
+                 " to ",
+                 least,
+                 " in ",
+                 scene.steps,
+                 " steps of ",
+                 scene.dt,
+                 "; it must stay above 0");
+    const double covered = object.thickness * least;
     if (reach > covered)
       tess::fail(tess::ErrorCode::bad_value,
                  file,
@@ -138,13 +170,15 @@ void check_rules(const Scene& scene, const std::string& file) {
                  "].thickness: ",
                  object.thickness,
                  " times scale ",
-                 frame.scale,
+                 least,
                  " is below the distance ",
                  reach,
                  " at which a rule begins to act");
     if (sweeps || !needs_field(scene.rules)) continue;
-    const double surface = norm(frame.velocity) + norm(frame.angular_velocity) * frame.scale *
-                                                      norm(bounds(object.surface).size());
+    const double extent = norm(bounds(object.surface).size());
+    const double surface = norm(frame.velocity) +
+                           norm(frame.angular_velocity) * frame.scale * extent +
+                           std::abs(frame.scale_rate) * extent;
     for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
       const Emitter& emitter = scene.emitters[e];
       const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
@@ -191,8 +225,15 @@ void check_memory(const Scene& scene, const std::string& file) {
 }
 
 Scene read(const JsonFile& file, const std::string& name) {
-  const Keys keys = file.root().keys(
-      {"dt", "steps", "block", "exchange", "objects", "emitters", "rules", "outputs"});
+  const Keys keys = file.root().keys({"dt",
+                                      "steps",
+                                      "block",
+                                      "exchange",
+                                      "compression",
+                                      "objects",
+                                      "emitters",
+                                      "rules",
+                                      "outputs"});
   constexpr int most = static_cast<int>(most_steps);
   Scene scene;
   scene.name = name;
@@ -200,6 +241,7 @@ Scene read(const JsonFile& file, const std::string& name) {
   scene.steps = static_cast<int>(keys.need("steps", "how many steps").whole(0, most));
   keys.read("block", scene.block, positive);
   keys.read("exchange", scene.exchange, 1, most);
+  if (keys.has("compression")) scene.compression = read_compression(keys["compression"]);
   const std::string folder = std::filesystem::path(name).parent_path().string();
   if (keys.has("objects"))
     for (const Node& item : keys["objects"].items())
@@ -210,12 +252,17 @@ Scene read(const JsonFile& file, const std::string& name) {
     keys["emitters"].refuse(tess::text("makes more than ", most_particles, " particles"));
   if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
-  check_rules(scene, name);
+  if (scene.compression) compress_fields(scene);
+  check_scene(scene);
   check_memory(scene, name);
   return scene;
 }
 
 }  // namespace
+
+void check_scene(const Scene& scene) {
+  check_rules(scene, scene.name);
+}
 
 Scene read_scene(const std::string& path) {
   return read(JsonFile(path), path);

@@ -154,9 +154,10 @@ SceneObject read_object(const Node& node, const std::string& folder, double dt) 
   object.surface = read_shape(shape, folder, object.name);
   if (keys.has("transform")) object.frame = read_transform(keys["transform"]);
   if (keys.has("motion")) {
-    const Keys motion = keys["motion"].keys({"velocity", "spin"});
+    const Keys motion = keys["motion"].keys({"velocity", "spin", "scale"});
     motion.read("velocity", object.frame.velocity);
     motion.read("spin", object.frame.angular_velocity);
+    motion.read("scale", object.frame.scale_rate);
   }
   if (keys.has("method"))
     object.method =

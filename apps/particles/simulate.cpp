@@ -1,6 +1,7 @@
 #include "apps/particles/simulate.hpp"
 
 #include "apps/particles/block.hpp"
+#include "runtime/balance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +55,7 @@ std::int32_t exchange_interval(const Scene& scene) {
   return scene.exchange > 0 ? scene.exchange : usual;
 }
 
-tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
+tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options) {
   tess::Pe& pe = tess::current_pe();
   const Scene& scene = stage->scene;
   const StageHandle handle{stage};
@@ -82,6 +83,11 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
   co_await tess::epoch(emit);
   result.emit_seconds = seconds(pe.now() - before_emission);
 
+  tess::BalancerProxy balancer;
+  const auto begin_balancing = [&] { balancer = tess::start_balancing(blocks, *options.balance); };
+  if (options.balance) co_await tess::epoch(begin_balancing);
+  const bool meets = options.balance && options.balance->when != tess::BalanceWhen::periodic;
+
   Stretch stretch;
   stretch.audit = result.audited ? 1 : 0;
   const auto move = [&] { blocks.broadcast<&Block::move>(stretch); };
@@ -90,6 +96,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
     stretch.first = step;
     stretch.n_steps = 0;
     stretch.ask = asked(scene, step);
+    stretch.sync = 0;
     if (stretch.ask != Stretch::nothing) co_await tess::epoch(move);
     if ((stretch.ask & Stretch::measure) != 0) {
       tess::Future<Measured> measured;
@@ -112,11 +119,13 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
                                       next_after(step, outputs.trajectories, scene.steps)});
     stretch.n_steps = to - step;
     stretch.ask = Stretch::nothing;
+    stretch.sync = meets ? 1 : 0;
     const tess::Time begin = pe.now();
     co_await tess::epoch(move);
     result.seconds += seconds(pe.now() - begin);
     step = to;
   }
+  if (options.balance) result.rounds = balancer.history();
   tess::Future<double> loop;
   stations.broadcast<&Station::give_seconds>(loop.callback());
   result.loop_seconds = co_await loop;
@@ -125,7 +134,9 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result) {
   const std::vector<double> built = co_await build_seconds;
   for (std::size_t i = 0; i < built.size(); ++i) {
     const tess::dn::Field& field = stage->fields[i].field();
-    result.fields.push_back({built[i], field.grid.size(), field.bytes()});
+    result.fields.push_back({built[i], field.grid.size(), stage->fields[i].flat_bytes()});
+    if (const auto& compressed = stage->fields[i].compressed())
+      result.fields.back().bytes_used = compressed->bytes();
   }
 }
 

@@ -6,8 +6,11 @@
 #include "apps/particles/measured.hpp"
 #include "apps/particles/scene.hpp"
 #include "apps/particles/station.hpp"
+#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/rounds/round.hpp"
 #include "runtime/runtime.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace particles {
@@ -26,7 +29,8 @@ struct Snapshot {
 
 struct FieldCost {
   double build_seconds = 0;
-  std::uint64_t cells = 0, bytes = 0;
+  std::uint64_t cells = 0, bytes = 0;  ///< of the flat field
+  std::uint64_t bytes_used = 0;        ///< of the compressed one, where the run uses that
 };
 
 struct RunResult {
@@ -39,6 +43,14 @@ struct RunResult {
   bool audited = false;
   double block = 0;
   std::int32_t exchange = 0;
+  std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
+};
+
+/// How a run is carried out; no result depends on it.
+struct RunOptions {
+  /// Blocks migrate: by rounds after each exchange of particles, where that is worth it, or beside
+  /// the work (see runtime/balance.hpp). Absent: they stay, and no load is measured.
+  std::optional<tess::BalanceOptions> balance{};
 };
 
 /// Whether a run of this scene looks at each step for particles that tunnel.
@@ -49,6 +61,6 @@ struct RunResult {
 [[nodiscard]] std::int32_t exchange_interval(const Scene& scene);
 
 /// Runs the scene from PE 0. `stage`: of this process; its fields are there afterwards.
-tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result);
+tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options = {});
 
 }  // namespace particles

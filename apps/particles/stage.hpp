@@ -30,11 +30,12 @@ struct Stage {
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
 };
 
-/// What the fields would take compressed, within usual_bound().
+/// What the fields take compressed; of flat ones, what they would by the usual compression.
 [[nodiscard]] inline std::uint64_t compressed_bytes(const Stage& stage) {
   std::uint64_t bytes = 0;
   for (const FieldInTheMaking& of : stage.fields)
-    bytes += compress(of.field(), usual_bound(of.field())).bytes();
+    bytes += of.compressed() ? of.compressed()->bytes()
+                             : compress(of.field(), bound_of({}, of.field())).bytes();
   return bytes;
 }
 

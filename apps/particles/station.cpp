@@ -21,7 +21,7 @@ std::vector<tess::dn::Object> objects_of(const Stage& stage) {
   std::vector<tess::dn::Object> objects;
   if (!stage.collides()) return objects;
   for (std::size_t i = 0; i < stage.fields.size(); ++i)
-    objects.push_back({&stage.fields[i].field(), stage.scene.objects[i].frame});
+    objects.push_back(stage.fields[i].object(stage.scene.objects[i].frame));
   return objects;
 }
 
@@ -65,7 +65,7 @@ void Station::finish_fields() {
   const auto [first, n] = pes_of_process();
   const auto mine = static_cast<std::size_t>(pe().value - first);
   for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
-    stage_->fields[i].finish();
+    stage_->fields[i].finish(stage_->scene.compression);
 }
 
 void Station::prepare(double block_edge) {

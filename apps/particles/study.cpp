@@ -1,7 +1,7 @@
 #include "apps/particles/study.hpp"
 
 #include "apps/particles/fields.hpp"
-#include "apps/particles/study_measure.hpp"
+#include "apps/particles/study_rules.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -12,25 +12,6 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-constexpr std::array method_names{"exact", "normals", "potential"};
-constexpr std::array look_up_names{"nearest", "tangent", "trilinear"};
-
-Rules impact_alone(LookUp kind, Sweep sweep) {
-  Rules rules;
-  rules.look_up = kind;
-  rules.impact = Impact{1, 0, sweep};
-  return rules;
-}
-
-/// A spring that a particle of speed 1 presses half way to the surface.
-Rules spring_alone(LookUp kind, double thickness) {
-  Rules rules;
-  rules.look_up = kind;
-  const double reach = 0.5 * thickness;
-  rules.spring = Spring{4 / (reach * reach), 0, reach};
-  return rules;
-}
-
 BuiltField built_or_empty(SceneObject object, int resolution, Method method, std::string& note) {
   object.resolution = resolution;
   object.method = method;
@@ -40,40 +21,6 @@ BuiltField built_or_empty(SceneObject object, int resolution, Method method, std
     note = error.what();
     return {};
   }
-}
-
-void study_fields(const Subject& subject,
-                  const StudyOptions& options,
-                  std::vector<StudyRow>& rows) {
-  constexpr double step = 0.1;
-  const Samples samples = samples_of(subject, options.n_samples);
-  for (const Method method : {Method::exact, Method::normals, Method::potential})
-    for (const int resolution : options.resolutions) {
-      StudyRow row;
-      row.part = "field";
-      row.resolution = resolution;
-      row.method = method_names[static_cast<std::size_t>(method)];
-      const BuiltField built = built_or_empty(subject.object, resolution, method, row.note);
-      if (!row.note.empty()) {
-        rows.push_back(row);
-        continue;
-      }
-      row.build_seconds = built.seconds;
-      row.bytes = built.field.bytes();
-      row.rule = "impact, swept";
-      row.step = step;
-      for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
-        row.look_up = look_up_names[static_cast<std::size_t>(kind)];
-        const Rules rules = impact_alone(kind, Sweep::on);
-        const auto ask = [&](const Points& points, const Answers& answers) {
-          look_up(built.field, kind, points, answers);
-        };
-        compare(ask, samples, row);
-        bounce(built.field, rules, step * subject.thickness, subject, row);
-        row.ns = ns_of(&built.field, rules, subject, options.n_timed);
-        rows.push_back(row);
-      }
-    }
 }
 
 /// A crowd's positions as look-ups take them.
@@ -95,70 +42,101 @@ double look_up_ns(const Crowd& of, const Ask& ask) {
   return fastest_seconds([&] { ask(points, answers); }) * 1e9 / static_cast<double>(n);
 }
 
-/// Nearest look-ups of a flat and a compressed field, by themselves: the step loop takes flat ones.
-void study_compression(const Subject& subject,
-                       const StudyOptions& options,
-                       std::vector<StudyRow>& rows) {
-  const Samples samples = samples_of(subject, options.n_samples);
+/// Nearest look-ups of a flat and a compressed field, by themselves.
+void study_memory(const Subject& subject,
+                  const StudyOptions& options,
+                  const BuiltField& built,
+                  const CompressedField& compressed,
+                  double seconds_of_compression,
+                  const Samples& samples,
+                  std::vector<StudyRow>& rows) {
   const Crowd crowded(subject, options.n_timed);
-  for (const int resolution : options.resolutions) {
-    StudyRow row;
-    row.part = "memory";
-    row.resolution = resolution;
-    row.method = method_names.front();
-    row.look_up = "nearest";
-    const BuiltField built = built_or_empty(subject.object, resolution, Method::exact, row.note);
-    if (!row.note.empty()) {
-      rows.push_back(row);
-      continue;
-    }
-    const auto measure = [&](const char* name, std::size_t bytes, double seconds, const auto& ask) {
-      row.rule = name;
-      row.bytes = bytes;
-      row.build_seconds = seconds;
-      compare(ask, samples, row);
-      row.ns = look_up_ns(crowded, ask);
-      rows.push_back(row);
-    };
-    measure("flat, look-up alone",
-            built.field.bytes(),
-            built.seconds,
-            [&](const Points& points, const Answers& answers) {
-              look_up(built.field, LookUp::nearest, points, answers);
-            });
-    const auto begin = std::chrono::steady_clock::now();
-    const CompressedField compressed = compress(built.field, usual_bound(built.field));
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    measure("compressed, look-up alone",
-            compressed.bytes(),
-            seconds,
-            [&](const Points& points, const Answers& answers) {
-              nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
-            });
+  StudyRow row;
+  row.part = "memory";
+  row.resolution = built.field.grid.n[0];
+  row.method = name_of(Method::exact);
+  row.look_up = name_of(LookUp::nearest);
+  row.rule = "look-up alone";
+  const auto measure = [&](const char* stored, std::size_t bytes, double seconds, const auto& ask) {
+    row.stored = stored;
+    row.bytes = bytes;
+    row.build_seconds = seconds;
+    compare(ask, samples, row);
+    row.ns = look_up_ns(crowded, ask);
+    rows.push_back(row);
+  };
+  measure("flat",
+          built.field.bytes(),
+          built.seconds,
+          [&](const Points& points, const Answers& answers) {
+            look_up(built.field, LookUp::nearest, points, answers);
+          });
+  measure("compressed",
+          compressed.bytes(),
+          seconds_of_compression,
+          [&](const Points& points, const Answers& answers) {
+            nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
+          });
+}
+
+constexpr double step_of_fields = 0.1;
+
+/// Swept impacts in a field as it is stored; errors of distance and normal for flat ones, whose
+/// look-ups of all kinds stand by themselves.
+void study_look_ups(const Subject& subject,
+                    const StudyOptions& options,
+                    const Object& object,
+                    const Samples& samples,
+                    StudyRow row,
+                    std::vector<StudyRow>& rows) {
+  for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
+    if (object.compressed != nullptr && kind == LookUp::trilinear) continue;
+    row.look_up = name_of(kind);
+    const Rules rules = impact_alone(kind, Sweep::on);
+    if (object.compressed == nullptr)
+      compare([&](const Points& points,
+                  const Answers& answers) { look_up(*object.field, kind, points, answers); },
+              samples,
+              row);
+    bounce(object, rules, step_of_fields * subject.thickness, subject, row);
+    row.ns = ns_of(&object, rules, subject, options.n_timed);
+    rows.push_back(row);
   }
 }
 
-void study_rules(const Subject& subject, const BuiltField& built, std::vector<StudyRow>& rows) {
-  struct Named {
-    const char* name;
-    Rules rules;
-  };
-  const LookUp kind = LookUp::tangent;
-  const std::array rules{Named{"impact, swept", impact_alone(kind, Sweep::on)},
-                         Named{"impact", impact_alone(kind, Sweep::off)},
-                         Named{"spring", spring_alone(kind, subject.thickness)}};
-  for (const Named& rule : rules)
-    for (const double step : {0.02, 0.1, 0.5, 2.0}) {
+/// Rows of fields, and of memory apart.
+void study_fields(const Subject& subject,
+                  const StudyOptions& options,
+                  std::vector<StudyRow>& rows,
+                  std::vector<StudyRow>& memory) {
+  const Samples samples = samples_of(subject, options.n_samples);
+  for (const Method method : {Method::exact, Method::normals, Method::potential})
+    for (const int resolution : options.resolutions) {
       StudyRow row;
-      row.part = "rule";
-      row.resolution = subject.object.resolution;
-      row.method = method_names[static_cast<std::size_t>(subject.object.method)];
-      row.look_up = look_up_names[static_cast<std::size_t>(kind)];
-      row.rule = rule.name;
-      row.step = step;
-      bounce(built.field, rule.rules, step * subject.thickness, subject, row);
-      rows.push_back(row);
+      row.part = "field";
+      row.resolution = resolution;
+      row.method = name_of(method);
+      const BuiltField built = built_or_empty(subject.object, resolution, method, row.note);
+      if (!row.note.empty()) {
+        rows.push_back(row);
+        continue;
+      }
+      row.build_seconds = built.seconds;
+      row.bytes = built.field.bytes();
+      row.rule = "impact, swept";
+      row.step = step_of_fields;
+      row.stored = "flat";
+      study_look_ups(subject, options, {&built.field, {}}, samples, row, rows);
+      if (method != Method::exact) continue;
+      const auto begin = std::chrono::steady_clock::now();
+      const CompressedField compressed = compress(built.field, bound_of({}, built.field));
+      const double seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      row.build_seconds += seconds;
+      row.bytes = compressed.bytes();
+      row.stored = "compressed";
+      study_look_ups(subject, options, {&built.field, {}, &compressed}, samples, row, rows);
+      study_memory(subject, options, built, compressed, seconds, samples, memory);
     }
 }
 
@@ -184,27 +162,28 @@ void study_cost(const Subject& subject,
   StudyRow row;
   row.part = "cost";
   row.resolution = subject.object.resolution;
-  row.method = method_names[static_cast<std::size_t>(subject.object.method)];
+  row.method = name_of(subject.object.method);
   const std::size_t n = options.n_timed;
   row.rule = "no collision";
   row.ns = ns_of(nullptr, Rules{}, subject, n);
   rows.push_back(row);
-  for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
-    row.look_up = look_up_names[static_cast<std::size_t>(kind)];
-    for (const Sweep sweep : {Sweep::off, Sweep::on}) {
-      row.rule = sweep == Sweep::on ? "impact, swept" : "impact";
-      row.ns = ns_of(&built.field, impact_alone(kind, sweep), subject, n);
-      rows.push_back(row);
+  const CompressedField compressed = compress(built.field, bound_of({}, built.field));
+  for (const CompressedField* planes : {static_cast<const CompressedField*>(nullptr), &compressed})
+    for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
+      if (planes != nullptr && kind == LookUp::trilinear) continue;
+      row.look_up = name_of(kind);
+      row.stored = planes != nullptr ? "compressed" : "flat";
+      row.bytes = planes != nullptr ? planes->bytes() : built.field.bytes();
+      const Object object{&built.field, {}, planes};
+      for (const Sweep sweep : {Sweep::off, Sweep::on}) {
+        row.rule = sweep == Sweep::on ? "impact, swept" : "impact";
+        row.ns = ns_of(&object, impact_alone(kind, sweep), subject, n);
+        rows.push_back(row);
+      }
     }
-  }
-  row.look_up = look_up_names.front();
-  row.rule = "compressed, look-up alone";
-  const CompressedField compressed = compress(built.field, usual_bound(built.field));
-  row.ns = look_up_ns(Crowd(subject, n), [&](const Points& points, const Answers& answers) {
-    nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
-  });
-  rows.push_back(row);
   row.look_up.clear();
+  row.stored.clear();
+  row.bytes = 0;
   row.rule = "tree of boxes, whole thickness";
   row.ns = tree_ns(subject, n, subject.thickness);
   rows.push_back(row);
@@ -236,11 +215,11 @@ std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options) {
     tess::fail(tess::ErrorCode::bad_mesh,
                scene.name,
                ": objects[0].shape: no triangle can be met from its front; turn the triangles");
-  std::vector<StudyRow> rows;
-  study_fields(subject, options, rows);
-  study_compression(subject, options, rows);
+  std::vector<StudyRow> rows, memory;
+  study_fields(subject, options, rows, memory);
+  rows.insert(rows.end(), memory.begin(), memory.end());
   const BuiltField built = build_alone(object, Content::distance_and_normal);
-  study_rules(subject, built, rows);
+  study_rules(subject, options, built, rows);
   study_cost(subject, built, options, rows);
   return rows;
 }

@@ -16,7 +16,8 @@ struct StudyRow {
   std::string part;  ///< field, memory, rule, cost
   int resolution = 0;
   std::string method, look_up, rule;
-  double step = -1;  ///< speed × dt as a part of the thickness
+  std::string stored;  ///< flat, compressed; empty where no field is asked
+  double step = -1;    ///< speed × dt as a part of the thickness
   double build_seconds = -1;
   std::uint64_t bytes = 0;
   double distance_error = -1;      ///< RMS, against the closest point of the triangles
@@ -27,21 +28,23 @@ struct StudyRow {
   double angle_error = -1;         ///< RMS, in degrees, of the velocity after the bounce
   std::int64_t lost = -1;          ///< particles that went in, or on as if nothing were there
   std::int64_t bounces = -1;       ///< out of so many
-  double ns = -1;                  ///< a particle and step; fastest of three
+  double ns = -1;                  ///< a particle and step (memory: a look-up); fastest of three
   double relative = -1;            ///< cost of collision, as a part of that by a tree of boxes
   std::string note;                ///< why a choice is refused
 };
 
 struct StudyOptions {
-  std::vector<int> resolutions{16, 32, 64, 128};
+  std::vector<int> resolutions{16, 32, 64};
   std::size_t n_samples = 4000;  ///< points at which distance and normal are compared
   std::size_t n_bounces = 400;
   std::size_t n_timed = 100'000;  ///< particles that are timed
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with
-/// swept impact), memory (flat and compressed), rules (rule × step, at the object's resolution),
-/// and cost beside a tree of boxes. Throws Error(bad_value) for a scene without an object.
+/// swept impact; exact ones also compressed), memory (flat and compressed look-ups by themselves),
+/// rules (rule × step, at the object's resolution: impact and spring against bounces off the
+/// triangles, drag and surface flow against flights in front of them), and cost beside a tree of
+/// boxes. Throws Error(bad_value) for a scene without an object.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options);
 
 [[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows);

@@ -21,8 +21,8 @@ std::string cell(std::int64_t value) {
 const StudyRow* coarser(const std::vector<StudyRow>& rows, const StudyRow& row) {
   const StudyRow* found = nullptr;
   for (const StudyRow& other : rows)
-    if (other.part == row.part && other.method == row.method && other.look_up == row.look_up &&
-        other.resolution < row.resolution &&
+    if (other.part == row.part && other.method == row.method && other.stored == row.stored &&
+        other.look_up == row.look_up && other.resolution < row.resolution &&
         (found == nullptr || other.resolution > found->resolution))
       found = &other;
   return found;
@@ -46,9 +46,11 @@ void draw(const std::string& path,
   std::map<std::string, std::size_t> known;
   for (const StudyRow& row : rows) {
     if (row.part != part || !row.note.empty()) continue;
+    const plot::Point at_row = point(row);
+    if (at_row.x < 0 || at_row.y < 0) continue;  // not measured in this row
     const auto [at, is_new] = known.try_emplace(name(row), chart.series.size());
     if (is_new) chart.series.push_back({.name = name(row)});
-    chart.series[at->second].points.push_back(point(row));
+    chart.series[at->second].points.push_back(at_row);
   }
   if (!chart.series.empty()) (void)plot::write_svg(path, chart);
 }
@@ -57,11 +59,13 @@ void draw(const std::string& path,
 
 std::string study_table(const std::vector<StudyRow>& rows) {
   std::string out = fmt::format(
-      "{:<6} {:>5} {:<9} {:<9} {:<35} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} {:>9} {:>7} "
+      "{:<6} {:>5} {:<9} {:<10} {:<9} {:<29} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} {:>9} "
+      "{:>7} "
       "{:>9} {:>8} {:>8}\n",
       "study",
       "n",
       "method",
+      "stored",
       "look-up",
       "rule",
       "step",
@@ -85,11 +89,13 @@ std::string study_table(const std::vector<StudyRow>& rows) {
     }
     const std::string lost = row.lost < 0 ? "-" : fmt::format("{}/{}", row.lost, row.bounces);
     out += fmt::format(
-        "{:<6} {:>5} {:<9} {:<9} {:<35} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} {:>9} "
+        "{:<6} {:>5} {:<9} {:<10} {:<9} {:<29} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} "
+        "{:>9} "
         "{:>7} {:>9} {:>8} {:>8}\n",
         row.part,
         row.resolution,
         row.method,
+        row.stored.empty() ? "-" : row.stored,
         row.look_up.empty() ? "-" : row.look_up,
         row.rule,
         cell(row.step, "{:.3g}"),
@@ -115,17 +121,18 @@ std::string study_table(const std::vector<StudyRow>& rows) {
 
 std::string study_csv(const std::vector<StudyRow>& rows) {
   std::string out =
-      "part,resolution,method,look_up,rule,step,build_seconds,bytes,distance_error,"
+      "part,resolution,method,stored,look_up,rule,step,build_seconds,bytes,distance_error,"
       "distance_error_max,normal_error_degrees,penetration,place_error,angle_error_degrees,lost,"
       "bounces,ns,of_tree,note\n";
   const auto number = [](double value) {
     return value < 0 ? std::string() : fmt::format("{}", value);
   };
   for (const StudyRow& row : rows)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                        row.part,
                        row.resolution,
                        row.method,
+                       row.stored,
                        row.look_up,
                        plot::csv_field(row.rule),
                        number(row.step),
@@ -148,42 +155,44 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows) {
   const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
   plot::write_file(in("study.csv"), study_csv(rows));
-  const auto by_field = [](const StudyRow& row) { return row.method + ", " + row.look_up; };
-  draw(in("study_distance.svg"),
-       {.title = "distance",
-        .x_label = "voxels an axis",
-        .y_label = "RMS error of the distance",
-        .x_log = true,
-        .y_log = true},
-       rows,
-       "field",
-       by_field,
-       [](const StudyRow& row) {
-         return plot::Point{1.0 * row.resolution, row.distance_error};
-       });
-  draw(in("study_bounce.svg"),
-       {.title = "bounces",
-        .x_label = "ns a particle and step",
-        .y_label = "RMS error of the angle, degrees",
-        .y_log = true},
-       rows,
-       "field",
-       by_field,
-       [](const StudyRow& row) {
-         return plot::Point{row.ns, row.angle_error};
-       });
-  draw(in("study_build.svg"),
-       {.title = "construction",
-        .x_label = "seconds",
-        .y_label = "RMS error of the normal, degrees",
-        .x_log = true,
-        .y_log = true},
-       rows,
-       "field",
-       by_field,
-       [](const StudyRow& row) {
-         return plot::Point{row.build_seconds, row.normal_error};
-       });
+  const auto draw_fields = [&](const char* name,
+                               plot::Chart chart,
+                               plot::Point (*point)(const StudyRow&)) {
+    chart.y_log = true;
+    draw(
+        in(name),
+        std::move(chart),
+        rows,
+        "field",
+        [](const StudyRow& row) {
+          return row.method + ", " + (row.stored == "flat" ? "" : row.stored + ", ") + row.look_up;
+        },
+        point);
+  };
+  const std::string of_angle = "RMS error of the angle, degrees";
+  draw_fields("study_distance.svg",
+              {.title = "distance",
+               .x_label = "voxels an axis",
+               .y_label = "RMS error of the distance",
+               .x_log = true},
+              [](const StudyRow& row) {
+                return plot::Point{1.0 * row.resolution, row.distance_error};
+              });
+  draw_fields("study_bounce.svg",
+              {.title = "bounces", .x_label = "ns a particle and step", .y_label = of_angle},
+              [](const StudyRow& row) {
+                return plot::Point{row.ns, row.angle_error};
+              });
+  draw_fields("study_build.svg",
+              {.title = "construction", .x_label = "seconds", .y_label = of_angle, .x_log = true},
+              [](const StudyRow& row) {
+                return plot::Point{row.build_seconds, row.angle_error};
+              });
+  draw_fields("study_memory.svg",
+              {.title = "memory", .x_label = "MB", .y_label = of_angle, .x_log = true},
+              [](const StudyRow& row) {
+                return plot::Point{1e-6 * static_cast<double>(row.bytes), row.angle_error};
+              });
   draw(
       in("study_step.svg"),
       {.title = "rules",

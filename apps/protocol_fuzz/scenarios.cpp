@@ -38,6 +38,9 @@ constexpr std::array known{
              &balance_barrier},
     Scenario{"balance_rotate", "after each round elements are where it put them", &balance_rotate},
     Scenario{"balance_periodic", "rounds without a barrier lose no message", &balance_periodic},
+    Scenario{"balance_epochs",
+             "rounds between epochs, while elements are created on demand and end",
+             &balance_epochs},
 };
 
 }  // namespace

@@ -28,6 +28,7 @@ void balance_rounds(Trial& trial);    // balance.cpp
 void balance_barrier(Trial& trial);   // balance.cpp
 void balance_rotate(Trial& trial);    // balance.cpp
 void balance_periodic(Trial& trial);  // balance.cpp
+void balance_epochs(Trial& trial);    // balance_epochs.cpp
 
 struct Scenario {
   std::string_view name;

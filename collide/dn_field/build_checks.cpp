@@ -16,15 +16,9 @@ double memory_bytes() {
 
 void require_buildable(const Grid& grid, double bytes_per_voxel) {
   const auto [nx, ny, nz] = grid.n;
+  const std::string grid_text = text("grid of ", nx, " × ", ny, " × ", nz, " voxels");
   if (nx < 1 || ny < 1 || nz < 1)
-    fail(ErrorCode::bad_argument,
-         "grid of ",
-         nx,
-         " × ",
-         ny,
-         " × ",
-         nz,
-         " voxels; each axis needs at least one");
+    fail(ErrorCode::bad_argument, grid_text, "; each axis needs at least one");
   if (!(grid.cell > 0) || !std::isfinite(grid.cell) || !is_finite(grid.origin))
     fail(ErrorCode::bad_argument,
          "grid with cells of ",
@@ -39,13 +33,8 @@ void require_buildable(const Grid& grid, double bytes_per_voxel) {
   const double wanted = bytes_per_voxel * nx * ny * nz, there = memory_bytes();
   if (wanted > there)
     fail(ErrorCode::environment,
-         "grid of ",
-         nx,
-         " × ",
-         ny,
-         " × ",
-         nz,
-         " voxels takes ",
+         grid_text,
+         " takes ",
          wanted / 1e9,
          " GB to build, this machine has ",
          there / 1e9,

@@ -36,11 +36,42 @@ Sample sample_again(const Sampler& field, F3 g, Closest& closest, std::size_t p)
   return answer<Kind, Asked>(field, voxel, stored, g);
 }
 
-template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept>
+template <Storage How>
+auto sampler_in(const Placed& object) {
+  if constexpr (How == Storage::compressed) {
+    return object.planes;
+  } else {
+    return object.field;
+  }
+}
+
+/// Velocity of the object at points `arm` from its origin, growth apart.
+D3 stiff_velocity(const Frame& f, D3 arm) {
+  const Vec3 w = f.angular_velocity;
+  return {f.velocity.x + (w.y * arm.z - w.z * arm.y),
+          f.velocity.y + (w.z * arm.x - w.x * arm.z),
+          f.velocity.z + (w.x * arm.y - w.y * arm.x)};
+}
+
+/// What is left of a bound to the free way, once another object may move by `way` against it.
+F shortened(const Placed& object, F bound, F way) {
+  const F rest = bound - way;
+  return (rest < 0.0F) & (way > 0.5F * object.cell) ? all(follow) : rest;
+}
+
+/// What growth takes from the free way: in the object's own coordinates, in which its surface
+/// rests, the particle's way is that in the world over the scale at the end, and begins with the
+/// velocity of its own place, not of the surface beside it.
+F taken_by_growth(const Placed& object, F free, I in, F distance) {
+  const auto g = static_cast<float>(object.growth);
+  return std::max(-g, 0.0F) * max(free, F{}) + std::fabs(g) * abs(only(in, distance));
+}
+
+template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Storage How>
 void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
   const Placed object = placed;  // copies, which no store can change
   const ParticleSpan particles = span;
-  const Sampler field = object.field;
+  const auto field = sampler_in<How>(object);
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
   const auto& r = object.to_world;
@@ -58,7 +89,8 @@ void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
            q.x * m[1][0] + q.y * m[1][1] + q.z * m[1][2] + oy,
            q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
     Sample found;
-    if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear)
+    if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear &&
+                  How == Storage::flat)
       found = sample_again<Kind, Asked>(field, g, closest, p);
     else
       found = sample<Kind, Asked>(field, g);
@@ -76,10 +108,38 @@ void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
       }
       if constexpr (Swept == Sweep::on) store(closest.free + p, free);
     } else {
-      if constexpr (Swept == Sweep::on)
-        store(closest.free + p, min(free, load<F>(closest.free + p)));
       const I nearer = found.distance < load<F>(closest.distance + p);
       const L nearer_wide = widen(nearer);
+      const Frame& f = object.frame;
+      const Vec3 shift = c - f.position;
+      D3 u{};
+      if (object.restless) {
+        const D3 arm{from.x + shift.x, from.y + shift.y, from.z + shift.z};
+        u = stiff_velocity(f, arm);
+        if (object.growth != 0) {
+          // That of the surface itself, which is beside the particle.
+          const F3 n = found.normal,
+                   beside =
+                       only(in,
+                            found.distance * F3{n.x * r[0][0] + n.y * r[0][1] + n.z * r[0][2],
+                                                n.x * r[1][0] + n.y * r[1][1] + n.z * r[1][2],
+                                                n.x * r[2][0] + n.y * r[2][1] + n.z * r[2][2]});
+          u = u + all(f.scale_rate / f.scale) * (arm - to_double(beside));
+        }
+      }
+      if constexpr (Swept == Sweep::on) {
+        F others = load<F>(closest.free + p);
+        if (object.growth != 0) free = free - taken_by_growth(object, free, in, found.distance);
+        // Where this is the only surface known there is nothing to compare.
+        if (object.restless && bits((others < out_of_reach) | ~nearer) != 0) {
+          const D3 gap =
+              u - D3{load<D>(closest.ux + p), load<D>(closest.uy + p), load<D>(closest.uz + p)};
+          const F way = to_float(object.step * sqrt(dot(gap, gap)));
+          others = nearer ? shortened(object, others, way) : others;
+          free = nearer ? free : shortened(object, free, way);
+        }
+        store(closest.free + p, min(free, others));
+      }
       if (!any(nearer_wide)) continue;
       store(closest.distance + p, nearer ? found.distance : load<F>(closest.distance + p));
       if constexpr (Asked == Ask::both) {
@@ -91,44 +151,49 @@ void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
         keep(closest.ny + p, r[1]);
         keep(closest.nz + p, r[2]);
       }
-      // velocity + angular velocity × (p − position)
-      const Frame& f = object.frame;
-      const Vec3 w = f.angular_velocity, shift = c - f.position;
-      const D3 arm{from.x + shift.x, from.y + shift.y, from.z + shift.z};
       const auto keep = [&](double* to, D value) { store(to, nearer_wide ? value : load<D>(to)); };
-      keep(closest.ux + p, f.velocity.x + (w.y * arm.z - w.z * arm.y));
-      keep(closest.uy + p, f.velocity.y + (w.z * arm.x - w.x * arm.z));
-      keep(closest.uz + p, f.velocity.z + (w.x * arm.y - w.y * arm.x));
+      keep(closest.ux + p, u.x);
+      keep(closest.uy + p, u.y);
+      keep(closest.uz + p, u.z);
     }
   }
 }
 
-template <LookUp Kind, Ask Asked, Setting Where>
+template <LookUp Kind, Storage How, Ask Asked, Setting Where>
 ClosestPass choose(Sweep sweep) {
-  return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on>
-                            : &pass<Kind, Asked, Where, Sweep::off>;
+  return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on, How>
+                            : &pass<Kind, Asked, Where, Sweep::off, How>;
 }
-template <LookUp Kind, Ask Asked>
+template <LookUp Kind, Storage How, Ask Asked>
 ClosestPass choose(Setting setting, Sweep sweep) {
-  return setting == Setting::general ? choose<Kind, Asked, Setting::general>(sweep)
-                                     : choose<Kind, Asked, Setting::one_at_rest>(sweep);
+  return setting == Setting::general ? choose<Kind, How, Asked, Setting::general>(sweep)
+                                     : choose<Kind, How, Asked, Setting::one_at_rest>(sweep);
 }
-template <LookUp Kind>
+template <LookUp Kind, Storage How>
 ClosestPass choose([[maybe_unused]] Ask asked, Setting setting, Sweep sweep) {
   if constexpr (Kind != LookUp::tangent)  // which needs the normal itself
-    if (asked == Ask::distance) return choose<Kind, Ask::distance>(setting, sweep);
-  return choose<Kind, Ask::both>(setting, sweep);
+    if (asked == Ask::distance) return choose<Kind, How, Ask::distance>(setting, sweep);
+  return choose<Kind, How, Ask::both>(setting, sweep);
 }
 
 }  // namespace
 
-ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep) {
-  if (kind == LookUp::nearest) return choose<LookUp::nearest>(asked, setting, sweep);
-  if (kind == LookUp::tangent) return choose<LookUp::tangent>(asked, setting, sweep);
-  return choose<LookUp::trilinear>(asked, setting, sweep);
+ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage) {
+  if (storage == Storage::compressed)
+    return kind == LookUp::nearest
+               ? choose<LookUp::nearest, Storage::compressed>(asked, setting, sweep)
+               : choose<LookUp::tangent, Storage::compressed>(asked, setting, sweep);
+  if (kind == LookUp::nearest) return choose<LookUp::nearest, Storage::flat>(asked, setting, sweep);
+  if (kind == LookUp::tangent) return choose<LookUp::tangent, Storage::flat>(asked, setting, sweep);
+  return choose<LookUp::trilinear, Storage::flat>(asked, setting, sweep);
 }
 
-Placed placed(const Object& object, LookUp kind) {
+double jump_of(const Object& object) {
+  const double off = object.compressed != nullptr ? object.compressed->measured.distance : 0;
+  return static_cast<double>(object.field->jump) + 2 * off;
+}
+
+Placed placed(const Object& object, LookUp kind, double step, bool restless) {
   const Field& field = *object.field;
   const Grid& grid = field.grid;
   const Frame& frame = object.frame;
@@ -150,8 +215,23 @@ Placed placed(const Object& object, LookUp kind) {
   result.two_sided = field.sides == Sides::two;
   result.padding = result.two_sided && kind != LookUp::tangent ? static_cast<float>(cell) : 0.0F;
   result.doubt = static_cast<float>(0.5 * std::sqrt(3.0) * cell);
-  result.jump = field.jump * result.scale;
+  result.jump = static_cast<float>(jump_of(object) * frame.scale);
+  result.compressed = object.compressed != nullptr;
+  if (result.compressed) {
+    result.planes = sampler_of(*object.compressed);
+    result.doubt += static_cast<float>(object.compressed->measured.distance * frame.scale);
+  }
   result.frame = frame;
+  result.step = step;
+  result.growth = step * frame.scale_rate / frame.scale;
+  const Vec3 high =
+      grid.origin + grid.cell * Vec3{1.0 * grid.n[0], 1.0 * grid.n[1], 1.0 * grid.n[2]};
+  const auto furthest = [&](int axis) {
+    return std::max(std::abs(component(grid.origin, axis)) + grid.cell,
+                    std::abs(component(high, axis)));
+  };
+  result.swell = std::abs(frame.scale_rate) * norm(Vec3{furthest(0), furthest(1), furthest(2)});
+  result.restless = restless;
   return result;
 }
 

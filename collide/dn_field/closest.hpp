@@ -3,7 +3,7 @@
 // cache. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/sample.hpp"
+#include "collide/dn_field/compressed_sample.hpp"
 #include "collide/dn_field/stepper.hpp"
 
 namespace tess::dn {
@@ -14,7 +14,8 @@ inline constexpr std::size_t block_size = 256;  // with the particles, 20 to 30 
 struct alignas(64) Closest {
   float distance[block_size];                            ///< out_of_reach where no field is
   float nx[block_size], ny[block_size], nz[block_size];  ///< unit or zero
-  float free[block_size];  ///< no surface of any object is nearer than this (swept impact only)
+  float free[block_size];  ///< swept impact only: no surface is met in this step on a shorter way
+                           ///< relative to the velocity below; `follow`: one may be on any
   // One object at rest, look-ups of one voxel: most particles are still in the voxel of the step
   // before, whose distance and normal then need not be fetched and decoded again.
   std::int32_t voxel[block_size];                         ///< that the above is of, see forget()
@@ -22,10 +23,14 @@ struct alignas(64) Closest {
   double ux[block_size], uy[block_size], uz[block_size];  ///< the surface's velocity (General only)
 };
 
+/// Of Closest::free: the particle must be traced, even at rest; another object comes fast.
+inline constexpr float follow = -out_of_reach;
+
 /// An object of one step as the loops see it. Positions are taken relative to the grid's centre in
 /// double precision before they are rounded to float.
 struct Placed {
   Sampler field;
+  PlaneSampler planes;   ///< of a compressed field; then `field` gives sizes alone
   Vec3 centre;           ///< of the grid, in the world
   float to_grid[3][3];   ///< rows: grid coordinates of a world vector
   float middle[3];       ///< grid coordinates of the centre
@@ -35,20 +40,38 @@ struct Placed {
   float padding;  ///< taken off the distance: a look-up that blends the sides of a thin sheet
                   ///< cannot see it closer than this
   bool two_sided;
-  float doubt;  ///< half a voxel's diagonal, in world units
-  float jump;   ///< Field::jump, in world units
+  bool compressed;
+  float doubt;  ///< half a voxel's diagonal, and how far a compressed voxel may be off; in world
+                ///< units
+  float jump;   ///< jump_of(), in world units
   Frame frame;
+  double step;    ///< the time of which this is the begin
+  double growth;  ///< of the scale in it, as a part of the scale
+  double swell;   ///< no surface moves faster by growth
+  bool restless;  ///< some object of the scene moves
 };
 
-[[nodiscard]] Placed placed(const Object& object, LookUp kind);
+/// Field::jump of what look-ups in this object read, in its own units.
+[[nodiscard]] double jump_of(const Object& object);
+
+/// How `object` stands for a step; `restless`: whether any object of the scene moves.
+[[nodiscard]] Placed placed(const Object& object, LookUp kind, double step, bool restless);
 
 /// Whether positions must be turned, surfaces move, or several objects be compared.
 enum class Setting : std::uint32_t { one_at_rest, general };
 
+/// How the fields of a scene are stored.
+enum class Storage : std::uint32_t { flat, compressed };
+[[nodiscard]] inline Storage storage_of(std::span<const Object> objects) {
+  return !objects.empty() && objects[0].compressed != nullptr ? Storage::compressed : Storage::flat;
+}
+
 using ClosestPass = void (*)(const Placed&, const ParticleSpan&, Closest&);
 
 /// The pass for one object; `general` passes keep what is closer and start from clear().
-[[nodiscard]] ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep);
+/// Compressed fields have no trilinear one.
+[[nodiscard]] ClosestPass closest_pass(
+    LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage);
 
 /// To be called where lanes get other particles: no voxel is known.
 void forget(Closest& closest, std::size_t count);

@@ -55,6 +55,12 @@ struct CompressedField {
                                        const ErrorBound& bound,
                                        int block_shift = 0);
 
+/// The flat field that look-ups of `field` see.
+[[nodiscard]] Field expanded(const CompressedField& field);
+
+/// What voxel (i, j, k) of the grid says of the distance.
+[[nodiscard]] float voxel_distance(const CompressedField& field, int i, int j, int k);
+
 /// Unit normals of n points, or zero where there is none.
 struct NormalColumns {
   std::span<float> x, y, z;

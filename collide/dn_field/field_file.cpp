@@ -224,6 +224,17 @@ void require_sound(const FileReader& reader, const CompressedField& field) {
   }
 }
 
+/// A field of a kind from its file, with all that both kinds have in common looked at.
+template <class AnyField>
+AnyField read(FileReader& reader, Kind kind) {
+  AnyField field;
+  reader.head(kind);
+  each_member(reader, field);
+  reader.finish();
+  require_sound(reader, field.grid, field.method, field.sides);
+  return field;
+}
+
 std::ifstream opened(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(ErrorCode::bad_file, path, ": cannot be opened; give the path of a field file");
@@ -242,11 +253,7 @@ void save_field(const CompressedField& field, const std::string& path) {
 
 Field read_field(std::istream& file, const std::string& name) {
   FileReader reader(file, name);
-  Field field;
-  reader.head(Kind::flat);
-  each_member(reader, field);
-  reader.finish();
-  require_sound(reader, field.grid, field.method, field.sides);
+  auto field = read<Field>(reader, Kind::flat);
   require(field.distance.size() == field.grid.size() &&
               (field.normal.empty() || field.normal.size() == field.grid.size()),
           reader,
@@ -257,11 +264,7 @@ Field read_field(std::istream& file, const std::string& name) {
 
 CompressedField read_compressed_field(std::istream& file, const std::string& name) {
   FileReader reader(file, name);
-  CompressedField field;
-  reader.head(Kind::compressed);
-  each_member(reader, field);
-  reader.finish();
-  require_sound(reader, field.grid, field.method, field.sides);
+  auto field = read<CompressedField>(reader, Kind::compressed);
   require_sound(reader, field);
   return field;
 }

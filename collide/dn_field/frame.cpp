@@ -22,6 +22,7 @@ std::array<Vec3, 3> rotation(Vec3 v) {
 
 void Frame::advance(double step) {
   position += step * velocity;
+  scale += step * scale_rate;
   if (angular_velocity == Vec3{}) return;
   const double angle = norm(angular_velocity) * step, cosine = std::cos(angle),
                sine = std::sin(angle);

@@ -15,10 +15,12 @@ struct Frame {
   double scale = 1;                        ///< world units per unit of the object
   Vec3 velocity;                           ///< of the object's origin
   Vec3 angular_velocity;                   ///< radians a second, about the object's origin
+  double scale_rate = 0;                   ///< of `scale`, a second: growth about the origin
 
   [[nodiscard]] bool is_moving() const {
-    return !(velocity == Vec3{}) || !(angular_velocity == Vec3{});
+    return !(velocity == Vec3{}) || !(angular_velocity == Vec3{}) || is_growing();
   }
+  [[nodiscard]] bool is_growing() const { return scale_rate != 0; }
   [[nodiscard]] bool is_turned() const {
     return !(axes[0] == Vec3{1, 0, 0} && axes[1] == Vec3{0, 1, 0} && axes[2] == Vec3{0, 0, 1});
   }
@@ -30,11 +32,12 @@ struct Frame {
   }
   /// Velocity of the surface where it passes the world's point `p`.
   [[nodiscard]] Vec3 velocity_at(Vec3 p) const {
-    return velocity + cross(angular_velocity, p - position);
+    const Vec3 stiff = velocity + cross(angular_velocity, p - position);
+    return is_growing() ? stiff + (scale_rate / scale) * (p - position) : stiff;
   }
 
-  /// Moves and turns the frame over `step` by its velocities; exact for constant ones, axes stay
-  /// orthonormal.
+  /// Moves, turns and scales the frame over `step` by its velocities; exact for constant ones, axes
+  /// stay orthonormal. The scale must stay above 0.
   void advance(double step);
 };
 

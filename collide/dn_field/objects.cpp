@@ -15,8 +15,23 @@ void validate(const Rules& rules, std::span<const Object> objects) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Object& object = objects[i];
     const Frame& frame = object.frame;
-    if (object.field == nullptr || object.field->distance.size() != object.field->grid.size() ||
-        object.field->distance.empty())
+    const CompressedField* compressed = object.compressed;
+    if ((compressed == nullptr) != (objects[0].compressed == nullptr))
+      fail(ErrorCode::bad_argument,
+           "object ",
+           i,
+           compressed == nullptr ? " has a flat field and object 0 a compressed one"
+                                 : " has a compressed field and object 0 a flat one",
+           "; compress all of a scene or none");
+    if (compressed != nullptr && rules.look_up == LookUp::trilinear)
+      fail(ErrorCode::bad_argument,
+           "object ",
+           i,
+           " has a compressed field, which the trilinear look-up cannot ask; take nearest or "
+           "tangent");
+    if (object.field == nullptr || object.field->grid.size() == 0 ||
+        (compressed == nullptr && object.field->distance.size() != object.field->grid.size()) ||
+        (compressed != nullptr && compressed->grid.n != object.field->grid.n))
       fail(ErrorCode::bad_argument, "object ", i, " has no field; build one");
     if (object.field->grid.size() >= std::size_t{1} << 31U)
       fail(ErrorCode::bad_argument,
@@ -26,7 +41,8 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            object.field->grid.size(),
            " voxels, above 2^31; lower its resolution");
     if (needed_content(rules) == Content::distance_and_normal &&
-        object.field->normal.size() != object.field->grid.size())
+        (compressed != nullptr ? compressed->content != Content::distance_and_normal
+                               : object.field->normal.size() != object.field->grid.size()))
       fail(ErrorCode::bad_argument,
            "object ",
            i,
@@ -42,13 +58,15 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            " only ",
            thickness,
            "; build a thicker field or shorten the rule's distance");
-    if (!(frame.scale > 0) || !std::isfinite(frame.scale))
+    if (!(frame.scale > 0) || !std::isfinite(frame.scale) || !std::isfinite(frame.scale_rate))
       fail(ErrorCode::bad_argument,
            "object ",
            i,
            " is scaled by ",
            frame.scale,
-           "; give a positive, finite scale");
+           ", which grows by ",
+           frame.scale_rate,
+           " a second; give a positive, finite scale and a finite rate");
     for (const Vec3 v : {frame.position, frame.velocity, frame.angular_velocity})
       if (!is_finite(v))
         fail(ErrorCode::bad_argument,

@@ -162,7 +162,9 @@ void rule_loop(const RuleConstants& constants,
       if constexpr (Hits == Impacts::swept) {
         const D3 path = times(dt, relative(mean));
         const D free = max(to_double(load<F>(closest.free + p)), all(c.stride));
-        const L far = settled(dot(path, path) > free * free);
+        L far = dot(path, path) > free * free;
+        if constexpr (moves) far = far | widen(load<F>(closest.free + p) <= follow);
+        far = settled(far);
         hits = hits & ~far;
         deep = deep & ~far;
         if (any(far))

@@ -12,7 +12,7 @@ constexpr float rounding = 1.0001F;  // of float speeds
 
 /// Lower bound of every look-up's distance, less what rules reach and the way of the surface;
 /// minimum over objects.
-template <bool Turned, bool Moves, bool First>
+template <bool Turned, bool Moves, bool First, Storage How>
 void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& span, Near& near) {
   const Placed object = placed;  // copies, which no store can change
   const ParticleSpan block = span;
@@ -23,7 +23,7 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
           oz = all(object.middle[2] + 0.5F);
   const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
              nz = static_cast<float>(field.n[2]);
-  const F speed = all(static_cast<float>(norm(object.frame.velocity))),
+  const F speed = all(static_cast<float>(norm(object.frame.velocity) + object.swell)),
           spin = all(static_cast<float>(norm(object.frame.angular_velocity)));
   const F shift = all(static_cast<float>(norm(c - object.frame.position)));
   const F time = all(reach.time * rounding);
@@ -45,7 +45,11 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
     const I i = __builtin_convertvector(only(in, h.x), I),
             j = __builtin_convertvector(only(in, h.y), I),
             k = __builtin_convertvector(only(in, h.z), I);
-    const F found = gather(field.distance, k * field.layer + j * field.row + i);
+    F found;
+    if constexpr (How == Storage::compressed)
+      found = voxels(object.planes, i, j, k).distance;
+    else
+      found = gather(field.distance, k * field.layer + j * field.row + i);
     const F beyond = max(max(max(-h.x, h.x - nx), max(-h.y, h.y - ny)), max(-h.z, h.z - nz));
     F room = in ? (found * object.scale - taken) * share
                 : object.cell * (0.999F * beyond - 1.0F) - reach.distance;
@@ -62,10 +66,15 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
 
 using RoomTo = void (*)(const Placed&, F, Reach, const ParticleSpan&, Near&);
 
-template <bool First>
+template <bool First, Storage How>
 RoomTo choose(const Frame& frame) {
-  if (frame.is_moving()) return &room_to<true, true, First>;
-  return frame.is_turned() ? &room_to<true, false, First> : &room_to<false, false, First>;
+  if (frame.is_moving()) return &room_to<true, true, First, How>;
+  return frame.is_turned() ? &room_to<true, false, First, How> : &room_to<false, false, First, How>;
+}
+template <bool First>
+RoomTo choose(const Placed& object) {
+  return object.compressed ? choose<First, Storage::compressed>(object.frame)
+                           : choose<First, Storage::flat>(object.frame);
 }
 
 }  // namespace
@@ -84,7 +93,7 @@ void screen(std::span<const Placed> objects,
                          : kind == LookUp::tangent || sweep == Sweep::on ? 1.0F
                                                                          : 0.0F;
     const float doubt = halves * object.doubt + object.padding + (reach.ahead ? object.jump : 0.0F);
-    const RoomTo room_to = i == 0 ? choose<true>(object.frame) : choose<false>(object.frame);
+    const RoomTo room_to = i == 0 ? choose<true>(object) : choose<false>(object);
     room_to(object, all(doubt * rounding + reach.distance), reach, block, near);
   }
   near.count = 0;

@@ -84,8 +84,7 @@ Stepper make_stepper(const Rules& rules, double step) {
            constants_of(rules, step),
            needs_field(rules),
            sweep,
-           closest_pass(rules.look_up, ask, Setting::one_at_rest, sweep),
-           closest_pass(rules.look_up, ask, Setting::general, sweep),
+           ask,
            rule_loop_at_rest(key),
            rule_loop_general(key),
            rule_loop_at_rest({flight_of(rules)})};

@@ -13,7 +13,7 @@ struct Stepper::Plan {
   RuleConstants constants;
   bool looks_up = false;
   Sweep sweep = Sweep::off;
-  ClosestPass look_up_at_rest = nullptr, look_up_general = nullptr;
+  Ask asked = Ask::both;
   RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
   RuleLoop loop_without = nullptr;  ///< for particles that feel no surface
 };

@@ -54,26 +54,38 @@ bool is_blend(const Stepper::Plan& plan) {
   return plan.rules.look_up == LookUp::trilinear;
 }
 
+/// What depends on the size of the objects.
+void set_lengths(Run& run, std::span<const Object> objects) {
+  const Stepper::Plan& plan = run.plan;
+  double coarsest = 0, finest = HUGE_VAL, off = 0;
+  for (const Object& object : objects) {
+    const double cell = object.frame.scale * object.field->grid.cell;
+    coarsest = std::max(coarsest, cell);
+    finest = std::min(finest, cell);
+    if (object.compressed != nullptr)
+      off = std::max(off, object.frame.scale * object.compressed->measured.distance);
+  }
+  run.constants.slack =
+      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest + off;
+  run.constants.stride = 0.5 * finest;
+  run.reach = reach(plan.rules) + 1e-3 * finest;
+}
+
 Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
   Run run{plan, plan.constants};
   const bool simple =
       objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
   run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
-  run.look_up = simple ? plan.look_up_at_rest : plan.look_up_general;
+  run.look_up = closest_pass(plan.rules.look_up,
+                             plan.asked,
+                             simple ? Setting::one_at_rest : Setting::general,
+                             plan.sweep,
+                             storage_of(objects));
   run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
-  double coarsest = 0, finest = HUGE_VAL;
-  for (const Object& object : objects) {
-    const double cell = object.frame.scale * object.field->grid.cell;
-    coarsest = std::max(coarsest, cell);
-    finest = std::min(finest, cell);
-  }
-  run.constants.slack =
-      (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest;
-  run.constants.stride = 0.5 * finest;
-  run.reach = reach(plan.rules) + 1e-3 * finest;
+  set_lengths(run, objects);
   if (!is_blend(plan)) run.look_ahead = furthest_ahead;
   for (const Object& object : objects)
-    if (!(static_cast<double>(object.field->jump) < 4 * object.field->grid.cell))
+    if (object.frame.is_growing() || !(jump_of(object) < 4 * object.field->grid.cell))
       run.look_ahead = 1;
   return run;
 }
@@ -147,25 +159,61 @@ bool screening_pays(
   return packed < near_step + first_look_up / std::min(left, steps_unscreened);
 }
 
-/// Takes one block through the steps of `places`, the first at `time(0)`.
+/// The next steps of a run: where objects stand at each, and what depends on their size.
+struct Moments {
+  std::vector<std::vector<Placed>> objects;
+  std::vector<Run> grown;  ///< empty where no object grows
+
+  [[nodiscard]] const Run& run(std::size_t i, const Run& all) const {
+    return grown.empty() ? all : grown[i];
+  }
+};
+
+/// The objects are left where they stand after the steps.
+Moments moments_of(const Run& run, std::vector<Object>& objects, int n_steps) {
+  const Stepper::Plan& plan = run.plan;
+  bool restless = false, growing = false;
+  for (const Object& object : objects) {
+    restless = restless || object.frame.is_moving();
+    growing = growing || object.frame.is_growing();
+  }
+  Moments result;
+  result.objects.resize(static_cast<std::size_t>(n_steps));
+  for (auto& now : result.objects) {
+    if (growing) set_lengths(result.grown.emplace_back(run), objects);
+    now.reserve(objects.size());
+    for (const Object& object : objects)
+      now.push_back(placed(object, plan.rules.look_up, plan.step, restless));
+    advance(objects, plan.step, 1);
+  }
+  return result;
+}
+
+/// Takes one block through the steps of `moments`, the first at `time(0)`.
 /// Who may feel a surface in the next few steps is packed and taken through them alone, the others
 /// fly free; where not enough fly free to pay for that, all are taken as near.
 template <class Time>
 void fly(const Run& run,
-         std::span<const std::vector<Placed>> places,
+         const Moments& moments,
          const Time& time,
          const ParticleSpan& block,
          Buffers& buffers) {
   const Stepper::Plan& plan = run.plan;
-  const int n_steps = static_cast<int>(places.size());
+  const int n_steps = static_cast<int>(moments.objects.size());
+  const auto run_at = [&](int i) -> const Run& {
+    return moments.run(static_cast<std::size_t>(i), run);
+  };
+  const auto objects_at = [&](int i) -> const std::vector<Placed>& {
+    return moments.objects[static_cast<std::size_t>(i)];
+  };
   Near& near = buffers.near;
   const auto step_free = [&](int i) {
     change_velocities(plan.rules, time(i), plan.step, block);
-    plan.loop_without(run.constants, block, buffers.first, buffers.scratch);
+    plan.loop_without(run_at(i).constants, block, buffers.first, buffers.scratch);
   };
   const auto step_near = [&](int i, const ParticleSpan& particles) {
     change_velocities(plan.rules, time(i), plan.step, particles);
-    meet_surface(run, places[static_cast<std::size_t>(i)], particles, buffers);
+    meet_surface(run_at(i), objects_at(i), particles, buffers);
   };
   int i = 0;
   if (!plan.looks_up)
@@ -174,10 +222,10 @@ void fly(const Run& run,
   while (i < n_steps) {
     int next = std::min(i + ahead, n_steps);
     const double gained = speed_gained(run, time(i), next - i);
-    screen(places[static_cast<std::size_t>(i)],
+    screen(objects_at(i),
            plan.rules.look_up,
            plan.sweep,
-           {static_cast<float>(run.reach),
+           {static_cast<float>(run_at(i).reach),
             static_cast<float>((next - i) * plan.step),
             static_cast<float>(gained),
             next - i > 1 || plan.rules.spring.has_value()},
@@ -199,18 +247,6 @@ void fly(const Run& run,
     for (; i < next; ++i) step_free(i);
     near.unpack(block);
   }
-}
-
-/// Where all objects stand at each of the next n_steps steps, and after them.
-std::vector<std::vector<Placed>> placed_for(std::vector<Object>& objects,
-                                            const Stepper::Plan& plan,
-                                            int n_steps) {
-  std::vector<std::vector<Placed>> result(static_cast<std::size_t>(n_steps));
-  for (auto& now : result) {
-    for (const Object& object : objects) now.push_back(placed(object, plan.rules.look_up));
-    advance(objects, plan.step, 1);
-  }
-  return result;
 }
 
 }  // namespace
@@ -250,10 +286,10 @@ void Stepper::run(ParticleSpan particles,
   copy(true);
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
-    const auto places = placed_for(standing, plan, now);
+    const Moments moments = moments_of(run, standing, now);
     const auto step_time = [&](int i) { return (before + done + i) * plan.step; };
     const auto step_all = [&](const ParticleSpan& block) {
-      fly(run, places, step_time, block, *buffers);
+      fly(run, moments, step_time, block, *buffers);
     };
     for (std::size_t first = 0; first < whole; first += block_size)
       step_all(particles.part(first, std::min(block_size, whole - first)));

@@ -12,6 +12,7 @@
 //                then the rest of the step with the new velocity
 #pragma once
 
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/frame.hpp"
 #include "collide/dn_field/particles.hpp"
 #include "collide/dn_field/rules.hpp"
@@ -25,6 +26,9 @@ namespace tess::dn {
 struct Object {
   const Field* field = nullptr;
   Frame frame;  ///< at the start of a run, with the velocities it moves by
+  /// If given, look-ups ask this, and `field` gives grid, sides and thickness alone: its arrays may
+  /// be empty. All objects of a scene have one or none has.
+  const CompressedField* compressed = nullptr;
 };
 
 /// Moves all frames over n_steps; bit for bit what a run of n_steps sees.
@@ -32,7 +36,8 @@ void advance(std::span<Object> objects, double step, int n_steps);
 
 /// Throws Error(bad_argument) where `objects` cannot serve `rules`: a field without distances or
 /// without the normals that a rule needs, or thinner than a rule reaches; a scale that is not
-/// positive and finite.
+/// positive and finite; compressed and flat fields together, or the trilinear look-up of compressed
+/// ones.
 void validate(const Rules& rules, std::span<const Object> objects);
 
 class Stepper {

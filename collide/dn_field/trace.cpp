@@ -25,8 +25,12 @@ Here ask(const Placed& object, LookUp kind, Vec3 p) {
   const float gx = grid(0), gy = grid(1), gz = grid(2);
   const F3 g{all(gx), all(gy), all(gz)};
   Sample found{};
-  if (kind == LookUp::nearest) found = sample<LookUp::nearest, Ask::both>(object.field, g);
-  if (kind == LookUp::tangent) found = sample<LookUp::tangent, Ask::both>(object.field, g);
+  if (kind == LookUp::nearest)
+    found = object.compressed ? sample<LookUp::nearest, Ask::both>(object.planes, g)
+                              : sample<LookUp::nearest, Ask::both>(object.field, g);
+  if (kind == LookUp::tangent)
+    found = object.compressed ? sample<LookUp::tangent, Ask::both>(object.planes, g)
+                              : sample<LookUp::tangent, Ask::both>(object.field, g);
   if (kind == LookUp::trilinear) found = sample<LookUp::trilinear, Ask::both>(object.field, g);
   if (!(found.distance[0] < out_of_reach)) {
     const auto beyond = [](float at, int n) {
@@ -53,8 +57,33 @@ struct Contact {
   double too_deep = 0;
 };
 
-/// The first contact on x + s × way, 0 <= s <= rest; `at` is HUGE_VAL where there is none. `rest`
-/// is shortened where the way could not be followed to its end.
+/// A straight way in the world as seen from an object, at the size it has when the step begins: a
+/// straight way, too, which a growing object sees slow down. Fractions f of the step and of that
+/// way, t, are the same without growth; else t = f/(1 + f g), where 1 + f g is the scale at f over
+/// that at the begin.
+struct Seen {
+  Vec3 from, way;
+  double growth;
+
+  [[nodiscard]] double size(double f) const { return 1 + f * growth; }
+  [[nodiscard]] double seen(double f) const { return f / size(f); }
+  [[nodiscard]] double in_step(double t) const {
+    return t * growth < 1 ? t / (1 - t * growth) : HUGE_VAL;
+  }
+};
+
+/// `x`: where the particle is after the fraction `elapsed` of the step, and flies by `way` a step.
+Seen seen_from(const Placed& object, double step, Vec3 x, Vec3 way, double elapsed) {
+  const Frame& frame = object.frame;
+  const Vec3 from = x - elapsed * way;
+  Vec3 seen = way - step * (frame.velocity + cross(frame.angular_velocity, x - frame.position));
+  if (object.growth != 0) seen = seen - object.growth * (from - frame.position);
+  return {from, seen, object.growth};
+}
+
+/// The first contact on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on;
+/// `at` is HUGE_VAL where there is none. `rest` is shortened where the way could not be followed to
+/// its end.
 Contact first_contact(const RuleConstants& c,
                       std::span<const Placed> objects,
                       LookUp kind,
@@ -65,39 +94,46 @@ Contact first_contact(const RuleConstants& c,
   for (const Placed& object : objects)
     budget +=
         8 * static_cast<std::size_t>(object.field.n[0] + object.field.n[1] + object.field.n[2]);
+  const double elapsed = 1 - rest;
   double s = 0;
   while (s <= rest) {
     if (budget-- == 0) {
       rest = s;
       return {};
     }
-    double advance = HUGE_VAL;
+    double next = HUGE_VAL;
     Contact contact;
     for (const Placed& object : objects) {
-      const Vec3 seen = way - c.step * object.frame.velocity_at(x);  // from the object
-      const double length = norm(seen);
+      const Seen seen = seen_from(object, c.step, x, way, elapsed);
+      const double length = norm(seen.way);
       if (!(length > 0)) continue;
-      const Vec3 p = x + s * seen;
+      const double t = seen.seen(elapsed + s), size = seen.size(elapsed + s);
+      const Vec3 p = seen.from + t * seen.way;
       const Here here = ask(object, kind, p);
       const double cell = static_cast<double>(object.cell);
       const double stride = std::max(here.free, stride_cells * cell) / length;
-      advance = std::min(advance, stride);
-      const double rise = dot(here.normal, seen);
+      next = std::min(next, seen.in_step(t + stride) - elapsed);
+      const double rise = dot(here.normal, seen.way);
       if (!(rise < 0) || !(here.distance < HUGE_VAL)) continue;
       // Both sides of a sheet look alike: turn back before it is as close as the look-up errs.
       const double threshold =
-          object.two_sided ? std::max(c.threshold, cell - static_cast<double>(object.padding))
-                           : c.threshold;
-      const double at = s + std::max(0.0, (here.distance - threshold) / -rise);
-      if (at <= s + stride && at < contact.at)
+          object.two_sided
+              ? std::max(c.threshold / size, cell - static_cast<double>(object.padding))
+              : c.threshold / size;
+      const double met = t + std::max(0.0, (here.distance - threshold) / -rise);
+      const double at = seen.in_step(met) - elapsed;
+      if (met <= t + stride && at < contact.at) {
+        const Vec3 surface =
+            object.growth != 0 ? seen.from + met * seen.way - threshold * here.normal : p;
         contact = {at,
                    here.normal,
-                   object.frame.velocity_at(p),
-                   std::max(0.0, c.threshold - c.slack - here.distance)};
+                   object.frame.velocity_at(surface),
+                   std::max(0.0, c.threshold - c.slack - here.distance * size)};
+      }
     }
-    if (contact.at <= s + advance && contact.at <= rest) return contact;
-    if (!(advance < HUGE_VAL)) return {};
-    s += advance;
+    if (contact.at <= next && contact.at <= rest) return contact;
+    if (!(next < HUGE_VAL)) return {};
+    s = next;
   }
   return {};
 }

@@ -58,7 +58,10 @@ void Voxel::add(std::vector<Item> items) {
 
 void Voxel::start_collision(const Collision& collision) {
   const std::vector<Item> items = std::exchange(items_, {});
-  if (items.empty()) return;
+  if (items.empty()) {
+    destroy();
+    return;
+  }
   const VoxelGrid grid(collision.origin, collision.size);
   const Cell here{index().x, index().y, index().z};
   const std::optional<ModelId> only = collision.report.only;

@@ -48,13 +48,6 @@ double tolerance(const std::array<Point, 4>& corners) {
   return snap_edges * longest_edge(corners) + snap_ulps * largest;
 }
 
-bool contains(const Box& box, const Point& p) {
-  bool in = true;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    in = in && box.low[axis] <= p[axis] && p[axis] <= box.high[axis];
-  return in;
-}
-
 /// A point outside: near enough to every face that it is outside of, and inside the padded box (at
 /// a sharp edge the planes of two faces are near long after the tetrahedron has ended).
 bool snaps(const Point& p,
@@ -68,7 +61,7 @@ bool snaps(const Point& p,
         twice_area(corners[faces[i][0]], corners[faces[i][1]], corners[faces[i][2]]);
     if (!(std::abs(volume[i]) <= reach * area)) return false;
   }
-  return contains(search_box(corners), p);
+  return overlap(search_box(corners), box_of(p), Touching::counts);
 }
 
 }  // namespace
@@ -111,16 +104,12 @@ std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corne
   return location;
 }
 
-Box search_box(const std::array<Point, 4>& corners) {
-  Box box{corners[0], corners[0]};
+Aabb search_box(const std::array<Point, 4>& corners) {
+  Aabb box = box_around(corners);
   const double pad = 2 * tolerance(corners);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const Point& p : corners) {
-      box.low[axis] = std::min(box.low[axis], p[axis]);
-      box.high[axis] = std::max(box.high[axis], p[axis]);
-    }
-    box.low[axis] -= pad;
-    box.high[axis] += pad;
+    box.lo[axis] -= pad;
+    box.hi[axis] += pad;
   }
   return box;
 }

@@ -62,7 +62,7 @@ void locate_pairs(std::span<const Point> points,
 
 /// The box of a tetrahedron, padded so that it holds every point that locate() would snap to it:
 /// the source's boxes for the broad phase. Target points need no padding.
-[[nodiscard]] Box search_box(const std::array<Point, 4>& corners);
+[[nodiscard]] Aabb search_box(const std::array<Point, 4>& corners);
 
 /// The four points of a tetrahedron.
 [[nodiscard]] inline std::array<Point, 4> corners_of(std::span<const Point> points,

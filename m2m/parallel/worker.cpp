@@ -7,9 +7,8 @@
 namespace tess::m2m {
 namespace {
 
-Item item_of(const Box& box, Index1 owner, std::size_t local, ModelId model) {
-  return Item{Aabb{box.low, box.high},
-              ObjectId{owner_of(owner), static_cast<LocalId>(local), model}};
+Item item_of(const Aabb& box, Index1 owner, std::size_t local, ModelId model) {
+  return Item{box, ObjectId{owner_of(owner), static_cast<LocalId>(local), model}};
 }
 
 std::int32_t as_row(LocalId id) {
@@ -51,7 +50,7 @@ void Worker::submit_points(const TransferSetup& setup) {
   std::vector<Item> items;
   items.reserve(n_owned);
   for (std::size_t v = 0; v < n_owned; ++v)
-    items.push_back(item_of(Box{part_.points[v], part_.points[v]}, index(), v, target_model));
+    items.push_back(item_of(box_of(part_.points[v]), index(), v, target_model));
   setup.collider.submit(std::move(items));
 }
 

@@ -6,12 +6,12 @@
 
 namespace tess::m2m {
 
-CellGrid::CellGrid(const Box& domain, std::size_t n_cells, std::span<const Box> items)
-    : low_(domain.low) {
+CellGrid::CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb> items)
+    : low_(domain.lo) {
   Point side{};
   double longest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    side[axis] = domain.high[axis] - domain.low[axis];
+    side[axis] = domain.hi[axis] - domain.lo[axis];
     longest = std::max(longest, side[axis]);
   }
   // Thin directions count as one cell, so that the others keep the cells.
@@ -31,16 +31,16 @@ CellGrid::CellGrid(const Box& domain, std::size_t n_cells, std::span<const Box> 
                         static_cast<std::size_t>(shape_[2]) +
                     1,
                 0);
-  const auto for_each_cell = [&](const Box& box, auto&& visit) {
-    const Cell first = cell_of(box.low);
-    const Cell last = cell_of(box.high);
+  const auto for_each_cell = [&](const Aabb& box, auto&& visit) {
+    const Cell first = cell_of(box.lo);
+    const Cell last = cell_of(box.hi);
     for (std::int32_t z = first[2]; z <= last[2]; ++z) {
       for (std::int32_t y = first[1]; y <= last[1]; ++y) {
         for (std::int32_t x = first[0]; x <= last[0]; ++x) visit(index({x, y, z}));
       }
     }
   };
-  for (const Box& box : items) {
+  for (const Aabb& box : items) {
     for_each_cell(box, [&](std::size_t c) { ++begin_[c + 1]; });
   }
   for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];

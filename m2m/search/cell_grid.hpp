@@ -17,7 +17,7 @@ class CellGrid {
 
   /// About `n_cells` cells, as near to cubes as the box allows; each of `items` is listed in every
   /// cell that its box touches.
-  CellGrid(const Box& domain, std::size_t n_cells, std::span<const Box> items);
+  CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb> items);
 
   /// The cell of a point; of a point outside, the nearest.
   [[nodiscard]] Cell cell_of(const Point& p) const;

@@ -11,16 +11,9 @@ namespace {
 
 CellGrid grid_of(std::span<const Point> points) {
   TESS_CHECK(!points.empty(), "expected at least one point");
-  std::vector<Box> boxes;
-  Box domain{points[0], points[0]};
-  for (const Point& p : points) {
-    boxes.push_back({p, p});
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      domain.low[axis] = std::min(domain.low[axis], p[axis]);
-      domain.high[axis] = std::max(domain.high[axis], p[axis]);
-    }
-  }
-  return CellGrid(domain, points.size() / 2, boxes);
+  std::vector<Aabb> boxes;
+  for (const Point& p : points) boxes.push_back(box_of(p));
+  return CellGrid(box_around(points), points.size() / 2, boxes);
 }
 
 }  // namespace

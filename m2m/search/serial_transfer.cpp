@@ -20,7 +20,7 @@ struct Winner {
 std::vector<Winner> search(const TetMesh& source,
                            const TetMesh& target,
                            std::uint64_t& n_candidates) {
-  std::vector<Box> boxes;
+  std::vector<Aabb> boxes;
   boxes.reserve(source.n_tets());
   for (const Tet& tet : source.tets) boxes.push_back(search_box(corners_of(source.points, tet)));
   const CellGrid grid(bounds(source), source.n_tets() / 2, boxes);
@@ -43,10 +43,8 @@ std::vector<Winner> search(const TetMesh& source,
   for (std::size_t v = 0; v < target.n_points(); ++v) {
     const Point& p = target.points[v];
     for (const std::int32_t t : grid.items(grid.cell_of(p))) {
-      const Box& box = boxes[static_cast<std::size_t>(t)];
-      const bool in = p[0] >= box.low[0] && p[0] <= box.high[0] && p[1] >= box.low[1] &&
-                      p[1] <= box.high[1] && p[2] >= box.low[2] && p[2] <= box.high[2];
-      if (in) pairs.push_back({t, static_cast<std::int32_t>(v)});
+      if (overlap(boxes[static_cast<std::size_t>(t)], box_of(p), Touching::counts))
+        pairs.push_back({t, static_cast<std::int32_t>(v)});
     }
     if (pairs.size() > 2048) flush();
   }

@@ -3,8 +3,7 @@
 // its position in them.
 #pragma once
 
-#include "runtime/base/mix.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/element_key.hpp"
 
 #include <array>
 #include <cstddef>
@@ -12,19 +11,6 @@
 #include <vector>
 
 namespace tess::balance {
-
-/// Who an element is, across rounds.
-struct ElementKey {
-  CollectionId array;
-  std::uint64_t element = 0;
-  friend auto operator<=>(const ElementKey&, const ElementKey&) = default;
-};
-
-struct ElementKeyHash {
-  std::size_t operator()(const ElementKey& key) const noexcept {
-    return mix(key.element ^ mix(key.array.value));
-  }
-};
 
 /// Messages from one element to another since the last round; ends are positions in Elements.
 struct Edge {

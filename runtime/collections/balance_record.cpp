@@ -13,7 +13,7 @@ struct PackedEntry {
   std::uint64_t calls = 0;
 };
 struct PackedTraffic {
-  Destination to;
+  ElementKey to;
   SentTo sent;
 };
 

@@ -85,6 +85,13 @@ struct TypedLetter : ElementMessage<typename C::Index> {
     ar(letter->arguments);
     return letter;
   }
+
+ protected:
+  static ElementAction<Index> make_action(
+      typename ElementAction<Index>::Invoke invoke,
+      typename ElementAction<Index>::Construct construct = nullptr) {
+    return {name_of_type<Derived>, &run, &destroy, &pack, &unpack, invoke, construct};
+  }
 };
 
 /// A call of entry method F of an element of C.
@@ -102,13 +109,7 @@ struct Call final : TypedLetter<Call<C, F>, C, typename EntryTraits<F>::Argument
         },
         letter.arguments);
   }
-  static inline const ElementAction<Index> entry{name_of_type<Call>,
-                                                 &Base::run,
-                                                 &Base::destroy,
-                                                 &Base::pack,
-                                                 &Base::unpack,
-                                                 &Call::invoke,
-                                                 nullptr};
+  static inline const ElementAction<Index> entry = Base::make_action(&Call::invoke);
 };
 
 /// A call of the constructor of C with these argument types.
@@ -122,13 +123,8 @@ struct Construction final : TypedLetter<Construction<C, Args...>, C, std::tuple<
     return std::apply([](auto&... argument) { return new C(std::move(argument)...); },
                       static_cast<Construction&>(message).arguments);
   }
-  static inline const ElementAction<Index> entry{name_of_type<Construction>,
-                                                 &Base::run,
-                                                 &Base::destroy,
-                                                 &Base::pack,
-                                                 &Base::unpack,
-                                                 nullptr,
-                                                 &Construction::construct};
+  static inline const ElementAction<Index> entry =
+      Base::make_action(nullptr, &Construction::construct);
 };
 
 /// Ends an element where it lives.
@@ -141,13 +137,7 @@ struct Destruction final : TypedLetter<Destruction<C>, C, std::tuple<>> {
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
     static_cast<C&>(element).destroy();
   }
-  static inline const ElementAction<Index> entry{name_of_type<Destruction>,
-                                                 &Base::run,
-                                                 &Base::destroy,
-                                                 &Base::pack,
-                                                 &Base::unpack,
-                                                 &Destruction::invoke,
-                                                 nullptr};
+  static inline const ElementAction<Index> entry = Base::make_action(&Destruction::invoke);
 };
 
 /// Moves an element to a PE.
@@ -160,13 +150,7 @@ struct Relocation final : TypedLetter<Relocation<C>, C, std::tuple<PeId>> {
   static void invoke(Element& element, ElementMessage<Index>& message) {
     static_cast<C&>(element).migrate_to(std::get<0>(static_cast<Relocation&>(message).arguments));
   }
-  static inline const ElementAction<Index> entry{name_of_type<Relocation>,
-                                                 &Base::run,
-                                                 &Base::destroy,
-                                                 &Base::pack,
-                                                 &Base::unpack,
-                                                 &Relocation::invoke,
-                                                 nullptr};
+  static inline const ElementAction<Index> entry = Base::make_action(&Relocation::invoke);
 };
 
 /// Ends the wait of an element at its balancer's barrier.
@@ -179,13 +163,7 @@ struct Awakening final : TypedLetter<Awakening<C>, C, std::tuple<>> {
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
     if (Collection::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
   }
-  static inline const ElementAction<Index> entry{name_of_type<Awakening>,
-                                                 &Base::run,
-                                                 &Base::destroy,
-                                                 &Base::pack,
-                                                 &Base::unpack,
-                                                 &Awakening::invoke,
-                                                 nullptr};
+  static inline const ElementAction<Index> entry = Base::make_action(&Awakening::invoke);
 };
 
 /// An element on its way. Within a process the object itself travels (but with CHECKS=all); between

@@ -36,10 +36,16 @@ void ArrayOf<Index>::route(Letter* letter) {
     return;
   }
   const PeId at = home(index);
-  if (const auto left = departed_.find(index); left != departed_.end() &&
-                                               left->second.version > letter->tried &&
-                                               (letter->hops < most_hops || at == pe_.id())) {
-    forward(letter, left->second);
+  if (const auto left = departed_.find(index);
+      left != departed_.end() && left->second.version > letter->tried) {
+    if (letter->hops < most_hops || at == pe_.id()) {
+      forward(letter, left->second);
+    } else {
+      // The home waits with it for the landing: it would send it back here until then.
+      letter->tried = left->second.version;
+      letter->ask = false;
+      pe_.send(at, letter);
+    }
     return;
   }
   if (at == pe_.id()) {

@@ -22,6 +22,11 @@ void end_arrives(Pe& pe, Completion::End&& m) {
   pe.completion().on_end(m);
 }
 
+/// The PE that opened the epoch; of the run, PE 0.
+PeId coordinator_of(EpochId epoch) {
+  return PeId{static_cast<std::int32_t>(epoch.value & 0xffffffU)};
+}
+
 template <auto Handler, class Payload>
 void send_control(Pe& pe, PeId to, const Payload& payload) {
   if (payload.epoch.value == 0) {
@@ -32,6 +37,15 @@ void send_control(Pe& pe, PeId to, const Payload& payload) {
 }
 
 }  // namespace
+
+bool Tellings::take(PeId from, const Counters& counters) {
+  Counters& known = by_pe_[from];
+  if (counters.sent < known.sent || counters.processed < known.processed) return false;
+  sum_.sent += counters.sent - known.sent;
+  sum_.processed += counters.processed - known.processed;
+  known = counters;
+  return true;
+}
 
 Completion::Completion(Pe& pe) : pe_(pe) {
   if (pe.id().value == 0) coordinated_[EpochId{}].closed = true;
@@ -72,50 +86,49 @@ bool Completion::tell_epochs() {
     at->second.listed = false;
     forget_last();  // each time: telling one epoch may have counted for the next of this list
     const Counters now = at->second.now;
-    tell(epoch, now);
+    tell(epoch, coordinator_of(epoch), now);
   }
   return true;
 }
 
 bool Completion::tell_run() {
-  if (run_ == run_told_) return false;
-  run_told_ = run_;
-  tell(EpochId{}, run_);
+  if (!run_changed()) return false;
+  run_told_ = run_ + run_below_.sum();
+  const PeId root = coordinator_of(EpochId{});
+  tell(EpochId{},
+       pe_.id() == root ? root : SpanningTree(pe_.id(), root, pe_.n_pes()).parent(),
+       run_told_);
   return true;
 }
 
-void Completion::tell(EpochId epoch, const Counters& counters) {
-  const PeId coordinator{static_cast<std::int32_t>(epoch.value & 0xffffffU)};
+void Completion::tell(EpochId epoch, PeId whom, const Counters& counters) {
   const Telling telling{epoch, pe_.id(), counters};
-  if (coordinator == pe_.id()) {
+  if (whom == pe_.id()) {
     on_telling(telling);
   } else {
-    send_control<&telling_arrives>(pe_, coordinator, telling);
+    send_control<&telling_arrives>(pe_, whom, telling);
   }
 }
 
 void Completion::on_telling(const Telling& telling) {
+  if (pe_.id() != coordinator_of(telling.epoch)) {  // on its way up the tree
+    run_below_.take(telling.from, telling.counters);
+    return;
+  }
   const auto at = coordinated_.find(telling.epoch);
   if (at == coordinated_.end()) return;  // told twice, done meanwhile
-  Coordinated& of = at->second;
-  Counters& known = of.told[telling.from];
-  // Tellings overtake one another; counters only grow, so the larger is the later.
-  if (telling.counters.sent < known.sent || telling.counters.processed < known.processed) return;
-  of.sum.sent += telling.counters.sent - known.sent;
-  of.sum.processed += telling.counters.processed - known.processed;
-  known = telling.counters;
-  check(telling.epoch, of);
+  if (at->second.told.take(telling.from, telling.counters)) check(telling.epoch, at->second);
 }
 
 void Completion::check(EpochId epoch, Coordinated& of) {
-  if (!of.closed || of.sum.sent != of.sum.processed) return;
+  if (!of.closed || of.told.sum().sent != of.told.sum().processed) return;
   if (of.wave_runs) {
     of.again = true;
     return;
   }
   of.wave_runs = true;
   of.again = false;
-  of.processed_before_wave = of.sum.processed;
+  of.processed_before_wave = of.told.sum().processed;
   on_wave(Wave{epoch, pe_.id(), ++of.wave});
 }
 
@@ -173,7 +186,7 @@ void Completion::echo(Relay& relay) {
     pe_.quiescent();
     return;
   }
-  for (const auto& [pe, counters] : of.told) {
+  for (const auto& [pe, counters] : of.told.by_pe()) {
     if (pe != pe_.id()) send_system<&end_arrives>(pe_, pe, End{epoch});
   }
   const EpochId parent = of.parent;
@@ -198,9 +211,9 @@ void Completion::describe_open(std::vector<std::string>& lines) const {
                          " opened on ",
                          pe_.id(),
                          ": ",
-                         of.sum.sent,
+                         of.told.sum().sent,
                          " messages sent, ",
-                         of.sum.processed,
+                         of.told.sum().processed,
                          " done"));
   }
 }

@@ -6,16 +6,15 @@
 // suspended coroutine) is sent and not yet processed. The epoch's coordinator, the PE that opened
 // it, knows a reading of each PE that it was told of:
 //
-//   1. a PE that runs dry tells the coordinator its counters, if they changed since it told them
-//   last;
+//   1. a PE that runs dry tells the coordinator its counters, if they changed since the last time;
+//      those of the run go up the tree of all PEs, added up on the way, for all PEs tell of them;
 //   2. when the sums of the tellings agree, sent = processed, the coordinator sends a wave over the
-//   tree of all
-//      PEs, which adds up fresh readings;
+//      tree of all PEs, which adds up fresh readings;
 //   3. if the wave's sum of *sent* equals the *processed* told before the wave began, nothing can
-//   be under way: both
-//      counters only grow, so  processed(told) ≤ processed(now) ≤ sent(now) ≤ sent(wave)  are all
-//      equal (Mattern's four-counter argument; a telling is a reading of an earlier, staggered
-//      wave).
+//      be under way: both counters only grow, so
+//          processed(told) ≤ processed(now) ≤ sent(now) ≤ sent(wave)
+//      are all equal (Mattern's four-counter argument; a telling is a reading of an earlier,
+//      staggered wave).
 //
 // Epoch 0 counts every hop of every message but its own control messages; so while any epoch's
 // control message is under way the run is not over. Its end is quiescence; what then still waits
@@ -39,6 +38,22 @@ struct Counters {
   std::uint64_t sent = 0;
   std::uint64_t processed = 0;
   friend bool operator==(const Counters&, const Counters&) = default;
+  friend Counters operator+(const Counters& a, const Counters& b) {
+    return {a.sent + b.sent, a.processed + b.processed};
+  }
+};
+
+/// The last reading that each of some PEs told, and their sum.
+class Tellings {
+ public:
+  /// False if it was overtaken by a later one: counters only grow, so the larger is the later.
+  bool take(PeId from, const Counters& counters);
+  [[nodiscard]] const Counters& sum() const { return sum_; }
+  [[nodiscard]] const auto& by_pe() const { return by_pe_; }
+
+ private:
+  boost::unordered_flat_map<PeId, Counters, std::hash<PeId>> by_pe_;
+  Counters sum_;
 };
 
 /// One PE's part in the completion of all epochs.
@@ -65,9 +80,9 @@ class Completion {
 
   /// Tells the coordinators of scoped epochs what changed. True if anything was told.
   bool tell_epochs();
-  /// True if the coordinator of the run has not been told all.
-  [[nodiscard]] bool run_changed() const { return run_ != run_told_; }
-  /// Tells the coordinator of the run. True if anything was told.
+  /// True if the PE above in the tree has not been told all of the run.
+  [[nodiscard]] bool run_changed() const { return run_ + run_below_.sum() != run_told_; }
+  /// Tells it. True if anything was told.
   bool tell_run();
 
   /// One line for each epoch that this PE opened and that is not done.
@@ -103,8 +118,7 @@ class Completion {
     bool listed = false;
   };
   struct Coordinated {
-    boost::unordered_flat_map<PeId, Counters, std::hash<PeId>> told;
-    Counters sum;
+    Tellings told;
     std::uint64_t wave = 0;
     std::uint64_t processed_before_wave = 0;
     bool wave_runs = false, again = false, closed = false;
@@ -126,13 +140,14 @@ class Completion {
   }
   void find_local(EpochId epoch);
   void forget_last() { last_epoch_ = EpochId{}; }
-  void tell(EpochId epoch, const Counters& counters);
+  void tell(EpochId epoch, PeId whom, const Counters& counters);
   void check(EpochId epoch, Coordinated& of);
   void echo(Relay& relay);
   [[nodiscard]] Counters reading(EpochId epoch) const;
 
   Pe& pe_;
   Counters run_, run_told_;
+  Tellings run_below_;  // of the PEs below this one in the tree; PE 0 coordinates, and has none
   boost::unordered_flat_map<EpochId, Local, std::hash<EpochId>> local_;
   std::vector<EpochId> changed_;
   EpochId last_epoch_{};  // 0: none. It is listed in changed_, and local_ has not changed since.

@@ -2,13 +2,10 @@
 // elsewhere, or died; an element that lives on its home PE needs none. Messages that know more than
 // the record, or that come before the element does, wait here.
 //
-//     absent --grant--> live(pe, version) --departed--> live(pe', version + 1, not landed)
-//     --landed--> live …
-//                              | |
-//                              +------------------------------ died
-//                              -----------------------------------+
-//                                                               v
-//                                          dead(incarnation) --grant--> live(pe, incarnation + 1)
+//     absent, dead(i)  -- grant -->     live(pe, incarnation i + 1)
+//     live             -- it left -->   live(its next PE, version + 1, not landed)
+//     live             -- landed -->    live(that PE and version), if newer
+//     live             -- died -->      dead(incarnation)
 //
 // A grant makes the record live at once: the PE that asked keeps what reaches it until the grant
 // does, so of two PEs that ask at once exactly one creates, and nothing needs to wait for a

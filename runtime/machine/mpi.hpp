@@ -23,6 +23,10 @@ struct MpiOptions {
 /// True if this process was started by mpirun. Asks the environment, not MPI.
 [[nodiscard]] bool under_mpirun();
 
+/// True of process 0 under mpirun, and of a process that was started alone: the one that says what
+/// a job has to say once, before MPI is there to ask.
+[[nodiscard]] bool speaks_for_job();
+
 /// Initialises MPI if nobody has, and then finalises it when destroyed. Every process of the job
 /// calls it; the thread that does drives the process's first PE. Throws Error for options that
 /// cannot be, or that differ between processes.

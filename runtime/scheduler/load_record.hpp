@@ -2,8 +2,7 @@
 // and what it sent to whom. Kept while a balancer watches the element, and travels with it.
 #pragma once
 
-#include "runtime/base/mix.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/element_key.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 
@@ -13,18 +12,6 @@
 namespace tess {
 
 struct Action;
-
-/// An element as its traffic names it: the array, and the hash of the index.
-struct Destination {
-  CollectionId array{};
-  std::uint64_t element = 0;
-  friend bool operator==(const Destination&, const Destination&) = default;
-};
-struct DestinationHash {
-  std::size_t operator()(const Destination& to) const noexcept {
-    return mix(to.element ^ mix(to.array.value));
-  }
-};
 
 /// Payload that was sent; headers do not count.
 struct SentTo {
@@ -41,7 +28,7 @@ struct LoadRecord {
 
   std::uint64_t ticks = 0;     ///< of the PE's meter
   std::vector<Entry> entries;  ///< by entry method: few
-  boost::unordered_flat_map<Destination, SentTo, DestinationHash> sent;
+  boost::unordered_flat_map<ElementKey, SentTo, ElementKeyHash> sent;
   std::uint64_t* of_pe = nullptr;  ///< where the PE adds up the ticks of all such elements
 
   void spend(const Action* action, std::uint64_t spent) {

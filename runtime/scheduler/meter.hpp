@@ -59,7 +59,7 @@ class Meter {
   /// Whether what is sent is to be weighed: packing is how, and a record takes it down.
   [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
   /// The element that runs sends a payload to another element.
-  void sent(const Destination& to, std::uint64_t bytes) {
+  void sent(const ElementKey& to, std::uint64_t bytes) {
     SentTo& sum = scope_.record->sent[to];
     sum.bytes += bytes;
     ++sum.messages;

@@ -77,6 +77,18 @@ for fault in "$scratch/missing.exo kuhn:2" "kuhn:2 kuhn:2 --nonsense" "kuhn:2 ku
   fi
 done
 
+# Help is given once.
+for program in hello ring m2m_transfer; do
+  if "${job[@]}" -n 2 "$bin/$program" --help >"$scratch/out" 2>"$scratch/err" &&
+    [[ $(grep -ci '^usage' "$scratch/out") -eq 1 && ! -s $scratch/err ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: two processes, $program --help:"
+    cat "$scratch/out" "$scratch/err"
+  fi
+done
+
 lab=("$bin/lb_lab" --json "$scratch/result.json" --sim pes=4)
 refuses moving_hot_spot "${lab[@]}" --workload nonsense
 refuses greedy_refine "${lab[@]}" --strategy nonsense

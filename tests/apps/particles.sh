@@ -62,6 +62,38 @@ for block in 0.15 0.6 50; do
 done
 for seed in 1 2; do same "$particles" "$scratch/scene.json" --sim "pes=4,seed=$seed,migrate=0.1"; done
 
+# A balancer moves blocks (cut small: there are many), and changes nothing.
+sed 's/"steps": 60/"steps": 60, "block": 0.3, "exchange": 3/' "$scratch/scene.json" >"$scratch/cut.json"
+balanced() {  # balanced STRATEGY COMMAND…
+  local strategy=$1
+  shift
+  same "$@" "$scratch/cut.json" --balance "$strategy"
+  grep -A6 '"balance":' "$scratch/again.json" | tr -d ' \n' | grep -qE '"rounds":[1-9][0-9]*,"moves":[1-9]'
+  check "the balancer of $* moves blocks" $?
+}
+balanced rotate "$particles" --pes 2
+balanced greedy "$particles" --pes 4
+balanced rotate "${mpirun[@]}" -n 2 "$particles" --pes 1
+balanced rotate,when=periodic,period=1ms "${mpirun[@]}" -n 2 "$particles" --pes 2
+balanced random "$particles" --sim pes=8,seed=3,migrate=0.1
+grep -q 'balance":' "$scratch/first.json"
+check "no balancer, no rounds" $((! $?))
+
+# Compressed fields: another answer, the same for all PEs and processes.
+"$particles" "$scratch/scene.json" --pes 1 --compressed --json "$scratch/compressed.json" --out "$scratch/out" >"$scratch/table" || exit 1
+flat=$want
+want=$(hash_of "$scratch/compressed.json")
+[[ $want != "$flat" && -s $scratch/out/field.svg ]] && grep -q compressed "$scratch/table"
+check "--compressed is another run" $?
+bytes_of() { grep -o "\"$1\": [0-9]*" "$scratch/compressed.json" | head -1 | grep -o '[0-9]*$'; }
+(($(bytes_of bytes) == 24 * 24 * 24 * 8 && $(bytes_of bytes_compressed) > 0 && $(bytes_of bytes_compressed) < $(bytes_of bytes)))
+check "bytes of a compressed run" $?
+same "$particles" "$scratch/scene.json" --compressed --pes 4
+same "${mpirun[@]}" -n 2 "$particles" "$scratch/scene.json" --compressed --pes 1 --balance rotate
+sed 's/"steps": 60/"steps": 60, "compression": {}/' "$scratch/scene.json" >"$scratch/cut.json"
+same "$particles" "$scratch/cut.json" --pes 2
+want=$flat
+
 # refuses WORD COMMAND…: exit code 2, one line with WORD, nothing written.
 refuses() {
   local word=$1
@@ -77,6 +109,8 @@ edited() {  # edited SED-COMMAND: a scene with a mistake.
 }
 refuses 'resolution: 0 is not within 4 … 1024' "$particles" "$(edited 's/"resolution": 24/"resolution": 0/')"
 refuses 'unknown key' "$particles" "$(edited 's/"resolution"/"resolutoin"/')"
+refuses 'compression.cells: 0.6 is not within 0 … 0.5' "$particles" "$(edited 's/"steps": 60/"steps": 60, "compression": {"cells": 0.6}/')"
+refuses 'trilinear' "$particles" --compressed "$(edited 's/"rules": {/"rules": {"look_up": "trilinear", /')"
 refuses 'none.obj: cannot be opened' "$particles" "$(edited 's/wedge.obj/none.obj/')"
 refuses 'is not JSON' "$particles" "$(edited 's/"dt": 0.01,/"dt": 0.01/')"
 printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >"$scratch/nan.obj"
@@ -88,13 +122,20 @@ refuses 'shear' "$particles" \
 refuses 'near-zero\|thin\|nothing inside' "$particles" "$(edited 's/{"file": "wedge.obj"}/{"plate": {"half": 1}}/; s/"motion"/"method": "normals", "motion"/')"
 refuses 'missing.json' "$particles" "$scratch/missing.json"
 refuses SCENE "$particles"
+refuses greedy_refine "$particles" "$scratch/scene.json" --balance nonsense
+refuses sometimes "$particles" "$scratch/scene.json" --balance rotate,when=sometimes
 refuses --steps "$particles" "$scratch/scene.json" --steps=-1
+refuses 'motion.scale: -1 a second takes the scale' "$particles" --steps 150 "$(edited 's/"motion": {/"motion": {"scale": -1, /')"
+refuses --resolutions "$particles" "$scratch/scene.json" --study --resolutions 16,2
 refuses --out "$particles" "$scratch/scene.json" --out "$scratch/wedge.obj"
 refuses 'unknown key' "${mpirun[@]}" -n 2 "$particles" "$(edited 's/"resolution"/"resolutoin"/')" --pes 1
 
+"$particles" "$scratch/scene.json" --steps 0 --balance rotate --explain >"$scratch/out.txt" &&
+  grep -q 'balancer: used, rotate, a round at each exchange' "$scratch/out.txt"
+check "--explain names the balancer" $?
 "$particles" --stability >"$scratch/out.txt" 2>&1 && grep -q ' 0 failed' "$scratch/out.txt"
 check "--stability" $?
-"$particles" --help-scene | grep -q surface_flow
+"$particles" --help-scene >"$scratch/out.txt" && grep -q surface_flow "$scratch/out.txt"
 check "--help-scene" $?
 for scene in "$scenes"/*.json; do
   timeout 60 "$particles" "$scene" --steps 0 --pes 2 --explain >"$scratch/out.txt" 2>&1 && grep -q 'impact: used' "$scratch/out.txt"

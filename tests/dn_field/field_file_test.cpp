@@ -47,16 +47,22 @@ bool same(const Grid& a, const Grid& b) {
   return a.origin == b.origin && a.cell == b.cell && a.n == b.n;
 }
 
+/// What fields of both kinds have.
+template <class AnyField>
+void check_same_make(const AnyField& a, const AnyField& b) {
+  CHECK(same(a.grid, b.grid));
+  CHECK(a.method == b.method);
+  CHECK(a.sides == b.sides);
+  CHECK(a.thickness == b.thickness);
+}
+
 TEST_CASE("a flat field comes back from its file bit for bit", "[dn_field]") {
   const TemporaryFile file("flat");
   for (const Content content : {Content::distance, Content::distance_and_normal}) {
     const Field field = small_field(content);
     save_field(field, file.path());
     const Field back = load_field(file.path());
-    CHECK(same(back.grid, field.grid));
-    CHECK(back.method == field.method);
-    CHECK(back.sides == field.sides);
-    CHECK(back.thickness == field.thickness);
+    check_same_make(back, field);
     CHECK(back.distance == field.distance);
     CHECK(back.normal == field.normal);
     const std::string first = file.bytes();
@@ -72,11 +78,8 @@ TEST_CASE("a compressed field comes back from its file bit for bit", "[dn_field]
     const CompressedField field = compress(flat, {part * flat.grid.cell, part});
     save_field(field, file.path());
     const CompressedField back = load_compressed_field(file.path());
-    CHECK(same(back.grid, field.grid));
-    CHECK(back.method == field.method);
-    CHECK(back.sides == field.sides);
+    check_same_make(back, field);
     CHECK(back.content == field.content);
-    CHECK(back.thickness == field.thickness);
     CHECK(back.block_shift == field.block_shift);
     CHECK(back.n_blocks == field.n_blocks);
     CHECK(back.layout.wide == field.layout.wide);

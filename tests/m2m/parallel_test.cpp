@@ -26,7 +26,7 @@ struct Case {
 
 Case make_case(TetMesh source, TetMesh target, OutsidePolicy policy) {
   Case c{std::move(source), std::move(target), {}, {}, policy, 4, {}};
-  const Box domain = bounds(c.source);
+  const Aabb domain = bounds(c.source);
   for (const char* name : {"gaussian", "linear"}) {
     const Formula formula = make_formula(name, domain);
     c.source_fields.push_back(sample(c.source, name, formula));

@@ -145,7 +145,7 @@ TEST_CASE("validate names the element and passes flat and inverted tetrahedra", 
   CHECK(census.n_inverted == 1);
   CHECK(census.n_flat == 1);
   CHECK(census.n_unused == 1);
-  CHECK(census.bounds.high[0] == 9);
+  CHECK(census.bounds.hi[0] == 9);
 
   TetMesh bad = mesh;
   bad.points[5][1] = std::numeric_limits<double>::quiet_NaN();

@@ -53,6 +53,41 @@ TEST_CASE("swept impact lets nothing through at any speed, and bounces it back",
   }
 }
 
+TEST_CASE("a growing sphere sweeps up what rests around it, and lets nothing in",
+          "[particles][physics]") {
+  // Its surface stands at 0.5 + t; what it meets leaves with twice its speed.
+  const std::string scene = R"({"dt": DT, "steps": STEPS,
+    "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 60}}, "resolution": 48, "thickness": 0.3,
+                 "transform": {"position": [1, 2, 3]}, "motion": {"scale": 2}}],
+    "emitters": [{"count": 300, "sphere": {"centre": [1, 2, 3], "radius": 1.4, "inner": 0.7}}],
+    "rules": {"impact": {"restitution": 1}}, "outputs": {"trajectories": 1000}})";
+  for (const auto& [dt, steps] : {std::pair("0.01", "100"), std::pair("0.5", "2")}) {
+    std::string text = scene;
+    text.replace(text.find("DT"), 2, dt);
+    text.replace(text.find("STEPS"), 5, steps);
+    const Ran ran = run_scene(parse_scene(text, "scene.json"), "--pes=2");
+    CHECK(ran.last().tunnelled == 0);
+    CHECK(ran.last().inside == 0);
+    const auto &first = ran.result.trajectories.front().samples,
+               &last = ran.result.trajectories.back().samples;
+    for (std::size_t p = 0; p < last.size(); ++p) {
+      const Vec3 from = first[p].position - Vec3{1, 2, 3}, to = last[p].position - Vec3{1, 2, 3};
+      const double met = norm(from) - 0.5;  // when
+      // The normal of the nearest voxel is off by half its diagonal over the radius (0.06), and by
+      // half a facet (0.03).
+      CHECK(norm(last[p].velocity - 2 * direction(from)) < 0.18);
+      CHECK(norm(to - (norm(from) + 2 * (1 - met)) * direction(from)) < 0.18);
+    }
+  }
+  // A run that it would not outlive is refused, also where --steps says so.
+  Scene shrinks = parse_scene(R"({"dt": 0.1, "steps": 10, "objects":
+    [{"shape": {"box": {"half": [1, 1, 1]}}, "thickness": 1, "resolution": 20, "motion": {"scale": -0.9}}],
+    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
+                              "scene.json");
+  shrinks.steps = 12;
+  CHECK_THROWS_WITH(check_scene(shrinks), Catch::Contains("objects[0].motion.scale: -0.9"));
+}
+
 TEST_CASE("particles that go through a surface are counted, each once", "[particles][physics]") {
   // A spring too weak to hold anything: all 200 go in at the top and leave at the bottom.
   const std::string weak = R"({"spring": {"stiffness": 1e-6, "reach": 0.1}})";

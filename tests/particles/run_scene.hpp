@@ -20,13 +20,13 @@ struct Ran {
 };
 
 /// option: "--pes=2", "--sim=pes=4,seed=3".
-inline Ran run_scene(Scene scene, const std::string& option) {
+inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& how = {}) {
   std::string name = "test", argument = option;
   std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
   int argc = 2;
   tess::Setup setup = tess::take_options(argc, argv.data());
   Ran ran{std::make_shared<Stage>(std::move(scene)), {}};
-  const auto main = [&ran]() -> tess::Task { return simulate(ran.stage, ran.result); };
+  const auto main = [&]() -> tess::Task { return simulate(ran.stage, ran.result, how); };
   REQUIRE(tess::run(setup, main) == 0);
   return ran;
 }
@@ -36,7 +36,7 @@ inline Measured run_serially(const Stage& stage) {
   const Scene& scene = stage.scene;
   std::vector<tess::dn::Object> objects;
   for (std::size_t i = 0; i < stage.fields.size(); ++i)
-    objects.push_back({&stage.fields[i].field(), scene.objects[i].frame});
+    objects.push_back(stage.fields[i].object(scene.objects[i].frame));
   std::vector<Flock> flocks(stage.masses.size());
   for (std::uint64_t id = 0; id < stage.source.size(); ++id) {
     const Start start = stage.source.particle(id);

@@ -1,5 +1,7 @@
 // Whole runs: the same bits on any number of PEs, under any schedule and any cut of space, and the
 // bits of a plain loop over all particles.
+#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "tests/particles/run_scene.hpp"
 
 #include <fmt/core.h>
@@ -8,14 +10,15 @@ using namespace particles;
 
 namespace {
 
-/// Two masses, two objects of which one moves and spins, every kind of rule, an explosion that
-/// begins and ends within steps.
+/// Two masses, two objects of which one moves and spins and one shrinks, every kind of rule, an
+/// explosion that begins and ends within steps.
 Scene lively_scene() {
   return parse_scene(R"({"dt": 0.01, "steps": 40,
     "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 8}}, "resolution": 20, "thickness": 0.3,
                  "motion": {"velocity": [0.2, 0, 0], "spin": [0, 2, 1]}},
                 {"shape": {"box": {"half": [1, 1, 0.2]}}, "resolution": 16, "thickness": 0.4,
-                 "transform": {"position": [0, 0, -1.2], "rotation": [10, 0, 0], "scale": 1.5}}],
+                 "transform": {"position": [0, 0, -1.2], "rotation": [10, 0, 0], "scale": 1.5},
+                 "motion": {"scale": -0.4}}],
     "emitters": [{"count": 60, "box": {"low": [-1, -1, 0.6], "high": [1, 1, 1.5]}, "spread": 2, "mass": 2},
                  {"count": 60, "sphere": {"centre": [0, 0, 0], "radius": 1.2, "inner": 0.8}, "outward": -3}],
     "rules": {"gravity": [0, 0, -9.81], "impact": {"restitution": 0.8},
@@ -103,4 +106,82 @@ TEST_CASE("a block ends when it is empty and is made again by who enters it", "[
     }
     CHECK(ran.last().tunnelled == 0);
   }
+}
+
+TEST_CASE("a run gives the same bits whatever a balancer moves", "[particles][run][balance]") {
+  const Ran first = run_scene(lively_scene(), "--pes=1");
+  CHECK(first.result.rounds.empty());
+  const auto moves_of = [&](const std::string& machine, const std::string& balance) {
+    INFO(machine << " --balance " << balance);
+    Scene scene = lively_scene();
+    scene.block = 0.3;
+    scene.exchange = 2;
+    RunOptions how;
+    how.balance = tess::parse_balance(balance);
+    const Ran ran = run_scene(scene, machine, how);
+    check_same(ran, first);
+    std::size_t moves = 0;
+    for (const auto& round : ran.result.rounds) moves += round.n_moved;
+    return moves;
+  };
+  std::uint64_t seed = 0;
+  for (const std::string& strategy : tess::balance::strategy_names())
+    for (const char* when : {"at_sync", "automatic", "periodic,period=2ms"}) {
+      ++seed;
+      const std::string balance = fmt::format("{},when={},seed={}", strategy, when, seed);
+      (void)moves_of(fmt::format("--sim=pes=6,per-process=2,cost=1us,migrate={},seed={}",
+                                 seed % 2 == 0 ? "0.1" : "0",
+                                 seed),
+                     balance);
+    }
+  // Every block of every round.
+  const std::size_t none = moves_of("--sim=pes=3,seed=5", "none"),
+                    rotated = moves_of("--sim=pes=3,seed=5", "rotate");
+  CHECK(none == 0);
+  CHECK(rotated > 500);
+  CHECK(moves_of("--pes=2", "rotate") > 500);
+  CHECK(moves_of("--pes=4", "greedy,when=periodic,period=1ms") < 1'000'000);
+}
+
+TEST_CASE("a balancer spreads blocks that are born on one PE", "[particles][run][balance]") {
+  // All particles begin in one block, and fly apart.
+  Scene scene = parse_scene(R"({"dt": 0.01, "steps": 80, "block": 0.25, "exchange": 4,
+    "emitters": [{"count": 4000, "sphere": {"radius": 0.01}, "outward": 2, "spread": 0.5}],
+    "rules": {"gravity": [0, 0, -1]}})",
+                            "scene.json");
+  RunOptions how;
+  how.balance = tess::parse_balance("greedy");
+  const Ran ran = run_scene(scene, "--sim=pes=4,cost=1us", how);
+  REQUIRE(ran.result.rounds.size() == 20);
+  CHECK(ran.result.rounds.front().n_elements < 30);
+  CHECK(ran.result.rounds.back().n_elements > 40);
+  CHECK(ran.result.rounds.back().predicted < 1.2);
+  CHECK(ran.last().hash == run_scene(scene, "--pes=1").last().hash);
+}
+
+TEST_CASE("a run in compressed fields gives the same bits on any PEs, and near those of flat ones",
+          "[particles][run]") {
+  const auto compressed = [] {
+    Scene scene = lively_scene();
+    compress_fields(scene);
+    return scene;
+  };
+  const Ran first = run_scene(compressed(), "--pes=1");
+  CHECK(first.last().hash == run_serially(*first.stage).hash);
+  CHECK(first.stage->fields[0].field().distance.empty());
+  for (const FieldCost& field : first.result.fields) {
+    CHECK(field.bytes == field.cells * 8);
+    CHECK(field.bytes_used > 0);
+    CHECK(field.bytes_used < field.bytes);
+  }
+  for (const char* option :
+       {"--pes=2", "--pes=4", "--sim=pes=6,per-process=2,migrate=0.1,seed=3", "--sim=pes=3"})
+    check_same(run_scene(compressed(), option), first);
+  RunOptions how;
+  how.balance = tess::parse_balance("rotate");
+  check_same(run_scene(compressed(), "--sim=pes=4,per-process=2,seed=2", how), first);
+  const Ran flat = run_scene(lively_scene(), "--pes=1");
+  CHECK(flat.last().hash != first.last().hash);
+  CHECK(flat.result.fields[0].bytes_used == 0);
+  CHECK(first.last().energy() == Approx(flat.last().energy()).epsilon(0.02));
 }

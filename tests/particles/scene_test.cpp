@@ -61,6 +61,13 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
        "\"transform\": {\"matrix\": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}",
        "mirrors the object"},
       {"\"thickness\": 0.5",
+       "\"motion\": {\"scale\": -20}",
+       "objects[1].motion.scale: -20 a second takes the scale from 1 to -1 in 10 steps of 0.01; it "
+       "must stay above 0"},
+      {"\"thickness\": 0.5",
+       "\"motion\": {\"grow\": 1}",
+       "objects[1].motion.grow: unknown key; allowed here: velocity, spin, scale"},
+      {"\"thickness\": 0.5",
        "\"thickness\": 0.5, \"thickness\": 1",
        "key \"thickness\" stands twice"},
       {"\"thickness\": 0.5",

@@ -49,6 +49,9 @@ TEST_CASE("rotate puts elements where it says, 40 rounds", "[runtime][protocol][
 TEST_CASE("periodic balance rounds lose no message", "[runtime][protocol][balance]") {
   run_seeds("balance_periodic");
 }
+TEST_CASE("rounds between epochs leave elements to come and go", "[runtime][protocol][balance]") {
+  run_seeds("balance_epochs");
+}
 TEST_CASE("a message to an absent index waits for its element", "[runtime][protocol]") {
   run_seeds("message_first");
 }

@@ -71,6 +71,7 @@ void Balancer::attach(Collection& array) {
 
 void Balancer::attached_everywhere(std::int64_t n_under_way) {
   attached_ = true;
+  if (when_attached_) when_attached_(0);
   n_under_way_ += n_under_way;
   begin_if_ready();
 }
@@ -131,6 +132,19 @@ void Balancer::pass(Element& element) {
 
 Task Balancer::reached(std::uint64_t /*n_elements*/) {
   const std::uint32_t barrier = barriers_++;
+  co_await phase_ends();
+  group().broadcast<&Balancer::resume>(barrier);
+}
+
+Task Balancer::phase_ends() {
+  TESS_CHECK(coordinator_ != nullptr, "rounds are asked for on ", plan_.coordinator, " alone");
+  TESS_CHECK(!running_, "a round while another runs: await that one first");
+  running_ = true;
+  if (!attached_) {
+    Future<std::uint64_t> attached;
+    when_attached_ = attached.callback();
+    co_await attached;
+  }
   bool worth = true;
   if (plan_.when == BalanceWhen::automatic) {
     Future<PhaseSums> sums;
@@ -144,7 +158,7 @@ Task Balancer::reached(std::uint64_t /*n_elements*/) {
     group().broadcast<&Balancer::forget>();
   }
   phase_began_ = current_pe().now();
-  group().broadcast<&Balancer::resume>(barrier);
+  running_ = false;
 }
 
 Task Balancer::due(std::uint64_t seen) {

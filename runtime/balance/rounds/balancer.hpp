@@ -52,6 +52,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
     coordinator_ = std::move(coordinator);
   }
   [[nodiscard]] const std::vector<Round>& history() const;
+  /// On the coordinator: a phase is over, without a barrier of the elements.
+  Task phase_ends();
 
   // Entry methods.
   void attached_everywhere(std::int64_t n_under_way);
@@ -97,7 +99,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   std::uint64_t n_rounds_ = 0;
   std::int64_t n_under_way_ = 0;  // elements that left before balancing started where they were
   bool attached_ = false;         // everywhere
-  bool ready_ = false;            // all members of round 0 are found
+  Callback<std::uint64_t> when_attached_;  // a round that waits for it
+  bool ready_ = false;                     // all members of round 0 are found
   bool running_ = false;
   Time phase_began_{0};
 };

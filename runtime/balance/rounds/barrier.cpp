@@ -55,8 +55,8 @@ bool Barrier::entered(Element& element) {
   sync.known = true;
   if (sync.member) tree_.enter(sync.next);
   if (sync.phase == SyncPhase::waits) {
-    if (late) {
-      contribute(sync);  // it began to wait where balancing had not started
+    if (sync.next == 0) {
+      at_sync(element);  // it began to wait where balancing had not started
     } else if (sync.waits_for < n_resumed_) {
       wake(element);
     }

@@ -1,0 +1,55 @@
+// Clusters of small boxes that drift through space, turn, and pass through each other. The space is
+// a problem's plane of cells, one layer deep. Where an object is is a function of its number and
+// the iteration alone: owners and oracle compute it alike.
+//
+//     ┌──────────────┐   Clusters have one size; the n-th has n² times the objects of the first,
+//     │ ∴ →    ⁖     │   and n⁴ times its pairs. Objects are numbered cluster by cluster.
+//     │     ⁘ ↙  ← ⁙ │
+//     └──────────────┘
+#pragma once
+
+#include "apps/lb_lab/workload.hpp"
+#include "collide/hit.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace lb_lab {
+
+class Clusters {
+ public:
+  explicit Clusters(const Problem& problem);
+
+  [[nodiscard]] std::uint64_t n_objects() const { return n_objects_; }
+  /// Nominal, at speed 1, of a pair found: the objects' cost is put on the pairs.
+  [[nodiscard]] double seconds_a_pair() const { return seconds_a_pair_; }
+
+  /// Objects first … last − 1 of an owner in an iteration; the local id is the number.
+  [[nodiscard]] std::vector<tess::Item> items(std::uint64_t first,
+                                              std::uint64_t last,
+                                              tess::OwnerId owner,
+                                              std::int32_t iteration) const;
+
+ private:
+  /// A cluster in an iteration.
+  struct Pose {
+    double x = 0, y = 0, cosine = 1, sine = 0;
+  };
+  [[nodiscard]] Pose pose(std::uint64_t cluster, std::int32_t iteration) const;
+  [[nodiscard]] std::uint64_t first_of(std::uint64_t cluster) const;
+
+  double width_, height_, n_iterations_;
+  std::uint64_t seed_, n_objects_;
+  double seconds_a_pair_;
+  double radius_, edge_;  // of a cluster, of a box
+};
+
+/// All colliding pairs are different boxes whose closures meet.
+inline constexpr tess::PairRules pair_rules{tess::Touching::counts, tess::WithinModel::test};
+
+/// A pair's part of the answer, in an iteration. Which of the two is first says nothing.
+[[nodiscard]] std::uint64_t answer_of_pair(tess::LocalId a,
+                                           tess::LocalId b,
+                                           std::int32_t iteration);
+
+}  // namespace lb_lab

@@ -1,0 +1,40 @@
+// Owns some of the objects of a collision: hands them to the collider in each iteration, is told of
+// their pairs, and adds them to the answer. Owners stay where they are; what is balanced are the
+// collider's voxels, where the pairs are found.
+#pragma once
+
+#include "apps/lb_lab/collision/clusters.hpp"
+#include "apps/lb_lab/station.hpp"
+#include "collide/collider.hpp"
+#include "runtime/runtime.hpp"
+
+namespace lb_lab {
+
+class Owner : public tess::Chare<Owner, tess::Index1> {
+ public:
+  Owner() = default;
+  Owner(tess::GroupProxy<Station> stations, std::int32_t n_owners)
+      : stations_(stations), n_owners_(n_owners) {}
+
+  // Entry methods.
+  void submit(const tess::Collider& collider, std::int32_t iteration);
+  void told(const tess::Hits& hits);
+  void end();
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(stations_, n_owners_, iteration_, answer_);
+  }
+
+ private:
+  tess::GroupProxy<Station> stations_;
+  std::int32_t n_owners_ = 1, iteration_ = 0;
+  std::uint64_t answer_ = 0;
+};
+
+/// A report of hits to owners: to one of the two owners of a pair, once. The PE where the voxel is
+/// has its station charged.
+[[nodiscard]] tess::Report report_to(tess::ArrayProxy<Owner> owners,
+                                     tess::GroupProxy<Station> stations);
+
+}  // namespace lb_lab

@@ -1,0 +1,118 @@
+// Eight look-ups in one compressed field, in grid coordinates: what sample.hpp does for flat ones.
+// Entries are decoded by the operations of EntryDecoder in their order, so that the measured error
+// holds here too. Private to the step loop.
+#pragma once
+
+#include "collide/dn_field/compressed_entry.hpp"
+#include "collide/dn_field/sample.hpp"
+
+namespace tess::dn {
+
+/// A compressed field as the loops see it.
+struct PlaneSampler {
+  const std::uint32_t* block = nullptr;
+  const std::uint32_t* entry = nullptr;
+  bool wide = false;
+  int bits = 0;  ///< of each coordinate of a narrow entry's normal
+  std::int32_t mask = 0, middle = 0;
+  std::uint32_t zero = 0;  ///< of a narrow entry's distance
+  float per_middle = 0, step = 0;
+  float cell = 1, thickness = 0;
+  int e = 2, row = 1, layer = 1;  ///< of blocks
+  int n[3] = {0, 0, 0};
+};
+
+inline PlaneSampler sampler_of(const CompressedField& field) {
+  const EntryDecoder decoder(field.layout);
+  return {field.block.data(),
+          field.entry.data(),
+          field.layout.wide,
+          field.layout.wide ? 0 : field.layout.normal_bits,
+          static_cast<std::int32_t>(decoder.mask),
+          decoder.middle,
+          static_cast<std::uint32_t>(decoder.zero),
+          decoder.per_middle,
+          decoder.step,
+          static_cast<float>(field.grid.cell),
+          static_cast<float>(field.thickness),
+          field.block_shift,
+          field.n_blocks[0],
+          field.n_blocks[0] * field.n_blocks[1],
+          {field.grid.n[0], field.grid.n[1], field.grid.n[2]}};
+}
+
+namespace lanes {
+
+using U = std::uint32_t __attribute__((vector_size(32)));
+
+struct Planes {
+  F distance;
+  F3 normal;  ///< unit or zero
+};
+
+/// Distances at the cells' middles.
+inline Planes read_planes(const PlaneSampler& field, I at) {
+  if (field.wide) {
+    const I low = gather(field.entry, at + at), high = gather(field.entry, at + at + 1);
+    return {(F)low, unit(decode(high))};
+  }
+  const I word = gather(field.entry, at);
+  const I cu = (word >> field.bits) & field.mask, cv = word & field.mask;
+  const F u = __builtin_convertvector(cu - field.middle, F) * field.per_middle;
+  const F v = __builtin_convertvector(cv - field.middle, F) * field.per_middle;
+  const F z = 1.0F - abs(u) - abs(v);
+  const F fold = z < 0.0F ? -z : F{};
+  const I sign = I{} + std::bit_cast<std::int32_t>(0x80000000U);
+  const F x = u - (F)((I)fold | ((I)u & sign)), y = v - (F)((I)fold | ((I)v & sign));
+  const F scale = only(cu != field.mask, 1.0F / sqrt(x * x + y * y + z * z));
+  const I steps = (I)(((U)word >> (2 * field.bits)) - field.zero);
+  return {__builtin_convertvector(steps, F) * field.step, {x * scale, y * scale, z * scale}};
+}
+
+/// What the voxels (i, j, k), which are in the grid, say.
+inline Planes voxels(const PlaneSampler& field, I i, I j, I k) {
+  const int e = field.e, in_block = (1 << e) - 1;
+  const I head = gather(field.block, (k >> e) * field.layer + (j >> e) * field.row + (i >> e));
+  const I s = head & 7, in_cell = ((I{} + 1) << s) - 1, t = e - s;
+  const I li = i & in_block, lj = j & in_block, lk = k & in_block;
+  const I at = (I)((U)head >> 3) + ((((lk >> s) << t) + (lj >> s)) << t) + (li >> s);
+  Planes plane = read_planes(field, at);
+  const auto off = [&](I of) {
+    return 0.5F * field.cell * __builtin_convertvector(2 * (of & in_cell) - in_cell, F);
+  };
+  const F3& n = plane.normal;
+  const F d = plane.distance + (n.x * off(li) + n.y * off(lj) + n.z * off(lk));
+  plane.distance = min(max(d, all(-field.thickness)), all(field.thickness));
+  return plane;
+}
+
+/// The nearest and the tangent look-up. An entry's normal is that of all its voxels, so the tangent
+/// one carries its plane on; both need the normal.
+template <LookUp Kind, Ask Asked>
+requires(Kind != LookUp::trilinear) inline Sample sample(const PlaneSampler& field, F3 g) {
+  const F3 h{g.x + 0.5F, g.y + 0.5F, g.z + 0.5F};
+  const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
+             nz = static_cast<float>(field.n[2]);
+  const I in = (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
+  const I i = __builtin_convertvector(only(in, h.x), I),
+          j = __builtin_convertvector(only(in, h.y), I),
+          k = __builtin_convertvector(only(in, h.z), I);
+  const Planes plane = voxels(field, i, j, k);
+  Sample found{};
+  if constexpr (Asked != Ask::distance) found.normal = only(in, plane.normal);
+  if constexpr (Asked != Ask::normal) {
+    found.voxel = found.distance = plane.distance;
+    if constexpr (Kind == LookUp::tangent) {
+      const F3 beside{g.x - __builtin_convertvector(i, F),
+                      g.y - __builtin_convertvector(j, F),
+                      g.z - __builtin_convertvector(k, F)};
+      found.distance += field.cell * dot(plane.normal, beside);
+    }
+    found.distance = in ? found.distance : all(out_of_reach);
+    found.voxel = in ? found.voxel : all(out_of_reach);
+  }
+  return found;
+}
+
+}  // namespace lanes
+}  // namespace tess::dn
