@@ -18,11 +18,12 @@ objects     a list (default: none); of each:
   shape       one of
                 {"sphere": {"radius": r, "rings": 48}}
                 {"box": {"half": [x, y, z]}}
-                {"boxes": [{"low": [x, y, z], "high": [x, y, z]}, …]}
+                {"boxes": [{"low": [x, y, z], "high": [x, y, z]}, …]}   their union
                 {"torus": {"major": r, "minor": r, "n": 64}}            around the z axis
                 {"cylinder": {"radius": r, "half_height": h, "sides": 64}}   along the z axis
                 {"plate": {"half": h, "n": 1}}                          in the plane z = 0
-                {"file": "mesh.obj"}                                    relative to the scene file
+                {"file": "mesh.obj"}                                    relative to the scene file; closed parts that
+                    overlap keep their inner faces, which count as surface: join them before
   resolution  voxels along each axis of the field, 4 … 1024 (default 60)
   thickness   of the field beyond the object, in its own units (default: a quarter of its extent)
   choose      instead of the two: {"max_speed": v, "detail": d}: the field covers a step at speed v

@@ -1,5 +1,6 @@
 #include "apps/particles/shape_reader.hpp"
 
+#include "apps/particles/box_union.hpp"
 #include "collide/dn_field/grid.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/error.hpp"
@@ -14,13 +15,6 @@ using tess::dn::Surface;
 using tess::dn::Vec3;
 
 constexpr int most_rings = 2000;
-
-void append(Surface& whole, const Surface& part, Vec3 shift) {
-  const auto first = static_cast<std::uint32_t>(whole.vertices.size());
-  for (const Vec3 p : part.vertices) whole.vertices.push_back(p + shift);
-  for (const auto& t : part.triangles)
-    whole.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-}
 
 /// A closed cylinder around the z axis, |z| <= half_height.
 Surface make_cylinder(double radius, double half_height, int sides) {
@@ -45,16 +39,20 @@ Surface make_cylinder(double radius, double half_height, int sides) {
 }
 
 Surface read_boxes(const Node& node) {
-  Surface out;
+  std::vector<tess::dn::Bounds> boxes;
   for (const Node& item : node.items(1)) {
     const Keys box = item.keys({"low", "high"});
     const Vec3 low = box.need("low", "a corner [x, y, z]").vector(),
                high = box.need("high", "the other corner [x, y, z]").vector();
     if (!(low.x < high.x && low.y < high.y && low.z < high.z))
       box["high"].refuse("is not above low on every axis");
-    append(out, tess::dn::make_box(0.5 * (high - low)), 0.5 * (low + high));
+    boxes.push_back({low, high});
   }
-  return out;
+  try {
+    return union_of(boxes);
+  } catch (const tess::Error& error) {
+    node.refuse(std::string("cannot be joined: ") + error.what());
+  }
 }
 
 Surface read_shape(const Node& node, const std::string& folder, std::string& name) {

@@ -118,6 +118,7 @@ void study_rules(const Subject& subject,
   if (starts.empty()) return;
   const auto study_flights = [&](const char* name, const Rules& rules, const auto& exact_flight) {
     std::vector<Flight> exact;
+    exact.reserve(starts.size());
     for (const Flight& start : starts) exact.push_back(exact_flight(start));
     study(name, rules, [&](double dt, StudyRow& now) {
       compare_flights(object, rules, dt, time, starts, exact, now);

@@ -12,9 +12,8 @@ struct VoxelPlane {
 
 VoxelPlane voxel(const CompressedField& field, const EntryDecoder& decoder, int i, int j, int k) {
   const int e = field.block_shift;
-  const auto at = static_cast<std::size_t>(
-      ((k >> e) * field.n_blocks[1] + (j >> e)) * field.n_blocks[0] + (i >> e));
-  const std::uint32_t head = field.block[at];
+  const int block = ((k >> e) * field.n_blocks[1] + (j >> e)) * field.n_blocks[0] + (i >> e);
+  const std::uint32_t head = field.block[static_cast<std::size_t>(block)];
   const int s = static_cast<int>(head & 7U), in_block = (1 << e) - 1, in_cell = (1 << s) - 1,
             t = e - s;
   const std::array<int, 3> local{i & in_block, j & in_block, k & in_block};

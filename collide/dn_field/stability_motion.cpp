@@ -125,6 +125,40 @@ void moving_walls(Rows& rows) {
   }
 }
 
+/// Surfaces that come from beyond their field in a step, and balls that grow and shrink: what they
+/// meet leaves with 2 u - v.
+void approaching_walls(Rows& rows) {
+  const Field floor = plane_field(cube_grid(2, 9), {0, 0, 1});
+  for (const double thicknesses : {1.0, 1e2, 1e4, 1e6}) {
+    Object object{&floor, {}};
+    object.frame.position = {0, 0, -thicknesses};
+    object.frame.velocity = {0, 0, 2 * thicknesses};
+    const Particle end = flown(impact(1, Sweep::on), 1, 1, {&object, 1}, {{0.1, 0.2, 0.5}, {}});
+    rows.add("plate from beyond",
+             "u dt/thickness",
+             thicknesses,
+             std::abs(end.velocity.z / (4 * thicknesses) - 1),
+             1e-9);
+  }
+  const Field ball = sphere_field(cube_grid(2, 33), 0.5);
+  for (const double growth : {1e-3, 1e-1, 1.0, 1e2, 1e6}) {
+    Object object{&ball, {}};
+    object.frame.scale_rate = 1;  // the surface at (1 + t)/2
+    const int n_steps = static_cast<int>(std::ceil(2 / growth));
+    const Particle end =
+        flown(impact(1, Sweep::on), growth, n_steps, {&object, 1}, {{1, 0, 0}, {}});
+    rows.add("growing ball", "growth a step", growth, norm(end.velocity - Vec3{1, 0, 0}), 1e-5);
+  }
+  for (const int n_steps : {1, 10, 1000}) {
+    Object object{&ball, {}};
+    object.frame.scale_rate = -(1 - 1e-6);
+    const Particle end = flown(
+        impact(1, Sweep::on), 1.0 / n_steps, n_steps, {&object, 1}, {{1.5, 0, 0}, {-2, 0, 0}});
+    rows.add(
+        "ball that shrinks to 1e-6", "steps", n_steps, norm(end.velocity - Vec3{1, 0, 0}), 1e-4);
+  }
+}
+
 /// Held by drag on a slope: it creeps with the speed that balances gravity, and stays on it.
 void slope(Rows& rows) {
   const Vec3 normal = direction({1, 0, 2});
@@ -207,6 +241,7 @@ void extreme_motion(Rows& rows) {
   grazing(rows);
   corners(rows);
   moving_walls(rows);
+  approaching_walls(rows);
   slope(rows);
   all_rules(rows);
 }

@@ -110,7 +110,7 @@ Contact first_contact(const RuleConstants& c,
       const double t = seen.seen(elapsed + s), size = seen.size(elapsed + s);
       const Vec3 p = seen.from + t * seen.way;
       const Here here = ask(object, kind, p);
-      const double cell = static_cast<double>(object.cell);
+      const auto cell = static_cast<double>(object.cell);
       const double stride = std::max(here.free, stride_cells * cell) / length;
       next = std::min(next, seen.in_step(t + stride) - elapsed);
       const double rise = dot(here.normal, seen.way);

@@ -107,6 +107,28 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
 }
 
+TEST_CASE("what slides on the ground does not slide into the house that stands on it",
+          "[particles][physics]") {
+  // The house reaches into the ground: taken as two boxes, the ground went on inside.
+  const Scene scene = parse_scene(R"({"dt": 0.01, "steps": 400,
+    "objects": [{"shape": {"boxes": [{"low": [-5, -5, -1], "high": [5, 5, 0]}, {"low": [2, -2, -0.5], "high": [4, 2, 3]}]},
+                 "resolution": 60, "thickness": 1}],
+    "emitters": [{"count": 200, "box": {"low": [-1, -1.5, 0.04], "high": [1, 1.5, 0.3]}, "velocity": [1.5, 0, 0], "spread": 0.2}],
+    "rules": {"gravity": [0, 0, -9.81], "impact": {"restitution": 0.4, "threshold": 0.05}},
+    "outputs": {"trajectories": 400}})",
+                                  "scene.json");
+  const double cell = 12.0 / 59;
+  const Ran ran = run_scene(scene, "--pes=1");
+  double deepest = 0;
+  for (const Sample& sample : ran.result.trajectories.back().samples) {
+    const Vec3 p = sample.position;
+    const double below = -p.z, in_house = std::min({p.x - 2, 4 - p.x, 2 - std::abs(p.y), 3 - p.z});
+    deepest = std::max({deepest, below, in_house});
+  }
+  CHECK(deepest < 0.5 * cell);  // of the corner between them a voxel sees one face
+  CHECK(ran.last().tunnelled == 0);
+}
+
 TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negative one away",
           "[particles][physics]") {
   struct Regime {
