@@ -90,12 +90,14 @@ void Station::first_begins() {
   began_ = clock();
   tess::Meter& meter = tess::current_pe().start_meter();
   busy_at_begin_ = meter.seconds(meter.busy());
+  cpu_at_begin_ = cpu();
 }
 
 void Station::iteration_ends(std::int32_t iteration) {
-  const double before = busy_at_begin_, began = began_;
+  const double busy_before = busy_at_begin_, cpu_before = cpu_at_begin_, began = began_;
   first_begins();
-  const double busy = busy_at_begin_ - before;
+  // The CPU's time has the looking for messages, too; the meter's what others stole meanwhile.
+  const double busy = std::min(busy_at_begin_ - busy_before, cpu_at_begin_ - cpu_before);
   entry(record_.seconds, iteration, 0) += busy;
   draw(iteration, {began, std::min(began + busy, began_)});
 }

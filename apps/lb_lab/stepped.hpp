@@ -17,7 +17,7 @@ class Stepped {
   Stepped& operator=(const Stepped&) = delete;
   virtual ~Stepped() = default;
 
-  /// Makes the arrays and has them balanced; called in an epoch. Default: no balancer was made.
+  /// Makes the arrays, called in an epoch. The balancer is empty where the experiment wants none.
   virtual tess::BalancerProxy create() = 0;
   /// Creates what the first iteration finds.
   virtual tess::Task begin() = 0;

@@ -144,56 +144,6 @@ class Rotor : public Chare<Rotor, Index1> {
   int first_ = 0, round_ = 0;
 };
 
-/// Counts who has reached each barrier. Some wander first, and leave again while they wait for the
-/// first barrier: to PEs where balancing has started, and to others.
-class Marcher : public Chare<Marcher, Index1> {
- public:
-  static constexpr int n_phases = 8;
-  static inline Trial* trial = nullptr;
-  static inline int n = 0;
-  static inline std::array<std::atomic<int>, n_phases + 1> reached{};
-
-  void begin(int n_moves) {
-    if (n_moves == 0) {
-      reach();
-    } else {
-      array()[index()].send<&Marcher::begin>(n_moves - 1);
-    }
-    if (n_moves > 0 || wanders_) wander();
-    wanders_ = n_moves > 0;
-  }
-  void resume_from_sync() {
-    trial->expect(reached[static_cast<std::size_t>(phase_)] == n,
-                  element_text(*this),
-                  " is past barrier ",
-                  phase_,
-                  ", which ",
-                  reached[static_cast<std::size_t>(phase_)].load(),
-                  " of ",
-                  n,
-                  " have reached");
-    if (++phase_ <= n_phases) reach();
-  }
-  [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(phase_, wanders_);
-  }
-
- private:
-  void wander() {
-    const std::int32_t n_pes = current_pe().n_pes();
-    migrate_to(PeId{(current_pe().id().value + 1 + index().x % n_pes) % n_pes});
-  }
-  void reach() {
-    charge(std::chrono::microseconds(1 + index().x % 3));
-    ++reached[static_cast<std::size_t>(phase_)];
-    at_sync();
-  }
-  int phase_ = 0;
-  bool wanders_ = false;
-};
-
 /// Sends itself around a ring of elements, while periodic rounds move them.
 class Runner : public Chare<Runner, Index1> {
  public:
@@ -266,24 +216,6 @@ void balance_rotate(Trial& trial) {
     rotors.broadcast<&Rotor::begin>();
   });
   trial.expect(Rotor::n_done == n, Rotor::n_done.load(), " of ", n, " elements met all rounds");
-}
-
-void balance_barrier(Trial& trial) {
-  Marcher::trial = &trial;
-  Marcher::n = trial.draw(1, 20);
-  for (auto& count : Marcher::reached) count = 0;
-  BalanceOptions options;
-  do options.strategy = drawn_strategy(trial.random());
-  while (options.strategy == "none");  // no barrier
-  const int n_moves = trial.draw(0, 3);
-  trial.run_clean([&] {
-    const auto marchers = create<Marcher>(range(Marcher::n));
-    if (trial.seed() % 2 == 0) marchers.broadcast<&Marcher::begin>(n_moves);
-    start_balancing(marchers, options);
-    if (trial.seed() % 2 != 0) marchers.broadcast<&Marcher::begin>(n_moves);
-  });
-  for (const auto& count : Marcher::reached)
-    trial.expect(count == Marcher::n, count.load(), " of ", Marcher::n, " reached a barrier");
 }
 
 void balance_periodic(Trial& trial) {

@@ -25,7 +25,7 @@ void exceptions(Trial& trial);        // ends.cpp
 void dead_letters(Trial& trial);      // ends.cpp
 void groups(Trial& trial);            // groups.cpp
 void balance_rounds(Trial& trial);    // balance.cpp
-void balance_barrier(Trial& trial);   // balance.cpp
+void balance_barrier(Trial& trial);   // balance_barrier.cpp
 void balance_rotate(Trial& trial);    // balance.cpp
 void balance_periodic(Trial& trial);  // balance.cpp
 void balance_epochs(Trial& trial);    // balance_epochs.cpp

@@ -1,0 +1,83 @@
+// The balancer's barrier: elements that wander from PE to PE while balancing starts, and wait.
+#include "apps/protocol_fuzz/scenarios.hpp"
+#include "runtime/balance.hpp"
+#include "runtime/balance/strategy.hpp"
+
+#include <array>
+#include <atomic>
+
+namespace tess::fuzz {
+namespace {
+
+/// Counts who has reached each barrier. Some wander first, and leave again while they wait for the
+/// first barrier: to PEs where balancing has started, and to others.
+class Marcher : public Chare<Marcher, Index1> {
+ public:
+  static constexpr int n_phases = 8;
+  static inline Trial* trial = nullptr;
+  static inline int n = 0;
+  static inline std::array<std::atomic<int>, n_phases + 1> reached{};
+
+  void begin(int n_moves) {
+    if (n_moves == 0) {
+      reach();
+    } else {
+      array()[index()].send<&Marcher::begin>(n_moves - 1);
+    }
+    if (n_moves > 0 || wanders_) wander();
+    wanders_ = n_moves > 0;
+  }
+  void resume_from_sync() {
+    trial->expect(reached[static_cast<std::size_t>(phase_)] == n,
+                  element_text(*this),
+                  " is past barrier ",
+                  phase_,
+                  ", which ",
+                  reached[static_cast<std::size_t>(phase_)].load(),
+                  " of ",
+                  n,
+                  " have reached");
+    if (++phase_ <= n_phases) reach();
+  }
+  [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(phase_, wanders_);
+  }
+
+ private:
+  void wander() {
+    const std::int32_t n_pes = current_pe().n_pes();
+    migrate_to(PeId{(current_pe().id().value + 1 + index().x % n_pes) % n_pes});
+  }
+  void reach() {
+    charge(std::chrono::microseconds(1 + index().x % 3));
+    ++reached[static_cast<std::size_t>(phase_)];
+    at_sync();
+  }
+  int phase_ = 0;
+  bool wanders_ = false;
+};
+
+}  // namespace
+
+void balance_barrier(Trial& trial) {
+  Marcher::trial = &trial;
+  Marcher::n = trial.draw(1, 20);
+  for (auto& count : Marcher::reached) count = 0;
+  BalanceOptions options;
+  const auto& names = balance::strategy_names();
+  do options.strategy = names[trial.random().below(names.size())];
+  while (options.strategy == "none");  // no barrier
+  const int n_moves = trial.draw(0, 3);
+  trial.run_clean([&] {
+    const auto marchers = create<Marcher>(range(Marcher::n));
+    if (trial.seed() % 2 == 0) marchers.broadcast<&Marcher::begin>(n_moves);
+    start_balancing(marchers, options);
+    if (trial.seed() % 2 != 0) marchers.broadcast<&Marcher::begin>(n_moves);
+  });
+  for (const auto& count : Marcher::reached)
+    trial.expect(count == Marcher::n, count.load(), " of ", Marcher::n, " reached a barrier");
+}
+
+}  // namespace tess::fuzz
