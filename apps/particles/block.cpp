@@ -65,7 +65,6 @@ void Block::move(const Stretch& stretch) {
     return;
   }
   if (n_particles != 0) work(stretch);
-  if (stretch.sync != 0) at_sync();
 }
 
 void Block::work(const Stretch& stretch) {

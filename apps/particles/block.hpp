@@ -32,12 +32,10 @@ class Block : public tess::Chare<Block, tess::Index3> {
   void enter(Arrivals arrivals);
   void move(const Stretch& stretch);
 
-  // For a balancer: blocks that stand side by side have neighbouring positions, and a block that
-  // has done its stretch may be moved until the next.
+  // For a balancer: blocks that stand side by side have neighbouring positions.
   [[nodiscard]] std::array<double, 3> balance_position() const {
     return {1.0 * index().x, 1.0 * index().y, 1.0 * index().z};
   }
-  void resume_from_sync() {}
 
   template <class Ar>
   void serialize(Ar& ar) {

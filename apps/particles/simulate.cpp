@@ -86,7 +86,8 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   tess::BalancerProxy balancer;
   const auto begin_balancing = [&] { balancer = tess::start_balancing(blocks, *options.balance); };
   if (options.balance) co_await tess::epoch(begin_balancing);
-  const bool meets = options.balance && options.balance->when != tess::BalanceWhen::periodic;
+  const bool rounds_between =
+      options.balance && options.balance->when != tess::BalanceWhen::periodic;
 
   Stretch stretch;
   stretch.audit = result.audited ? 1 : 0;
@@ -96,7 +97,6 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     stretch.first = step;
     stretch.n_steps = 0;
     stretch.ask = asked(scene, step);
-    stretch.sync = 0;
     if (stretch.ask != Stretch::nothing) co_await tess::epoch(move);
     if ((stretch.ask & Stretch::measure) != 0) {
       tess::Future<Measured> measured;
@@ -119,9 +119,9 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
                                       next_after(step, outputs.trajectories, scene.steps)});
     stretch.n_steps = to - step;
     stretch.ask = Stretch::nothing;
-    stretch.sync = meets ? 1 : 0;
     const tess::Time begin = pe.now();
     co_await tess::epoch(move);
+    if (rounds_between) co_await balancer.round();
     result.seconds += seconds(pe.now() - begin);
     step = to;
   }

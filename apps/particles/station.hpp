@@ -20,7 +20,6 @@ struct Stretch {
   std::int32_t n_steps = 0;     ///< may be 0: to look without moving
   std::uint32_t ask = nothing;  ///< at the end; judge: who ended inside an object
   std::uint32_t audit = 0;      ///< 1: each step is looked at for particles that tunnel
-  std::uint32_t sync = 0;       ///< 1: blocks wait for a balance round at the end
 };
 
 /// A traced particle at one time.
