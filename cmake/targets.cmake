@@ -60,7 +60,7 @@ endfunction()
 
 # tess_test(NAME [TSAN] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
 # A test case tagged [.] is hidden: it runs by hand only (soak, seeds, benchmarks).
-# TSAN: it has threads, so the thread sanitizer has something to say about it.
+# TSAN: it has threads, so the thread sanitizer has something to say about it; not about cases tagged [one_thread].
 function(tess_test name)
   cmake_parse_arguments(ARG "TSAN" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(SANITIZE STREQUAL "thread" AND NOT ARG_TSAN)
@@ -69,6 +69,9 @@ function(tess_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tess_catch_main ${ARG_DEPENDS})
   target_precompile_headers(${name} REUSE_FROM tess_catch_main)
-  add_test(NAME ${name} COMMAND ${name})
+  if(SANITIZE STREQUAL "thread")
+    set(cases "~[one_thread]")
+  endif()
+  add_test(NAME ${name} COMMAND ${name} ${cases})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
 endfunction()

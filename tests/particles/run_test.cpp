@@ -50,6 +50,22 @@ void check_same(const Ran& ran, const Ran& first) {
   }
 }
 
+/// Runs the scene with blocks that a balancer moves, checks that it ends as `first` did, and gives
+/// the number of moves.
+std::size_t moves_of(const Ran& first, const std::string& machine, const std::string& balance) {
+  INFO(machine << " --balance " << balance);
+  Scene scene = lively_scene();
+  scene.block = 0.3;
+  scene.exchange = 2;
+  RunOptions how;
+  how.balance = tess::parse_balance(balance);
+  const Ran ran = run_scene(scene, machine, how);
+  check_same(ran, first);
+  std::size_t moves = 0;
+  for (const auto& round : ran.result.rounds) moves += round.n_moved;
+  return moves;
+}
+
 }  // namespace
 
 TEST_CASE("a run gives the bits of a plain loop over all particles", "[particles][run]") {
@@ -111,36 +127,26 @@ TEST_CASE("a block ends when it is empty and is made again by who enters it", "[
 TEST_CASE("a run gives the same bits whatever a balancer moves", "[particles][run][balance]") {
   const Ran first = run_scene(lively_scene(), "--pes=1");
   CHECK(first.result.rounds.empty());
-  const auto moves_of = [&](const std::string& machine, const std::string& balance) {
-    INFO(machine << " --balance " << balance);
-    Scene scene = lively_scene();
-    scene.block = 0.3;
-    scene.exchange = 2;
-    RunOptions how;
-    how.balance = tess::parse_balance(balance);
-    const Ran ran = run_scene(scene, machine, how);
-    check_same(ran, first);
-    std::size_t moves = 0;
-    for (const auto& round : ran.result.rounds) moves += round.n_moved;
-    return moves;
-  };
+  // Every block of every round.
+  CHECK(moves_of(first, "--sim=pes=3,seed=5", "none") == 0);
+  CHECK(moves_of(first, "--sim=pes=3,seed=5", "rotate") > 500);
+  CHECK(moves_of(first, "--pes=2", "rotate") > 500);
+  CHECK(moves_of(first, "--pes=4", "greedy,when=periodic,period=1ms") < 1'000'000);
+}
+
+TEST_CASE("a run gives the same bits under every strategy",
+          "[particles][run][balance][one_thread]") {
+  const Ran first = run_scene(lively_scene(), "--pes=1");
   std::uint64_t seed = 0;
   for (const std::string& strategy : tess::balance::strategy_names())
     for (const char* when : {"at_sync", "automatic", "periodic,period=2ms"}) {
       ++seed;
-      const std::string balance = fmt::format("{},when={},seed={}", strategy, when, seed);
-      (void)moves_of(fmt::format("--sim=pes=6,per-process=2,cost=1us,migrate={},seed={}",
+      (void)moves_of(first,
+                     fmt::format("--sim=pes=6,per-process=2,cost=1us,migrate={},seed={}",
                                  seed % 2 == 0 ? "0.1" : "0",
                                  seed),
-                     balance);
+                     fmt::format("{},when={},seed={}", strategy, when, seed));
     }
-  // Every block of every round.
-  const std::size_t none = moves_of("--sim=pes=3,seed=5", "none"),
-                    rotated = moves_of("--sim=pes=3,seed=5", "rotate");
-  CHECK(none == 0);
-  CHECK(rotated > 500);
-  CHECK(moves_of("--pes=2", "rotate") > 500);
-  CHECK(moves_of("--pes=4", "greedy,when=periodic,period=1ms") < 1'000'000);
 }
 
 TEST_CASE("a balancer spreads blocks that are born on one PE", "[particles][run][balance]") {
