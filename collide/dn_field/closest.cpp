@@ -21,8 +21,8 @@ constexpr std::int32_t unknown = -1;
 /// voxel. The others get what they would have got.
 template <LookUp Kind, Ask Asked>
 Sample sample_again(const Sampler& field, F3 g, Closest& closest, std::size_t p) {
-  const Voxel voxel = voxel_of(field, g);
-  const I key = voxel.in ? voxel.at : I{} + unknown;
+  const Voxel voxel = voxel_of(field.n, g);
+  const I key = voxel.in ? position(field, voxel) : I{} + unknown;
   Stored stored{};
   if (any(~voxel.in | (key != load<I>(closest.voxel + p)))) {
     stored = read<Kind, Asked>(field, voxel);

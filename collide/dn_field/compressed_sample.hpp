@@ -60,17 +60,15 @@ inline Planes read_planes(const PlaneSampler& field, I at) {
   const I cu = (word >> field.bits) & field.mask, cv = word & field.mask;
   const F u = __builtin_convertvector(cu - field.middle, F) * field.per_middle;
   const F v = __builtin_convertvector(cv - field.middle, F) * field.per_middle;
-  const F z = 1.0F - abs(u) - abs(v);
-  const F fold = z < 0.0F ? -z : F{};
-  const I sign = I{} + std::bit_cast<std::int32_t>(0x80000000U);
-  const F x = u - (F)((I)fold | ((I)u & sign)), y = v - (F)((I)fold | ((I)v & sign));
-  const F scale = only(cu != field.mask, 1.0F / sqrt(x * x + y * y + z * z));
+  const F3 n = on_octahedron(u, v);
+  const F scale = only(cu != field.mask, 1.0F / sqrt(dot(n, n)));
   const I steps = (I)(((U)word >> (2 * field.bits)) - field.zero);
-  return {__builtin_convertvector(steps, F) * field.step, {x * scale, y * scale, z * scale}};
+  return {__builtin_convertvector(steps, F) * field.step, scale * n};
 }
 
-/// What the voxels (i, j, k), which are in the grid, say.
-inline Planes voxels(const PlaneSampler& field, I i, I j, I k) {
+/// What the voxels say.
+inline Planes planes_at(const PlaneSampler& field, const Voxel& voxel) {
+  const I i = voxel.i, j = voxel.j, k = voxel.k;
   const int e = field.e, in_block = (1 << e) - 1;
   const I head = gather(field.block, (k >> e) * field.layer + (j >> e) * field.row + (i >> e));
   const I s = head & 7, in_cell = ((I{} + 1) << s) - 1, t = e - s;
@@ -90,26 +88,16 @@ inline Planes voxels(const PlaneSampler& field, I i, I j, I k) {
 /// one carries its plane on; both need the normal.
 template <LookUp Kind, Ask Asked>
 requires(Kind != LookUp::trilinear) inline Sample sample(const PlaneSampler& field, F3 g) {
-  const F3 h{g.x + 0.5F, g.y + 0.5F, g.z + 0.5F};
-  const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
-             nz = static_cast<float>(field.n[2]);
-  const I in = (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
-  const I i = __builtin_convertvector(only(in, h.x), I),
-          j = __builtin_convertvector(only(in, h.y), I),
-          k = __builtin_convertvector(only(in, h.z), I);
-  const Planes plane = voxels(field, i, j, k);
+  const Voxel voxel = voxel_of(field.n, g);
+  const Planes plane = planes_at(field, voxel);
   Sample found{};
-  if constexpr (Asked != Ask::distance) found.normal = only(in, plane.normal);
+  if constexpr (Asked != Ask::distance) found.normal = only(voxel.in, plane.normal);
   if constexpr (Asked != Ask::normal) {
     found.voxel = found.distance = plane.distance;
-    if constexpr (Kind == LookUp::tangent) {
-      const F3 beside{g.x - __builtin_convertvector(i, F),
-                      g.y - __builtin_convertvector(j, F),
-                      g.z - __builtin_convertvector(k, F)};
-      found.distance += field.cell * dot(plane.normal, beside);
-    }
-    found.distance = in ? found.distance : all(out_of_reach);
-    found.voxel = in ? found.voxel : all(out_of_reach);
+    if constexpr (Kind == LookUp::tangent)
+      found.distance += field.cell * dot(plane.normal, offset(voxel, g));
+    found.distance = voxel.in ? found.distance : all(out_of_reach);
+    found.voxel = voxel.in ? found.voxel : all(out_of_reach);
   }
   return found;
 }

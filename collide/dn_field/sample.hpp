@@ -39,15 +39,19 @@ struct Sample {
 
 namespace lanes {
 
+/// The point of the octahedron |x| + |y| + |z| = 1 that unfolds to (u, v).
+inline F3 on_octahedron(F u, F v) {
+  const F z = 1.0F - abs(u) - abs(v);
+  const F fold = z < 0.0F ? -z : F{};
+  const I sign = I{} + std::bit_cast<std::int32_t>(0x80000000U);
+  return {u - (F)((I)fold | ((I)u & sign)), v - (F)((I)fold | ((I)v & sign)), z};
+}
+
 /// decode_normal() before it is normalised; zero for no_normal.
 inline F3 decode(I code) {
   const F u = __builtin_convertvector((code << 16) >> 16, F) * (1 / code_scale);
   const F v = __builtin_convertvector(code >> 16, F) * (1 / code_scale);
-  const F z = 1.0F - abs(u) - abs(v);
-  const F fold = z < 0.0F ? -z : F{};
-  const I sign = I{} + std::bit_cast<std::int32_t>(0x80000000U);
-  const F x = u - (F)((I)fold | ((I)u & sign)), y = v - (F)((I)fold | ((I)v & sign));
-  return only(code != I{} + std::bit_cast<std::int32_t>(no_normal), F3{x, y, z});
+  return only(code != I{} + std::bit_cast<std::int32_t>(no_normal), on_octahedron(u, v));
 }
 
 /// Unit, or zero where `n` is shorter than a thousandth: blends of opposite normals.
@@ -61,18 +65,33 @@ inline F3 unit(F3 n) {
 struct Voxel {
   I in;       ///< whether there is one; the first one stands in else
   I i, j, k;  ///< along the axes
-  I at;       ///< in the field's arrays
 };
 
-inline Voxel voxel_of(const Sampler& field, F3 g) {
-  const F3 h{g.x + 0.5F, g.y + 0.5F, g.z + 0.5F};
-  const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
-             nz = static_cast<float>(field.n[2]);
+/// Of a grid of n voxels; `h` are coordinates from its corner: half a voxel more than from the
+/// first voxel's centre.
+inline Voxel voxel_from_corner(const int (&n)[3], F3 h) {
+  const auto nx = static_cast<float>(n[0]), ny = static_cast<float>(n[1]),
+             nz = static_cast<float>(n[2]);
   const I in = (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
-  const I i = __builtin_convertvector(only(in, h.x), I),
-          j = __builtin_convertvector(only(in, h.y), I),
-          k = __builtin_convertvector(only(in, h.z), I);
-  return {in, i, j, k, k * field.layer + j * field.row + i};
+  return {in,
+          __builtin_convertvector(only(in, h.x), I),
+          __builtin_convertvector(only(in, h.y), I),
+          __builtin_convertvector(only(in, h.z), I)};
+}
+inline Voxel voxel_of(const int (&n)[3], F3 g) {
+  return voxel_from_corner(n, {g.x + 0.5F, g.y + 0.5F, g.z + 0.5F});
+}
+
+/// Where a voxel stands in the field's arrays.
+inline I position(const Sampler& field, const Voxel& voxel) {
+  return voxel.k * field.layer + voxel.j * field.row + voxel.i;
+}
+
+/// From the voxel's centre to the point.
+inline F3 offset(const Voxel& voxel, F3 g) {
+  return {g.x - __builtin_convertvector(voxel.i, F),
+          g.y - __builtin_convertvector(voxel.j, F),
+          g.z - __builtin_convertvector(voxel.k, F)};
 }
 
 /// What a voxel stores: its distance, and its normal, unit or zero.
@@ -84,10 +103,11 @@ struct Stored {
 template <LookUp Kind, Ask Asked>
 inline Stored read(const Sampler& field, const Voxel& voxel) {
   Stored stored{};
+  const I at = position(field, voxel);
   if constexpr (Asked != Ask::distance || Kind == LookUp::tangent)
-    stored.normal = only(voxel.in, unit(decode(gather(field.normal, voxel.at))));
+    stored.normal = only(voxel.in, unit(decode(gather(field.normal, at))));
   if constexpr (Asked != Ask::normal) {
-    stored.distance = gather(field.distance, voxel.at);
+    stored.distance = gather(field.distance, at);
     stored.distance = voxel.in ? stored.distance : all(out_of_reach);
   }
   return stored;
@@ -97,10 +117,7 @@ template <LookUp Kind, Ask Asked>
 inline Sample answer(const Sampler& field, const Voxel& voxel, const Stored& stored, F3 g) {
   Sample found{stored.distance, stored.normal, stored.distance};
   if constexpr (Kind == LookUp::tangent && Asked != Ask::normal) {
-    const F3 off{g.x - __builtin_convertvector(voxel.i, F),
-                 g.y - __builtin_convertvector(voxel.j, F),
-                 g.z - __builtin_convertvector(voxel.k, F)};
-    const F there = stored.distance + field.cell * dot(stored.normal, off);
+    const F there = stored.distance + field.cell * dot(stored.normal, offset(voxel, g));
     found.distance = voxel.in ? there : stored.distance;
   }
   return found;
@@ -108,7 +125,7 @@ inline Sample answer(const Sampler& field, const Voxel& voxel, const Stored& sto
 
 template <LookUp Kind, Ask Asked>
 requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
-  const Voxel voxel = voxel_of(field, g);
+  const Voxel voxel = voxel_of(field.n, g);
   return answer<Kind, Asked>(field, voxel, read<Kind, Asked>(field, voxel), g);
 }
 

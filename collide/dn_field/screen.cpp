@@ -40,19 +40,15 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
            q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
     else
       h = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
-    const I in =
-        (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
-    const I i = __builtin_convertvector(only(in, h.x), I),
-            j = __builtin_convertvector(only(in, h.y), I),
-            k = __builtin_convertvector(only(in, h.z), I);
+    const Voxel voxel = voxel_from_corner(field.n, h);
     F found;
     if constexpr (How == Storage::compressed)
-      found = voxels(object.planes, i, j, k).distance;
+      found = planes_at(object.planes, voxel).distance;
     else
-      found = gather(field.distance, k * field.layer + j * field.row + i);
+      found = gather(field.distance, position(field, voxel));
     const F beyond = max(max(max(-h.x, h.x - nx), max(-h.y, h.y - ny)), max(-h.z, h.z - nz));
-    F room = in ? (found * object.scale - taken) * share
-                : object.cell * (0.999F * beyond - 1.0F) - reach.distance;
+    F room = voxel.in ? (found * object.scale - taken) * share
+                      : object.cell * (0.999F * beyond - 1.0F) - reach.distance;
     if constexpr (Moves) {
       // As seen from the surface a particle at distance r from the object's origin goes
       // (v + speed)(1 + spin time) + spin r in unit time at most.
