@@ -6,6 +6,7 @@
 #pragma once
 
 #include "apps/lb_lab/domain.hpp"
+#include "runtime/base/mix.hpp"
 
 #include <cstdint>
 #include <string>
@@ -49,6 +50,15 @@ struct Workload {
   std::uint64_t (*next)(const Problem&, Cell, std::int32_t iteration, const Stencil&) = nullptr;
   const Kind* kind = &cells_kind;
 };
+
+/// In [0, 1), by the upper bits of a hash.
+[[nodiscard]] inline double unit(std::uint64_t hash) {
+  return static_cast<double>(hash >> 11U) * 0x1p-53;
+}
+/// The draw of a seed: the same wherever it is asked for.
+[[nodiscard]] inline double drawn(std::uint64_t seed) {
+  return unit(tess::mix(seed));
+}
 
 [[nodiscard]] const std::vector<Workload>& workloads();
 [[nodiscard]] inline const Workload& workload_of(const Problem& problem) {

@@ -11,10 +11,6 @@
 namespace lb_lab {
 namespace {
 
-double unit(std::uint64_t hash) {
-  return static_cast<double>(tess::mix(hash) >> 11U) * 0x1p-53;
-}
-
 double uniform(const Problem&, Cell, std::int32_t) {
   return 1;
 }
@@ -45,7 +41,7 @@ double moving_hot_spot(const Problem& p, Cell cell, std::int32_t t) {
 /// Pareto with exponent 1.5, cut at 64, by the cell alone.
 double heavy_tailed(const Problem& p, Cell cell, std::int32_t) {
   const double tail = 1 - std::pow(64.0, -1.5);
-  const double u = unit(p.seed ^ tess::mix(p.domain.number(cell)));
+  const double u = drawn(p.seed ^ tess::mix(p.domain.number(cell)));
   return std::pow(1 - u * tail, -1 / 1.5) / 2.63;
 }
 
@@ -56,7 +52,7 @@ double brownian(std::uint64_t path, std::int32_t t) {
   const auto normal = [path](std::int32_t at) {  // about: the sum of four uniform draws
     double sum = 0;
     for (std::uint64_t k = 0; k < 4; ++k)
-      sum += unit(tess::mix(path + k) ^ static_cast<std::uint64_t>(at));
+      sum += drawn(tess::mix(path + k) ^ static_cast<std::uint64_t>(at));
     return (sum - 2) * std::numbers::sqrt3;
   };
   std::int32_t low = 0, high = span;
@@ -108,7 +104,7 @@ std::uint64_t stir_all(const Problem&, Cell, std::int32_t t, const Stencil& at) 
 }
 
 std::uint64_t warm(const Problem& p, Cell cell) {
-  return std::bit_cast<std::uint64_t>(unit(seeded(p, cell)));
+  return std::bit_cast<std::uint64_t>(drawn(seeded(p, cell)));
 }
 
 /// Diffusion: a step of one, or four of a quarter each with the neighbours frozen.

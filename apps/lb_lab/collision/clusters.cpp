@@ -16,10 +16,6 @@ constexpr double mean_partners = 8;                 // of an object, in a cluste
 // Measured; most objects are in denser clusters than the mean one, and clusters meet.
 constexpr double pairs_an_object = 9.5;
 
-double unit(std::uint64_t hash) {
-  return static_cast<double>(tess::mix(hash) >> 11U) * 0x1p-53;
-}
-
 /// Back and forth between 0 and 1, with period 2.
 double to_and_fro(double x) {
   return std::abs(x - 2 * std::floor(x / 2 + 0.5));
@@ -52,10 +48,10 @@ Clusters::Pose Clusters::pose(std::uint64_t cluster, std::int32_t iteration) con
   const double time = iteration / n_iterations_;  // of the run
   const double margin = radius_ + edge_;
   const auto drift = [&](double extent, std::uint64_t which) {
-    const double speed = 0.5 + unit(hash + which);
-    return margin + (extent - 2 * margin) * to_and_fro(2 * unit(hash + which + 1) + speed * time);
+    const double speed = 0.5 + drawn(hash + which);
+    return margin + (extent - 2 * margin) * to_and_fro(2 * drawn(hash + which + 1) + speed * time);
   };
-  const double angle = 2 * std::numbers::pi * (unit(hash + 4) - 0.5) * time;
+  const double angle = 2 * std::numbers::pi * (drawn(hash + 4) - 0.5) * time;
   return {drift(width_, 0), drift(height_, 2), std::cos(angle), std::sin(angle)};
 }
 
@@ -70,11 +66,12 @@ std::vector<tess::Item> Clusters::items(std::uint64_t first,
     const std::uint64_t end = std::min(last, first_of(cluster + 1));
     for (std::uint64_t i = std::max(first, first_of(cluster)); i < end; ++i) {
       const std::uint64_t hash = tess::mix(seed_ ^ tess::mix(i));
-      const double r = radius_ * std::sqrt(unit(hash)), phi = 2 * std::numbers::pi * unit(hash + 1);
+      const double r = radius_ * std::sqrt(drawn(hash)),
+                   phi = 2 * std::numbers::pi * drawn(hash + 1);
       const double dx = r * std::cos(phi), dy = r * std::sin(phi);
       const tess::Point low{at.x + dx * at.cosine - dy * at.sine,
                             at.y + dx * at.sine + dy * at.cosine,
-                            (1 - edge_) * unit(hash + 2)};
+                            (1 - edge_) * drawn(hash + 2)};
       const auto number = static_cast<std::uint32_t>(i);
       result.push_back({{low, {low[0] + edge_, low[1] + edge_, low[2] + edge_}},
                         {owner, tess::LocalId{number}, tess::ModelId{0}}});

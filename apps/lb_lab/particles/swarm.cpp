@@ -19,10 +19,6 @@ constexpr double nominal_particle_seconds = 0.35e-6;  // measured
 // of the lesser extent of the plane). The pull grows with the distance up to `reach` extents.
 constexpr double drag = 40, pull = 16, diffusion = 0.5, reach = 0.3;
 
-double unit(std::uint64_t hash) {
-  return static_cast<double>(hash >> 11U) * 0x1p-53;
-}
-
 /// Within (−1, 1), from half of a hash.
 double kick(std::uint64_t half) {
   return static_cast<double>(static_cast<std::int32_t>(half & 0xffffffffU)) * 0x1p-31;
