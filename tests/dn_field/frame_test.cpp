@@ -46,18 +46,24 @@ TEST_CASE("a frame that advances comes round, and its axes stay orthonormal", "[
 }
 
 TEST_CASE("the surface's velocity is the derivative of where its points stand",
-          "[dn_field][frame]") {
-  Frame frame;
-  frame.axes = rotation({0.1, 0.2, 0.3});
-  frame.position = {1, 2, 3};
-  frame.scale = 2;
-  frame.velocity = {0.5, -1, 0.25};
-  frame.angular_velocity = {2, -1, 0.5};
-  const Vec3 own{0.4, -0.6, 0.2}, at = frame.to_world(own);
-  const double step = 1e-6;
-  Frame later = frame;
-  later.advance(step);
-  CHECK(norm((1 / step) * (later.to_world(own) - at) - frame.velocity_at(at)) < 1e-5);
+          "[dn_field][frame][growth]") {
+  for (const double scale_rate : {0.0, -0.7}) {
+    INFO("scale rate " << scale_rate);
+    Frame frame;
+    frame.axes = rotation({0.1, 0.2, 0.3});
+    frame.position = {1, 2, 3};
+    frame.scale = 2;
+    frame.velocity = {0.5, -1, 0.25};
+    frame.angular_velocity = {2, -1, 0.5};
+    frame.scale_rate = scale_rate;
+    const Vec3 own{0.4, -0.6, 0.2}, at = frame.to_world(own);
+    const double step = 1e-6;
+    Frame later = frame;
+    later.advance(step);
+    CHECK(norm((1 / step) * (later.to_world(own) - at) - frame.velocity_at(at)) < 1e-5);
+    CHECK(later.scale == Approx(2 + 1e-6 * scale_rate).epsilon(1e-12));
+    CHECK(frame.is_moving());
+  }
 }
 
 TEST_CASE("a matrix with shear, zero or unequal scale, or a mirror is refused by its reason",

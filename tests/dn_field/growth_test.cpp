@@ -37,24 +37,6 @@ Flown flown(const Rules& rules, const Object& object, Flown particle, double ste
   return {one.position(0), one.velocity(0)};
 }
 
-TEST_CASE("the velocity of a growing surface is the derivative of where its points stand",
-          "[dn_field][growth]") {
-  Frame frame;
-  frame.axes = rotation({0.1, 0.2, 0.3});
-  frame.position = {1, 2, 3};
-  frame.scale = 2;
-  frame.velocity = {0.5, -1, 0.25};
-  frame.angular_velocity = {2, -1, 0.5};
-  frame.scale_rate = -0.7;
-  const Vec3 own{0.4, -0.6, 0.2}, at = frame.to_world(own);
-  const double step = 1e-6;
-  Frame later = frame;
-  later.advance(step);
-  CHECK(norm((1 / step) * (later.to_world(own) - at) - frame.velocity_at(at)) < 1e-5);
-  CHECK(later.scale == Approx(2 - 0.7e-6).epsilon(1e-12));
-  CHECK(frame.is_moving());
-}
-
 TEST_CASE("a growing or shrinking sphere throws particles back with 2 u - v",
           "[dn_field][growth]") {
   struct Case {
