@@ -26,6 +26,7 @@ using namespace tess::dn;
 struct Options {
   std::size_t particles = 1'000'000;
   int repeat = 5;
+  std::string only;
 };
 
 using Run = std::function<void(Particles&)>;
@@ -113,6 +114,9 @@ class Bench {
     };
   }
 
+  [[nodiscard]] bool wanted(std::string_view name) const {
+    return name.find(options_.only) != std::string_view::npos;
+  }
   void row(const std::string& name, const Samples& samples, double reference = 0) const {
     report_.row(name, samples, "ps/particle/step", reference);
   }
@@ -125,13 +129,13 @@ class Bench {
 
   void free_flight() {
     for (const int steps_a_call : {n_steps, 1}) {
+      const std::string name = steps_a_call == 1 ? "dn none; one step a call" : "dn none";
+      if (!wanted(name)) continue;
       const Measured found =
           measured(options_.repeat, spread_, {stepped({}, steps_a_call)}).front();
       require(std::abs(found.end.x[0] - (spread_.x[0] + n_steps * step * spread_.vx[0])) < 1e-12,
               "free flight");
-      row(steps_a_call == 1 ? "dn none; one step a call" : "dn none",
-          found.samples,
-          steps_a_call == 1 ? 0 : 800);
+      row(name, found.samples, steps_a_call == 1 ? 0 : 800);
     }
   }
 
@@ -141,6 +145,7 @@ class Bench {
               double depth,
               double reference,
               int steps_a_call = n_steps) {
+    if (!wanted(name)) return;
     Measured found = measured(options_.repeat, from, {stepped(rules, steps_a_call)}).front();
     require(count_nonfinite(found.end.span()) == 0, name + ", not finite");
     require(std::abs(loss(from, found.end)) < 1e-12, name + ", energy");
@@ -168,10 +173,12 @@ class Bench {
 
   void every_rule() {
     for (const Particles* from : {&spread_, &near_}) {
+      const std::string name = from == &spread_ ? "dn all rules; spread" : "dn all rules; near";
+      if (!wanted(name)) continue;
       Measured found = measured(options_.repeat, *from, {stepped(all_rules(cell()))}).front();
       require(count_nonfinite(found.end.span()) == 0 && deepest(found.end) < 0.9 * cell(),
-              "all rules");
-      row(from == &spread_ ? "dn all rules; spread" : "dn all rules; near", found.samples, 5500);
+              name);
+      row(name, found.samples, 5500);
     }
   }
 
@@ -181,6 +188,7 @@ class Bench {
                      const Run& by_hand,
                      const Rules& rules,
                      double tolerance) {
+    if (!wanted(name)) return;
     const auto found = measured(3 * options_.repeat, from, {by_hand, stepped(rules)});
     std::size_t different = 0;
     for (std::size_t p = 0; p < from.size(); ++p)
@@ -208,6 +216,7 @@ class Bench {
 
   /// The same box cut finer, fields of the same grid.
   void triangles() {
+    if (!wanted("triangles")) return;
     std::vector<Field> fields;
     std::vector<std::string> names;
     for (const int cuts : {1, 10, 100}) {
@@ -245,6 +254,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1000, 100'000'000));
     app.add_option("--repeat", options.repeat, "how often each is measured")
         ->check(CLI::Range(1, 1000));
+    app.add_option("--only", options.only, "measures whose name has this in it");
     if (!apps::parse(app, argc, argv)) return 0;
     const std::string machine = setup.machine->describe();
     const bench::Report report(

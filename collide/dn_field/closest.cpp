@@ -17,22 +17,20 @@ F outside_by(const Placed& object, F3 g) {
 
 constexpr std::int32_t unknown = -1;
 
-/// sample() for particle p and its neighbours; fetches from the field where one has changed its
-/// voxel. The others get what they would have got.
+/// sample() for particle p and its neighbours; fetches from the field for those alone that have
+/// changed their voxel since `last`. The others get what they would have got.
 template <LookUp Kind, Ask Asked>
-Sample sample_again(const Sampler& field, F3 g, Closest& closest, std::size_t p) {
+Sample sample_again(
+    const Sampler& field, F3 g, const Closest& last, Closest& closest, std::size_t p) {
   const Voxel voxel = voxel_of(field.n, g);
   const I key = voxel.in ? position(field, voxel) : I{} + unknown;
-  Stored stored{};
-  if (any(~voxel.in | (key != load<I>(closest.voxel + p)))) {
-    stored = read<Kind, Asked>(field, voxel);
-    store(closest.voxel + p, key);
-    store(closest.stored + p, stored.distance);
-  } else {
-    stored.distance = load<F>(closest.stored + p);
-    if constexpr (Asked == Ask::both)
-      stored.normal = {load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)};
-  }
+  const I changed = ~voxel.in | (key != load<I>(last.voxel + p));
+  Stored stored{load<F>(last.stored + p), {}};
+  if constexpr (Asked == Ask::both)
+    stored.normal = {load<F>(last.nx + p), load<F>(last.ny + p), load<F>(last.nz + p)};
+  if (any(changed)) stored = read_changed<Kind, Asked>(field, voxel, changed, stored);
+  store(closest.voxel + p, key);
+  store(closest.stored + p, stored.distance);
   return answer<Kind, Asked>(field, voxel, stored, g);
 }
 
@@ -68,7 +66,10 @@ F taken_by_growth(const Placed& object, F free, I in, F distance) {
 }
 
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Storage How>
-void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
+void pass(const Placed& placed,
+          const ParticleSpan& span,
+          [[maybe_unused]] const Closest& last,
+          Closest& closest) {
   const Placed object = placed;  // copies, which no store can change
   const ParticleSpan particles = span;
   const auto field = sampler_in<How>(object);
@@ -91,7 +92,7 @@ void pass(const Placed& placed, const ParticleSpan& span, Closest& closest) {
     Sample found;
     if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear &&
                   How == Storage::flat)
-      found = sample_again<Kind, Asked>(field, g, closest, p);
+      found = sample_again<Kind, Asked>(field, g, last, closest, p);
     else
       found = sample<Kind, Asked>(field, g);
     const I in = found.distance < out_of_reach;

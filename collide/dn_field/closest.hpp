@@ -66,7 +66,12 @@ enum class Storage : std::uint32_t { flat, compressed };
   return !objects.empty() && objects[0].compressed != nullptr ? Storage::compressed : Storage::flat;
 }
 
-using ClosestPass = void (*)(const Placed&, const ParticleSpan&, Closest&);
+/// Writes `closest`; `last`, which may be the same, is what the look-up before found of these
+/// particles: it saves time and changes nothing.
+using ClosestPass = void (*)(const Placed&,
+                             const ParticleSpan&,
+                             const Closest& last,
+                             Closest& closest);
 
 /// The pass for one object; `general` passes keep what is closer and start from clear().
 /// Compressed fields have no trilinear one.

@@ -159,6 +159,28 @@ inline I gather(const std::uint32_t* table, I at) {
   return v;
 #endif
 }
+/// Reads the lanes of the mask alone.
+inline F gather(const float* table, I at, I mask) {
+#ifdef __AVX2__
+  return (F)_mm256_mask_i32gather_ps((__m256)F{}, table, (__m256i)at, (__m256)mask, 4);
+#else
+  F v{};
+  for (int i = 0; i < width; ++i)
+    if (mask[i] != 0) v[i] = table[at[i]];
+  return v;
+#endif
+}
+inline I gather(const std::uint32_t* table, I at, I mask) {
+#ifdef __AVX2__
+  const int* from = reinterpret_cast<const int*>(table);
+  return (I)_mm256_mask_i32gather_epi32((__m256i)I{}, from, (__m256i)at, (__m256i)mask, 4);
+#else
+  I v{};
+  for (int i = 0; i < width; ++i)
+    if (mask[i] != 0) v[i] = std::bit_cast<std::int32_t>(table[at[i]]);
+  return v;
+#endif
+}
 
 /// A point or vector in each lane.
 template <class V>

@@ -31,8 +31,7 @@ struct Buffers {
   Scratch scratch;
 
   void new_particles(std::size_t count) {
-    forget(first, count);
-    forget(second, count);
+    forget(*closest, count);
     known = false;
   }
 };
@@ -93,9 +92,10 @@ Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
 void look_up_all(const Run& run,
                  std::span<const Placed> objects,
                  const ParticleSpan& particles,
+                 const Closest& last,
                  Closest& closest) {
   if (run.setting == Setting::general) clear(closest, particles.count);
-  for (const Placed& object : objects) run.look_up(object, particles, closest);
+  for (const Placed& object : objects) run.look_up(object, particles, last, closest);
 }
 
 /// The rules of the surface, for particles that may feel it.
@@ -106,7 +106,7 @@ void meet_surface(const Run& run,
   const Stepper::Plan& plan = run.plan;
   Scratch& scratch = buffers.scratch;
   Closest& closest = *buffers.closest;
-  if (!buffers.known) look_up_all(run, objects, particles, closest);
+  if (!buffers.known) look_up_all(run, objects, particles, closest, closest);
   if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
     drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, particles, closest);
   if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, closest);
@@ -116,12 +116,12 @@ void meet_surface(const Run& run,
         trace(run.constants, objects, plan.rules.look_up, from, particles);
   scratch.untraced.clear();
   if (!plan.rules.spring) return;
-  look_up_all(run, objects, particles, *buffers.after);
+  look_up_all(run, objects, particles, closest, *buffers.after);
   const Moved moved =
       limit_spring(run.constants.spring, run.setting, particles, closest, *buffers.after, scratch);
   // Objects that do not move say the same at the start of the next step.
   buffers.known = run.setting == Setting::one_at_rest && moved == Moved::none;
-  if (buffers.known) std::swap(buffers.closest, buffers.after);
+  std::swap(buffers.closest, buffers.after);
 }
 
 /// The rules that the surface has no part in and that are not in the rule loops.
@@ -219,6 +219,7 @@ void fly(const Run& run,
   if (!plan.looks_up)
     for (; i < n_steps; ++i) step_free(i);
   int ahead = run.look_ahead;
+  bool looked_up = false;  // of the whole block, in the step before
   while (i < n_steps) {
     int next = std::min(i + ahead, n_steps);
     const double gained = speed_gained(run, time(i), next - i);
@@ -235,11 +236,13 @@ void fly(const Run& run,
     if (!pays) {
       ahead = std::max(1, ahead / 2);
       if (!is_blend(plan)) next = std::min(i + steps_unscreened, n_steps);
-      buffers.new_particles(block.count);
+      if (!looked_up) buffers.new_particles(block.count);
+      looked_up = true;
       for (; i < next; ++i) step_near(i, block);
       continue;
     }
     if (8 * near.count < block.count) ahead = std::min(run.look_ahead, 2 * ahead);
+    looked_up = false;
     pack(block, near);
     const ParticleSpan packed = near.packed();
     buffers.new_particles(packed.count);
