@@ -176,8 +176,7 @@ class Bench {
       const std::string name = from == &spread_ ? "dn all rules; spread" : "dn all rules; near";
       if (!wanted(name)) continue;
       Measured found = measured(options_.repeat, *from, {stepped(all_rules(cell()))}).front();
-      require(count_nonfinite(found.end.span()) == 0 && deepest(found.end) < 0.9 * cell(),
-              name);
+      require(count_nonfinite(found.end.span()) == 0 && deepest(found.end) < 0.9 * cell(), name);
       row(name, found.samples, 5500);
     }
   }

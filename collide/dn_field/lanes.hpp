@@ -1,6 +1,7 @@
 // Eight particles at once: GCC vector types, so that one source serves every instruction set, and
-// the same operations in the same order give the same bits on all of them (the build forbids fused
-// multiply-add). Intrinsics stand only where the language has no word: gather, square root, "any".
+// the same operations in the same order give the same bits on all of them (the compiler may not
+// fuse a multiplication with an addition; where the source says fma, all do). Intrinsics stand only
+// where the language has no word: gather, square root, fma, "any".
 // Private to the loops of this folder.
 #pragma once
 
@@ -141,6 +142,24 @@ inline F sqrt(F v) {
 #endif
 }
 
+/// a b + c, rounded once.
+inline D fma(D a, D b, D c) {
+#ifdef __AVX512F__
+  return (D)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#elif defined(__FMA__)
+  struct Halves {
+    __m256d low, high;
+  };
+  const auto x = std::bit_cast<Halves>(a), y = std::bit_cast<Halves>(b),
+             z = std::bit_cast<Halves>(c);
+  return std::bit_cast<D>(
+      Halves{_mm256_fmadd_pd(x.low, y.low, z.low), _mm256_fmadd_pd(x.high, y.high, z.high)});
+#else
+  for (int i = 0; i < width; ++i) c[i] = std::fma(a[i], b[i], c[i]);
+  return c;
+#endif
+}
+
 inline F gather(const float* table, I at) {
 #ifdef __AVX2__
   return (F)_mm256_i32gather_ps(table, (__m256i)at, 4);
@@ -194,9 +213,18 @@ struct Three {
 using D3 = Three<D>;
 using F3 = Three<F>;
 
-template <class V>
-inline V dot(Three<V> a, Three<V> b) {
+inline F dot(F3 a, F3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline D dot(D3 a, D3 b) {
+  return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x));
+}
+inline D3 cross(D3 a, D3 b) {
+  return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
+}
+/// s a + b
+inline D3 fma(D s, D3 a, D3 b) {
+  return {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
 }
 inline D3 only(L mask, D3 v) {
   return {only(mask, v.x), only(mask, v.y), only(mask, v.z)};
@@ -217,31 +245,26 @@ inline D3 load3(const double* x, const double* y, const double* z) {
 }
 
 /// One Newton step takes a normal that is unit to float precision to double precision.
+inline D3 refined(D3 n, D square) {
+  return (1.5 - 0.5 * square) * n;
+}
 inline D3 refined(D3 n) {
-  return (1.5 - 0.5 * dot(n, n)) * n;
+  return refined(n, dot(n, n));
 }
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// tan(x/2) = p/q for |x| <= pi/2, good to 3e-11 (the continued fraction, six terms). Sine and
-/// cosine from it have squares that add up to 1 to rounding, whatever its error: lengths are kept.
-struct TurnRatio {
-  D cosine, sine;  ///< times square
-  D square;        ///< p² + q²
-};
-inline TurnRatio turn_ratio(D angle) {
-  const D x = 0.5 * angle, xx = x * x;
-  const D p = x * (10395.0 + xx * (-1260.0 + xx * 21.0));
-  const D q = 10395.0 + xx * (-4725.0 + xx * (210.0 - xx));
-  return {q * q - p * p, 2.0 * p * q, q * q + p * p};
-}
 struct Turn {
   D cosine, sine;
 };
+/// For |angle| <= pi/2: from tan(angle/2) = p/q, good to 3e-11 (the continued fraction, six terms),
+/// so that the squares add up to 1 to rounding: lengths are kept.
 inline Turn turn(D angle) {
-  const TurnRatio ratio = turn_ratio(angle);
-  const D scale = 1.0 / ratio.square;
-  return {ratio.cosine * scale, ratio.sine * scale};
+  const D x = 0.5 * angle, xx = x * x;
+  const D p = x * (10395.0 + xx * (-1260.0 + xx * 21.0));
+  const D q = 10395.0 + xx * (-4725.0 + xx * (210.0 - xx));
+  const D pp = p * p, qq = q * q, scale = 1.0 / (qq + pp);
+  return {(qq - pp) * scale, 2.0 * p * q * scale};
 }
 
 }  // namespace tess::dn::lanes

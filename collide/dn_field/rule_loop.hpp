@@ -60,9 +60,6 @@ using RuleLoop = void (*)(const RuleConstants&, const ParticleSpan&, const Close
 
 namespace lanes {
 
-inline D3 times(double s, D3 a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
 inline D3 plus(D3 a, Vec3 b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -82,24 +79,20 @@ void rule_loop(const RuleConstants& constants,
   constexpr bool asks_distance = asks_normal || Flies == Flight::surface;
   constexpr bool moves = asks_distance && Where == Setting::general;
   const double dt = c.step;
+  const D step = all(dt), half_step = all(0.5 * dt);
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const D3 x0 = load3(particles.x + p, particles.y + p, particles.z + p);
     const D3 v0 = load3(particles.vx + p, particles.vy + p, particles.vz + p);
     D d{};
     D3 n{}, u{};
+    L has_normal{};
     if constexpr (asks_distance) d = to_double(load<F>(closest.distance + p));
     if constexpr (asks_normal) {
       n = to_double(F3{load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)});
-      if constexpr (Springy != Springs::none) n = refined(n);
+      const D square = dot(n, n);
+      has_normal = settled(square > 0.25);
+      n = refined(n, square);
     }
     if constexpr (moves) u = load3(closest.ux + p, closest.uy + p, closest.uz + p);
-    // Relative to the surface.
-    const auto relative = [&u](D3 v) {
-      if constexpr (moves) return v - u;
-      return v;
-    };
-    const auto rises = [&](D3 v) { return dot(n, relative(v)); };
-    const L has_normal = asks_normal ? settled(dot(n, n) > 0.25) : L{};
 
     D3 v1 = v0, mean = v0, a{};
     D keep = all(1.0), gain{}, mean_keep = keep, mean_gain{};
@@ -113,28 +106,43 @@ void rule_loop(const RuleConstants& constants,
         gain = near ? all(c.surface.gain) : gain;
         mean_keep = near ? all(c.surface.mean_keep) : mean_keep;
         mean_gain = near ? all(c.surface.mean_gain) : mean_gain;
-        if constexpr (moves) a = a + only(near, times(c.surface_rate, u));
+        if constexpr (moves) a = a + only(near, all(c.surface_rate) * u);
       }
       if constexpr (Flies == Flight::fall) {
-        v1 = v0 + gain * a;
-        mean = v0 + mean_gain * a;
+        v1 = fma(gain, a, v0);
+        mean = fma(mean_gain, a, v0);
       } else {
-        v1 = keep * v0 + gain * a;
-        mean = mean_keep * v0 + mean_gain * a;
+        v1 = fma(keep, v0, gain * a);
+        mean = fma(mean_keep, v0, mean_gain * a);
       }
     }
 
-    [[maybe_unused]] const D3 flight_end = v1, flight_mean = mean;
-    [[maybe_unused]] D z0{}, energy{};
+    // Along the normal all is scalar; velocities there are relative to the surface: `rise` at the
+    // start, `rise1` at the end, `climb` on the mean.
+    [[maybe_unused]] D an{}, un{}, rise{}, rise1{}, climb{};
+    if constexpr (asks_normal) {
+      rise = rise1 = climb = dot(n, v0);
+      if constexpr (Flies != Flight::none) {
+        an = dot(n, a);
+        rise1 = fma(keep, rise, gain * an);
+        climb = fma(mean_keep, rise, mean_gain * an);
+      }
+      if constexpr (moves) {
+        un = dot(n, u);
+        rise = rise - un, rise1 = rise1 - un, climb = climb - un;
+      }
+    }
+
+    [[maybe_unused]] D z0{}, energy{}, energy1{}, change{}, work{};
     if constexpr (Springy != Springs::none) {
       z0 = d - c.spring.reach;
-      const D an = dot(n, a), g = an * gain * (1 / dt), before = rises(v1);
-      const D e = before - gain * an;
-      const L touches = settled(has_normal & ((z0 < 0.0) | ((z0 + dt * (e + 0.5 * dt * g)) < 0.0)));
-      if constexpr (Hits != Impacts::none) {
-        const D depth = min(z0, D{}), rate = rises(v0);
-        energy = rate * rate + c.spring.stiffness * depth * depth - 2.0 * g * z0;
-      }
+      const D3 w = moves ? v1 - u : v1;
+      const D depth = min(z0, D{}), potential = c.spring.stiffness * depth * depth;
+      energy1 = dot(w, w) + potential;
+      const D g = an * gain * (1 / dt), e = fma(-gain, an, rise1);
+      const L touches =
+          settled(has_normal & ((z0 < 0.0) | (fma(step, fma(half_step, g, e), z0) < 0.0)));
+      if constexpr (Hits != Impacts::none) energy = fma(rise, rise, fma(-2.0 * g, z0, potential));
       if (any(touches)) {
         SpringMotion motion{};
         L stays{};
@@ -147,20 +155,24 @@ void rule_loop(const RuleConstants& constants,
           motion.end = stays ? motion.end : whole.end;
           motion.rate = stays ? motion.rate : whole.rate;
         }
-        v1 = select(touches, v1 + (motion.rate - before) * n, v1);
-        const D change = (motion.end - z0) * (1 / dt) - rises(mean);
-        mean = select(touches, mean + change * n, mean);
+        const D kick = only(touches, motion.rate - rise1);
+        change = only(touches, (motion.end - z0) * (1 / dt) - climb);
+        v1 = select(touches, fma(kick, n, v1), v1);
+        mean = select(touches, fma(change, n, mean), mean);
+        rise1 = rise1 + kick;
+        climb = climb + change;
+        work = dt * an * change;
       }
     }
 
-    D3 way = times(dt, mean);
+    D3 way = step * mean;
     if constexpr (Hits != Impacts::none) {
-      const D rise = dt * rises(mean);
+      const D way_up = dt * climb;
       const L known = has_normal & (d < static_cast<double>(out_of_reach));
-      L hits = settled(known & (rise < 0.0) & (d + rise < c.threshold));
+      L hits = settled(known & (way_up < 0.0) & (d + way_up < c.threshold));
       L deep = settled(known & (d < c.threshold - c.slack));
       if constexpr (Hits == Impacts::swept) {
-        const D3 path = times(dt, relative(mean));
+        const D3 path = moves ? step * (mean - u) : way;
         const D free = max(to_double(load<F>(closest.free + p)), all(c.stride));
         L far = dot(path, path) > free * free;
         if constexpr (moves) far = far | widen(load<F>(closest.free + p) <= follow);
@@ -170,58 +182,57 @@ void rule_loop(const RuleConstants& constants,
         if (any(far))
           for (int i = 0; i < width; ++i)
             if (far[i] != 0) {
+              const std::size_t k = p + static_cast<std::size_t>(i);
               const auto at = [i](D3 v) { return Vec3{v.x[i], v.y[i], v.z[i]}; };
-              scratch.untraced.push_back(
-                  {p + static_cast<std::size_t>(i), at(x0), at(v0), at(v1), at(mean)});
+              const Vec3 from{particles.x[k], particles.y[k], particles.z[k]};
+              scratch.untraced.push_back({k, from, at(v0), at(v1), at(mean)});
             }
       }
       if (any(hits | deep)) {
-        if constexpr (Springy == Springs::none) n = refined(n);
-        D3 shift = only(deep, c.threshold - c.slack - d) * n;
-        const D s = only(hits, max((c.threshold - d) / rise, D{}));
+        D up = only(deep, c.threshold - c.slack - d);
+        const D s = only(hits, max((c.threshold - d) / way_up, D{}));
         const D rest = 1.0 - s;
         if constexpr (Flies == Flight::none && Springy == Springs::none) {
-          const D kick = only(hits, -(1 + c.restitution) * rises(v0));
-          v1 = select(hits, v1 + kick * n, v1);
-          shift = shift + (rest * dt * kick) * n;
+          const D kick = only(hits, -(1 + c.restitution) * rise);
+          v1 = select(hits, fma(kick, n, v1), v1);
+          up = fma(rest * dt, kick, up);
           store(particles.vx + p, v1.x), store(particles.vy + p, v1.y);
           store(particles.vz + p, v1.z);
         } else {
-          const D3 met = v0 + s * (v1 - v0);
-          D falls = rises(met);
+          const D3 met = fma(s, v1 - v0, v0);
+          const D rise_met = fma(s, rise1 - rise, rise);
+          D falls = rise_met;
           if constexpr (Springy != Springs::none) {
             // What the spring has not taken at the depth of the contact, and no more.
             const D zc = s > 0.0 ? min(z0, all(c.threshold - c.spring.reach)) : z0;
             const D depth = min(zc, D{});
-            const D left = energy - c.spring.stiffness * depth * depth +
-                           2.0 * dot(n, a) * gain * (1 / dt) * zc;
+            const D left =
+                energy - c.spring.stiffness * depth * depth + 2.0 * an * gain * (1 / dt) * zc;
             falls = max(falls, -sqrt(max(left, D{})));
           }
-          const D kick = only(falls < 0.0, -c.restitution * falls - rises(met));
-          const D3 w = met + kick * n;
-          D3 after = w + rest * ((keep - 1.0) * w + gain * a);
-          D3 rest_way = (rest * dt) * (mean_keep * w + (rest * mean_gain) * a);
+          const D kick = only(falls < 0.0, -c.restitution * falls - rise_met);
+          const D3 w = fma(kick, n, met);
+          const D wn = rise_met + kick + un;
           // Back at the surface within the step: it rests there, and slides.
-          D sinks = dot(n, rest_way);
-          if constexpr (moves) sinks = sinks - rest * dt * dot(n, u);
+          const D sinks = rest * dt * (mean_keep * wn + rest * mean_gain * an - un);
           const L rests = sinks < 0.0;
-          rest_way = rest_way - only(rests, sinks) * n;
-          after = after - only(rests, rises(after)) * n;
-          const D3 first_way = (s * dt) * (mean + (c.curved * rest) * (v0 - mean));
+          const D sinks1 = wn + rest * ((keep - 1.0) * wn + gain * an) - un;
+          const D3 after = fma(rest, fma(keep - 1.0, w, gain * a), fma(-only(rests, sinks1), n, w));
+          const D3 rest_way =
+              fma(rest * dt, fma(mean_keep, w, (rest * mean_gain) * a), -only(rests, sinks) * n);
+          const D3 first_way = (s * dt) * fma(c.curved * rest, v0 - mean, mean);
+          if constexpr (Springy != Springs::none)
+            work = hits ? dot(a, first_way + rest_way - (way - (dt * change) * n)) : work;
           v1 = select(hits, after, v1);
           way = select(hits, first_way + rest_way, way);
         }
-        way = select(hits | deep, way + shift, way);
+        if constexpr (Springy != Springs::none) work = work + an * up;
+        way = select(hits | deep, fma(up, n, way), way);
       }
     }
-    if constexpr (Springy != Springs::none) {
-      const D3 w = relative(flight_end);
-      const D depth = min(z0, D{});
-      store(scratch.energy + p,
-            dot(w, w) + c.spring.stiffness * depth * depth +
-                2.0 * (gain * (1 / dt)) * dot(a, way - times(dt, flight_mean)));
-    }
-    const D3 x1 = x0 + way;
+    if constexpr (Springy != Springs::none)
+      store(scratch.energy + p, energy1 + 2.0 * (gain * (1 / dt)) * work);
+    const D3 x1 = load3(particles.x + p, particles.y + p, particles.z + p) + way;
     store(particles.x + p, x1.x), store(particles.y + p, x1.y), store(particles.z + p, x1.z);
     constexpr bool stored = Flies == Flight::none && Springy == Springs::none;
     if constexpr (!stored) {

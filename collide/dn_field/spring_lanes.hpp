@@ -72,9 +72,11 @@ struct SpringStay {
   L stays;
 };
 inline SpringStay spring_stay(const SpringConstants& c, D z, D e, D g) {
-  const D balance = g * (1 / c.stiffness), a = z - balance, b = (e + c.gamma * a) * (1 / c.omega);
-  const D end = balance + c.kept * (a * c.cosine + b * c.sine);
-  const D rate = c.kept * (e * c.cosine - (c.gamma * b + c.omega * a) * c.sine);
+  const D balance = g * (1 / c.stiffness), a = z - balance,
+          b = fma(all(c.gamma), a, e) * (1 / c.omega);
+  const D cosine = all(c.kept * c.cosine), sine = all(c.kept * c.sine);
+  const D end = fma(cosine, a, fma(sine, b, balance));
+  const D rate = fma(cosine, e, -sine * fma(all(c.gamma), b, c.omega * a));
   return {{end, rate}, (z < 0.0) & (end <= 0.0)};
 }
 

@@ -96,7 +96,7 @@ void surface_flow(Rows& rows) {
       }
     }
     rows.add("surface flow: |V|", "alpha dt/|V|", alpha / speed, kept, 1e-13);
-    rows.add("surface flow: angle", "alpha dt/|V|", alpha / speed, off, 1e-9);
+    rows.add("surface flow: angle", "alpha dt/|V|", alpha / speed, off, 1e-6);
     rows.add("surface flow: overshoot", "alpha dt/|V|", alpha / speed, rising, 1e-15);
   }
 }
