@@ -204,13 +204,28 @@ class Bench {
     gravity.gravity = Gravity{g};
     hand_and_loop(
         "dn gravity", spread_, [&](Particles& p) { gravity_by_hand(p.span(), g); }, gravity, 1e-12);
-    for (const Particles* from : {&spread_, &near_})
+    Rules air;
+    air.air_drag = AirDrag{1, DragLaw::linear};
+    hand_and_loop(
+        "dn air drag", spread_, [&](Particles& p) { air_drag_by_hand(p.span(), 1); }, air, 1e-12);
+    Rules drag;
+    drag.look_up = LookUp::nearest;
+    drag.surface_drag = SurfaceDrag{1, 2 * cell(), DragLaw::linear};
+    for (const Particles* from : {&spread_, &near_}) {
+      const std::string where = from == &spread_ ? "; spread" : "; near";
       hand_and_loop(
-          from == &spread_ ? "dn impact; spread" : "dn impact; near",
+          "dn surface drag" + where,
+          *from,
+          [&](Particles& p) { surface_drag_by_hand(p.span(), field_, 1, 2 * cell()); },
+          drag,
+          1e-5);
+      hand_and_loop(
+          "dn impact" + where,
           *from,
           [&](Particles& p) { impact_by_hand(p.span(), field_); },
           impact(LookUp::nearest),
           1e-5);
+    }
   }
 
   /// The same box cut finer, fields of the same grid.

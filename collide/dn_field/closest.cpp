@@ -17,21 +17,20 @@ F outside_by(const Placed& object, F3 g) {
 
 constexpr std::int32_t unknown = -1;
 
-/// sample() for particle p and its neighbours; fetches from the field for those alone that have
-/// changed their voxel since `last`. The others get what they would have got.
-template <LookUp Kind, Ask Asked>
+/// sample() of both for particle p and its neighbours; fetches from the field for those alone that
+/// have changed their voxel since `last`. The others get what they would have got.
+template <LookUp Kind>
 Sample sample_again(
     const Sampler& field, F3 g, const Closest& last, Closest& closest, std::size_t p) {
   const Voxel voxel = voxel_of(field.n, g);
   const I key = voxel.in ? position(field, voxel) : I{} + unknown;
   const I changed = ~voxel.in | (key != load<I>(last.voxel + p));
-  Stored stored{load<F>(last.stored + p), {}};
-  if constexpr (Asked == Ask::both)
-    stored.normal = {load<F>(last.nx + p), load<F>(last.ny + p), load<F>(last.nz + p)};
-  if (any(changed)) stored = read_changed<Kind, Asked>(field, voxel, changed, stored);
+  Stored stored{load<F>(last.stored + p),
+                {load<F>(last.nx + p), load<F>(last.ny + p), load<F>(last.nz + p)}};
+  if (any(changed)) stored = read_changed(field, voxel, changed, stored);
   store(closest.voxel + p, key);
   store(closest.stored + p, stored.distance);
-  return answer<Kind, Asked>(field, voxel, stored, g);
+  return answer<Kind, Ask::both>(field, voxel, stored, g);
 }
 
 template <Storage How>
@@ -91,8 +90,8 @@ void pass(const Placed& placed,
            q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
     Sample found;
     if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear &&
-                  How == Storage::flat)
-      found = sample_again<Kind, Asked>(field, g, last, closest, p);
+                  Asked == Ask::both && How == Storage::flat)
+      found = sample_again<Kind>(field, g, last, closest, p);
     else
       found = sample<Kind, Asked>(field, g);
     const I in = found.distance < out_of_reach;

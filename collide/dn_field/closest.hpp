@@ -16,8 +16,8 @@ struct alignas(64) Closest {
   float nx[block_size], ny[block_size], nz[block_size];  ///< unit or zero
   float free[block_size];  ///< swept impact only: no surface is met in this step on a shorter way
                            ///< relative to the velocity below; `follow`: one may be on any
-  // One object at rest, look-ups of one voxel: most particles are still in the voxel of the step
-  // before, whose distance and normal then need not be fetched and decoded again.
+  // One object at rest, look-ups of one voxel's distance and normal: most particles are still in
+  // the voxel of the step before, which then need not be fetched and decoded again.
   std::int32_t voxel[block_size];                         ///< that the above is of, see forget()
   float stored[block_size];                               ///< its distance
   double ux[block_size], uy[block_size], uz[block_size];  ///< the surface's velocity (General only)

@@ -86,6 +86,14 @@ inline L settled(L mask) {
   return mask;
 }
 
+/// The number in a register. g++ 12 else reads it from memory again for each use.
+inline D held(D v) {
+#ifdef __AVX512F__
+  asm("" : "+v"(v));
+#endif
+  return v;
+}
+
 /// v where the mask holds, else zero.
 inline D only(L mask, D v) {
   return (D)(mask & (L)v);
@@ -241,7 +249,7 @@ inline D3 to_double(F3 v) {
 }
 
 inline D3 load3(const double* x, const double* y, const double* z) {
-  return {load<D>(x), load<D>(y), load<D>(z)};
+  return {held(load<D>(x)), held(load<D>(y)), held(load<D>(z))};
 }
 
 /// One Newton step takes a normal that is unit to float precision to double precision.

@@ -2,9 +2,9 @@
 // the instance of its scene from a table, in which a rule that the scene has not got left no
 // instruction. Private to the step loop.
 //
-// The flight of a step is given by its end velocity v1 and its mean velocity m, both exact for
-// constant accelerations and linear drags. An impact happens at the fraction s of the step where
-// the chord x + s dt m meets the surface; there the velocity is reflected, and the rest of the step
+// The flight of a step is given by its end velocity v1 and its way w, both exact for constant
+// accelerations and linear drags. An impact happens at the fraction s of the step where the chord
+// x + s w meets the surface; there the velocity is reflected, and the rest of the step
 // is flown with the new one. Without drag the contact is placed on the parabola itself, so that the
 // energy is kept to rounding.
 //
@@ -25,16 +25,16 @@ enum class Flight : std::uint32_t { none, fall, air, surface };
 enum class Impacts : std::uint32_t { none, plain, swept };
 enum class Springs : std::uint32_t { none, exact };
 
-/// The exact flow of v' = -rate v + a over a step: v1 = keep v + gain a, mean = mean_keep v +
-/// mean_gain a.
+/// The exact flow of v' = -rate v + a over a step: v1 = keep v + gain a, the way is way_keep v +
+/// way_gain a.
 struct LinearFlow {
-  double keep = 1, gain = 0, mean_keep = 1, mean_gain = 0;
+  double keep = 1, gain = 0, way_keep = 0, way_gain = 0;
 };
 
 /// A particle that goes further than is known to be free: left to trace(), see trace.hpp.
 struct Untraced {
   std::size_t particle;  ///< in the block
-  Vec3 position, start_velocity, end_velocity, mean_velocity;
+  Vec3 position, start_velocity, end_velocity, way;
 };
 
 /// What the rule loop leaves for others.
@@ -94,42 +94,44 @@ void rule_loop(const RuleConstants& constants,
     }
     if constexpr (moves) u = load3(closest.ux + p, closest.uy + p, closest.uz + p);
 
-    D3 v1 = v0, mean = v0, a{};
-    D keep = all(1.0), gain{}, mean_keep = keep, mean_gain{};
+    D3 v1 = v0, way, a{};
+    D keep = all(1.0), gain{}, way_keep = all(dt), way_gain{};
     if constexpr (Flies != Flight::none) {
       keep = all(c.air.keep), gain = all(c.air.gain);
-      mean_keep = all(c.air.mean_keep), mean_gain = all(c.air.mean_gain);
+      way_keep = all(c.air.way_keep), way_gain = all(c.air.way_gain);
       a = plus(a, c.acceleration);
       if constexpr (Flies == Flight::surface) {
         const L near = d < c.surface_threshold;
         keep = near ? all(c.surface.keep) : keep;
         gain = near ? all(c.surface.gain) : gain;
-        mean_keep = near ? all(c.surface.mean_keep) : mean_keep;
-        mean_gain = near ? all(c.surface.mean_gain) : mean_gain;
+        way_keep = near ? all(c.surface.way_keep) : way_keep;
+        way_gain = near ? all(c.surface.way_gain) : way_gain;
         if constexpr (moves) a = a + only(near, all(c.surface_rate) * u);
       }
       if constexpr (Flies == Flight::fall) {
         v1 = fma(gain, a, v0);
-        mean = fma(mean_gain, a, v0);
       } else {
         v1 = fma(keep, v0, gain * a);
-        mean = fma(mean_keep, v0, mean_gain * a);
       }
+      way = fma(way_keep, v0, way_gain * a);
+    } else {
+      way = way_keep * v0;
     }
 
     // Along the normal all is scalar; velocities there are relative to the surface: `rise` at the
-    // start, `rise1` at the end, `climb` on the mean.
+    // start, `rise1` at the end; `climb` is the way.
     [[maybe_unused]] D an{}, un{}, rise{}, rise1{}, climb{};
     if constexpr (asks_normal) {
-      rise = rise1 = climb = dot(n, v0);
+      rise = rise1 = dot(n, v0);
+      climb = way_keep * rise;
       if constexpr (Flies != Flight::none) {
         an = dot(n, a);
         rise1 = fma(keep, rise, gain * an);
-        climb = fma(mean_keep, rise, mean_gain * an);
+        climb = fma(way_gain, an, climb);
       }
       if constexpr (moves) {
         un = dot(n, u);
-        rise = rise - un, rise1 = rise1 - un, climb = climb - un;
+        rise = rise - un, rise1 = rise1 - un, climb = fma(-step, un, climb);
       }
     }
 
@@ -156,23 +158,21 @@ void rule_loop(const RuleConstants& constants,
           motion.rate = stays ? motion.rate : whole.rate;
         }
         const D kick = only(touches, motion.rate - rise1);
-        change = only(touches, (motion.end - z0) * (1 / dt) - climb);
+        change = only(touches, motion.end - z0 - climb);
         v1 = select(touches, fma(kick, n, v1), v1);
-        mean = select(touches, fma(change, n, mean), mean);
+        way = select(touches, fma(change, n, way), way);
         rise1 = rise1 + kick;
         climb = climb + change;
-        work = dt * an * change;
+        work = an * change;
       }
     }
 
-    D3 way = step * mean;
     if constexpr (Hits != Impacts::none) {
-      const D way_up = dt * climb;
       const L known = has_normal & (d < static_cast<double>(out_of_reach));
-      L hits = settled(known & (way_up < 0.0) & (d + way_up < c.threshold));
+      L hits = settled(known & (climb < 0.0) & (d + climb < c.threshold));
       L deep = settled(known & (d < c.threshold - c.slack));
       if constexpr (Hits == Impacts::swept) {
-        const D3 path = moves ? step * (mean - u) : way;
+        const D3 path = moves ? fma(-step, u, way) : way;
         const D free = max(to_double(load<F>(closest.free + p)), all(c.stride));
         L far = dot(path, path) > free * free;
         if constexpr (moves) far = far | widen(load<F>(closest.free + p) <= follow);
@@ -185,12 +185,12 @@ void rule_loop(const RuleConstants& constants,
               const std::size_t k = p + static_cast<std::size_t>(i);
               const auto at = [i](D3 v) { return Vec3{v.x[i], v.y[i], v.z[i]}; };
               const Vec3 from{particles.x[k], particles.y[k], particles.z[k]};
-              scratch.untraced.push_back({k, from, at(v0), at(v1), at(mean)});
+              scratch.untraced.push_back({k, from, at(v0), at(v1), at(way)});
             }
       }
       if (any(hits | deep)) {
         D up = only(deep, c.threshold - c.slack - d);
-        const D s = only(hits, max((c.threshold - d) / way_up, D{}));
+        const D s = only(hits, max((c.threshold - d) / climb, D{}));
         const D rest = 1.0 - s;
         if constexpr (Flies == Flight::none && Springy == Springs::none) {
           const D kick = only(hits, -(1 + c.restitution) * rise);
@@ -214,15 +214,15 @@ void rule_loop(const RuleConstants& constants,
           const D3 w = fma(kick, n, met);
           const D wn = rise_met + kick + un;
           // Back at the surface within the step: it rests there, and slides.
-          const D sinks = rest * dt * (mean_keep * wn + rest * mean_gain * an - un);
+          const D sinks = rest * (way_keep * wn + rest * way_gain * an - dt * un);
           const L rests = sinks < 0.0;
           const D sinks1 = wn + rest * ((keep - 1.0) * wn + gain * an) - un;
           const D3 after = fma(rest, fma(keep - 1.0, w, gain * a), fma(-only(rests, sinks1), n, w));
           const D3 rest_way =
-              fma(rest * dt, fma(mean_keep, w, (rest * mean_gain) * a), -only(rests, sinks) * n);
-          const D3 first_way = (s * dt) * fma(c.curved * rest, v0 - mean, mean);
+              fma(rest, fma(way_keep, w, (rest * way_gain) * a), -only(rests, sinks) * n);
+          const D3 first_way = s * fma(c.curved * rest, step * v0 - way, way);
           if constexpr (Springy != Springs::none)
-            work = hits ? dot(a, first_way + rest_way - (way - (dt * change) * n)) : work;
+            work = hits ? dot(a, first_way + rest_way - fma(-change, n, way)) : work;
           v1 = select(hits, after, v1);
           way = select(hits, first_way + rest_way, way);
         }

@@ -113,23 +113,16 @@ inline Stored read(const Sampler& field, const Voxel& voxel) {
   return stored;
 }
 
-/// read() where `changed`, else `before`, which is what it would read.
-template <LookUp Kind, Ask Asked>
+/// Distance and normal as by read() where `changed`, else `before`, which is what it would read.
 inline Stored read_changed(const Sampler& field,
                            const Voxel& voxel,
                            I changed,
                            const Stored& before) {
-  Stored stored = before;
   const I at = position(field, voxel);
-  if constexpr (Asked != Ask::distance || Kind == LookUp::tangent) {
-    const F3 normal = only(voxel.in, unit(decode(gather(field.normal, at, changed))));
-    stored.normal = select(changed, normal, before.normal);
-  }
-  if constexpr (Asked != Ask::normal) {
-    const F distance = gather(field.distance, at, changed);
-    stored.distance = changed ? (voxel.in ? distance : all(out_of_reach)) : before.distance;
-  }
-  return stored;
+  const F3 normal = only(voxel.in, unit(decode(gather(field.normal, at, changed))));
+  F distance = gather(field.distance, at, changed);
+  distance = voxel.in ? distance : all(out_of_reach);
+  return {changed ? distance : before.distance, select(changed, normal, before.normal)};
 }
 
 template <LookUp Kind, Ask Asked>

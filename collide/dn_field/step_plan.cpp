@@ -7,13 +7,13 @@ namespace {
 
 LinearFlow linear_flow(double rate, double step) {
   const double x = rate * step;
-  if (!(x > 0)) return {1, step, 1, 0.5 * step};
-  const double lost = -std::expm1(-x), mean_keep = lost / x;
+  if (!(x > 0)) return {1, step, step, 0.5 * step * step};
+  const double lost = -std::expm1(-x), mean = lost / x;
   // 1 − (1 − exp(−x))/x, by its series where it cancels
   const double mean_lost =
       x < 0.02 ? x * (1.0 / 2 - x * (1.0 / 6 - x * (1.0 / 24 - x * (1.0 / 120 - x / 720))))
-               : 1 - mean_keep;
-  return {1 - lost, lost / rate, mean_keep, mean_lost / rate};
+               : 1 - mean;
+  return {1 - lost, lost / rate, step * mean, step * mean_lost / rate};
 }
 
 /// What flies far from all surfaces.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int steps_at_once = 64;     // for which the objects' positions are made in advance
 constexpr int furthest_ahead = 16;    // steps that one screening may serve
-constexpr int steps_unscreened = 16;  // for which all count as near where screening did not pay
+constexpr int steps_unscreened = 32;  // for which all count as near where screening did not pay
 
 /// The number of steps since time 0, whole where `time` is meant to be a sum or multiple of steps:
 /// then a run from there sees the same times to the bit as one that came by.
@@ -263,6 +263,8 @@ void Stepper::run(ParticleSpan particles,
   std::vector<Object> standing(objects.begin(), objects.end());
   if (!plan.looks_up) standing.clear();
   const double before = steps_before(time, plan.step);
+  // Without look-ups the first cache holds more particles.
+  const std::size_t at_once = plan.looks_up ? block_size : 3 * block_size / 2;
   const auto buffers = std::make_unique<Buffers>();
   clear(buffers->first, block_size);
   clear(buffers->second, block_size);
@@ -294,8 +296,8 @@ void Stepper::run(ParticleSpan particles,
     const auto step_all = [&](const ParticleSpan& block) {
       fly(run, moments, step_time, block, *buffers);
     };
-    for (std::size_t first = 0; first < whole; first += block_size)
-      step_all(particles.part(first, std::min(block_size, whole - first)));
+    for (std::size_t first = 0; first < whole; first += at_once)
+      step_all(particles.part(first, std::min(at_once, whole - first)));
     if (whole < particles.count) step_all(rest);
   }
   copy(false);

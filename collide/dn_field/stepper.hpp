@@ -6,10 +6,9 @@
 // One step of a particle:
 //     velocity   quadratic drags and the surface flow, each by its exact solution
 //     flight     gravity, wind, linear drags and explosions, exact for constant coefficients, gives
-//                the velocity at the end and the mean velocity
+//                the velocity at the end and the way
 //     surface    the spring's exact motion along the normal; the impact at its time within the
-//     step,
-//                then the rest of the step with the new velocity
+//                step, then the rest of the step with the new velocity
 #pragma once
 
 #include "collide/dn_field/compressed.hpp"

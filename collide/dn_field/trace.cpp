@@ -146,16 +146,16 @@ double trace(const RuleConstants& c,
              const Untraced& from,
              const ParticleSpan& particles) {
   Vec3 x = from.position, start = from.start_velocity, end = from.end_velocity,
-       mean = from.mean_velocity;
-  const bool can_fly = is_finite(x) && is_finite(mean) && is_finite(start) && is_finite(end);
+       way = from.way;  // of a whole step at the rate of the rest
+  const bool can_fly = is_finite(x) && is_finite(way) && is_finite(start) && is_finite(end);
   double rest = 1;
   for (int bounce = 0; can_fly; ++bounce) {
-    const Contact contact = first_contact(c, objects, kind, x, c.step * mean, rest);
+    const Contact contact = first_contact(c, objects, kind, x, way, rest);
     if (!(contact.at < HUGE_VAL)) break;
     const double s = contact.at, fraction = rest > 0 ? s / rest : 0;
     const Vec3 n = contact.normal, u = contact.surface_velocity;
     const Vec3 met = start + fraction * (end - start);
-    x += (s * c.step) * mean + contact.too_deep * n;
+    x += s * way + contact.too_deep * n;
     rest -= s;
     const double falls = dot(n, met - u);
     start = falls < 0 ? met - ((1 + c.restitution) * falls) * n : met;
@@ -163,9 +163,9 @@ double trace(const RuleConstants& c,
     Vec3 a = c.acceleration;
     if (c.surface_threshold > c.threshold) a += c.surface_rate * u;
     end = start + rest * ((flow.keep - 1) * start + flow.gain * a);
-    mean = flow.mean_keep * start + (rest * flow.mean_gain) * a;
-    if (const double sinks = dot(n, mean - u); sinks < 0) {  // it rests, and slides
-      mean = mean - sinks * n;
+    way = flow.way_keep * start + (rest * flow.way_gain) * a;
+    if (const double sinks = dot(n, way - c.step * u); sinks < 0) {  // it rests, and slides
+      way = way - sinks * n;
       end = end - std::min(0.0, dot(n, end - u)) * n;
     }
     if (bounce + 1 == max_bounces) {
@@ -174,12 +174,12 @@ double trace(const RuleConstants& c,
       break;
     }
   }
-  x += (rest * c.step) * mean;
+  x += rest * way;
   const std::size_t p = from.particle;
   particles.x[p] = x.x, particles.y[p] = x.y, particles.z[p] = x.z;
   particles.vx[p] = end.x, particles.vy[p] = end.y, particles.vz[p] = end.z;
-  const Vec3 way = x - from.position - c.step * from.mean_velocity;
-  return can_fly ? 2 * (c.air.gain / c.step) * dot(c.acceleration, way) : 0;
+  const Vec3 aside = x - from.position - from.way;
+  return can_fly ? 2 * (c.air.gain / c.step) * dot(c.acceleration, aside) : 0;
 }
 
 }  // namespace tess::dn

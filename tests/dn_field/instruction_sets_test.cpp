@@ -37,8 +37,8 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
           "[dn_field][rules]") {
   RuleConstants c;
   c.step = 0.01;
-  c.air = {0.99, 0.00995, 0.995, 0.005};
-  c.surface = {0.9, 0.0095, 0.95, 0.005};
+  c.air = {0.99, 0.00995, 0.00995, 5e-5};
+  c.surface = {0.9, 0.0095, 0.0095, 5e-5};
   c.acceleration = {0.1, 0, -1};
   c.surface_rate = 10, c.surface_threshold = 0.2;
   c.restitution = 0.7, c.threshold = 0.01, c.slack = 1e-4, c.stride = 0.01;
