@@ -65,8 +65,7 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
   flat_bytes_ = field_.bytes();
   if (compression) {
     compressed_ = compress(field_, bound_of(*compression, field_));
-    field_.distance = {};
-    field_.normal = {};
+    field_ = outline(*compressed_);
   }
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
