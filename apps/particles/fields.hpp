@@ -48,7 +48,7 @@ class FieldInTheMaking {
   tess::dn::Field field_;
   std::optional<tess::dn::CompressedField> compressed_;
   std::uint64_t flat_bytes_ = 0;
-  std::vector<double> furthest_;  // by part
+  std::vector<tess::dn::BuiltSlab> slabs_;  // by part
   std::chrono::steady_clock::time_point start_;
   double seconds_ = 0;
 };
