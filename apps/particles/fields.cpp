@@ -43,12 +43,12 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
   options.thickness = object.thickness;
   builder_.emplace(object.surface, grid, options);
   field_ = builder_->empty_field();
-  furthest_.assign(static_cast<std::size_t>(n_parts), 0);
+  slabs_.assign(static_cast<std::size_t>(n_parts), {});
 }
 
 void FieldInTheMaking::fill(int part) {
   if (!builder_) return;
-  const auto n_parts = static_cast<int>(furthest_.size());
+  const auto n_parts = static_cast<int>(slabs_.size());
   constexpr int block = 4;  // layers that are built together
   const int layers = field_.grid.n[2], blocks = (layers + block - 1) / block;
   const auto edge = [&](int of) {
@@ -56,17 +56,16 @@ void FieldInTheMaking::fill(int part) {
   };
   const int first = edge(part), last = edge(part + 1);
   if (first == last) return;
-  furthest_[static_cast<std::size_t>(part)] = builder_->build(slab_of(field_, first, last));
+  slabs_[static_cast<std::size_t>(part)] = builder_->build(slab_of(field_, first, last));
 }
 
 void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
-  if (builder_) builder_->finish(field_, *std::max_element(furthest_.begin(), furthest_.end()));
+  if (builder_) builder_->finish(field_, slabs_);
   builder_.reset();
   flat_bytes_ = field_.bytes();
   if (compression) {
     compressed_ = compress(field_, bound_of(*compression, field_));
-    field_.distance = {};
-    field_.normal = {};
+    field_ = outline(*compressed_);
   }
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }

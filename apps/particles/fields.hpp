@@ -29,7 +29,7 @@ class FieldInTheMaking {
   /// With a compression the flat arrays are given up for the compressed field.
   void finish(const std::optional<Compression>& compression = {});
 
-  /// The flat field; of a compressed one grid, sides and thickness alone.
+  /// The flat field; of a compressed one its outline.
   [[nodiscard]] const tess::dn::Field& field() const { return field_; }
   [[nodiscard]] const std::optional<tess::dn::CompressedField>& compressed() const {
     return compressed_;
@@ -48,7 +48,7 @@ class FieldInTheMaking {
   tess::dn::Field field_;
   std::optional<tess::dn::CompressedField> compressed_;
   std::uint64_t flat_bytes_ = 0;
-  std::vector<double> furthest_;  // by part
+  std::vector<tess::dn::BuiltSlab> slabs_;  // by part
   std::chrono::steady_clock::time_point start_;
   double seconds_ = 0;
 };

@@ -95,6 +95,16 @@ class Shadow {
     columns_ = static_cast<std::size_t>(width / cell_) + 1;
     filled_.resize(columns_ * (static_cast<std::size_t>(height / cell_) + 1));
   }
+  void fill(const Surface& surface, const Frame& frame, const View& view) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      std::array<std::pair<double, double>, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 p = frame.to_world(surface.corners(t)[i]);
+        corners[i] = {component(p, view.right), component(p, view.up)};
+      }
+      fill(corners);
+    }
+  }
   void fill(std::array<std::pair<double, double>, 3> corners) {
     for (auto& [x, y] : corners) x = (x - left_) / cell_, y = (y - bottom_) / cell_;
     const auto [a, b, c] = corners;
@@ -130,6 +140,24 @@ class Shadow {
                    cell_,
                    "#bbb");
       }
+  }
+  /// Its edge, not where the window cuts it.
+  void outline(Canvas& canvas) const {
+    const std::size_t rows = filled_.size() / columns_;
+    const auto x = [&](std::size_t i) { return canvas.x(left_ + cell_ * static_cast<double>(i)); };
+    const auto y = [&](std::size_t i) {
+      return canvas.y(bottom_ + cell_ * static_cast<double>(i));
+    };
+    canvas.raw("<path fill=\"none\" stroke=\"#888\" stroke-width=\"0.6\" d=\"");
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t i = 0; i < columns_; ++i) {
+        const std::size_t at = row * columns_ + i;
+        if (i > 0 && filled_[at] != filled_[at - 1])
+          canvas.raw(fmt::format("M{:.1f} {:.1f}V{:.1f}", x(i), y(row), y(row + 1)));
+        if (row > 0 && filled_[at] != filled_[at - columns_])
+          canvas.raw(fmt::format("M{:.1f} {:.1f}H{:.1f}", x(i), y(row), x(i + 1)));
+      }
+    canvas.raw("\"/>\n");
   }
 
  private:
@@ -210,17 +238,26 @@ std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots
   const double margin = 0.3 * std::max({width, height, 1e-9});
   width += 2 * margin, height += 2 * margin;
   Canvas canvas(left - margin, bottom - margin, width, height);
-  Shadow shadow(left - margin, bottom - margin, width, height);
-  for (const SceneObject& object : scene.objects)
-    for (std::size_t t = 0; t < object.surface.triangles.size(); ++t) {
-      std::array<std::pair<double, double>, 3> corners;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 p = object.frame.to_world(object.surface.corners(t)[i]);
-        corners[i] = {component(p, view.right), component(p, view.up)};
-      }
-      shadow.fill(corners);
-    }
+  Shadow shadow(left - margin, bottom - margin, width, height), at_end = shadow;
+  const double end = snapshots.back().step * scene.dt;
+  bool moved = false;
+  for (const SceneObject& object : scene.objects) {
+    Frame frame = object.frame;
+    shadow.fill(object.surface, frame, view);
+    if (!frame.is_moving()) continue;
+    moved = true;
+    frame.advance(end);
+    at_end.fill(object.surface, frame, view);
+  }
   shadow.draw(canvas);
+  if (moved) {
+    at_end.outline(canvas);
+    canvas.raw(
+        fmt::format("<text x=\"8\" y=\"18\" font-family=\"sans-serif\" font-size=\"12\" "
+                    "fill=\"#666\">objects at the begin (grey), moving ones at the end, t = {:g} "
+                    "(outline)</text>\n",
+                    end));
+  }
   struct Path {
     std::string drawn;
     bool goes_on = false;  // from where it was last; not after it has left the window

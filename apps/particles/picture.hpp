@@ -15,7 +15,8 @@ namespace particles {
 /// Error(bad_value) for a place outside of the grid.
 [[nodiscard]] std::string slice_svg(const tess::dn::Field& field, int axis, double at);
 
-/// Paths of the particles over all snapshots, and the objects where they stand at first.
+/// Paths of the particles over all snapshots, the objects where they stand at first, and the
+/// outline of the moving ones where they stand at last.
 [[nodiscard]] std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots);
 
 }  // namespace particles

@@ -61,7 +61,8 @@ outputs
   statistics  a row of the table every so many steps (default 0: the first and the last alone)
   audit       true: each step is looked at for particles that tunnel; false: the last step alone
               (default: each step, up to 2e7 particles times steps)
-  trajectories   positions every so many steps, with --out: VTP files, a .pvd series, a picture
+  trajectories   positions every so many steps, with --out: VTP files, a .pvd series, a picture (objects as
+              they stand at first, moving ones in outline as they stand at last)
   traced      how many particles the trajectories hold (default 200)
   axis        x, y or z (default): along which the pictures look
   slice       {"object": 0, "at": 0}: with --out, a picture of the object's field, cut at that place on the axis

@@ -126,7 +126,7 @@ double ExactBuilder::build_shelf(const Slab& slab, int first, int last) const {
   return static_cast<double>(furthest);
 }
 
-double ExactBuilder::build(const Slab& slab) const {
+BuiltSlab ExactBuilder::build(const Slab& slab) const {
   TESS_CHECK(slab.first >= 0 && slab.last <= grid_.n[2] && slab.first <= slab.last &&
                  slab.distance.size() == grid_.index(0, 0, slab.last - slab.first) &&
                  (slab.normal.empty() || slab.normal.size() == slab.distance.size()),
@@ -139,30 +139,43 @@ double ExactBuilder::build(const Slab& slab) const {
              " with room for ",
              slab.distance.size(),
              " distances");
-  double furthest = 0;
+  BuiltSlab built{slab.first, slab.last, 0, 0};
   for (int k = slab.first; k < slab.last;) {
     const int next = std::min(k - k % block_edge + block_edge, slab.last);
-    furthest = std::max(furthest, build_shelf(slab, k, next));
+    built.furthest = std::max(built.furthest, build_shelf(slab, k, next));
+    // While its layers are in the cache, with the one below.
+    const int below = std::max(slab.first, k - 1);
+    const auto layers = slab.distance.subspan(grid_.index(0, 0, below - slab.first),
+                                              grid_.index(0, 0, next - below));
+    built.jump = std::max(built.jump, greatest_jump(grid_, layers));
     k = next;
+    if (options_.progress) options_.progress(1.0 * (k - slab.first) / (slab.last - slab.first));
   }
-  return furthest;
+  return built;
 }
 
-void ExactBuilder::finish(Field& field, double furthest) const {
+void ExactBuilder::finish(Field& field, std::span<const BuiltSlab> slabs) const {
+  double furthest = 0;
+  int n_layers = 0;
+  field.jump = 0;
+  for (const BuiltSlab& slab : slabs) {
+    if (slab.first == slab.last) continue;
+    n_layers += slab.last - slab.first;
+    furthest = std::max(furthest, slab.furthest);
+    field.jump = std::max(field.jump, slab.jump);
+    if (slab.first == 0) continue;
+    const Slab seam = slab_of(field, slab.first - 1, slab.first + 1);
+    field.jump = std::max(field.jump, greatest_jump(grid_, seam.distance));
+  }
+  TESS_CHECK(n_layers == grid_.n[2], "slabs of ", n_layers, " layers, of ", grid_.n[2]);
   field.thickness = std::min(options_.thickness, furthest);
-  field.jump = greatest_jump(field);
 }
 
 Field build_exact(const Surface& surface, const Grid& grid, const ExactOptions& options) {
   const ExactBuilder builder(surface, grid, options);
   Field field = builder.empty_field();
-  double furthest = 0;
-  for (int k = 0; k < grid.n[2]; k += block_edge) {
-    const int next = up_to(k, block_edge, grid.n[2]);
-    furthest = std::max(furthest, builder.build(slab_of(field, k, next)));
-    if (options.progress) options.progress(1.0 * next / grid.n[2]);
-  }
-  builder.finish(field, furthest);
+  const BuiltSlab whole = builder.build(slab_of(field, 0, grid.n[2]));
+  builder.finish(field, {&whole, 1});
   return field;
 }
 

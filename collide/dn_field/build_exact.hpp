@@ -33,6 +33,13 @@ struct Slab {
   std::span<std::uint32_t> normal;  ///< likewise; empty: not asked for
 };
 
+/// What was found in layers that are filled.
+struct BuiltSlab {
+  int first = 0, last = 0;
+  double furthest = 0;  ///< the greatest |distance|
+  float jump = 0;       ///< Field::jump within the layers
+};
+
 /// The layers of `field` as a slab.
 [[nodiscard]] Slab slab_of(Field& field, int first, int last);
 
@@ -46,13 +53,14 @@ class ExactBuilder {
   /// A field with room for all layers, thickness as asked for.
   [[nodiscard]] Field empty_field() const;
 
-  /// Fills the layers of `slab` and returns the greatest |distance| among them. Errors of distance:
+  /// Fills the layers of `slab`; progress is called with its part of them. Errors of distance:
   /// rounding to float. Any thread, different slabs at once. Best split at multiples of 4 layers:
   /// others are done twice.
-  double build(const Slab& slab) const;
+  [[nodiscard]] BuiltSlab build(const Slab& slab) const;
 
-  /// Cuts the field's thickness to the greatest distance that its slabs found, and sets its jump.
-  void finish(Field& field, double furthest) const;
+  /// Cuts the field's thickness to the greatest distance that was found, and sets its jump.
+  /// `slabs`: all layers, in any order; some slabs may be empty.
+  void finish(Field& field, std::span<const BuiltSlab> slabs) const;
 
  private:
   struct Shelf;  // up to four layers

@@ -188,7 +188,8 @@ std::optional<CompressedField> Compressor::run() {
                        {},
                        {},
                        bound_,
-                       {}};
+                       {},
+                       field_.jump};
   const int block = 1 << shift_;
   for (std::size_t a = 0; a < 3; ++a) made.n_blocks[a] = (grid.n[a] + block - 1) / block;
   std::unordered_map<std::uint64_t, std::uint32_t> undivided;  // blocks that are alike share one

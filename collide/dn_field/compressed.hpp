@@ -42,6 +42,7 @@ struct CompressedField {
   std::vector<std::uint32_t> entry;  ///< one word an entry, two where the layout is wide
   ErrorBound bound;                  ///< asked for
   ErrorBound measured;               ///< the greatest over all voxels; never above bound
+  float jump = HUGE_VALF;            ///< Field::jump of the flat field that it was made from
 
   [[nodiscard]] std::size_t bytes() const {
     return (block.size() + entry.size()) * sizeof(std::uint32_t);
@@ -55,8 +56,11 @@ struct CompressedField {
                                        const ErrorBound& bound,
                                        int block_shift = 0);
 
-/// The flat field that look-ups of `field` see.
+/// The flat field that look-ups of `field` see, with the jump of its own distances.
 [[nodiscard]] Field expanded(const CompressedField& field);
+
+/// The flat field without its arrays: what stands beside a compressed field in an object.
+[[nodiscard]] Field outline(const CompressedField& field);
 
 /// What voxel (i, j, k) of the grid says of the distance.
 [[nodiscard]] float voxel_distance(const CompressedField& field, int i, int j, int k);

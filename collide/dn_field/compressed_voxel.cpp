@@ -37,7 +37,7 @@ float voxel_distance(const CompressedField& field, int i, int j, int k) {
 }
 
 Field expanded(const CompressedField& field) {
-  Field flat{field.grid, field.method, field.sides, field.thickness, {}, {}};
+  Field flat = outline(field);
   const EntryDecoder decoder(field.layout);
   const bool has_normals = field.content == Content::distance_and_normal;
   const auto [nx, ny, nz] = field.grid.n;
@@ -48,7 +48,12 @@ Field expanded(const CompressedField& field) {
         flat.distance.push_back(here.distance);
         if (has_normals) flat.normal.push_back(encode_normal(to_vec3(here.normal)));
       }
+  flat.jump = greatest_jump(flat);
   return flat;
+}
+
+Field outline(const CompressedField& field) {
+  return {field.grid, field.method, field.sides, field.thickness, {}, {}, field.jump};
 }
 
 }  // namespace tess::dn

@@ -8,40 +8,55 @@
 namespace tess::dn {
 namespace {
 
-/// max |a[i] − b[i]|, 0 <= i < count.
-float greatest_difference(const float* a, const float* b, int count) {
+/// The greatest difference within any of `count` cubes: of columns i and i + right of four rows.
+/// NaN is left out.
+float greatest_difference(const std::array<const float*, 4>& rows, int right, int count) {
   using namespace lanes;
   F largest{};
   int i = 0;
-  for (; i + width <= count; i += width)
-    largest = max(abs(load<F>(a + i) - load<F>(b + i)), largest);
+  for (; i + width <= count; i += width) {
+    F low = all(HUGE_VALF), high = -low;
+    for (const float* row : rows)
+      for (const int at : {i, i + right}) {
+        const F here = load<F>(row + at);
+        low = min(here, low), high = max(here, high);
+      }
+    largest = max(high - low, largest);
+  }
   float result = 0;
   for (int lane = 0; lane < width; ++lane) result = std::max(result, largest[lane]);
-  for (; i < count; ++i) result = std::max(result, std::fabs(a[i] - b[i]));
+  for (; i < count; ++i) {
+    float low = HUGE_VALF, high = -low;
+    for (const float* row : rows)
+      for (const int at : {i, i + right})
+        low = std::min(low, row[at]), high = std::max(high, row[at]);
+    result = std::max(result, high - low);
+  }
   return result;
 }
 
 }  // namespace
 
-float greatest_jump(const Field& field) {
-  const Grid& g = field.grid;
-  // Of the 26 around a voxel, the 13 that come after it.
-  constexpr std::array<std::array<int, 2>, 4> rows{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+// Voxels touch where they are corners of one cube of 2³: so the least and the greatest of each cube
+// say it, in a third of the time that the 13 pairs around a voxel take. Along an axis of one voxel
+// the cubes are flat.
+float greatest_jump(const Grid& grid, std::span<const float> distance) {
+  const std::size_t layer = grid.index(0, 0, 1);
+  const auto n_layers = static_cast<int>(distance.size() / layer);
+  const auto next = [](int n) { return n > 1 ? 1 : 0; };
+  const int right = next(grid.n[0]), up = next(grid.n[1]), above = next(n_layers);
   float largest = 0;
-  for (int k = 0; k < g.n[2]; ++k)
-    for (int j = 0; j < g.n[1]; ++j) {
-      const float* row = &field.distance[g.index(0, j, k)];
-      largest = std::max(largest, greatest_difference(row, row + 1, g.n[0] - 1));
-      for (const auto [dj, dk] : rows) {
-        if (j + dj < 0 || j + dj >= g.n[1] || k + dk >= g.n[2]) continue;
-        const float* other = &field.distance[g.index(0, j + dj, k + dk)];
-        largest = std::max({largest,
-                            greatest_difference(row, other, g.n[0]),
-                            greatest_difference(row, other + 1, g.n[0] - 1),
-                            greatest_difference(row + 1, other, g.n[0] - 1)});
-      }
+  for (int k = 0; k < n_layers - above; ++k)
+    for (int j = 0; j < grid.n[1] - up; ++j) {
+      const auto row = [&](int dj, int dk) { return &distance[grid.index(0, j + dj, k + dk)]; };
+      const std::array rows{row(0, 0), row(up, 0), row(0, above), row(up, above)};
+      largest = std::max(largest, greatest_difference(rows, right, grid.n[0] - right));
     }
   return largest;
+}
+
+float greatest_jump(const Field& field) {
+  return greatest_jump(field.grid, field.distance);
 }
 
 }  // namespace tess::dn

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tess::dn {
@@ -40,5 +41,7 @@ struct Field {
 
 /// Field::jump of these distances; where they are the surface's, a voxel's diagonal at most.
 [[nodiscard]] float greatest_jump(const Field& field);
+/// The same within some layers of a field on `grid`: `distance` holds n[1] × n[0] of each.
+[[nodiscard]] float greatest_jump(const Grid& grid, std::span<const float> distance);
 
 }  // namespace tess::dn

@@ -14,7 +14,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written as memory stands");
 
 constexpr std::array<char, 8> magic{'T', 'e', 's', 's', 'D', 'N', '\r', '\n'};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 enum class Kind : std::uint32_t { flat = 1, compressed = 2 };
 
 struct Head {
@@ -43,6 +43,7 @@ void each_member(Pass& pass, auto& field) requires
     std::same_as<std::remove_const_t<std::remove_reference_t<decltype(field)>>, Field> {
   each_of_grid(pass, field.grid);
   pass.number(field.method), pass.number(field.sides), pass.number(field.thickness);
+  pass.number(field.jump);
   pass.array(field.distance), pass.array(field.normal);
 }
 
@@ -57,6 +58,7 @@ void each_member(Pass& pass, auto& field) requires
   pass.number(field.layout.step);
   pass.number(field.bound.distance), pass.number(field.bound.angle);
   pass.number(field.measured.distance), pass.number(field.measured.angle);
+  pass.number(field.jump);
   pass.array(field.block), pass.array(field.entry);
 }
 
@@ -192,11 +194,13 @@ void require(bool condition, const FileReader& reader, const char* what) {
   if (!condition) reader.refuse(text("holds a field that cannot be: ", what));
 }
 
-void require_sound(const FileReader& reader, const Grid& grid, Method method, Sides sides) {
+void require_sound(
+    const FileReader& reader, const Grid& grid, Method method, Sides sides, float jump) {
   require(grid.n[0] > 0 && grid.n[1] > 0 && grid.n[2] > 0 && grid.cell > 0,
           reader,
           "a grid without voxels");
   require(method <= Method::potential && sides <= Sides::two, reader, "an unknown method or side");
+  require(jump >= 0, reader, "a jump that is negative or NaN");
 }
 
 /// That every voxel's entry is there: a file made by hand may have any checksum.
@@ -231,7 +235,7 @@ AnyField read(FileReader& reader, Kind kind) {
   reader.head(kind);
   each_member(reader, field);
   reader.finish();
-  require_sound(reader, field.grid, field.method, field.sides);
+  require_sound(reader, field.grid, field.method, field.sides, field.jump);
   return field;
 }
 
@@ -258,7 +262,6 @@ Field read_field(std::istream& file, const std::string& name) {
               (field.normal.empty() || field.normal.size() == field.grid.size()),
           reader,
           "another number of voxels");
-  field.jump = greatest_jump(field);
   return field;
 }
 

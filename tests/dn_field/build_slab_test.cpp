@@ -51,17 +51,24 @@ TEST_CASE("a field does not depend on how its layers are split, in which order, 
     const ExactBuilder builder(surface, grid, options);
     for (const auto& cuts : {std::vector{0, 27}, {0, 5, 6, 17, 27}, {0, 8, 16, 27}}) {
       Field field = builder.empty_field();
-      std::vector<double> furthest(cuts.size(), 0);
+      std::vector<BuiltSlab> built(cuts.size());
       std::vector<std::thread> threads;
       for (std::size_t c = cuts.size() - 1; c > 0; --c)
         threads.emplace_back(
-            [&, c] { furthest[c] = builder.build(slab_of(field, cuts[c - 1], cuts[c])); });
+            [&, c] { built[c] = builder.build(slab_of(field, cuts[c - 1], cuts[c])); });
       for (std::thread& t : threads) t.join();
-      builder.finish(field, *std::max_element(furthest.begin(), furthest.end()));
+      builder.finish(field, built);
       CHECK(field.distance == whole.distance);
       CHECK(field.normal == whole.normal);
       CHECK(field.thickness == whole.thickness);
+      CHECK(field.jump == greatest_jump(whole));
     }
+    // A jump from one slab to the next is in neither.
+    Field step = builder.empty_field();
+    const auto upper = slab_of(step, 9, 27).distance;
+    std::fill(upper.begin(), upper.end(), 1.0F);
+    builder.finish(step, std::array{BuiltSlab{9, 27, 1, 0}, BuiltSlab{0, 9, 0, 0}});
+    CHECK(step.jump == 1);
   }
 }
 

@@ -97,9 +97,7 @@ TEST_CASE("in fields compressed without loss particles move as in flat ones, bit
           "[dn_field][compressed]") {
   const Field flat = ball_field(24);
   const CompressedField compressed = compress(flat, {0, 0});
-  Field sizes = flat;
-  sizes.distance = {};
-  sizes.normal = {};
+  const Field sizes = outline(compressed);
   for (const LookUp kind : {LookUp::nearest, LookUp::tangent})
     for (const Sweep sweep : {Sweep::off, Sweep::on})
       for (const bool moves : {false, true}) {

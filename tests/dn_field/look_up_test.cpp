@@ -1,6 +1,8 @@
 #include "collide/dn_field/look_up.hpp"
 
+#include "collide/dn_field/build_blurred.hpp"
 #include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/support/catch.hpp"
 
@@ -39,9 +41,8 @@ TEST_CASE(
   CHECK(inside > 100);
 }
 
-TEST_CASE("no two voxels that touch differ by more than the field's jump", "[dn_field]") {
-  const Surface box = make_box({0.5, 0.3, 0.2});
-  const Field field = build_exact(box, grid_around(bounds(box), 19, 0.3));
+/// The greatest difference of voxels that touch, at faces, edges or corners.
+float jump_by_brute_force(const Field& field) {
   const auto [nx, ny, nz] = field.grid.n;
   float largest = 0;
   for (int at = 0; at < nx * ny * nz; ++at)
@@ -53,8 +54,40 @@ TEST_CASE("no two voxels that touch differ by more than the field's jump", "[dn_
                          std::fabs(field.distance[field.grid.index(i, j, k)] -
                                    field.distance[field.grid.index(u, v, w)]));
     }
-  CHECK(field.jump == largest);
-  CHECK(static_cast<double>(field.jump) < 1.7321 * field.grid.cell);
+  return largest;
+}
+
+TEST_CASE("no two voxels that touch differ by more than the field's jump, however it was made",
+          "[dn_field]") {
+  const Surface box = make_box({0.5, 0.3, 0.2});
+  const Grid grid = grid_around(bounds(box), 19, 0.3);
+  std::vector<Field> fields{build_exact(box, grid)};
+  for (const double thickness : {HUGE_VAL, 3 * grid.cell})
+    for (const Method method : {Method::normals, Method::potential})
+      fields.push_back(build_blurred(box, grid, {method, Sides::one, thickness, {}, {}}));
+  for (const Field& field : fields) {
+    CHECK(field.jump == jump_by_brute_force(field));
+    CHECK(static_cast<double>(field.jump) < 1.7321 * grid.cell);
+  }
+  const CompressedField compressed = compress(fields[0], {0.2 * grid.cell, 0.1});
+  CHECK(outline(compressed).jump == fields[0].jump);
+  const Field seen = expanded(compressed);
+  CHECK(seen.jump == jump_by_brute_force(seen));
+}
+
+TEST_CASE("the jump is that of brute force on grids of any size", "[dn_field]") {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> edge(1, 21);
+  std::normal_distribution<float> distance;
+  for (int i = 0; i < 200; ++i) {
+    Field field;
+    field.grid = {
+        {}, 1, {edge(random), i % 5 == 0 ? 1 : edge(random), i % 7 == 0 ? 1 : edge(random)}};
+    for (std::size_t at = 0; at < field.grid.size(); ++at)
+      field.distance.push_back(std::exp(distance(random)) * distance(random));
+    if (i % 3 == 0) field.distance[field.grid.size() / 2] = std::nanf("");
+    CHECK(greatest_jump(field) == jump_by_brute_force(field));
+  }
 }
 
 }  // namespace

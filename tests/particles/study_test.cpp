@@ -138,3 +138,18 @@ TEST_CASE("a cut through a field is refused outside of it", "[particles]") {
   CHECK_THROWS_AS(slice_svg(built.field, 2, 2.5), tess::Error);
   CHECK_THROWS_AS(slice_svg(built.field, 0, NAN), tess::Error);
 }
+
+TEST_CASE("a picture of paths outlines what moves where it ends", "[particles]") {
+  const auto picture = [](const char* motion) {
+    const Scene scene = parse_scene(R"({"dt": 0.01, "steps": 100,
+      "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "motion": {"velocity": )" +
+                                        std::string(motion) + R"(}}],
+      "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
+                                    "scene.json");
+    return paths_svg(scene, {{0, {{0, {}, {}}}}, {100, {{0, {}, {}}}}});
+  };
+  // 200 pixels a unit: the left side goes from 120 to 220.
+  CHECK(picture("[0.5, 0, 0]").find("M220.0 ") != std::string::npos);
+  CHECK(picture("[0.5, 0, 0]").find("t = 1 (outline)") != std::string::npos);
+  CHECK(picture("[0, 0, 0]").find("M220.0 ") == std::string::npos);
+}
