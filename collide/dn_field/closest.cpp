@@ -1,4 +1,4 @@
-#include "collide/dn_field/closest.hpp"
+#include "collide/dn_field/placed_lanes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +7,6 @@ namespace tess::dn {
 namespace {
 
 using namespace lanes;
-
-/// Distance to the box of the grid along its furthest axis: no more than the true one.
-F outside_by(const Placed& object, F3 g) {
-  const auto beyond = [](F at, int n) { return max(-at, at - static_cast<float>(n - 1)); };
-  return object.cell * max(max(beyond(g.x, object.field.n[0]), beyond(g.y, object.field.n[1])),
-                           max(beyond(g.z, object.field.n[2]), F{}));
-}
 
 constexpr std::int32_t unknown = -1;
 
@@ -42,14 +35,6 @@ auto sampler_in(const Placed& object) {
   }
 }
 
-/// Velocity of the object at points `arm` from its origin, growth apart.
-D3 stiff_velocity(const Frame& f, D3 arm) {
-  const Vec3 w = f.angular_velocity;
-  return {f.velocity.x + (w.y * arm.z - w.z * arm.y),
-          f.velocity.y + (w.z * arm.x - w.x * arm.z),
-          f.velocity.z + (w.x * arm.y - w.y * arm.x)};
-}
-
 /// What is left of a bound to the free way, once another object may move by `way` against it.
 F shortened(const Placed& object, F bound, F way) {
   const F rest = bound - way;
@@ -74,7 +59,6 @@ void pass(const Placed& placed,
   const auto field = sampler_in<How>(object);
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
-  const auto& r = object.to_world;
   const F ox = all(object.middle[0]), oy = all(object.middle[1]), oz = all(object.middle[2]);
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D3 from{load<D>(particles.x + p) - c.x,
@@ -85,9 +69,7 @@ void pass(const Placed& placed,
     if constexpr (Where == Setting::one_at_rest)
       g = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
     else
-      g = {q.x * m[0][0] + q.y * m[0][1] + q.z * m[0][2] + ox,
-           q.x * m[1][0] + q.y * m[1][1] + q.z * m[1][2] + oy,
-           q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
+      g = to_grid(object, q);
     Sample found;
     if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear &&
                   Asked == Ask::both && How == Storage::flat)
@@ -118,12 +100,7 @@ void pass(const Placed& placed,
         u = stiff_velocity(f, arm);
         if (object.growth != 0) {
           // That of the surface itself, which is beside the particle.
-          const F3 n = found.normal,
-                   beside =
-                       only(in,
-                            found.distance * F3{n.x * r[0][0] + n.y * r[0][1] + n.z * r[0][2],
-                                                n.x * r[1][0] + n.y * r[1][1] + n.z * r[1][2],
-                                                n.x * r[2][0] + n.y * r[2][1] + n.z * r[2][2]});
+          const F3 beside = only(in, found.distance * to_world(object, found.normal));
           u = u + all(f.scale_rate / f.scale) * (arm - to_double(beside));
         }
       }
@@ -143,13 +120,11 @@ void pass(const Placed& placed,
       if (!any(nearer_wide)) continue;
       store(closest.distance + p, nearer ? found.distance : load<F>(closest.distance + p));
       if constexpr (Asked == Ask::both) {
-        const F3 n = found.normal;
-        const auto keep = [&](float* to, const float(&row)[3]) {
-          store(to, nearer ? n.x * row[0] + n.y * row[1] + n.z * row[2] : load<F>(to));
-        };
-        keep(closest.nx + p, r[0]);
-        keep(closest.ny + p, r[1]);
-        keep(closest.nz + p, r[2]);
+        const F3 n = to_world(object, found.normal);
+        const auto keep = [&](float* to, F value) { store(to, nearer ? value : load<F>(to)); };
+        keep(closest.nx + p, n.x);
+        keep(closest.ny + p, n.y);
+        keep(closest.nz + p, n.z);
       }
       const auto keep = [&](double* to, D value) { store(to, nearer_wide ? value : load<D>(to)); };
       keep(closest.ux + p, u.x);

@@ -111,9 +111,7 @@ void meet_surface(const Run& run,
     drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, particles, closest);
   if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, closest);
   run.loop(run.constants, particles, closest, scratch);
-  for (const Untraced& from : scratch.untraced)
-    scratch.energy[from.particle] +=
-        trace(run.constants, objects, plan.rules.look_up, from, particles);
+  trace(run.constants, objects, plan.rules.look_up, scratch.untraced, particles, scratch.energy);
   scratch.untraced.clear();
   if (!plan.rules.spring) return;
   look_up_all(run, objects, particles, closest, *buffers.after);

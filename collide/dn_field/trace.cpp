@@ -1,60 +1,54 @@
 #include "collide/dn_field/trace.hpp"
 
+#include "collide/dn_field/placed_lanes.hpp"
+
 #include <algorithm>
 
 namespace tess::dn {
 namespace {
 
+using namespace lanes;
+
 constexpr int max_bounces = 16;
 constexpr double stride_cells = 0.25;  // the shortest advance; thinner than what a grid resolves
+constexpr double never = HUGE_VAL;
 
-/// What one object's field says at one point, in world units.
+D norm(D3 v) {
+  return sqrt(dot(v, v));
+}
+
+Sample sample_of(const Placed& object, LookUp kind, F3 g) {
+  if (kind == LookUp::trilinear) return sample<LookUp::trilinear, Ask::both>(object.field, g);
+  if (kind == LookUp::nearest)
+    return object.compressed ? sample<LookUp::nearest, Ask::both>(object.planes, g)
+                             : sample<LookUp::nearest, Ask::both>(object.field, g);
+  return object.compressed ? sample<LookUp::tangent, Ask::both>(object.planes, g)
+                           : sample<LookUp::tangent, Ask::both>(object.field, g);
+}
+
+/// What one object's field says at points, in world units.
 struct Here {
-  double distance, free;
-  Vec3 normal;
+  D distance;  ///< `never` outside of the field
+  D free;
+  D3 normal;  ///< unit or zero
 };
 
-Here ask(const Placed& object, LookUp kind, Vec3 p) {
-  using namespace lanes;
-  const Vec3 from = p - object.centre;
-  const auto grid = [&](int i) {
-    const auto& row = object.to_grid[i];
-    return static_cast<float>(from.x) * row[0] + static_cast<float>(from.y) * row[1] +
-           static_cast<float>(from.z) * row[2] + object.middle[i];
-  };
-  const float gx = grid(0), gy = grid(1), gz = grid(2);
-  const F3 g{all(gx), all(gy), all(gz)};
-  Sample found{};
-  if (kind == LookUp::nearest)
-    found = object.compressed ? sample<LookUp::nearest, Ask::both>(object.planes, g)
-                              : sample<LookUp::nearest, Ask::both>(object.field, g);
-  if (kind == LookUp::tangent)
-    found = object.compressed ? sample<LookUp::tangent, Ask::both>(object.planes, g)
-                              : sample<LookUp::tangent, Ask::both>(object.field, g);
-  if (kind == LookUp::trilinear) found = sample<LookUp::trilinear, Ask::both>(object.field, g);
-  if (!(found.distance[0] < out_of_reach)) {
-    const auto beyond = [](float at, int n) {
-      return std::max({-at, at - static_cast<float>(n - 1), 0.0F});
-    };
-    const auto& n = object.field.n;
-    const float outside =
-        object.cell * std::max({beyond(gx, n[0]), beyond(gy, n[1]), beyond(gz, n[2])});
-    return {HUGE_VAL, static_cast<double>(outside), {}};
-  }
-  const auto& r = object.to_world;
-  const float nx = found.normal.x[0], ny = found.normal.y[0], nz = found.normal.z[0];
-  const Vec3 normal{static_cast<double>(nx * r[0][0] + ny * r[0][1] + nz * r[0][2]),
-                    static_cast<double>(nx * r[1][0] + ny * r[1][1] + nz * r[1][2]),
-                    static_cast<double>(nx * r[2][0] + ny * r[2][1] + nz * r[2][2])};
-  return {static_cast<double>(found.distance[0] * object.scale - object.padding),
-          static_cast<double>(found.voxel[0] * object.scale - object.doubt),
-          direction(normal)};
+Here ask(const Placed& object, LookUp kind, D3 p) {
+  const D3 from = p - all(object.centre);
+  const F3 g = to_grid(object, {to_float(from.x), to_float(from.y), to_float(from.z)});
+  const Sample found = sample_of(object, kind, g);
+  const I in = found.distance < out_of_reach;
+  const D distance = to_double(found.distance * object.scale - object.padding);
+  const F free = in ? found.voxel * object.scale - object.doubt : max(outside_by(object, g), F{});
+  const D3 n = to_double(only(in, to_world(object, found.normal)));
+  const D length = norm(n);
+  return {widen(in) ? distance : all(never), to_double(free), only(length > 0.0, 1.0 / length) * n};
 }
 
 struct Contact {
-  double at = HUGE_VAL;  ///< fraction of the step
-  Vec3 normal, surface_velocity;
-  double too_deep = 0;
+  D at = all(never);  ///< fraction of the step
+  D3 normal{}, surface_velocity{};
+  D too_deep{};
 };
 
 /// A straight way in the world as seen from an object, at the size it has when the step begins: a
@@ -62,124 +56,173 @@ struct Contact {
 /// way, t, are the same without growth; else t = f/(1 + f g), where 1 + f g is the scale at f over
 /// that at the begin.
 struct Seen {
-  Vec3 from, way;
+  D3 from, way;
   double growth;
 
-  [[nodiscard]] double size(double f) const { return 1 + f * growth; }
-  [[nodiscard]] double seen(double f) const { return f / size(f); }
-  [[nodiscard]] double in_step(double t) const {
-    return t * growth < 1 ? t / (1 - t * growth) : HUGE_VAL;
+  [[nodiscard]] D size(D f) const { return 1.0 + f * growth; }
+  [[nodiscard]] D seen(D f) const { return f / size(f); }
+  [[nodiscard]] D in_step(D t) const {
+    return t * growth < 1.0 ? t / (1.0 - t * growth) : all(never);
   }
 };
 
-/// `x`: where the particle is after the fraction `elapsed` of the step, and flies by `way` a step.
-Seen seen_from(const Placed& object, double step, Vec3 x, Vec3 way, double elapsed) {
-  const Frame& frame = object.frame;
-  const Vec3 from = x - elapsed * way;
-  Vec3 seen = way - step * (frame.velocity + cross(frame.angular_velocity, x - frame.position));
-  if (object.growth != 0) seen = seen - object.growth * (from - frame.position);
+/// `x`: where the particles are after the fraction `elapsed` of the step, and fly by `way` a step.
+Seen seen_from(const Placed& object, double step, D3 x, D3 way, D elapsed) {
+  const D3 position = all(object.frame.position), from = x - elapsed * way;
+  D3 seen = fma(all(-step), stiff_velocity(object.frame, x - position), way);
+  if (object.growth != 0) seen = fma(all(-object.growth), from - position, seen);
   return {from, seen, object.growth};
 }
 
-/// The first contact on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on;
-/// `at` is HUGE_VAL where there is none. `rest` is shortened where the way could not be followed to
-/// its end.
+/// The velocity of the object's surface where it passes p.
+D3 surface_velocity(const Frame& frame, D3 p) {
+  const D3 arm = p - all(frame.position), stiff = stiff_velocity(frame, arm);
+  return frame.is_growing() ? fma(all(frame.scale_rate / frame.scale), arm, stiff) : stiff;
+}
+
+/// The first contacts on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on,
+/// for particles that fly; `at` is `never` where there is none. `rest` is shortened where the way
+/// could not be followed to its end.
 Contact first_contact(const RuleConstants& c,
                       std::span<const Placed> objects,
                       LookUp kind,
-                      Vec3 x,
-                      Vec3 way,
-                      double& rest) {
+                      D3 x,
+                      D3 way,
+                      D& rest,
+                      L flies) {
   std::size_t budget = 1024;  // advances; each is a quarter of a voxel at least
   for (const Placed& object : objects)
     budget +=
         8 * static_cast<std::size_t>(object.field.n[0] + object.field.n[1] + object.field.n[2]);
-  const double elapsed = 1 - rest;
-  double s = 0;
-  while (s <= rest) {
+  const D elapsed = 1.0 - rest;
+  Contact first;
+  D s{};
+  for (L going = flies & (s <= rest); any(going); going = going & (s <= rest)) {
     if (budget-- == 0) {
-      rest = s;
-      return {};
+      rest = going ? s : rest;
+      break;
     }
-    double next = HUGE_VAL;
+    D next = all(never);
     Contact contact;
     for (const Placed& object : objects) {
       const Seen seen = seen_from(object, c.step, x, way, elapsed);
-      const double length = norm(seen.way);
-      if (!(length > 0)) continue;
-      const double t = seen.seen(elapsed + s), size = seen.size(elapsed + s);
-      const Vec3 p = seen.from + t * seen.way;
+      const D length = norm(seen.way);
+      const D t = seen.seen(elapsed + s), size = seen.size(elapsed + s);
+      const D3 p = fma(t, seen.way, seen.from);
       const Here here = ask(object, kind, p);
       const auto cell = static_cast<double>(object.cell);
-      const double stride = std::max(here.free, stride_cells * cell) / length;
-      next = std::min(next, seen.in_step(t + stride) - elapsed);
-      const double rise = dot(here.normal, seen.way);
-      if (!(rise < 0) || !(here.distance < HUGE_VAL)) continue;
+      const D stride = max(here.free, all(stride_cells * cell)) / length;
+      const L moves = length > 0.0;
+      next = moves ? min(next, seen.in_step(t + stride) - elapsed) : next;
+      const D rise = dot(here.normal, seen.way);
       // Both sides of a sheet look alike: turn back before it is as close as the look-up errs.
-      const double threshold =
-          object.two_sided
-              ? std::max(c.threshold / size, cell - static_cast<double>(object.padding))
-              : c.threshold / size;
-      const double met = t + std::max(0.0, (here.distance - threshold) / -rise);
-      const double at = seen.in_step(met) - elapsed;
-      if (met <= t + stride && at < contact.at) {
-        const Vec3 surface =
-            object.growth != 0 ? seen.from + met * seen.way - threshold * here.normal : p;
-        contact = {at,
-                   here.normal,
-                   object.frame.velocity_at(surface),
-                   std::max(0.0, c.threshold - c.slack - here.distance * size)};
-      }
+      D threshold = c.threshold / size;
+      if (object.two_sided)
+        threshold = max(threshold, all(cell - static_cast<double>(object.padding)));
+      const D met = t + max((here.distance - threshold) / -rise, D{});
+      const D at = seen.in_step(met) - elapsed;
+      const L touches = settled(moves & (rise < 0.0) & (here.distance < never) &
+                                (met <= t + stride) & (at < contact.at));
+      if (!any(touches)) continue;
+      D3 surface = p;
+      if (object.growth != 0) surface = fma(met, seen.way, fma(-threshold, here.normal, seen.from));
+      contact.at = touches ? at : contact.at;
+      contact.normal = select(touches, here.normal, contact.normal);
+      contact.surface_velocity =
+          select(touches, surface_velocity(object.frame, surface), contact.surface_velocity);
+      contact.too_deep =
+          touches ? max(c.threshold - c.slack - here.distance * size, D{}) : contact.too_deep;
     }
-    if (contact.at <= next && contact.at <= rest) return contact;
-    if (!(next < HUGE_VAL)) return {};
-    s = next;
+    const L found = going & (contact.at <= next) & (contact.at <= rest);
+    first.at = found ? contact.at : first.at;
+    first.normal = select(found, contact.normal, first.normal);
+    first.surface_velocity = select(found, contact.surface_velocity, first.surface_velocity);
+    first.too_deep = found ? contact.too_deep : first.too_deep;
+    going = going & ~found & (next < never);
+    s = going ? next : all(never);
   }
-  return {};
+  return first;
+}
+
+L finite(D3 v) {
+  const D size = abs(v.x) + abs(v.y) + abs(v.z);
+  return size < never;
+}
+
+/// Up to eight of them.
+void trace_vector(const RuleConstants& c,
+                  std::span<const Placed> objects,
+                  LookUp kind,
+                  std::span<const Untraced> from,
+                  const ParticleSpan& particles,
+                  double* energy) {
+  const auto lane = [&](Vec3 Untraced::*what) {
+    D3 v{};
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Vec3 value = from[i].*what;
+      v.x[i] = value.x, v.y[i] = value.y, v.z[i] = value.z;
+    }
+    return v;
+  };
+  const D3 x0 = lane(&Untraced::position), way0 = lane(&Untraced::way);
+  D3 x = x0, start = lane(&Untraced::start_velocity), end = lane(&Untraced::end_velocity),
+     way = way0;  // of a whole step at the rate of the rest
+  const L can_fly = finite(x) & finite(way) & finite(start) & finite(end);
+  const bool drags = c.surface_threshold > c.threshold;
+  const LinearFlow& flow = drags ? c.surface : c.air;
+  D rest = all(1.0);
+  L flies = can_fly;
+  for (int bounce = 0; bounce < max_bounces; ++bounce) {
+    const Contact contact = first_contact(c, objects, kind, x, way, rest, flies);
+    flies = flies & (contact.at < never);
+    if (!any(flies)) break;
+    const D s = only(flies, contact.at), fraction = only(rest > 0.0, s / rest);
+    const D3 n = contact.normal, u = contact.surface_velocity;
+    x = select(flies, fma(s, way, fma(contact.too_deep, n, x)), x);
+    rest = rest - s;
+    const D3 met = fma(fraction, end - start, start);
+    const D kick = -(1 + c.restitution) * min(dot(n, met - u), D{});
+    start = select(flies, fma(kick, n, met), start);
+    D3 a = all(c.acceleration);
+    if (drags) a = fma(all(c.surface_rate), u, a);
+    D3 w1 = fma(rest, all(flow.keep - 1) * start + all(flow.gain) * a, start);
+    D3 rest_way = all(flow.way_keep) * start + (rest * flow.way_gain) * a;
+    const D sinks = dot(n, rest_way - all(c.step) * u);
+    const L rests = sinks < 0.0;  // it rests, and slides
+    rest_way = fma(-only(rests, sinks), n, rest_way);
+    w1 = fma(-only(rests, min(dot(n, w1 - u), D{})), n, w1);
+    way = select(flies, rest_way, way);
+    end = select(flies, w1, end);
+    if (bounce + 1 == max_bounces) {
+      end = select(flies, start, end);
+      rest = flies ? D{} : rest;
+    }
+  }
+  x = fma(rest, way, x);
+  const D work = dot(all(c.acceleration), x - x0 - way0);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t p = from[i].particle;
+    particles.x[p] = x.x[i], particles.y[p] = x.y[i], particles.z[p] = x.z[i];
+    particles.vx[p] = end.x[i], particles.vy[p] = end.y[i], particles.vz[p] = end.z[i];
+    if (can_fly[i] != 0) energy[p] += 2 * (c.air.gain / c.step) * work[i];
+  }
 }
 
 }  // namespace
 
-double trace(const RuleConstants& c,
-             std::span<const Placed> objects,
-             LookUp kind,
-             const Untraced& from,
-             const ParticleSpan& particles) {
-  Vec3 x = from.position, start = from.start_velocity, end = from.end_velocity,
-       way = from.way;  // of a whole step at the rate of the rest
-  const bool can_fly = is_finite(x) && is_finite(way) && is_finite(start) && is_finite(end);
-  double rest = 1;
-  for (int bounce = 0; can_fly; ++bounce) {
-    const Contact contact = first_contact(c, objects, kind, x, way, rest);
-    if (!(contact.at < HUGE_VAL)) break;
-    const double s = contact.at, fraction = rest > 0 ? s / rest : 0;
-    const Vec3 n = contact.normal, u = contact.surface_velocity;
-    const Vec3 met = start + fraction * (end - start);
-    x += s * way + contact.too_deep * n;
-    rest -= s;
-    const double falls = dot(n, met - u);
-    start = falls < 0 ? met - ((1 + c.restitution) * falls) * n : met;
-    const LinearFlow& flow = c.surface_threshold > c.threshold ? c.surface : c.air;
-    Vec3 a = c.acceleration;
-    if (c.surface_threshold > c.threshold) a += c.surface_rate * u;
-    end = start + rest * ((flow.keep - 1) * start + flow.gain * a);
-    way = flow.way_keep * start + (rest * flow.way_gain) * a;
-    if (const double sinks = dot(n, way - c.step * u); sinks < 0) {  // it rests, and slides
-      way = way - sinks * n;
-      end = end - std::min(0.0, dot(n, end - u)) * n;
-    }
-    if (bounce + 1 == max_bounces) {
-      end = start;
-      rest = 0;
-      break;
-    }
-  }
-  x += rest * way;
-  const std::size_t p = from.particle;
-  particles.x[p] = x.x, particles.y[p] = x.y, particles.z[p] = x.z;
-  particles.vx[p] = end.x, particles.vy[p] = end.y, particles.vz[p] = end.z;
-  const Vec3 aside = x - from.position - from.way;
-  return can_fly ? 2 * (c.air.gain / c.step) * dot(c.acceleration, aside) : 0;
+void trace(const RuleConstants& c,
+           std::span<const Placed> objects,
+           LookUp kind,
+           std::span<const Untraced> from,
+           const ParticleSpan& particles,
+           double* energy) {
+  for (std::size_t first = 0; first < from.size(); first += width)
+    trace_vector(c,
+                 objects,
+                 kind,
+                 from.subspan(first, std::min<std::size_t>(width, from.size() - first)),
+                 particles,
+                 energy);
 }
 
 }  // namespace tess::dn
