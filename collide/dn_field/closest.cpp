@@ -80,7 +80,7 @@ void pass(const Placed& placed,
     found.distance = in ? found.distance * object.scale - object.padding : found.distance;
     F free{};
     if constexpr (Swept == Sweep::on)
-      free = in ? found.voxel * object.scale - object.doubt : outside_by(object, g);
+      free = in ? found.free * object.scale - object.error : outside_by(object, g);
     if constexpr (Where == Setting::one_at_rest) {
       store(closest.distance + p, found.distance);
       if constexpr (Asked == Ask::both) {
@@ -189,12 +189,13 @@ Placed placed(const Object& object, LookUp kind, double step, bool restless) {
   result.cell = static_cast<float>(cell);
   result.two_sided = field.sides == Sides::two;
   result.padding = result.two_sided && kind != LookUp::tangent ? static_cast<float>(cell) : 0.0F;
-  result.doubt = static_cast<float>(0.5 * std::sqrt(3.0) * cell);
+  result.doubt = half_diagonal * static_cast<float>(cell);
   result.jump = static_cast<float>(jump_of(object) * frame.scale);
   result.compressed = object.compressed != nullptr;
   if (result.compressed) {
     result.planes = sampler_of(*object.compressed);
-    result.doubt += static_cast<float>(object.compressed->measured.distance * frame.scale);
+    result.error = static_cast<float>(object.compressed->measured.distance * frame.scale);
+    result.doubt += result.error;
   }
   result.frame = frame;
   result.step = step;

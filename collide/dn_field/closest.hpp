@@ -41,8 +41,8 @@ struct Placed {
                   ///< cannot see it closer than this
   bool two_sided;
   bool compressed;
-  float doubt;  ///< half a voxel's diagonal, and how far a compressed voxel may be off; in world
-                ///< units
+  float error;  ///< how far a compressed voxel may be off; in world units
+  float doubt;  ///< that, and half a voxel's diagonal
   float jump;   ///< jump_of(), in world units
   Frame frame;
   double step;    ///< the time of which this is the begin

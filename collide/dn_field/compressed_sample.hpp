@@ -93,11 +93,11 @@ requires(Kind != LookUp::trilinear) inline Sample sample(const PlaneSampler& fie
   Sample found{};
   if constexpr (Asked != Ask::distance) found.normal = only(voxel.in, plane.normal);
   if constexpr (Asked != Ask::normal) {
-    found.voxel = found.distance = plane.distance;
-    if constexpr (Kind == LookUp::tangent)
-      found.distance += field.cell * dot(plane.normal, offset(voxel, g));
+    const F3 from = offset(voxel, g);
+    found.distance = plane.distance;
+    found.free = plane.distance - field.cell * sqrt(dot(from, from));
+    if constexpr (Kind == LookUp::tangent) found.distance += field.cell * dot(plane.normal, from);
     found.distance = voxel.in ? found.distance : all(out_of_reach);
-    found.voxel = voxel.in ? found.voxel : all(out_of_reach);
   }
   return found;
 }

@@ -34,8 +34,11 @@ enum class Ask : std::uint32_t { distance, normal, both };
 struct Sample {
   lanes::F distance;  ///< of the object, not of the world; out_of_reach outside
   lanes::F3 normal;   ///< unit or zero
-  lanes::F voxel;     ///< the closest voxel's own distance (trilinear: the interpolated one)
+  lanes::F free;      ///< no surface is nearer than this: what the voxel says, less the way from
+                      ///< its centre (trilinear: less the longest such way)
 };
+
+inline constexpr float half_diagonal = 0.8660255F;  // of a voxel, in cells
 
 namespace lanes {
 
@@ -128,9 +131,11 @@ inline Stored read_changed(const Sampler& field,
 template <LookUp Kind, Ask Asked>
 inline Sample answer(const Sampler& field, const Voxel& voxel, const Stored& stored, F3 g) {
   Sample found{stored.distance, stored.normal, stored.distance};
-  if constexpr (Kind == LookUp::tangent && Asked != Ask::normal) {
-    const F there = stored.distance + field.cell * dot(stored.normal, offset(voxel, g));
-    found.distance = voxel.in ? there : stored.distance;
+  if constexpr (Asked != Ask::normal) {
+    const F3 from = only(voxel.in, offset(voxel, g));
+    found.free = stored.distance - field.cell * sqrt(dot(from, from));
+    if constexpr (Kind == LookUp::tangent)
+      found.distance = stored.distance + field.cell * dot(stored.normal, from);
   }
   return found;
 }
@@ -167,7 +172,7 @@ requires(Kind == LookUp::trilinear) inline Sample sample(const Sampler& field, F
   }
   if constexpr (Asked != Ask::normal) {
     found.distance = in ? found.distance : all(out_of_reach);
-    found.voxel = found.distance;
+    found.free = found.distance - half_diagonal * field.cell;
   }
   if constexpr (Asked != Ask::distance) found.normal = only(in, unit(found.normal));
   return found;

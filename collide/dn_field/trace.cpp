@@ -39,7 +39,7 @@ Here ask(const Placed& object, LookUp kind, D3 p) {
   const Sample found = sample_of(object, kind, g);
   const I in = found.distance < out_of_reach;
   const D distance = to_double(found.distance * object.scale - object.padding);
-  const F free = in ? found.voxel * object.scale - object.doubt : max(outside_by(object, g), F{});
+  const F free = in ? found.free * object.scale - object.error : max(outside_by(object, g), F{});
   const D3 n = to_double(only(in, to_world(object, found.normal)));
   const D length = norm(n);
   return {widen(in) ? distance : all(never), to_double(free), only(length > 0.0, 1.0 / length) * n};
