@@ -133,6 +133,11 @@ inline unsigned bits(I mask) {
 #endif
 }
 
+inline F floor(F v) {
+  const F cut = __builtin_convertvector(__builtin_convertvector(v, I), F);
+  return cut > v ? cut - 1.0F : cut;
+}
+
 inline D sqrt(D v) {
 #ifdef __AVX512F__
   return (D)_mm512_maskz_sqrt_pd(0xFF, (__m512d)v);  // the plain one warns in g++ 12

@@ -19,6 +19,13 @@ inline D3 all(Vec3 v) {
   return {row(0), row(1), row(2)};
 }
 
+/// A vector of the world in grid coordinates.
+[[gnu::always_inline]] inline F3 turned_to_grid(const Placed& object, F3 v) {
+  const auto& m = object.to_grid;
+  const auto row = [&](int i) { return v.x * m[i][0] + v.y * m[i][1] + v.z * m[i][2]; };
+  return {row(0), row(1), row(2)};
+}
+
 /// A vector of the object in the world, at scale 1.
 [[gnu::always_inline]] inline F3 to_world(const Placed& object, F3 n) {
   const auto& r = object.to_world;

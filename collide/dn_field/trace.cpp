@@ -10,12 +10,10 @@ namespace {
 using namespace lanes;
 
 constexpr int max_bounces = 16;
-constexpr double stride_cells = 0.25;  // the shortest advance; thinner than what a grid resolves
+// The shortest advances, in cells: into the next voxel; of blends, thinner than what a grid
+// resolves.
+constexpr float into_next = 1e-3F, blend_stride = 0.25F;
 constexpr double never = HUGE_VAL;
-
-D norm(D3 v) {
-  return sqrt(dot(v, v));
-}
 
 Sample sample_of(const Placed& object, LookUp kind, F3 g) {
   if (kind == LookUp::trilinear) return sample<LookUp::trilinear, Ask::both>(object.field, g);
@@ -26,14 +24,23 @@ Sample sample_of(const Placed& object, LookUp kind, F3 g) {
                            : sample<LookUp::tangent, Ask::both>(object.field, g);
 }
 
-/// What one object's field says at points, in world units.
+/// The part of `way`, in grid coordinates, that stays in the voxel of g.
+F way_in_voxel(F3 g, F3 way) {
+  const auto along = [](F at, F by) {
+    const F h = at + 0.5F, in = h - floor(h);
+    return by == 0.0F ? all(HUGE_VALF) : (by > 0.0F ? 1.0F - in : in) / abs(by);
+  };
+  return min(min(along(g.x, way.x), along(g.y, way.y)), along(g.z, way.z));
+}
+
+/// What one object's field says at points p of a way, in world units.
 struct Here {
   D distance;  ///< `never` outside of the field
-  D free;
-  D3 normal;  ///< unit or zero
+  D3 normal;   ///< unit or zero
+  D stride;    ///< part of the way for which that holds, or which is free
 };
 
-Here ask(const Placed& object, LookUp kind, D3 p) {
+Here ask(const Placed& object, LookUp kind, D3 p, D3 way) {
   const D3 from = p - all(object.centre);
   const F3 g = to_grid(object, {to_float(from.x), to_float(from.y), to_float(from.z)});
   const Sample found = sample_of(object, kind, g);
@@ -41,8 +48,12 @@ Here ask(const Placed& object, LookUp kind, D3 p) {
   const D distance = to_double(found.distance * object.scale - object.padding);
   const F free = in ? found.free * object.scale - object.error : max(outside_by(object, g), F{});
   const D3 n = to_double(only(in, to_world(object, found.normal)));
-  const D length = norm(n);
-  return {widen(in) ? distance : all(never), to_double(free), only(length > 0.0, 1.0 / length) * n};
+  const F3 w = turned_to_grid(object, {to_float(way.x), to_float(way.y), to_float(way.z)});
+  const F per_cell = 1.0F / sqrt(dot(w, w));
+  const F held = kind == LookUp::trilinear ? blend_stride * per_cell
+                                           : (in ? way_in_voxel(g, w) : F{}) + into_next * per_cell;
+  const F stride = max(free / object.cell * per_cell, held);
+  return {widen(in) ? distance : all(never), refined(n), to_double(stride)};
 }
 
 struct Contact {
@@ -60,8 +71,9 @@ struct Seen {
   double growth;
 
   [[nodiscard]] D size(D f) const { return 1.0 + f * growth; }
-  [[nodiscard]] D seen(D f) const { return f / size(f); }
+  [[nodiscard]] D seen(D f) const { return growth == 0 ? f : f / size(f); }
   [[nodiscard]] D in_step(D t) const {
+    if (growth == 0) return t;
     return t * growth < 1.0 ? t / (1.0 - t * growth) : all(never);
   }
 };
@@ -90,7 +102,7 @@ Contact first_contact(const RuleConstants& c,
                       D3 way,
                       D& rest,
                       L flies) {
-  std::size_t budget = 1024;  // advances; each is a quarter of a voxel at least
+  std::size_t budget = 1024;  // advances; each leads into another voxel
   for (const Placed& object : objects)
     budget +=
         8 * static_cast<std::size_t>(object.field.n[0] + object.field.n[1] + object.field.n[2]);
@@ -106,23 +118,21 @@ Contact first_contact(const RuleConstants& c,
     Contact contact;
     for (const Placed& object : objects) {
       const Seen seen = seen_from(object, c.step, x, way, elapsed);
-      const D length = norm(seen.way);
       const D t = seen.seen(elapsed + s), size = seen.size(elapsed + s);
       const D3 p = fma(t, seen.way, seen.from);
-      const Here here = ask(object, kind, p);
+      const Here here = ask(object, kind, p, seen.way);
       const auto cell = static_cast<double>(object.cell);
-      const D stride = max(here.free, all(stride_cells * cell)) / length;
-      const L moves = length > 0.0;
-      next = moves ? min(next, seen.in_step(t + stride) - elapsed) : next;
+      const L moves = dot(seen.way, seen.way) > 0.0;
+      next = moves ? min(next, seen.in_step(t + here.stride) - elapsed) : next;
       const D rise = dot(here.normal, seen.way);
       // Both sides of a sheet look alike: turn back before it is as close as the look-up errs.
-      D threshold = c.threshold / size;
+      D threshold = seen.growth == 0 ? all(c.threshold) : c.threshold / size;
       if (object.two_sided)
         threshold = max(threshold, all(cell - static_cast<double>(object.padding)));
       const D met = t + max((here.distance - threshold) / -rise, D{});
       const D at = seen.in_step(met) - elapsed;
       const L touches = settled(moves & (rise < 0.0) & (here.distance < never) &
-                                (met <= t + stride) & (at < contact.at));
+                                (met <= t + here.stride) & (at < contact.at));
       if (!any(touches)) continue;
       D3 surface = p;
       if (object.growth != 0) surface = fma(met, seen.way, fma(-threshold, here.normal, seen.from));
