@@ -16,16 +16,21 @@ LinearFlow linear_flow(double rate, double step) {
   return {1 - lost, lost / rate, step * mean, step * mean_lost / rate};
 }
 
-/// What flies far from all surfaces.
+bool drags_at_surface(const Rules& rules) {
+  return rules.surface_drag && rules.surface_drag->law == DragLaw::linear;
+}
+
+/// What flies far from all surfaces. With drag at the surface the same operations as there, so that
+/// a particle is not known by its bits for having been looked up or not.
 Flight flight_of(const Rules& rules) {
+  if (drags_at_surface(rules)) return Flight::air;
   if (rules.wind || (rules.air_drag && rules.air_drag->law == DragLaw::linear)) return Flight::air;
   return rules.gravity ? Flight::fall : Flight::none;
 }
 
 LoopKey key_of(const Rules& rules) {
   LoopKey key;
-  const bool drags = rules.surface_drag && rules.surface_drag->law == DragLaw::linear;
-  key.flight = drags ? Flight::surface : flight_of(rules);
+  key.flight = drags_at_surface(rules) ? Flight::surface : flight_of(rules);
   if (rules.impact)
     key.impacts = rules.impact->sweep == Sweep::on ? Impacts::swept : Impacts::plain;
   if (rules.spring) key.springs = Springs::exact;
