@@ -12,6 +12,7 @@
 // lanes their bits, the sign of a zero too, so that no particle depends on its neighbours.
 #pragma once
 
+#include "collide/dn_field/flight_lanes.hpp"
 #include "collide/dn_field/flow_lanes.hpp"
 #include "collide/dn_field/spring_lanes.hpp"
 
@@ -19,17 +20,8 @@
 
 namespace tess::dn {
 
-/// none: straight; fall: accelerations that are the same everywhere; air: also linear drags that
-/// are; surface: also a linear drag near the surface.
-enum class Flight : std::uint32_t { none, fall, air, surface };
 enum class Impacts : std::uint32_t { none, plain, swept };
 enum class Springs : std::uint32_t { none, exact };
-
-/// The exact flow of v' = -rate v + a over a step: v1 = keep v + gain a, the way is way_keep v +
-/// way_gain a.
-struct LinearFlow {
-  double keep = 1, gain = 0, way_keep = 0, way_gain = 0;
-};
 
 /// A particle that goes further than is known to be free: left to trace(), see trace.hpp.
 struct Untraced {
@@ -43,12 +35,8 @@ struct Scratch {
   alignas(64) double energy[block_size];  ///< twice the energy a particle may have; springs only
 };
 
-struct RuleConstants {
-  double step = 0;
-  LinearFlow air, surface;
+struct RuleConstants : FlightConstants {
   double curved = 0;  ///< 1 where no drag bends the flight off its parabola, else 0
-  Vec3 acceleration;  ///< gravity + wind rate × wind velocity
-  double surface_rate = 0, surface_threshold = 0;
   double restitution = 0, threshold = 0;
   double slack = 0;   ///< depth below the threshold that is taken for the look-up's error
   double stride = 0;  ///< ways shorter than this are not traced
@@ -59,13 +47,6 @@ struct RuleConstants {
 using RuleLoop = void (*)(const RuleConstants&, const ParticleSpan&, const Closest&, Scratch&);
 
 namespace lanes {
-
-inline D3 plus(D3 a, Vec3 b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline D dot(D3 a, Vec3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 template <Flight Flies, Impacts Hits, Springs Springy, Setting Where>
 void rule_loop(const RuleConstants& constants,
@@ -94,29 +75,11 @@ void rule_loop(const RuleConstants& constants,
     }
     if constexpr (moves) u = load3(closest.ux + p, closest.uy + p, closest.uz + p);
 
-    D3 v1 = v0, way, a{};
-    D keep = all(1.0), gain{}, way_keep = all(dt), way_gain{};
-    if constexpr (Flies != Flight::none) {
-      keep = all(c.air.keep), gain = all(c.air.gain);
-      way_keep = all(c.air.way_keep), way_gain = all(c.air.way_gain);
-      a = plus(a, c.acceleration);
-      if constexpr (Flies == Flight::surface) {
-        const L near = d < c.surface_threshold;
-        keep = near ? all(c.surface.keep) : keep;
-        gain = near ? all(c.surface.gain) : gain;
-        way_keep = near ? all(c.surface.way_keep) : way_keep;
-        way_gain = near ? all(c.surface.way_gain) : way_gain;
-        if constexpr (moves) a = a + only(near, all(c.surface_rate) * u);
-      }
-      if constexpr (Flies == Flight::fall) {
-        v1 = fma(gain, a, v0);
-      } else {
-        v1 = fma(keep, v0, gain * a);
-      }
-      way = fma(way_keep, v0, way_gain * a);
-    } else {
-      way = way_keep * v0;
-    }
+    const Flown flight = flown<Flies, moves>(c, v0, d, u);
+    const D3 a = flight.a;
+    const D keep = flight.keep, gain = flight.gain, way_keep = flight.way_keep,
+            way_gain = flight.way_gain;
+    D3 v1 = flight.v1, way = flight.way;
 
     // Along the normal all is scalar; velocities there are relative to the surface: `rise` at the
     // start, `rise1` at the end; `climb` is the way.
