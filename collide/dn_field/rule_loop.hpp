@@ -30,8 +30,8 @@ void rule_loop(const RuleConstants& constants,
       auto met = step.meet();
       if constexpr (Hits == Impacts::swept) {
         const L far = step.goes_far(closest);
+        if (any(far)) step.leave_to_trace(far, met.deep, particles, scratch);
         met.hits = met.hits & ~far, met.deep = met.deep & ~far;
-        if (any(far)) step.leave_to_trace(far, particles, scratch);
       }
       if (any(met.hits | met.deep)) {
         step.bounce(met);

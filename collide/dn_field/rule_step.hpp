@@ -144,13 +144,16 @@ struct RuleStep {
     return settled(far);
   }
 
-  void leave_to_trace(L far, const ParticleSpan& particles, Scratch& scratch) const {
+  /// They start at the surface if they are deep in it.
+  void leave_to_trace(L far, L deep, const ParticleSpan& particles, Scratch& scratch) {
+    const D up = only(far & deep, c.threshold - c.slack - d);
+    const D3 from = fma(up, n, load3(particles.x + p, particles.y + p, particles.z + p));
+    if constexpr (springs) work = work + an * up;
     for (int i = 0; i < width; ++i) {
       if (far[i] == 0) continue;
-      const std::size_t k = p + static_cast<std::size_t>(i);
       const auto at = [i](D3 v) { return Vec3{v.x[i], v.y[i], v.z[i]}; };
-      const Vec3 from{particles.x[k], particles.y[k], particles.z[k]};
-      scratch.untraced.push_back({k, from, at(v0), at(v1), at(way)});
+      scratch.untraced.push_back(
+          {p + static_cast<std::size_t>(i), at(from), at(v0), at(v1), at(way)});
     }
   }
 

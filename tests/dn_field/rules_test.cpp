@@ -139,6 +139,21 @@ TEST_CASE("quadratic drag near a moving surface takes the surface's velocity",
   CHECK(linear.velocity.x == Approx(1 - 2 * std::exp(-2 * 0.3)));
 }
 
+TEST_CASE("what is in a surface is put on it, however fast it slides", "[dn_field][rules]") {
+  const Grid grid = cube_grid(2, 17);
+  const Field floor = plane_field(grid, {0, 0, 1});
+  const Object object{&floor, {}};
+  Rules rules;
+  rules.impact = Impact{0, 0, Sweep::on};
+  for (const double cells_a_step : {0.1, 0.4, 0.6, 3.0, 6.0}) {  // some are traced
+    const Vec3 along{cells_a_step * grid.cell, 0, 0};
+    const Particle end = flown(rules, 1, 1, {&object, 1}, {{-1.2, 0, -0.3}, along});
+    CHECK(end.position.z == Approx(0).margin(2e-3 * grid.cell));
+    CHECK(end.position.x == Approx(-1.2 + along.x));
+    CHECK(end.velocity == along);
+  }
+}
+
 TEST_CASE("an impact happens at its place and angle within the step", "[dn_field][rules]") {
   const Vec3 normal = direction({1, 0, 1});
   const Field plane = plane_field(cube_grid(2, 17), normal);
