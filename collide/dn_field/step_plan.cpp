@@ -92,7 +92,7 @@ Stepper make_stepper(const Rules& rules, double step) {
            ask,
            rule_loop_at_rest(key),
            rule_loop_general(key),
-           rule_loop_at_rest({flight_of(rules)})};
+           free_loop(flight_of(rules))};
   return Stepper(std::move(plan));
 }
 

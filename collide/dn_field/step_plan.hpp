@@ -15,7 +15,7 @@ struct Stepper::Plan {
   Sweep sweep = Sweep::off;
   Ask asked = Ask::both;
   RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
-  RuleLoop loop_without = nullptr;  ///< for particles that feel no surface
+  FreeLoop fly_free = nullptr;
 };
 
 }  // namespace tess::dn

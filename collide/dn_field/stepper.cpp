@@ -134,6 +134,13 @@ void change_velocities(const Rules& rules,
     drag_quadratic(rules.air_drag->rate * step, particles);
 }
 
+/// Whether there is anything for change_velocities() in a step.
+bool changes_velocities(const Rules& rules, double time, double step) {
+  const auto active = [&](const Explosion& e) { return active_within(e, time, step) > 0; };
+  return std::any_of(rules.explosions.begin(), rules.explosions.end(), active) ||
+         (rules.air_drag && rules.air_drag->law == DragLaw::quadratic);
+}
+
 /// The speed that a particle away from all surfaces gains in n_steps from `time`, at most.
 double speed_gained(const Run& run, double time, int n_steps) {
   const double span = n_steps * run.plan.step;
@@ -149,7 +156,7 @@ bool screening_pays(
     const Stepper::Plan& plan, std::size_t near, std::size_t all, int ahead, int left) {
   if (near == all) return false;
   if (is_blend(plan)) return true;
-  constexpr double to_screen = 2.4, to_pack = 2, first_look_up = 4, free_step = 0.6;
+  constexpr double to_screen = 2.4, to_pack = 2, first_look_up = 4, free_step = 0.3;
   const double near_step = plan.rules.spring || plan.rules.surface_flow ? 8 : 2;
   const double part = static_cast<double>(near) / static_cast<double>(all);
   const double packed =
@@ -205,17 +212,21 @@ void fly(const Run& run,
     return moments.objects[static_cast<std::size_t>(i)];
   };
   Near& near = buffers.near;
-  const auto step_free = [&](int i) {
-    change_velocities(plan.rules, time(i), plan.step, block);
-    plan.loop_without(run_at(i).constants, block, buffers.first, buffers.scratch);
+  const auto fly_free = [&](int from, int to) {
+    while (from < to) {  // as many steps at once as nothing comes between
+      change_velocities(plan.rules, time(from), plan.step, block);
+      int until = from + 1;
+      while (until < to && !changes_velocities(plan.rules, time(until), plan.step)) ++until;
+      plan.fly_free(run.constants, block, until - from);
+      from = until;
+    }
   };
   const auto step_near = [&](int i, const ParticleSpan& particles) {
     change_velocities(plan.rules, time(i), plan.step, particles);
     meet_surface(run_at(i), objects_at(i), particles, buffers);
   };
+  if (!plan.looks_up) return fly_free(0, n_steps);
   int i = 0;
-  if (!plan.looks_up)
-    for (; i < n_steps; ++i) step_free(i);
   int ahead = run.look_ahead;
   bool looked_up = false;  // of the whole block, in the step before
   while (i < n_steps) {
@@ -245,7 +256,8 @@ void fly(const Run& run,
     const ParticleSpan packed = near.packed();
     buffers.new_particles(packed.count);
     for (int k = i; k < next && packed.count > 0; ++k) step_near(k, packed);
-    for (; i < next; ++i) step_free(i);
+    fly_free(i, next);
+    i = next;
     near.unpack(block);
   }
 }
@@ -261,8 +273,6 @@ void Stepper::run(ParticleSpan particles,
   std::vector<Object> standing(objects.begin(), objects.end());
   if (!plan.looks_up) standing.clear();
   const double before = steps_before(time, plan.step);
-  // Without look-ups the first cache holds more particles.
-  const std::size_t at_once = plan.looks_up ? block_size : 3 * block_size / 2;
   const auto buffers = std::make_unique<Buffers>();
   clear(buffers->first, block_size);
   clear(buffers->second, block_size);
@@ -294,8 +304,8 @@ void Stepper::run(ParticleSpan particles,
     const auto step_all = [&](const ParticleSpan& block) {
       fly(run, moments, step_time, block, *buffers);
     };
-    for (std::size_t first = 0; first < whole; first += at_once)
-      step_all(particles.part(first, std::min(at_once, whole - first)));
+    for (std::size_t first = 0; first < whole; first += block_size)
+      step_all(particles.part(first, std::min(block_size, whole - first)));
     if (whole < particles.count) step_all(rest);
   }
   copy(false);
