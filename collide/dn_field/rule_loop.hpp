@@ -8,8 +8,6 @@
 namespace tess::dn {
 
 using RuleLoop = void (*)(const RuleConstants&, const ParticleSpan&, const Closest&, Scratch&);
-/// Several steps at once, for particles that feel no surface.
-using FreeLoop = void (*)(const FlightConstants&, const ParticleSpan&, int n_steps);
 
 namespace lanes {
 
@@ -47,26 +45,6 @@ void rule_loop(const RuleConstants& constants,
     if (new_velocity) {
       const D3 v1 = step.v1;
       store(particles.vx + p, v1.x), store(particles.vy + p, v1.y), store(particles.vz + p, v1.z);
-    }
-  }
-}
-
-/// Each eight are taken through all the steps without a store between.
-template <Flight Flies>
-void free_loop(const FlightConstants& constants, const ParticleSpan& span, int n_steps) {
-  const FlightConstants c = constants;
-  const ParticleSpan particles = span;
-  for (std::size_t p = 0; p < particles.count; p += width) {
-    D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
-    D3 v = load3(particles.vx + p, particles.vy + p, particles.vz + p);
-    for (int i = 0; i < n_steps; ++i) {
-      const Flown flight = flown<Flies, false>(c, v, D{}, D3{});
-      x = x + flight.way;
-      v = flight.v1;
-    }
-    store(particles.x + p, x.x), store(particles.y + p, x.y), store(particles.z + p, x.z);
-    if constexpr (Flies != Flight::none) {
-      store(particles.vx + p, v.x), store(particles.vy + p, v.y), store(particles.vz + p, v.z);
     }
   }
 }

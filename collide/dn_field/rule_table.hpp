@@ -32,8 +32,6 @@ RuleLoop chosen(const LoopKey& key) {
   return chosen<Where, Flight::surface>(key.impacts, key.springs);
 }
 
-/// `flight` is not Flight::surface.
-[[nodiscard]] FreeLoop free_loop(Flight flight);
 [[nodiscard]] RuleLoop rule_loop_at_rest(const LoopKey& key);
 [[nodiscard]] RuleLoop rule_loop_general(const LoopKey& key);
 

@@ -2,6 +2,7 @@
 // hold them. Private to the step loop.
 #pragma once
 
+#include "collide/dn_field/free_loop.hpp"
 #include "collide/dn_field/rule_table.hpp"
 #include "collide/dn_field/screen.hpp"
 

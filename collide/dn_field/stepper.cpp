@@ -122,31 +122,12 @@ void meet_surface(const Run& run,
   std::swap(buffers.closest, buffers.after);
 }
 
-/// The rules that the surface has no part in and that are not in the rule loops.
-void change_velocities(const Rules& rules,
-                       double time,
-                       double step,
-                       const ParticleSpan& particles) {
-  for (const Explosion& explosion : rules.explosions)
-    if (const double active = active_within(explosion, time, step); active > 0)
-      explode(explosion, active, particles);
-  if (rules.air_drag && rules.air_drag->law == DragLaw::quadratic)
-    drag_quadratic(rules.air_drag->rate * step, particles);
-}
-
-/// Whether there is anything for change_velocities() in a step.
-bool changes_velocities(const Rules& rules, double time, double step) {
-  const auto active = [&](const Explosion& e) { return active_within(e, time, step) > 0; };
-  return std::any_of(rules.explosions.begin(), rules.explosions.end(), active) ||
-         (rules.air_drag && rules.air_drag->law == DragLaw::quadratic);
-}
-
-/// The speed that a particle away from all surfaces gains in n_steps from `time`, at most.
-double speed_gained(const Run& run, double time, int n_steps) {
-  const double span = n_steps * run.plan.step;
-  double gained = span * norm(run.constants.acceleration);
-  for (const Explosion& explosion : run.plan.rules.explosions)
-    gained += std::abs(explosion.strength) * active_within(explosion, time, span);
+/// The speed that a particle away from all surfaces gains in the steps of `changes`, at most.
+double speed_gained(const Run& run, std::span<const VelocityChanges> changes) {
+  double gained =
+      static_cast<double>(changes.size()) * run.plan.step * norm(run.constants.acceleration);
+  for (const VelocityChanges& step : changes)
+    for (const Kick& kick : step.kicks) gained += std::abs(static_cast<double>(kick.kick));
   return gained;
 }
 
@@ -164,8 +145,10 @@ bool screening_pays(
   return packed < near_step + first_look_up / std::min(left, steps_unscreened);
 }
 
-/// The next steps of a run: where objects stand at each, and what depends on their size.
+/// The next steps of a run: what acts and where objects stand at each, and what depends on their
+/// size.
 struct Moments {
+  std::vector<VelocityChanges> changes;
   std::vector<std::vector<Placed>> objects;
   std::vector<Run> grown;  ///< empty where no object grows
 
@@ -174,8 +157,8 @@ struct Moments {
   }
 };
 
-/// The objects are left where they stand after the steps.
-Moments moments_of(const Run& run, std::vector<Object>& objects, int n_steps) {
+/// n_steps from `first` steps after time 0 on. The objects are left where they stand after them.
+Moments moments_of(const Run& run, std::vector<Object>& objects, double first, int n_steps) {
   const Stepper::Plan& plan = run.plan;
   bool restless = false, growing = false;
   for (const Object& object : objects) {
@@ -183,6 +166,8 @@ Moments moments_of(const Run& run, std::vector<Object>& objects, int n_steps) {
     growing = growing || object.frame.is_growing();
   }
   Moments result;
+  for (int i = 0; i < n_steps; ++i)
+    result.changes.push_back(velocity_changes(plan.rules, (first + i) * plan.step, plan.step));
   result.objects.resize(static_cast<std::size_t>(n_steps));
   for (auto& now : result.objects) {
     if (growing) set_lengths(result.grown.emplace_back(run), objects);
@@ -194,15 +179,10 @@ Moments moments_of(const Run& run, std::vector<Object>& objects, int n_steps) {
   return result;
 }
 
-/// Takes one block through the steps of `moments`, the first at `time(0)`.
+/// Takes one block through the steps of `moments`.
 /// Who may feel a surface in the next few steps is packed and taken through them alone, the others
 /// fly free; where not enough fly free to pay for that, all are taken as near.
-template <class Time>
-void fly(const Run& run,
-         const Moments& moments,
-         const Time& time,
-         const ParticleSpan& block,
-         Buffers& buffers) {
+void fly(const Run& run, const Moments& moments, const ParticleSpan& block, Buffers& buffers) {
   const Stepper::Plan& plan = run.plan;
   const int n_steps = static_cast<int>(moments.objects.size());
   const auto run_at = [&](int i) -> const Run& {
@@ -212,26 +192,21 @@ void fly(const Run& run,
     return moments.objects[static_cast<std::size_t>(i)];
   };
   Near& near = buffers.near;
-  const auto fly_free = [&](int from, int to) {
-    while (from < to) {  // as many steps at once as nothing comes between
-      change_velocities(plan.rules, time(from), plan.step, block);
-      int until = from + 1;
-      while (until < to && !changes_velocities(plan.rules, time(until), plan.step)) ++until;
-      plan.fly_free(run.constants, block, until - from);
-      from = until;
-    }
+  const auto changes = [&](int from, int to) {
+    return std::span(moments.changes)
+        .subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
   };
   const auto step_near = [&](int i, const ParticleSpan& particles) {
-    change_velocities(plan.rules, time(i), plan.step, particles);
+    change_velocities(moments.changes[static_cast<std::size_t>(i)], particles);
     meet_surface(run_at(i), objects_at(i), particles, buffers);
   };
-  if (!plan.looks_up) return fly_free(0, n_steps);
+  if (!plan.looks_up) return plan.fly_free(run.constants, block, moments.changes);
   int i = 0;
   int ahead = run.look_ahead;
   bool looked_up = false;  // of the whole block, in the step before
   while (i < n_steps) {
     int next = std::min(i + ahead, n_steps);
-    const double gained = speed_gained(run, time(i), next - i);
+    const double gained = speed_gained(run, changes(i, next));
     screen(objects_at(i),
            plan.rules.look_up,
            plan.sweep,
@@ -256,7 +231,7 @@ void fly(const Run& run,
     const ParticleSpan packed = near.packed();
     buffers.new_particles(packed.count);
     for (int k = i; k < next && packed.count > 0; ++k) step_near(k, packed);
-    fly_free(i, next);
+    plan.fly_free(run.constants, block, changes(i, next));
     i = next;
     near.unpack(block);
   }
@@ -299,11 +274,8 @@ void Stepper::run(ParticleSpan particles,
   copy(true);
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
-    const Moments moments = moments_of(run, standing, now);
-    const auto step_time = [&](int i) { return (before + done + i) * plan.step; };
-    const auto step_all = [&](const ParticleSpan& block) {
-      fly(run, moments, step_time, block, *buffers);
-    };
+    const Moments moments = moments_of(run, standing, before + done, now);
+    const auto step_all = [&](const ParticleSpan& block) { fly(run, moments, block, *buffers); };
     for (std::size_t first = 0; first < whole; first += block_size)
       step_all(particles.part(first, std::min(block_size, whole - first)));
     if (whole < particles.count) step_all(rest);

@@ -16,30 +16,27 @@ void set_velocities(const ParticleSpan& particles, std::size_t p, D3 v) {
 
 }  // namespace
 
-void explode(const Explosion& explosion, double active, const ParticleSpan& span) {
-  const ParticleSpan particles = span;  // which no store can change
-  const Vec3 c = explosion.centre;
-  const auto kick = static_cast<float>(explosion.strength * active),
-             per_radius = static_cast<float>(1 / explosion.radius);
-  for (std::size_t p = 0; p < particles.count; p += width) {
-    // Seven digits are enough for a kick; the velocity keeps its own.
-    const F3 from{to_float(load<D>(particles.x + p) - c.x),
-                  to_float(load<D>(particles.y + p) - c.y),
-                  to_float(load<D>(particles.z + p) - c.z)};
-    const F per_r = 1.0F / sqrt(dot(from, from));
-    const I reached = (per_r > per_radius) & (per_r < HUGE_VALF);  // the centre has no direction
-    if (!any(reached)) continue;
-    const F3 pushed = (kick * (per_r - per_radius)) * from;
-    const F none = all(-0.0F);  // leaves every number its bits, zeros too
-    const F3 added = select(reached, pushed, F3{none, none, none});
-    set_velocities(particles, p, velocities(particles, p) + to_double(added));
+VelocityChanges velocity_changes(const Rules& rules, double time, double step) {
+  VelocityChanges changes;
+  for (const Explosion& explosion : rules.explosions) {
+    const double active = std::min(time + step, explosion.start + explosion.duration) -
+                          std::max(time, explosion.start);
+    if (active > 0)
+      changes.kicks.push_back({explosion.centre,
+                               static_cast<float>(explosion.strength * active),
+                               static_cast<float>(1 / explosion.radius)});
   }
+  if (rules.air_drag && rules.air_drag->law == DragLaw::quadratic)
+    changes.drag = rules.air_drag->rate * step;
+  return changes;
 }
 
-void drag_quadratic(double rate_step, const ParticleSpan& particles) {
+void change_velocities(const VelocityChanges& changes, const ParticleSpan& span) {
+  if (changes.none()) return;
+  const ParticleSpan particles = span;  // which no store can change
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const D3 v = velocities(particles, p);
-    set_velocities(particles, p, (1.0 / (1.0 + rate_step * sqrt(dot(v, v)))) * v);
+    const D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
+    set_velocities(particles, p, changed(changes, x, velocities(particles, p)));
   }
 }
 
@@ -55,8 +52,7 @@ void drag_quadratic(double rate_step,
     if (setting == Setting::general)
       u = {load<D>(closest.ux + p), load<D>(closest.uy + p), load<D>(closest.uz + p)};
     const D3 v = velocities(particles, p), w = v - u;
-    const D3 slowed = u + (1.0 / (1.0 + rate_step * sqrt(dot(w, w)))) * w;
-    set_velocities(particles, p, select(near, slowed, v));
+    set_velocities(particles, p, select(near, u + slowed(rate_step, w), v));
   }
 }
 
@@ -68,12 +64,6 @@ void turn_to_surface(const FlowConstants& flow,
     flow_loop<Setting::general>(flow, particles, closest);
   else
     flow_loop<Setting::one_at_rest>(flow, particles, closest);
-}
-
-double active_within(const Explosion& explosion, double time, double step) {
-  return std::max(0.0,
-                  std::min(time + step, explosion.start + explosion.duration) -
-                      std::max(time, explosion.start));
 }
 
 }  // namespace tess::dn

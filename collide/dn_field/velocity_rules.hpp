@@ -3,16 +3,15 @@
 #pragma once
 
 #include "collide/dn_field/flow_lanes.hpp"
+#include "collide/dn_field/velocity_lanes.hpp"
 
 namespace tess::dn {
 
-/// The kick of an explosion over `active` seconds.
-void explode(const Explosion& explosion, double active, const ParticleSpan& particles);
+/// The rules' part in [time, time + step].
+[[nodiscard]] VelocityChanges velocity_changes(const Rules& rules, double time, double step);
+void change_velocities(const VelocityChanges& changes, const ParticleSpan& particles);
 
-/// v / (1 + rate |v| step), the exact solution of v' = -rate |v| v.
-void drag_quadratic(double rate_step, const ParticleSpan& particles);
-
-/// The same in distance < threshold, toward the surface's velocity.
+/// Quadratic drag in distance < threshold, toward the surface's velocity.
 void drag_quadratic(double rate_step,
                     double threshold,
                     Setting setting,
@@ -24,8 +23,5 @@ void turn_to_surface(const FlowConstants& flow,
                      Setting setting,
                      const ParticleSpan& particles,
                      const Closest& closest);
-
-/// How much of [time, time + step] the explosion lasts.
-[[nodiscard]] double active_within(const Explosion& explosion, double time, double step);
 
 }  // namespace tess::dn

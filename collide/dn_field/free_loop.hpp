@@ -1,0 +1,21 @@
+// Particles that feel no surface, several steps at once. Private to the step loop.
+#pragma once
+
+#include "collide/dn_field/flight_lanes.hpp"
+#include "collide/dn_field/particles.hpp"
+#include "collide/dn_field/velocity_lanes.hpp"
+
+#include <span>
+
+namespace tess::dn {
+
+/// As many steps as `changes` has. Where it has nothing to say, each eight particles are taken
+/// through all of them without a store between.
+using FreeLoop = void (*)(const FlightConstants&,
+                          const ParticleSpan&,
+                          std::span<const VelocityChanges> changes);
+
+/// `flight` is not Flight::surface.
+[[nodiscard]] FreeLoop free_loop(Flight flight);
+
+}  // namespace tess::dn
