@@ -25,8 +25,8 @@ namespace tess::dn {
 struct Object {
   const Field* field = nullptr;
   Frame frame;  ///< at the start of a run, with the velocities it moves by
-  /// If given, look-ups ask this, and `field` gives grid, sides and thickness alone: its arrays may
-  /// be empty. All objects of a scene have one or none has.
+  /// If given, look-ups ask this, and `field` is what it was made from or its outline(). All
+  /// objects of a scene have one or none has.
   const CompressedField* compressed = nullptr;
 };
 
