@@ -114,7 +114,6 @@ struct RuleStep {
     const D z1 = fma(all(dt), fma(all(0.5 * dt), g, e), z0);
     const L touches = settled(has_normal & ((z0 < 0.0) | (z1 < 0.0)));
     if constexpr (hits_surface) energy = fma(rise, rise, fma(-2.0 * g, z0, potential));
-    if (!any(touches)) return;
     SpringMotion motion{};
     L stays{};
     if (c.spring.soft) {

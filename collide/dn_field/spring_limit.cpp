@@ -16,17 +16,15 @@ Moved limit_spring(const SpringConstants& constants,
   Moved moved = Moved::none;
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D depth = spring.reach - to_double(load<F>(after.distance + p));
-    if (!any(depth > 0.0)) continue;
     D3 u{};
     if (setting == Setting::general) u = load3(before.ux + p, before.uy + p, before.uz + p);
     const D3 v = load3(particles.vx + p, particles.vy + p, particles.vz + p), w = v - u;
     const D energy = max(load<D>(scratch.energy + p), D{});
     const D kinetic = dot(w, w), left = energy - spring.stiffness * depth * depth;
     L over = (depth > 0.0) & (kinetic - left > noise * energy) & (kinetic < HUGE_VAL);
-    if (!any(over)) continue;
-    const D3 n =
-        refined(to_double(F3{load<F>(after.nx + p), load<F>(after.ny + p), load<F>(after.nz + p)}));
-    over = over & (dot(n, n) > 0.25);
+    const D3 n = to_double(F3{load<F>(after.nx + p), load<F>(after.ny + p), load<F>(after.nz + p)});
+    const D square = dot(n, n);
+    over = over & (square > 0.25);
     const D scale = sqrt(only(left > 0.0, left / kinetic));
     const D3 slowed = select(over, u + scale * w, v);
     store(particles.vx + p, slowed.x), store(particles.vy + p, slowed.y);
@@ -37,7 +35,7 @@ Moved limit_spring(const SpringConstants& constants,
     moved = Moved::some;
     const D push = depth - paid;
     const D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
-    const D3 pushed = select(deeper, x + push * n, x);
+    const D3 pushed = select(deeper, fma(push, refined(n, square), x), x);
     store(particles.x + p, pushed.x), store(particles.y + p, pushed.y);
     store(particles.z + p, pushed.z);
   }
