@@ -43,7 +43,7 @@ inline PlaneSampler sampler_of(const CompressedField& field) {
 
 namespace lanes {
 
-using U = std::uint32_t __attribute__((vector_size(32)));
+using U = std::uint32_t __attribute__((vector_size(4 * width)));
 
 struct Planes {
   F distance;

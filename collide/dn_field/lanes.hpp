@@ -1,8 +1,8 @@
-// Eight particles at once: GCC vector types, so that one source serves every instruction set, and
-// the same operations in the same order give the same bits on all of them (the compiler may not
-// fuse a multiplication with an addition; where the source says fma, all do). Intrinsics stand only
-// where the language has no word: gather, square root, fma, "any".
-// Private to the loops of this folder.
+// Several particles at once, eight where a double vector holds eight: GCC vector types, so that one
+// source serves every instruction set, and the same operations in the same order give the same bits
+// on all of them (the compiler may not fuse a multiplication with an addition; where the source
+// says fma, all do). Intrinsics stand only where the language has no word: gather, square root,
+// fma, "any". Private to the loops of this folder.
 #pragma once
 
 #include <bit>
@@ -16,12 +16,16 @@
 
 namespace tess::dn::lanes {
 
+#ifdef __AVX512F__
 inline constexpr int width = 8;
+#else
+inline constexpr int width = 4;  // g++ takes wider vectors through memory
+#endif
 
-using D = double __attribute__((vector_size(64)));
-using F = float __attribute__((vector_size(32)));
-using I = std::int32_t __attribute__((vector_size(32)));  // also the mask of F
-using L = std::int64_t __attribute__((vector_size(64)));  // also the mask of D
+using D = double __attribute__((vector_size(8 * width)));
+using F = float __attribute__((vector_size(4 * width)));
+using I = std::int32_t __attribute__((vector_size(4 * width)));  // also the mask of F
+using L = std::int64_t __attribute__((vector_size(8 * width)));  // also the mask of D
 
 template <class V, class T>
 inline V load(const T* from) {
@@ -105,6 +109,8 @@ inline F only(I mask, F v) {
 inline bool any(L mask) {
 #ifdef __AVX512F__
   return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#elif defined(__AVX2__)
+  return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
 #else
   std::int64_t found = 0;
   for (int i = 0; i < width; ++i) found |= mask[i];
@@ -113,8 +119,10 @@ inline bool any(L mask) {
 }
 
 inline bool any(I mask) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
+#elif defined(__AVX2__)
+  return _mm_testz_si128((__m128i)mask, (__m128i)mask) == 0;
 #else
   std::int32_t found = 0;
   for (int i = 0; i < width; ++i) found |= mask[i];
@@ -124,8 +132,10 @@ inline bool any(I mask) {
 
 /// One bit a lane.
 inline unsigned bits(I mask) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
+#elif defined(__AVX2__)
+  return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
 #else
   unsigned found = 0;
   for (int i = 0; i < width; ++i) found |= mask[i] != 0 ? 1U << i : 0U;
@@ -141,14 +151,18 @@ inline F floor(F v) {
 inline D sqrt(D v) {
 #ifdef __AVX512F__
   return (D)_mm512_maskz_sqrt_pd(0xFF, (__m512d)v);  // the plain one warns in g++ 12
+#elif defined(__AVX2__)
+  return (D)_mm256_sqrt_pd((__m256d)v);
 #else
   for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
   return v;
 #endif
 }
 inline F sqrt(F v) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   return (F)_mm256_sqrt_ps((__m256)v);
+#elif defined(__AVX2__)
+  return (F)_mm_sqrt_ps((__m128)v);
 #else
   for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
   return v;
@@ -160,13 +174,7 @@ inline D fma(D a, D b, D c) {
 #ifdef __AVX512F__
   return (D)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 #elif defined(__FMA__)
-  struct Halves {
-    __m256d low, high;
-  };
-  const auto x = std::bit_cast<Halves>(a), y = std::bit_cast<Halves>(b),
-             z = std::bit_cast<Halves>(c);
-  return std::bit_cast<D>(
-      Halves{_mm256_fmadd_pd(x.low, y.low, z.low), _mm256_fmadd_pd(x.high, y.high, z.high)});
+  return (D)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
 #else
   for (int i = 0; i < width; ++i) c[i] = std::fma(a[i], b[i], c[i]);
   return c;
@@ -174,8 +182,10 @@ inline D fma(D a, D b, D c) {
 }
 
 inline F gather(const float* table, I at) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   return (F)_mm256_i32gather_ps(table, (__m256i)at, 4);
+#elif defined(__AVX2__)
+  return (F)_mm_i32gather_ps(table, (__m128i)at, 4);
 #else
   F v;
   for (int i = 0; i < width; ++i) v[i] = table[at[i]];
@@ -183,8 +193,10 @@ inline F gather(const float* table, I at) {
 #endif
 }
 inline I gather(const std::uint32_t* table, I at) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   return (I)_mm256_i32gather_epi32(reinterpret_cast<const int*>(table), (__m256i)at, 4);
+#elif defined(__AVX2__)
+  return (I)_mm_i32gather_epi32(reinterpret_cast<const int*>(table), (__m128i)at, 4);
 #else
   I v;
   for (int i = 0; i < width; ++i) v[i] = std::bit_cast<std::int32_t>(table[at[i]]);
@@ -193,8 +205,10 @@ inline I gather(const std::uint32_t* table, I at) {
 }
 /// Reads the lanes of the mask alone.
 inline F gather(const float* table, I at, I mask) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   return (F)_mm256_mask_i32gather_ps((__m256)F{}, table, (__m256i)at, (__m256)mask, 4);
+#elif defined(__AVX2__)
+  return (F)_mm_mask_i32gather_ps((__m128)F{}, table, (__m128i)at, (__m128)mask, 4);
 #else
   F v{};
   for (int i = 0; i < width; ++i)
@@ -203,9 +217,12 @@ inline F gather(const float* table, I at, I mask) {
 #endif
 }
 inline I gather(const std::uint32_t* table, I at, I mask) {
-#ifdef __AVX2__
+#ifdef __AVX512F__
   const int* from = reinterpret_cast<const int*>(table);
   return (I)_mm256_mask_i32gather_epi32((__m256i)I{}, from, (__m256i)at, (__m256i)mask, 4);
+#elif defined(__AVX2__)
+  const int* from = reinterpret_cast<const int*>(table);
+  return (I)_mm_mask_i32gather_epi32((__m128i)I{}, from, (__m128i)at, (__m128i)mask, 4);
 #else
   I v{};
   for (int i = 0; i < width; ++i)
