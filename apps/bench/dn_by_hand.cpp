@@ -1,5 +1,6 @@
 #include "apps/bench/dn_by_hand.hpp"
 
+#include "collide/dn_field/particle_lanes.hpp"
 #include "collide/dn_field/sample.hpp"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ using namespace tess::dn::lanes;
 
 namespace {
 
-/// Eight particles at a time, in blocks that stay in the first cache for all their steps; `all` is
-/// a multiple of eight. `take` holds copies, which no store to a particle can change.
+/// A vector of particles at a time, in blocks that stay in the first cache for all their steps;
+/// `all` is a multiple of eight. `take` holds copies, which no store to a particle can change.
 template <class Step>
 void in_vectors(const ParticleSpan& all, Step take) {
   constexpr std::size_t block = 256;
@@ -20,10 +21,9 @@ void in_vectors(const ParticleSpan& all, Step take) {
     const ParticleSpan b = all.part(first, std::min(block, all.count - first));
     for (int i = 0; i < n_steps; ++i)
       for (std::size_t p = 0; p < b.count; p += width) {
-        D3 x = load3(b.x + p, b.y + p, b.z + p), v = load3(b.vx + p, b.vy + p, b.vz + p);
+        D3 x = places(b, p), v = velocities(b, p);
         take(x, v);
-        store(b.x + p, x.x), store(b.y + p, x.y), store(b.z + p, x.z);
-        store(b.vx + p, v.x), store(b.vy + p, v.y), store(b.vz + p, v.z);
+        set_places(b, p, x), set_velocities(b, p, v);
       }
   }
 }

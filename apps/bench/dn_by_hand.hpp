@@ -1,6 +1,6 @@
 // Single rules as one would write them by hand, without a stepper: what the composed loop is held
-// against. Eight particles at a time, in blocks that stay in the first cache, with nothing but the
-// rule. All take n_steps steps.
+// against. A vector of particles at a time, in blocks that stay in the first cache, with nothing
+// but the rule. All take n_steps steps.
 #pragma once
 
 #include "apps/bench/dn_scene.hpp"

@@ -18,12 +18,11 @@ Sample sample_again(
   const Voxel voxel = voxel_of(field.n, g);
   const I key = voxel.in ? position(field, voxel) : I{} + unknown;
   const I changed = ~voxel.in | (key != load<I>(last.voxel + p));
-  Stored stored{load<F>(last.stored + p),
-                {load<F>(last.nx + p), load<F>(last.ny + p), load<F>(last.nz + p)}};
+  Stored stored{load<F>(last.stored + p), normals(last, p)};
   if (any(changed)) stored = read_changed(field, voxel, changed, stored);
   store(closest.voxel + p, key);
   store(closest.stored + p, stored.distance);
-  return answer<Kind, Ask::both>(field, voxel, stored, g);
+  return answer<Kind, Ask::both>(field.cell, voxel, stored, g);
 }
 
 template <Storage How>
@@ -61,10 +60,8 @@ void pass(const Placed& placed,
   const auto& m = object.to_grid;
   const F ox = all(object.middle[0]), oy = all(object.middle[1]), oz = all(object.middle[2]);
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const D3 from{load<D>(particles.x + p) - c.x,
-                  load<D>(particles.y + p) - c.y,
-                  load<D>(particles.z + p) - c.z};
-    const F3 q{to_float(from.x), to_float(from.y), to_float(from.z)};
+    const D3 from = places(particles, p) - c;
+    const F3 q = to_float(from);
     F3 g;
     if constexpr (Where == Setting::one_at_rest)
       g = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
@@ -76,11 +73,10 @@ void pass(const Placed& placed,
       found = sample_again<Kind>(field, g, last, closest, p);
     else
       found = sample<Kind, Asked>(field, g);
-    const I in = found.distance < out_of_reach;
-    found.distance = in ? found.distance * object.scale - object.padding : found.distance;
+    [[maybe_unused]] const I in = found.distance < out_of_reach;
     F free{};
-    if constexpr (Swept == Sweep::on)
-      free = in ? found.free * object.scale - object.error : outside_by(object, g);
+    if constexpr (Swept == Sweep::on) free = free_in_world(object, found, g);
+    found.distance = distance_in_world(object, found);
     if constexpr (Where == Setting::one_at_rest) {
       store(closest.distance + p, found.distance);
       if constexpr (Asked == Ask::both) {
@@ -96,7 +92,7 @@ void pass(const Placed& placed,
       const Vec3 shift = c - f.position;
       D3 u{};
       if (object.restless) {
-        const D3 arm{from.x + shift.x, from.y + shift.y, from.z + shift.z};
+        const D3 arm = from + shift;
         u = stiff_velocity(f, arm);
         if (object.growth != 0) {
           // That of the surface itself, which is beside the particle.
@@ -109,8 +105,7 @@ void pass(const Placed& placed,
         if (object.growth != 0) free = free - taken_by_growth(object, free, in, found.distance);
         // Where this is the only surface known there is nothing to compare.
         if (object.restless && bits((others < out_of_reach) | ~nearer) != 0) {
-          const D3 gap =
-              u - D3{load<D>(closest.ux + p), load<D>(closest.uy + p), load<D>(closest.uz + p)};
+          const D3 gap = u - surface_velocities(closest, p);
           const F way = to_float(object.step * sqrt(dot(gap, gap)));
           others = nearer ? shortened(object, others, way) : others;
           free = nearer ? free : shortened(object, free, way);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "collide/dn_field/compressed_sample.hpp"
+#include "collide/dn_field/particle_lanes.hpp"
 #include "collide/dn_field/stepper.hpp"
 
 namespace tess::dn {
@@ -83,5 +84,17 @@ void forget(Closest& closest, std::size_t count);
 
 /// No surface anywhere.
 void clear(Closest& closest, std::size_t count);
+
+namespace lanes {
+
+/// The closest surfaces of particles p, p + 1, …: their normals and velocities.
+inline F3 normals(const Closest& closest, std::size_t p) {
+  return {load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)};
+}
+inline D3 surface_velocities(const Closest& closest, std::size_t p) {
+  return load3(closest.ux + p, closest.uy + p, closest.uz + p);
+}
+
+}  // namespace lanes
 
 }  // namespace tess::dn

@@ -45,13 +45,8 @@ namespace lanes {
 
 using U = std::uint32_t __attribute__((vector_size(4 * width)));
 
-struct Planes {
-  F distance;
-  F3 normal;  ///< unit or zero
-};
-
 /// Distances at the cells' middles.
-inline Planes read_planes(const PlaneSampler& field, I at) {
+inline Stored read_planes(const PlaneSampler& field, I at) {
   if (field.wide) {
     const I low = gather(field.entry, at + at), high = gather(field.entry, at + at + 1);
     return {(F)low, unit(decode(high))};
@@ -67,14 +62,14 @@ inline Planes read_planes(const PlaneSampler& field, I at) {
 }
 
 /// What the voxels say.
-inline Planes planes_at(const PlaneSampler& field, const Voxel& voxel) {
+inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
   const I i = voxel.i, j = voxel.j, k = voxel.k;
   const int e = field.e, in_block = (1 << e) - 1;
   const I head = gather(field.block, (k >> e) * field.layer + (j >> e) * field.row + (i >> e));
   const I s = head & 7, in_cell = ((I{} + 1) << s) - 1, t = e - s;
   const I li = i & in_block, lj = j & in_block, lk = k & in_block;
   const I at = (I)((U)head >> 3) + ((((lk >> s) << t) + (lj >> s)) << t) + (li >> s);
-  Planes plane = read_planes(field, at);
+  Stored plane = read_planes(field, at);
   const auto off = [&](I of) {
     return 0.5F * field.cell * __builtin_convertvector(2 * (of & in_cell) - in_cell, F);
   };
@@ -89,17 +84,9 @@ inline Planes planes_at(const PlaneSampler& field, const Voxel& voxel) {
 template <LookUp Kind, Ask Asked>
 requires(Kind != LookUp::trilinear) inline Sample sample(const PlaneSampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
-  const Planes plane = planes_at(field, voxel);
-  Sample found{};
-  if constexpr (Asked != Ask::distance) found.normal = only(voxel.in, plane.normal);
-  if constexpr (Asked != Ask::normal) {
-    const F3 from = offset(voxel, g);
-    found.distance = plane.distance;
-    found.free = plane.distance - field.cell * sqrt(dot(from, from));
-    if constexpr (Kind == LookUp::tangent) found.distance += field.cell * dot(plane.normal, from);
-    found.distance = voxel.in ? found.distance : all(out_of_reach);
-  }
-  return found;
+  const Stored plane = planes_at(field, voxel);
+  const Stored stored{voxel.in ? plane.distance : all(out_of_reach), only(voxel.in, plane.normal)};
+  return answer<Kind, Asked>(field.cell, voxel, stored, g);
 }
 
 }  // namespace lanes

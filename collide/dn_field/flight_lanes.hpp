@@ -2,7 +2,6 @@
 #pragma once
 
 #include "collide/dn_field/lanes.hpp"
-#include "collide/dn_field/vec3.hpp"
 
 namespace tess::dn {
 
@@ -43,7 +42,7 @@ inline Flown flown(const FlightConstants& c, D3 v0, [[maybe_unused]] D d, [[mayb
   }
   f.keep = all(c.air.keep), f.gain = all(c.air.gain);
   f.way_keep = all(c.air.way_keep), f.way_gain = all(c.air.way_gain);
-  f.a = {all(c.acceleration.x), all(c.acceleration.y), all(c.acceleration.z)};
+  f.a = all(c.acceleration);
   if constexpr (Flies == Flight::surface) {
     const L near = d < c.surface_threshold;
     f.keep = near ? all(c.surface.keep) : f.keep;

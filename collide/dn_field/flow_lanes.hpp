@@ -60,17 +60,15 @@ void flow_loop(const FlowConstants& constants, const ParticleSpan& span, const C
   for (std::size_t p = 0; p < particles.count; p += width) {
     const L near = to_double(load<F>(closest.distance + p)) < c.distance;
     if (!any(near)) continue;
-    const D3 n =
-        to_double(F3{load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)});
-    const D3 v = load3(particles.vx + p, particles.vy + p, particles.vz + p);
+    const D3 n = to_double(normals(closest, p)), v = velocities(particles, p);
     D3 w = v;
     if constexpr (Where == Setting::general) {
-      const D3 u = load3(closest.ux + p, closest.uy + p, closest.uz + p);
+      const D3 u = surface_velocities(closest, p);
       w = select(near, turned_to_surface(c, v - u, n, near) + u, v);
     } else {
       w = turned_to_surface(c, v, n, near);
     }
-    store(particles.vx + p, w.x), store(particles.vy + p, w.y), store(particles.vz + p, w.z);
+    set_velocities(particles, p, w);
   }
 }
 

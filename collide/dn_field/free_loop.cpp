@@ -7,25 +7,11 @@ namespace {
 
 using namespace lanes;
 
-struct Eight {
-  D3 x, v;
-};
-Eight load_eight(const ParticleSpan& particles, std::size_t p) {
-  return {load3(particles.x + p, particles.y + p, particles.z + p),
-          load3(particles.vx + p, particles.vy + p, particles.vz + p)};
-}
-void store_places(const ParticleSpan& particles, std::size_t p, const Eight& e) {
-  store(particles.x + p, e.x.x), store(particles.y + p, e.x.y), store(particles.z + p, e.x.z);
-}
-void store_velocities(const ParticleSpan& particles, std::size_t p, const Eight& e) {
-  store(particles.vx + p, e.v.x), store(particles.vy + p, e.v.y), store(particles.vz + p, e.v.z);
-}
-
 template <Flight Flies>
-void fly_one(const FlightConstants& c, Eight& e) {
-  const Flown flight = flown<Flies, false>(c, e.v, D{}, D3{});
-  e.x = e.x + flight.way;
-  e.v = flight.v1;
+void fly_one(const FlightConstants& c, D3& x, D3& v) {
+  const Flown flight = flown<Flies, false>(c, v, D{}, D3{});
+  x = x + flight.way;
+  v = flight.v1;
 }
 
 template <Flight Flies>
@@ -37,21 +23,20 @@ void fly(const FlightConstants& constants,
   const std::size_t n_steps = changes.size();
   if (std::all_of(changes.begin(), changes.end(), [](const auto& step) { return step.none(); })) {
     for (std::size_t p = 0; p < particles.count; p += width) {
-      Eight e = load_eight(particles, p);
-      for (std::size_t i = 0; i < n_steps; ++i) fly_one<Flies>(c, e);
-      store_places(particles, p, e);
-      if constexpr (Flies != Flight::none) store_velocities(particles, p, e);
+      D3 x = places(particles, p), v = velocities(particles, p);
+      for (std::size_t i = 0; i < n_steps; ++i) fly_one<Flies>(c, x, v);
+      set_places(particles, p, x);
+      if constexpr (Flies != Flight::none) set_velocities(particles, p, v);
     }
     return;
   }
-  // A kick's root and quotient take long: the next eight are begun meanwhile, not the next step.
+  // A kick's root and quotient take long: the next vector is begun meanwhile, not the next step.
   for (const VelocityChanges& step : changes)
     for (std::size_t p = 0; p < particles.count; p += width) {
-      Eight e = load_eight(particles, p);
-      e.v = changed(step, e.x, e.v);
-      fly_one<Flies>(c, e);
-      store_places(particles, p, e);
-      store_velocities(particles, p, e);
+      D3 x = places(particles, p), v = changed(step, x, velocities(particles, p));
+      fly_one<Flies>(c, x, v);
+      set_places(particles, p, x);
+      set_velocities(particles, p, v);
     }
 }
 

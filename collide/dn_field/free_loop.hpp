@@ -2,14 +2,14 @@
 #pragma once
 
 #include "collide/dn_field/flight_lanes.hpp"
-#include "collide/dn_field/particles.hpp"
+#include "collide/dn_field/particle_lanes.hpp"
 #include "collide/dn_field/velocity_lanes.hpp"
 
 #include <span>
 
 namespace tess::dn {
 
-/// As many steps as `changes` has. Where it has nothing to say, each eight particles are taken
+/// As many steps as `changes` has. Where it has nothing to say, each vector of particles is taken
 /// through all of them without a store between.
 using FreeLoop = void (*)(const FlightConstants&,
                           const ParticleSpan&,

@@ -5,6 +5,8 @@
 // fma, "any". Private to the loops of this folder.
 #pragma once
 
+#include "collide/dn_field/vec3.hpp"
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -88,14 +90,6 @@ inline L settled(L mask) {
   asm("" : "+v"(mask));
 #endif
   return mask;
-}
-
-/// The number in a register. g++ 12 else reads it from memory again for each use.
-inline D held(D v) {
-#ifdef __AVX512F__
-  asm("" : "+v"(v));
-#endif
-  return v;
 }
 
 /// v where the mask holds, else zero.
@@ -269,9 +263,21 @@ inline Three<V> select(M mask, Three<V> a, Three<V> b) {
 inline D3 to_double(F3 v) {
   return {to_double(v.x), to_double(v.y), to_double(v.z)};
 }
+inline F3 to_float(D3 v) {
+  return {to_float(v.x), to_float(v.y), to_float(v.z)};
+}
+inline D3 all(Vec3 v) {
+  return {all(v.x), all(v.y), all(v.z)};
+}
+inline D3 operator+(D3 a, Vec3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline D3 operator-(D3 a, Vec3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 
 inline D3 load3(const double* x, const double* y, const double* z) {
-  return {held(load<D>(x)), held(load<D>(y)), held(load<D>(z))};
+  return {load<D>(x), load<D>(y), load<D>(z)};
 }
 
 /// One Newton step takes a normal that is unit to float precision to double precision.

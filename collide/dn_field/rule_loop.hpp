@@ -21,7 +21,7 @@ void rule_loop(const RuleConstants& constants,
   const RuleConstants c = constants;
   const ParticleSpan particles = span;
   for (std::size_t p = 0; p < particles.count; p += width) {
-    Step step{c, p, load3(particles.vx + p, particles.vy + p, particles.vz + p)};
+    Step step{c, p, velocities(particles, p)};
     step.look(closest);
     step.fly();
     if constexpr (Step::springs) step.follow_spring();
@@ -40,12 +40,8 @@ void rule_loop(const RuleConstants& constants,
     }
     if constexpr (Step::springs)
       store(scratch.energy + p, step.energy1 + 2.0 * (step.flight.gain * (1 / c.step)) * step.work);
-    const D3 x1 = load3(particles.x + p, particles.y + p, particles.z + p) + step.way;
-    store(particles.x + p, x1.x), store(particles.y + p, x1.y), store(particles.z + p, x1.z);
-    if (new_velocity) {
-      const D3 v1 = step.v1;
-      store(particles.vx + p, v1.x), store(particles.vy + p, v1.y), store(particles.vz + p, v1.z);
-    }
+    set_places(particles, p, places(particles, p) + step.way);
+    if (new_velocity) set_velocities(particles, p, step.v1);
   }
 }
 

@@ -1,6 +1,6 @@
-// One step of eight particles: the rules, in their order. A struct, so that each rule is a function
-// that reads what the ones before it found; the compiler keeps its members in registers. What a
-// scene has not got leaves no instruction. Private to the step loop.
+// One step of a vector of particles: the rules, in their order. A struct, so that each rule is a
+// function that reads what the ones before it found; the compiler keeps its members in registers.
+// What a scene has not got leaves no instruction. Private to the step loop.
 //
 // The flight of a step is given by its end velocity v1 and its way, both exact for constant
 // accelerations and linear drags. An impact happens at the fraction s of the step where the chord
@@ -8,7 +8,7 @@
 // with the new one. Without drag the contact is placed on the parabola itself, so that the energy
 // is kept to rounding.
 //
-// Branches on "any of the eight" save time and nothing else: what they skip must leave the other
+// Branches on "any of them" save time and nothing else: what they skip must leave the other
 // lanes their bits, the sign of a zero too, so that no particle depends on its neighbours.
 #pragma once
 
@@ -57,7 +57,7 @@ struct RuleStep {
   static constexpr bool bounces_alone = Flies == Flight::none && !springs;
 
   const RuleConstants& c;
-  std::size_t p;  ///< the first of the eight
+  std::size_t p;  ///< the first of them
   D3 v0;
   D d{};        ///< distance of the closest surface
   D3 n{}, u{};  ///< its normal and velocity
@@ -78,12 +78,12 @@ struct RuleStep {
   void look(const Closest& closest) {
     if constexpr (asks_distance) d = to_double(load<F>(closest.distance + p));
     if constexpr (asks_normal) {
-      n = to_double(F3{load<F>(closest.nx + p), load<F>(closest.ny + p), load<F>(closest.nz + p)});
+      n = to_double(normals(closest, p));
       const D square = dot(n, n);
       has_normal = settled(square > 0.25);
       n = refined(n, square);
     }
-    if constexpr (moves) u = load3(closest.ux + p, closest.uy + p, closest.uz + p);
+    if constexpr (moves) u = surface_velocities(closest, p);
   }
 
   void fly() {
@@ -143,10 +143,13 @@ struct RuleStep {
     return settled(far);
   }
 
+  /// The way along the normal to where the look-up's error begins.
+  D out_of(L deep) const { return only(deep, c.threshold - c.slack - d); }
+
   /// They start at the surface if they are deep in it.
   void leave_to_trace(L far, L deep, const ParticleSpan& particles, Scratch& scratch) {
-    const D up = only(far & deep, c.threshold - c.slack - d);
-    const D3 from = fma(up, n, load3(particles.x + p, particles.y + p, particles.z + p));
+    const D up = out_of(far & deep);
+    const D3 from = fma(up, n, places(particles, p));
     if constexpr (springs) work = work + an * up;
     for (int i = 0; i < width; ++i) {
       if (far[i] == 0) continue;
@@ -168,7 +171,7 @@ struct RuleStep {
 
   void bounce(Met met) {
     const L hits = met.hits;
-    D up = only(met.deep, c.threshold - c.slack - d);
+    D up = out_of(met.deep);
     const D s = only(hits, max((c.threshold - d) / climb, D{})), rest = 1.0 - s;
     if constexpr (bounces_alone) {
       const D kick = only(hits, -(1 + c.restitution) * rise);

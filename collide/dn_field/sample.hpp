@@ -128,14 +128,15 @@ inline Stored read_changed(const Sampler& field,
   return {changed ? distance : before.distance, select(changed, normal, before.normal)};
 }
 
+/// What the voxel's data say of g.
 template <LookUp Kind, Ask Asked>
-inline Sample answer(const Sampler& field, const Voxel& voxel, const Stored& stored, F3 g) {
+inline Sample answer(float cell, const Voxel& voxel, const Stored& stored, F3 g) {
   Sample found{stored.distance, stored.normal, stored.distance};
   if constexpr (Asked != Ask::normal) {
     const F3 from = only(voxel.in, offset(voxel, g));
-    found.free = stored.distance - field.cell * sqrt(dot(from, from));
+    found.free = stored.distance - cell * sqrt(dot(from, from));
     if constexpr (Kind == LookUp::tangent)
-      found.distance = stored.distance + field.cell * dot(stored.normal, from);
+      found.distance = stored.distance + cell * dot(stored.normal, from);
   }
   return found;
 }
@@ -143,7 +144,7 @@ inline Sample answer(const Sampler& field, const Voxel& voxel, const Stored& sto
 template <LookUp Kind, Ask Asked>
 requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
-  return answer<Kind, Asked>(field, voxel, read<Kind, Asked>(field, voxel), g);
+  return answer<Kind, Asked>(field.cell, voxel, read<Kind, Asked>(field, voxel), g);
 }
 
 template <LookUp Kind, Ask Asked>

@@ -30,9 +30,7 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
   // A way of one cell may lead two voxels on.
   const F share = all(reach.ahead ? 1 / (1 + object.jump / object.cell) : 1.0F);
   for (std::size_t p = 0; p < block.count; p += width) {
-    const F3 q{to_float(load<D>(block.x + p) - c.x),
-               to_float(load<D>(block.y + p) - c.y),
-               to_float(load<D>(block.z + p) - c.z)};
+    const F3 q = to_float(places(block, p) - c);
     F3 h;
     if constexpr (Turned)
       h = {q.x * m[0][0] + q.y * m[0][1] + q.z * m[0][2] + ox,
@@ -102,9 +100,7 @@ void screen(std::span<const Placed> objects,
   std::array<std::uint32_t, block_size> later;
   std::size_t n_later = 0;
   for (std::size_t p = 0; p < block.count; p += width) {
-    const F3 v{to_float(load<D>(block.vx + p)),
-               to_float(load<D>(block.vy + p)),
-               to_float(load<D>(block.vz + p))};
+    const F3 v = to_float(velocities(block, p));
     const F room = load<F>(near.room + p), way = time * (sqrt(dot(v, v)) + gain);
     const unsigned may = bits(~(room >= way)), may_later = may & bits(room - at_once >= way);
     const auto list = [p](unsigned lanes, std::uint32_t* to, std::size_t& count) {

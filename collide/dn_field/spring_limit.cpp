@@ -17,27 +17,25 @@ Moved limit_spring(const SpringConstants& constants,
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D depth = spring.reach - to_double(load<F>(after.distance + p));
     D3 u{};
-    if (setting == Setting::general) u = load3(before.ux + p, before.uy + p, before.uz + p);
-    const D3 v = load3(particles.vx + p, particles.vy + p, particles.vz + p), w = v - u;
+    if (setting == Setting::general) u = surface_velocities(before, p);
+    const D3 v = velocities(particles, p), w = v - u;
     const D energy = max(load<D>(scratch.energy + p), D{});
     const D kinetic = dot(w, w), left = energy - spring.stiffness * depth * depth;
     L over = (depth > 0.0) & (kinetic - left > noise * energy) & (kinetic < HUGE_VAL);
-    const D3 n = to_double(F3{load<F>(after.nx + p), load<F>(after.ny + p), load<F>(after.nz + p)});
+    const D3 n = to_double(normals(after, p));
     const D square = dot(n, n);
     over = over & (square > 0.25);
     const D scale = sqrt(only(left > 0.0, left / kinetic));
     const D3 slowed = select(over, u + scale * w, v);
-    store(particles.vx + p, slowed.x), store(particles.vy + p, slowed.y);
-    store(particles.vz + p, slowed.z);
+    set_velocities(particles, p, slowed);
     const D paid = sqrt(energy * (1 / spring.stiffness));
     const L deeper = over & (depth > paid);
     if (!any(deeper)) continue;
     moved = Moved::some;
     const D push = depth - paid;
-    const D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
+    const D3 x = places(particles, p);
     const D3 pushed = select(deeper, fma(push, refined(n, square), x), x);
-    store(particles.x + p, pushed.x), store(particles.y + p, pushed.y);
-    store(particles.z + p, pushed.z);
+    set_places(particles, p, pushed);
   }
   return moved;
 }

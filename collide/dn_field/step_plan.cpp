@@ -47,7 +47,7 @@ RuleConstants constants_of(const Rules& rules, double step) {
     c.acceleration += rules.wind->rate * rules.wind->velocity;
   }
   if (rules.air_drag && rules.air_drag->law == DragLaw::linear) rate += rules.air_drag->rate;
-  if (rules.surface_drag && rules.surface_drag->law == DragLaw::linear) {
+  if (drags_at_surface(rules)) {
     c.surface_rate = rules.surface_drag->rate;
     c.surface_threshold = rules.surface_drag->threshold;
   }

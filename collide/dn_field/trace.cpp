@@ -41,14 +41,14 @@ struct Here {
 };
 
 Here ask(const Placed& object, LookUp kind, D3 p, D3 way) {
-  const D3 from = p - all(object.centre);
-  const F3 g = to_grid(object, {to_float(from.x), to_float(from.y), to_float(from.z)});
+  const D3 from = p - object.centre;
+  const F3 g = to_grid(object, to_float(from));
   const Sample found = sample_of(object, kind, g);
   const I in = found.distance < out_of_reach;
-  const D distance = to_double(found.distance * object.scale - object.padding);
-  const F free = in ? found.free * object.scale - object.error : max(outside_by(object, g), F{});
+  const D distance = to_double(distance_in_world(object, found));
+  const F free = free_in_world(object, found, g);
   const D3 n = to_double(only(in, to_world(object, found.normal)));
-  const F3 w = turned_to_grid(object, {to_float(way.x), to_float(way.y), to_float(way.z)});
+  const F3 w = turned_to_grid(object, to_float(way));
   const F per_cell = 1.0F / sqrt(dot(w, w));
   const F held = kind == LookUp::trilinear ? blend_stride * per_cell
                                            : (in ? way_in_voxel(g, w) : F{}) + into_next * per_cell;
@@ -61,6 +61,12 @@ struct Contact {
   D3 normal{}, surface_velocity{};
   D too_deep{};
 };
+Contact select(L mask, const Contact& a, const Contact& b) {
+  return {mask ? a.at : b.at,
+          select(mask, a.normal, b.normal),
+          select(mask, a.surface_velocity, b.surface_velocity),
+          mask ? a.too_deep : b.too_deep};
+}
 
 /// A straight way in the world as seen from an object, at the size it has when the step begins: a
 /// straight way, too, which a growing object sees slow down. Fractions f of the step and of that
@@ -88,20 +94,21 @@ Seen seen_from(const Placed& object, double step, D3 x, D3 way, D elapsed) {
 
 /// The velocity of the object's surface where it passes p.
 D3 surface_velocity(const Frame& frame, D3 p) {
-  const D3 arm = p - all(frame.position), stiff = stiff_velocity(frame, arm);
+  const D3 arm = p - frame.position, stiff = stiff_velocity(frame, arm);
   return frame.is_growing() ? fma(all(frame.scale_rate / frame.scale), arm, stiff) : stiff;
 }
+
+struct Scene {
+  const RuleConstants& constants;
+  std::span<const Placed> objects;
+  LookUp kind;
+};
 
 /// The first contacts on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on,
 /// for particles that fly; `at` is `never` where there is none. `rest` is shortened where the way
 /// could not be followed to its end.
-Contact first_contact(const RuleConstants& c,
-                      std::span<const Placed> objects,
-                      LookUp kind,
-                      D3 x,
-                      D3 way,
-                      D& rest,
-                      L flies) {
+Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
+  const auto& [c, objects, kind] = scene;
   std::size_t budget = 1024;  // advances; each leads into another voxel
   for (const Placed& object : objects)
     budget +=
@@ -136,18 +143,12 @@ Contact first_contact(const RuleConstants& c,
       if (!any(touches)) continue;
       D3 surface = p;
       if (object.growth != 0) surface = fma(met, seen.way, fma(-threshold, here.normal, seen.from));
-      contact.at = touches ? at : contact.at;
-      contact.normal = select(touches, here.normal, contact.normal);
-      contact.surface_velocity =
-          select(touches, surface_velocity(object.frame, surface), contact.surface_velocity);
-      contact.too_deep =
-          touches ? max(c.threshold - c.slack - here.distance * size, D{}) : contact.too_deep;
+      const D too_deep = max(c.threshold - c.slack - here.distance * size, D{});
+      contact = select(
+          touches, {at, here.normal, surface_velocity(object.frame, surface), too_deep}, contact);
     }
     const L found = going & (contact.at <= next) & (contact.at <= rest);
-    first.at = found ? contact.at : first.at;
-    first.normal = select(found, contact.normal, first.normal);
-    first.surface_velocity = select(found, contact.surface_velocity, first.surface_velocity);
-    first.too_deep = found ? contact.too_deep : first.too_deep;
+    first = select(found, contact, first);
     going = going & ~found & (next < never);
     s = going ? next : all(never);
   }
@@ -159,13 +160,12 @@ L finite(D3 v) {
   return size < never;
 }
 
-/// Up to eight of them.
-void trace_vector(const RuleConstants& c,
-                  std::span<const Placed> objects,
-                  LookUp kind,
+/// As many as a vector holds, or fewer.
+void trace_vector(const Scene& scene,
                   std::span<const Untraced> from,
                   const ParticleSpan& particles,
                   double* energy) {
+  const RuleConstants& c = scene.constants;
   const auto lane = [&](Vec3 Untraced::*what) {
     D3 v{};
     for (std::size_t i = 0; i < from.size(); ++i) {
@@ -183,7 +183,7 @@ void trace_vector(const RuleConstants& c,
   D rest = all(1.0);
   L flies = can_fly;
   for (int bounce = 0; bounce < max_bounces; ++bounce) {
-    const Contact contact = first_contact(c, objects, kind, x, way, rest, flies);
+    const Contact contact = first_contact(scene, x, way, rest, flies);
     flies = flies & (contact.at < never);
     if (!any(flies)) break;
     const D s = only(flies, contact.at), fraction = only(rest > 0.0, s / rest);
@@ -226,13 +226,10 @@ void trace(const RuleConstants& c,
            std::span<const Untraced> from,
            const ParticleSpan& particles,
            double* energy) {
-  for (std::size_t first = 0; first < from.size(); first += width)
-    trace_vector(c,
-                 objects,
-                 kind,
-                 from.subspan(first, std::min<std::size_t>(width, from.size() - first)),
-                 particles,
-                 energy);
+  for (std::size_t first = 0; first < from.size(); first += width) {
+    const std::size_t count = std::min<std::size_t>(width, from.size() - first);
+    trace_vector({c, objects, kind}, from.subspan(first, count), particles, energy);
+  }
 }
 
 }  // namespace tess::dn

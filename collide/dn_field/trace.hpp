@@ -1,7 +1,7 @@
 // The flight of particles that go further in a step than is known to be free: sphere tracing. They
 // advance by no more than the distance to the closest surface, so that they cannot pass one at any
-// speed while the distance changes by at most one per unit of way. Eight at a time, each as if it
-// were alone. Private to the step loop.
+// speed while the distance changes by at most one per unit of way. A vector of them at a time, each
+// as if it were alone. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/rule_loop.hpp"

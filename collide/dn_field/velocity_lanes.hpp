@@ -3,7 +3,6 @@
 #pragma once
 
 #include "collide/dn_field/lanes.hpp"
-#include "collide/dn_field/vec3.hpp"
 
 #include <vector>
 
@@ -27,8 +26,7 @@ namespace lanes {
 
 inline D3 kicked(const Kick& kick, D3 x, D3 v) {
   // Seven digits are enough for a kick; the velocity keeps its own.
-  const F3 from{
-      to_float(x.x - kick.centre.x), to_float(x.y - kick.centre.y), to_float(x.z - kick.centre.z)};
+  const F3 from = to_float(x - kick.centre);
   const F per_r = 1.0F / sqrt(dot(from, from));
   const I reached = (per_r > kick.per_radius) & (per_r < HUGE_VALF);  // the centre has no direction
   if (!any(reached)) return v;

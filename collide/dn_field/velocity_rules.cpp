@@ -3,18 +3,7 @@
 #include <algorithm>
 
 namespace tess::dn {
-namespace {
-
 using namespace lanes;
-
-D3 velocities(const ParticleSpan& particles, std::size_t p) {
-  return {load<D>(particles.vx + p), load<D>(particles.vy + p), load<D>(particles.vz + p)};
-}
-void set_velocities(const ParticleSpan& particles, std::size_t p, D3 v) {
-  store(particles.vx + p, v.x), store(particles.vy + p, v.y), store(particles.vz + p, v.z);
-}
-
-}  // namespace
 
 VelocityChanges velocity_changes(const Rules& rules, double time, double step) {
   VelocityChanges changes;
@@ -35,8 +24,8 @@ void change_velocities(const VelocityChanges& changes, const ParticleSpan& span)
   if (changes.none()) return;
   const ParticleSpan particles = span;  // which no store can change
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const D3 x = load3(particles.x + p, particles.y + p, particles.z + p);
-    set_velocities(particles, p, changed(changes, x, velocities(particles, p)));
+    const D3 v = changed(changes, places(particles, p), velocities(particles, p));
+    set_velocities(particles, p, v);
   }
 }
 
@@ -49,8 +38,7 @@ void drag_quadratic(double rate_step,
     const L near = to_double(load<F>(closest.distance + p)) < threshold;
     if (!any(near)) continue;
     D3 u{};
-    if (setting == Setting::general)
-      u = {load<D>(closest.ux + p), load<D>(closest.uy + p), load<D>(closest.uz + p)};
+    if (setting == Setting::general) u = surface_velocities(closest, p);
     const D3 v = velocities(particles, p), w = v - u;
     set_velocities(particles, p, select(near, u + slowed(rate_step, w), v));
   }
