@@ -5,9 +5,16 @@
 
 namespace tess::dn {
 
-/// none: straight; fall: accelerations that are the same everywhere; air: also linear drags that
-/// are; surface: also a linear drag near the surface.
-enum class Flight : std::uint32_t { none, fall, air, surface };
+/// Linear drags: none, those that are the same everywhere, also one near the surface.
+enum class Drags : std::uint32_t { none, everywhere, surface };
+
+/// What bends a flight or slows it down.
+struct Flight {
+  bool falls = false;  ///< accelerations that are the same everywhere
+  Drags drags = Drags::none;
+
+  friend constexpr bool operator==(const Flight&, const Flight&) = default;
+};
 
 /// The exact flow of v' = -rate v + a over a step: v1 = keep v + gain a, the way is way_keep v +
 /// way_gain a.
@@ -30,29 +37,42 @@ struct Flown {
   D keep, gain{}, way_keep, way_gain{};
 };
 
+/// Whether anything accelerates: a surface that moves drags particles along.
+template <Flight Flies, bool Moves>
+inline constexpr bool accelerates = Flies.falls || (Moves && Flies.drags == Drags::surface);
+
 /// From v0 at distance d of a surface that moves with u, where it does.
 template <Flight Flies, bool Moves>
 inline Flown flown(const FlightConstants& c, D3 v0, [[maybe_unused]] D d, [[maybe_unused]] D3 u) {
+  constexpr bool pushed = accelerates<Flies, Moves>;
   Flown f;
-  if constexpr (Flies == Flight::none) {
-    f.keep = all(1.0), f.way_keep = all(c.step);
-    f.v1 = v0;
-    f.way = f.way_keep * v0;
-    return f;
+  f.keep = all(c.air.keep), f.way_keep = all(c.air.way_keep);
+  if constexpr (pushed) {
+    f.gain = all(c.air.gain), f.way_gain = all(c.air.way_gain);
+    f.a = all(c.acceleration);
   }
-  f.keep = all(c.air.keep), f.gain = all(c.air.gain);
-  f.way_keep = all(c.air.way_keep), f.way_gain = all(c.air.way_gain);
-  f.a = all(c.acceleration);
-  if constexpr (Flies == Flight::surface) {
+  if constexpr (Flies.drags == Drags::surface) {
     const L near = d < c.surface_threshold;
     f.keep = near ? all(c.surface.keep) : f.keep;
-    f.gain = near ? all(c.surface.gain) : f.gain;
     f.way_keep = near ? all(c.surface.way_keep) : f.way_keep;
-    f.way_gain = near ? all(c.surface.way_gain) : f.way_gain;
-    if constexpr (Moves) f.a = f.a + only(near, all(c.surface_rate) * u);
+    if constexpr (pushed) {
+      f.gain = near ? all(c.surface.gain) : f.gain;
+      f.way_gain = near ? all(c.surface.way_gain) : f.way_gain;
+    }
+    if constexpr (Moves) {
+      const D3 dragged = all(c.surface_rate) * u;
+      // A sum with -0 leaves every number its bits, as the free flight does.
+      f.a =
+          Flies.falls ? f.a + only(near, dragged) : select(near, dragged, all({-0.0, -0.0, -0.0}));
+    }
   }
-  f.v1 = Flies == Flight::fall ? fma(f.gain, f.a, v0) : fma(f.keep, v0, f.gain * f.a);
-  f.way = fma(f.way_keep, v0, f.way_gain * f.a);
+  f.v1 = v0;
+  f.way = f.way_keep * v0;
+  if constexpr (Flies.drags != Drags::none) f.v1 = f.keep * v0;
+  if constexpr (pushed) {
+    f.v1 = Flies.drags == Drags::none ? fma(f.gain, f.a, v0) : fma(f.keep, v0, f.gain * f.a);
+    f.way = fma(f.way_keep, v0, f.way_gain * f.a);
+  }
   return f;
 }
 

@@ -26,7 +26,7 @@ void fly(const FlightConstants& constants,
       D3 x = places(particles, p), v = velocities(particles, p);
       for (std::size_t i = 0; i < n_steps; ++i) fly_one<Flies>(c, x, v);
       set_places(particles, p, x);
-      if constexpr (Flies != Flight::none) set_velocities(particles, p, v);
+      if constexpr (Flies != Flight{}) set_velocities(particles, p, v);
     }
     return;
   }
@@ -43,8 +43,11 @@ void fly(const FlightConstants& constants,
 }  // namespace
 
 FreeLoop free_loop(Flight flight) {
-  if (flight == Flight::none) return &fly<Flight::none>;
-  return flight == Flight::fall ? &fly<Flight::fall> : &fly<Flight::air>;
+  if (flight.drags == Drags::none) return flight.falls ? &fly<Flight{true}> : &fly<Flight{}>;
+  // Where only a surface drags the same operations as there, so that a particle is not known by its
+  // bits for having been looked up or not.
+  return flight.falls ? &fly<Flight{true, Drags::everywhere}>
+                      : &fly<Flight{false, Drags::everywhere}>;
 }
 
 }  // namespace tess::dn

@@ -15,7 +15,7 @@ using FreeLoop = void (*)(const FlightConstants&,
                           const ParticleSpan&,
                           std::span<const VelocityChanges> changes);
 
-/// `flight` is not Flight::surface.
+/// Of particles that fly as `flight` says, but far from all surfaces.
 [[nodiscard]] FreeLoop free_loop(Flight flight);
 
 }  // namespace tess::dn

@@ -59,10 +59,10 @@ inline L widen(I mask) {
 }
 
 inline D all(double v) {
-  return D{} + v;
+  return v - D{};  // a sum would make a zero of -0
 }
 inline F all(float v) {
-  return F{} + v;
+  return v - F{};
 }
 
 inline D abs(D v) {

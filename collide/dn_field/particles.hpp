@@ -7,6 +7,8 @@
 
 #include "collide/dn_field/vec3.hpp"
 
+#include <boost/align/aligned_allocator.hpp>
+
 #include <cstddef>
 #include <vector>
 
@@ -24,9 +26,12 @@ struct ParticleSpan {
   }
 };
 
+/// Starts on a cache line: a vector of them is loaded and stored within one.
+using Values = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
+
 struct Particles {
-  std::vector<double> x, y, z;     ///< position
-  std::vector<double> vx, vy, vz;  ///< velocity
+  Values x, y, z;     ///< position
+  Values vx, vy, vz;  ///< velocity
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
   [[nodiscard]] Vec3 position(std::size_t p) const { return {x[p], y[p], z[p]}; }

@@ -51,10 +51,10 @@ template <Flight Flies, Impacts Hits, Springs Springy, Setting Where>
 struct RuleStep {
   static constexpr bool springs = Springy != Springs::none, hits_surface = Hits != Impacts::none;
   static constexpr bool asks_normal = hits_surface || springs;
-  static constexpr bool asks_distance = asks_normal || Flies == Flight::surface;
+  static constexpr bool asks_distance = asks_normal || Flies.drags == Drags::surface;
   static constexpr bool moves = asks_distance && Where == Setting::general;
   /// Nothing but a bounce changes the velocity.
-  static constexpr bool bounces_alone = Flies == Flight::none && !springs;
+  static constexpr bool bounces_alone = Flies == Flight{} && !springs;
 
   const RuleConstants& c;
   std::size_t p;  ///< the first of them
@@ -92,7 +92,8 @@ struct RuleStep {
     if constexpr (asks_normal) {
       rise = rise1 = dot(n, v0);
       climb = flight.way_keep * rise;
-      if constexpr (Flies != Flight::none) {
+      if constexpr (Flies.drags != Drags::none) rise1 = flight.keep * rise;
+      if constexpr (accelerates<Flies, moves>) {
         an = dot(n, flight.a);
         rise1 = fma(flight.keep, rise, flight.gain * an);
         climb = fma(flight.way_gain, an, climb);

@@ -8,7 +8,7 @@ namespace tess::dn {
 
 /// Which rules a loop holds.
 struct LoopKey {
-  Flight flight = Flight::none;
+  Flight flight;
   Impacts impacts = Impacts::none;
   Springs springs = Springs::none;
 };
@@ -24,12 +24,17 @@ RuleLoop chosen(Impacts impacts, Springs springs) {
   if (impacts == Impacts::plain) return chosen<Where, Flies, Impacts::plain>(springs);
   return chosen<Where, Flies, Impacts::swept>(springs);
 }
+template <Setting Where, bool Falls>
+RuleLoop chosen(const LoopKey& key) {
+  if (key.flight.drags == Drags::none)
+    return chosen<Where, Flight{Falls}>(key.impacts, key.springs);
+  if (key.flight.drags == Drags::everywhere)
+    return chosen<Where, Flight{Falls, Drags::everywhere}>(key.impacts, key.springs);
+  return chosen<Where, Flight{Falls, Drags::surface}>(key.impacts, key.springs);
+}
 template <Setting Where>
 RuleLoop chosen(const LoopKey& key) {
-  if (key.flight == Flight::none) return chosen<Where, Flight::none>(key.impacts, key.springs);
-  if (key.flight == Flight::fall) return chosen<Where, Flight::fall>(key.impacts, key.springs);
-  if (key.flight == Flight::air) return chosen<Where, Flight::air>(key.impacts, key.springs);
-  return chosen<Where, Flight::surface>(key.impacts, key.springs);
+  return key.flight.falls ? chosen<Where, true>(key) : chosen<Where, false>(key);
 }
 
 [[nodiscard]] RuleLoop rule_loop_at_rest(const LoopKey& key);

@@ -20,17 +20,17 @@ bool drags_at_surface(const Rules& rules) {
   return rules.surface_drag && rules.surface_drag->law == DragLaw::linear;
 }
 
-/// What flies far from all surfaces. With drag at the surface the same operations as there, so that
-/// a particle is not known by its bits for having been looked up or not.
 Flight flight_of(const Rules& rules) {
-  if (drags_at_surface(rules)) return Flight::air;
-  if (rules.wind || (rules.air_drag && rules.air_drag->law == DragLaw::linear)) return Flight::air;
-  return rules.gravity ? Flight::fall : Flight::none;
+  Flight flight{rules.gravity || rules.wind};
+  if (rules.wind || (rules.air_drag && rules.air_drag->law == DragLaw::linear))
+    flight.drags = Drags::everywhere;
+  if (drags_at_surface(rules)) flight.drags = Drags::surface;
+  return flight;
 }
 
 LoopKey key_of(const Rules& rules) {
   LoopKey key;
-  key.flight = drags_at_surface(rules) ? Flight::surface : flight_of(rules);
+  key.flight = flight_of(rules);
   if (rules.impact)
     key.impacts = rules.impact->sweep == Sweep::on ? Impacts::swept : Impacts::plain;
   if (rules.spring) key.springs = Springs::exact;

@@ -32,7 +32,7 @@ Particles crowd_of(std::size_t count, double speed) {
 }
 
 bool same_bits(const Particles& a, const Particles& b) {
-  const auto bits = [](const std::vector<double>& u, const std::vector<double>& v) {
+  const auto bits = [](const Values& u, const Values& v) {
     return u.size() == v.size() && std::memcmp(u.data(), v.data(), u.size() * sizeof(double)) == 0;
   };
   return bits(a.x, b.x) && bits(a.y, b.y) && bits(a.z, b.z) && bits(a.vx, b.vx) &&

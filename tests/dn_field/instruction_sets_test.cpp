@@ -61,10 +61,10 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
   narrow = wide;
   const auto a = std::make_unique<Scratch>(), b = std::make_unique<Scratch>();
   turn_to_surface(c.flow, Setting::general, wide.span(), *closest);
-  rule_loop_general({Flight::surface, Impacts::swept, Springs::exact})(
+  rule_loop_general({Flight{true, Drags::surface}, Impacts::swept, Springs::exact})(
       c, wide.span(), *closest, *a);
   plain::loop(c, narrow.span(), *closest, *b);
-  const auto same = [](const std::vector<double>& x, const std::vector<double>& y) {
+  const auto same = [](const Values& x, const Values& y) {
     return std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
   };
   CHECK(same(wide.x, narrow.x));

@@ -15,7 +15,7 @@ void loop(const RuleConstants& c,
           const Closest& closest,
           Scratch& scratch) {
   lanes::flow_loop<Setting::general>(c.flow, particles, closest);
-  lanes::rule_loop<Flight::surface, Impacts::swept, Springs::exact, Setting::general>(
+  lanes::rule_loop<Flight{true, Drags::surface}, Impacts::swept, Springs::exact, Setting::general>(
       c, particles, closest, scratch);
 }
 

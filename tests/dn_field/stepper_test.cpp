@@ -38,7 +38,7 @@ Particles some(std::size_t count) {
   return particles;
 }
 
-bool same(const std::vector<double>& a, const std::vector<double>& b) {  // the sign of a zero too
+bool same(const Values& a, const Values& b) {  // the sign of a zero too
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 bool same(const Particles& a, const Particles& b) {
@@ -90,13 +90,15 @@ TEST_CASE("who is far from a surface, and for how long, leaves no trace in a tra
   Field holed = ball;  // as of a mesh with a hole: neighbours of opposite sign
   for (std::size_t at = 0; at < holed.distance.size(); at += 7) holed.distance[at] *= -1;
   holed.jump = greatest_jump(holed);
-  std::vector<Rules> scenes(4);
+  std::vector<Rules> scenes(5);
   scenes[0] = everything();
   scenes[0].impact->sweep = Sweep::off;
   scenes[1].surface_drag = SurfaceDrag{0.5, 0.2, DragLaw::linear};
   scenes[2] = scenes[1];
   scenes[2].gravity = Gravity{{0.3, 0.7, -9.81}};
   scenes[3].impact = Impact{1, 0.01, Sweep::off};
+  scenes[4] = scenes[3];
+  scenes[4].explosions = {Explosion{{4, 0, 0}, 1, 0.5, 0, 1}};  // reaches some
   const std::size_t count = 600;
   Particles start = some(count);
   for (std::size_t p = 0; p < count; ++p) {
