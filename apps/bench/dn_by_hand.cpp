@@ -100,4 +100,89 @@ void impact_by_hand(const ParticleSpan& all, const Field& field) {
   });
 }
 
+void explosion_by_hand(const ParticleSpan& all, const Explosion& explosion) {
+  const Vec3 centre = explosion.centre;
+  const double kick = explosion.strength * step, per_radius = 1 / explosion.radius;
+  in_vectors(all, [=](D3& x, D3& v) {
+    const D3 from = x - centre;
+    const D per_r = 1.0 / sqrt(dot(from, from));
+    v = fma(only(per_r > per_radius, kick * (per_r - per_radius)), from, v);
+    x = fma(lanes::all(step), v, x);
+  });
+}
+
+void flow_by_hand(const ParticleSpan& all, const Field& field, const SurfaceFlow& flow) {
+  const Nearest voxel_at(field);
+  in_vectors(all, [=](D3& x, D3& v) {
+    const Voxel voxel = voxel_at(x);
+    const I at = position(voxel_at.sampler, voxel);
+    const L near = widen(
+        voxel.in & (gather(voxel_at.sampler.distance, at) < static_cast<float>(flow.distance)));
+    if (any(near)) {
+      const D3 n = refined(to_double(unit(decode(gather(voxel_at.sampler.normal, at)))));
+      const D alpha = dot(v, n), v2 = dot(v, v), speed = sqrt(v2), rise = abs(alpha);
+      const D rate = alpha < 0.0 ? lanes::all(flow.alpha_in) : lanes::all(flow.alpha_out);
+      // To the tangent: sine |alpha|/|v|, cosine along/|v|.
+      const D along = sqrt(max(v2 - alpha * alpha, D{}));
+      Turn by = turn(min(step * rate / speed, lanes::all(0.5 * pi)));
+      const L arrives = by.sine * speed > rise;
+      by = {arrives ? along / speed : by.cosine, arrives ? rise / speed : by.sine};
+      const D side = (alpha < 0.0 ? by.sine : -by.sine) / along;
+      const D3 turned = fma(by.cosine - side * alpha, v, (side * v2) * n);
+      v = select(near & (along > 1e-6 * speed), turned, v);
+    }
+    x = fma(lanes::all(step), v, x);
+  });
+}
+
+void spring_by_hand(const ParticleSpan& all, const Field& field, const Spring& spring) {
+  constexpr std::size_t block = 256;
+  const Nearest voxel_at(field);
+  const double k = spring.stiffness, gamma = 0.5 * spring.damping,
+               omega = std::sqrt(k - gamma * gamma), kept = std::exp(-gamma * step),
+               cosine = kept * std::cos(omega * step), sine = kept * std::sin(omega * step);
+  struct Found {
+    D z;  // beyond the spring's reach
+    D3 n;
+  };
+  const auto look = [&](D3 x) {
+    const Voxel voxel = voxel_at(x);
+    const I at = position(voxel_at.sampler, voxel);
+    const F d = gather(voxel_at.sampler.distance, at);
+    return Found{to_double(voxel.in ? d : lanes::all(out_of_reach)) - spring.reach,
+                 refined(to_double(unit(decode(gather(voxel_at.sampler.normal, at)))))};
+  };
+  for (std::size_t first = 0; first < all.count; first += block) {
+    const ParticleSpan b = all.part(first, std::min(block, all.count - first));
+    Found known[block / width];
+    for (std::size_t p = 0; p < b.count; p += width) known[p / width] = look(places(b, p));
+    for (int i = 0; i < n_steps; ++i)
+      for (std::size_t p = 0; p < b.count; p += width) {
+        const auto [z, n] = known[p / width];
+        D3 x = places(b, p), v = velocities(b, p);
+        const D e = dot(n, v), depth = min(z, D{});
+        const D energy = dot(v, v) + k * depth * depth;
+        const D swing = (e + gamma * z) * (1 / omega);
+        const D end = cosine * z + sine * swing;
+        const D rate = cosine * e - sine * (gamma * swing + omega * z);
+        const L stays = (z < 0.0) & (end <= 0.0);
+        x = x + lanes::all(step) * v + only(stays, end - z - step * e) * n;
+        v = v + only(stays, rate - e) * n;
+        Found next = look(x);
+        const D depth1 = max(-next.z, D{}), kinetic = dot(v, v),
+                left = energy - k * depth1 * depth1;
+        const L over = (depth1 > 0.0) & (kinetic - left > 1e-6 * energy);
+        v = select(over, sqrt(only(left > 0.0, left / kinetic)) * v, v);
+        const L deeper = over & (left < 0.0);
+        if (any(deeper)) {
+          const D push = depth1 - sqrt(energy * (1 / k));
+          x = select(deeper, fma(push, next.n, x), x);
+          next = look(x);
+        }
+        set_places(b, p, x), set_velocities(b, p, v);
+        known[p / width] = next;
+      }
+  }
+}
+
 }  // namespace bench

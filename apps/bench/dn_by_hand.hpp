@@ -4,6 +4,7 @@
 #pragma once
 
 #include "apps/bench/dn_scene.hpp"
+#include "collide/dn_field/rules.hpp"
 
 namespace bench {
 
@@ -21,5 +22,19 @@ void surface_drag_by_hand(const tess::dn::ParticleSpan& all,
 
 /// Nearest look-up and impact of restitution 1.
 void impact_by_hand(const tess::dn::ParticleSpan& all, const tess::dn::Field& field);
+
+/// One explosion that lasts.
+void explosion_by_hand(const tess::dn::ParticleSpan& all, const tess::dn::Explosion& explosion);
+
+/// Nearest look-up and the turn of velocities toward the tangent.
+void flow_by_hand(const tess::dn::ParticleSpan& all,
+                  const tess::dn::Field& field,
+                  const tess::dn::SurfaceFlow& flow);
+
+/// Nearest look-up and a spring that a step is short against: the exact motion of who stays in
+/// contact, and no more energy than there was where the field's distances jump.
+void spring_by_hand(const tess::dn::ParticleSpan& all,
+                    const tess::dn::Field& field,
+                    const tess::dn::Spring& spring);
 
 }  // namespace bench

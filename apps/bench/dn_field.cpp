@@ -214,9 +214,19 @@ class Bench {
     air.air_drag = AirDrag{1, DragLaw::linear};
     hand_and_loop(
         "dn air drag", spread_, [&](Particles& p) { air_drag_by_hand(p.span(), 1); }, air, 1e-12);
-    Rules drag;
-    drag.look_up = LookUp::nearest;
+    Rules explosion;
+    explosion.explosions = {Explosion{{}, 0.5, 2, 0, 1}};
+    hand_and_loop(
+        "dn explosion",
+        spread_,
+        [&](Particles& p) { explosion_by_hand(p.span(), explosion.explosions.front()); },
+        explosion,
+        1e-6);
+    Rules drag, flow, spring;
+    drag.look_up = flow.look_up = spring.look_up = LookUp::nearest;
     drag.surface_drag = SurfaceDrag{1, 2 * cell(), DragLaw::linear};
+    flow.surface_flow = SurfaceFlow{1, 1, 2 * cell()};
+    spring.spring = Spring{100, 1, cell()};
     for (const Particles* from : {&spread_, &near_}) {
       const std::string where = from == &spread_ ? "; spread" : "; near";
       hand_and_loop(
@@ -230,6 +240,18 @@ class Bench {
           *from,
           [&](Particles& p) { impact_by_hand(p.span(), field_); },
           impact(LookUp::nearest),
+          1e-5);
+      hand_and_loop(
+          "dn surface flow" + where,
+          *from,
+          [&](Particles& p) { flow_by_hand(p.span(), field_, *flow.surface_flow); },
+          flow,
+          1e-5);
+      hand_and_loop(
+          "dn spring" + where,
+          *from,
+          [&](Particles& p) { spring_by_hand(p.span(), field_, *spring.spring); },
+          spring,
           1e-5);
     }
   }

@@ -197,6 +197,27 @@ inline I gather(const std::uint32_t* table, I at) {
   return v;
 #endif
 }
+/// table[at] and table[at + 1].
+template <class V>
+struct Two {
+  V first, second;
+};
+inline Two<I> gather_two(const std::uint32_t* table, I at) {
+#ifdef __AVX512F__
+  const L both = (L)_mm512_mask_i32gather_epi64((__m512i)L{}, 0xFF, (__m256i)at, table, 4);
+#elif defined(__AVX2__)
+  const L both =
+      (L)_mm256_i32gather_epi64(reinterpret_cast<const long long*>(table), (__m128i)at, 4);
+#else
+  L both;
+  for (int i = 0; i < width; ++i) both[i] = load<std::int64_t>(table + at[i]);
+#endif
+  return {__builtin_convertvector(both, I), __builtin_convertvector(both >> 32, I)};
+}
+inline Two<F> gather_two(const float* table, I at) {
+  const auto [first, second] = gather_two(reinterpret_cast<const std::uint32_t*>(table), at);
+  return {(F)first, (F)second};
+}
 /// Reads the lanes of the mask alone.
 inline F gather(const float* table, I at, I mask) {
 #ifdef __AVX512F__

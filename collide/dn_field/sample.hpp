@@ -162,14 +162,19 @@ requires(Kind == LookUp::trilinear) inline Sample sample(const Sampler& field, F
           w = h.z - __builtin_convertvector(k, F);
   const I corner = k * field.layer + j * field.row + i;
   Sample found{};
-  for (int c = 0; c < 8; ++c) {
-    const int dx = c & 1, dy = (c >> 1) & 1, dz = c >> 2;
-    const I at = corner + (dz * field.layer + dy * field.row + dx);
-    const F weight = (dx != 0 ? u : 1.0F - u) * (dy != 0 ? v : 1.0F - v) * (dz != 0 ? w : 1.0F - w);
-    if constexpr (Asked != Ask::normal)
-      found.distance = found.distance + weight * gather(field.distance, at);
-    if constexpr (Asked != Ask::distance)
-      found.normal = found.normal + weight * unit(decode(gather(field.normal, at)));
+  for (int edge = 0; edge < 4; ++edge) {  // along x
+    const int dy = edge & 1, dz = edge >> 1;
+    const I at = corner + (dz * field.layer + dy * field.row);
+    const F beside = (dy != 0 ? v : 1.0F - v) * (dz != 0 ? w : 1.0F - w);
+    const F low = (1.0F - u) * beside, high = u * beside;
+    if constexpr (Asked != Ask::normal) {
+      const auto [first, second] = gather_two(field.distance, at);
+      found.distance = found.distance + (low * first + high * second);
+    }
+    if constexpr (Asked != Ask::distance) {
+      const auto [first, second] = gather_two(field.normal, at);
+      found.normal = found.normal + (low * decode(first) + high * decode(second));
+    }
   }
   if constexpr (Asked != Ask::normal) {
     found.distance = in ? found.distance : all(out_of_reach);

@@ -81,12 +81,12 @@ void screen(std::span<const Placed> objects,
             Near& near) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Placed& object = objects[i];
-    // Nearest is this voxel's value, the tangent leaves it by half a diagonal, trilinear reads
-    // corners up to a diagonal away; a sweep doubts any of them by half a diagonal.
-    const float halves = kind == LookUp::trilinear                       ? 2.0F
-                         : kind == LookUp::tangent || sweep == Sweep::on ? 1.0F
-                                                                         : 0.0F;
-    const float doubt = halves * object.doubt + object.padding + (reach.ahead ? object.jump : 0.0F);
+    // Nearest is this voxel's value, the tangent leaves it by half a diagonal, trilinear blends it
+    // with voxels that touch it; a sweep doubts any of them by half a diagonal.
+    const bool half_off = kind == LookUp::tangent || sweep == Sweep::on;
+    const float jumps = (kind == LookUp::trilinear ? 1.0F : 0.0F) + (reach.ahead ? 1.0F : 0.0F);
+    const float doubt = (half_off ? object.doubt : 0.0F) + object.padding +
+                        (jumps > 0 ? jumps * object.jump : 0.0F);
     const RoomTo room_to = i == 0 ? choose<true>(object) : choose<false>(object);
     room_to(object, all(doubt * rounding + reach.distance), reach, block, near);
   }

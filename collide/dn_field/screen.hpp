@@ -32,8 +32,7 @@ struct Reach {
   bool ahead = false;  ///< there are look-ups after the first: of later steps, of the step's end
 };
 
-/// Lists who may be near within `reach.time` from now; a NaN may. Ahead only for look-ups of one
-/// voxel.
+/// Lists who may be near within `reach.time` from now; a NaN may.
 void screen(std::span<const Placed> objects,
             LookUp kind,
             Sweep sweep,

@@ -41,17 +41,11 @@ struct Run {
   const Stepper::Plan& plan;
   RuleConstants constants;
   Setting setting = Setting::general;
-  double reach = 0;    ///< of the rules, and what rounding could hide
-  int look_ahead = 1;  ///< steps that a screening may serve
+  double reach = 0;                 ///< of the rules, and what rounding could hide
+  int look_ahead = furthest_ahead;  ///< steps that a screening may serve
   ClosestPass look_up = nullptr;
   RuleLoop loop = nullptr;
 };
-
-/// What a blend says of a particle that is not near may differ from what the screening says in its
-/// last bit. So the screening decides, in each step.
-bool is_blend(const Stepper::Plan& plan) {
-  return plan.rules.look_up == LookUp::trilinear;
-}
 
 /// What depends on the size of the objects.
 void set_lengths(Run& run, std::span<const Object> objects) {
@@ -82,7 +76,6 @@ Run prepared(const Stepper::Plan& plan, std::span<const Object> objects) {
                              storage_of(objects));
   run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
   set_lengths(run, objects);
-  if (!is_blend(plan)) run.look_ahead = furthest_ahead;
   for (const Object& object : objects)
     if (object.frame.is_growing() || !(jump_of(object) < 4 * object.field->grid.cell))
       run.look_ahead = 1;
@@ -127,7 +120,7 @@ double speed_gained(const Run& run, std::span<const VelocityChanges> changes) {
   double gained =
       static_cast<double>(changes.size()) * run.plan.step * norm(run.constants.acceleration);
   for (const VelocityChanges& step : changes)
-    for (const Kick& kick : step.kicks) gained += std::abs(static_cast<double>(kick.kick));
+    for (const Kick& kick : step.kicks) gained += std::abs(kick.kick);
   return gained;
 }
 
@@ -136,9 +129,9 @@ double speed_gained(const Run& run, std::span<const VelocityChanges> changes) {
 bool screening_pays(
     const Stepper::Plan& plan, std::size_t near, std::size_t all, int ahead, int left) {
   if (near == all) return false;
-  if (is_blend(plan)) return true;
   constexpr double to_screen = 2.4, to_pack = 2, first_look_up = 4, free_step = 0.3;
-  const double near_step = plan.rules.spring || plan.rules.surface_flow ? 8 : 2;
+  const double near_step = (plan.rules.spring || plan.rules.surface_flow ? 8 : 2) +
+                           (plan.rules.look_up == LookUp::trilinear ? 12 : 0);
   const double part = static_cast<double>(near) / static_cast<double>(all);
   const double packed =
       (to_screen + part * (to_pack + first_look_up)) / ahead + part * near_step + free_step;
@@ -219,7 +212,7 @@ void fly(const Run& run, const Moments& moments, const ParticleSpan& block, Buff
     const bool pays = screening_pays(plan, near.count, block.count, next - i, n_steps - i);
     if (!pays) {
       ahead = std::max(1, ahead / 2);
-      if (!is_blend(plan)) next = std::min(i + steps_unscreened, n_steps);
+      next = std::min(i + steps_unscreened, n_steps);
       if (!looked_up) buffers.new_particles(block.count);
       looked_up = true;
       for (; i < next; ++i) step_near(i, block);

@@ -11,7 +11,7 @@ namespace tess::dn {
 /// An explosion in one step: kick × (1 − r/radius) away from `centre`.
 struct Kick {
   Vec3 centre;
-  float kick = 0, per_radius = 0;
+  double kick = 0, per_radius = 0;
 };
 
 /// What acts in one step.
@@ -25,14 +25,10 @@ struct VelocityChanges {
 namespace lanes {
 
 inline D3 kicked(const Kick& kick, D3 x, D3 v) {
-  // Seven digits are enough for a kick; the velocity keeps its own.
-  const F3 from = to_float(x - kick.centre);
-  const F per_r = 1.0F / sqrt(dot(from, from));
-  const I reached = (per_r > kick.per_radius) & (per_r < HUGE_VALF);  // the centre has no direction
-  if (!any(reached)) return v;
-  const F3 pushed = (kick.kick * (per_r - kick.per_radius)) * from;
-  const F none = all(-0.0F);  // leaves every number its bits, zeros too
-  return v + to_double(select(reached, pushed, F3{none, none, none}));
+  const D3 from = x - kick.centre;
+  const D per_r = 1.0 / sqrt(dot(from, from));
+  const L reached = (per_r > kick.per_radius) & (per_r < HUGE_VAL);  // the centre has no direction
+  return select(reached, fma(kick.kick * (per_r - kick.per_radius), from, v), v);
 }
 
 /// v / (1 + rate |v| step), the exact solution of v' = -rate |v| v.

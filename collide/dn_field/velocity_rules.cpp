@@ -11,9 +11,8 @@ VelocityChanges velocity_changes(const Rules& rules, double time, double step) {
     const double active = std::min(time + step, explosion.start + explosion.duration) -
                           std::max(time, explosion.start);
     if (active > 0)
-      changes.kicks.push_back({explosion.centre,
-                               static_cast<float>(explosion.strength * active),
-                               static_cast<float>(1 / explosion.radius)});
+      changes.kicks.push_back(
+          {explosion.centre, explosion.strength * active, 1 / explosion.radius});
   }
   if (rules.air_drag && rules.air_drag->law == DragLaw::quadratic)
     changes.drag = rules.air_drag->rate * step;

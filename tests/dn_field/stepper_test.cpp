@@ -107,7 +107,7 @@ TEST_CASE("who is far from a surface, and for how long, leaves no trace in a tra
   }
   for (Rules& rules : scenes)
     for (const Field* field : {&ball, &static_cast<const Field&>(holed)})
-      for (const LookUp look_up : {LookUp::nearest, LookUp::tangent})
+      for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
         for (const Vec3 spin : {Vec3{}, Vec3{3, 0, 1}}) {
           Object object{field, {}};
           object.frame.angular_velocity = spin;
@@ -117,7 +117,7 @@ TEST_CASE("who is far from a surface, and for how long, leaves no trace in a tra
           stepper.run(together.span(), {&object, 1}, 0, 100);
           for (std::size_t p = 0; p < count; ++p)
             stepper.run(alone.span().part(p, 1), {&object, 1}, 0, 100);
-          INFO("scene " << &rules - scenes.data());
+          INFO("scene " << &rules - scenes.data() << ", look-up " << static_cast<int>(look_up));
           CHECK(same(together, alone));
         }
 }
