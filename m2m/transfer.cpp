@@ -6,14 +6,6 @@
 #include <cmath>
 
 namespace tess::m2m {
-namespace {
-
-double seconds(Time time) {
-  return std::chrono::duration<double>(time).count();
-}
-
-}  // namespace
-
 Task transfer(DistributedMesh source,
               DistributedMesh target,
               TransferOptions options,

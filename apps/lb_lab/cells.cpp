@@ -13,10 +13,10 @@ tess::Task start_and_wait(tess::ArrayProxy<Worker> workers, Outcome& outcome) {
   tess::Pe& pe = tess::current_pe();
   tess::Future<std::uint64_t> answer;
   const tess::Time began = pe.now();
-  outcome.began = seconds(began);
+  outcome.began = tess::seconds(began);
   workers.broadcast<&Worker::begin>(answer.callback());
   outcome.answer = co_await answer;
-  outcome.seconds = seconds(pe.now() - began);
+  outcome.seconds = tess::seconds(pe.now() - began);
 }
 
 tess::Task run_cells(const Experiment& experiment,

@@ -30,10 +30,6 @@ struct Outcome {
   std::vector<tess::balance::Phase> phases;  ///< what the strategy saw, if it is kept
 };
 
-[[nodiscard]] inline double seconds(tess::Time time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 /// Runs it to its end; PE 0 awaits it. Both arguments outlive the run.
 tess::Task run(const Experiment& experiment, Outcome& outcome);
 

@@ -32,7 +32,7 @@ Station::Station(Plan plan)
 }
 
 double Station::clock() const {
-  return std::chrono::duration<double>(tess::current_pe().now()).count();
+  return tess::seconds(tess::current_pe().now());
 }
 
 double Station::cpu() const {

@@ -16,7 +16,7 @@ tess::Task run_stepped(const Experiment& experiment,
   co_await workload.begin();
   co_await tess::epoch([&] { stations.broadcast<&Station::first_begins>(); });
 
-  outcome.began = seconds(pe.now());
+  outcome.began = tess::seconds(pe.now());
   for (std::int32_t t = 0; t < n; ++t) {
     co_await workload.step(t);
     co_await tess::epoch([&] { stations.broadcast<&Station::iteration_ends>(t); });
@@ -25,7 +25,7 @@ tess::Task run_stepped(const Experiment& experiment,
     const std::int32_t phase = (t + 1) / plan.period - 1;
     co_await tess::epoch([&] { stations.broadcast<&Station::round_ends>(phase); });
   }
-  outcome.seconds = seconds(pe.now()) - outcome.began;
+  outcome.seconds = tess::seconds(pe.now()) - outcome.began;
 
   co_await workload.end();
   tess::Future<std::uint64_t> answer;

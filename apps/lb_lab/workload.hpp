@@ -51,13 +51,9 @@ struct Workload {
   const Kind* kind = &cells_kind;
 };
 
-/// In [0, 1), by the upper bits of a hash.
-[[nodiscard]] inline double unit(std::uint64_t hash) {
-  return static_cast<double>(hash >> 11U) * 0x1p-53;
-}
 /// The draw of a seed: the same wherever it is asked for.
 [[nodiscard]] inline double drawn(std::uint64_t seed) {
-  return unit(tess::mix(seed));
+  return tess::unit(tess::mix(seed));
 }
 
 [[nodiscard]] const std::vector<Workload>& workloads();

@@ -16,7 +16,7 @@ Problem read(const Request& request, Progress& progress) {
   Pe& pe = current_pe();
   const Time start = pe.now();
   Problem problem = load(request, pe.machine());
-  problem.report.seconds.read = std::chrono::duration<double>(pe.now() - start).count();
+  problem.report.seconds.read = tess::seconds(pe.now() - start);
   return problem;
 }
 

@@ -6,7 +6,7 @@ namespace tess::m2m {
 namespace {
 
 double seconds_since(Time start) {
-  return std::chrono::duration<double>(current_pe().now() - start).count();
+  return seconds(current_pe().now() - start);
 }
 
 /// The values of all vertices, in global order, from the pieces the Workers gave.

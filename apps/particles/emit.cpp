@@ -13,11 +13,9 @@ using tess::dn::Vec3;
 /// The random numbers of one particle: the k-th is mixed from seed, number and k.
 class Numbers {
  public:
-  Numbers(std::uint64_t seed, std::uint64_t number) : state_(tess::mix(tess::mix(seed) + number)) {}
-  double unit() {
-    constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
-    return static_cast<double>(tess::mix(state_ += golden) >> 11U) * 0x1p-53;
-  }
+  Numbers(std::uint64_t seed, std::uint64_t number)
+      : random_(tess::mix(tess::mix(seed) + number)) {}
+  double unit() { return random_.unit(); }
   double between(double low, double high) { return low + (high - low) * unit(); }
   Vec3 direction() {  // uniform on the sphere (Archimedes)
     const double z = between(-1, 1), turn = 2 * std::numbers::pi * unit();
@@ -26,7 +24,7 @@ class Numbers {
   }
 
  private:
-  std::uint64_t state_;
+  tess::Random random_;
 };
 
 double lattice_at(double low, double high, std::uint64_t i, std::uint64_t n) {

@@ -9,10 +9,6 @@
 namespace particles {
 namespace {
 
-double seconds(tess::Time time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 /// The next multiple of `every` after `step`; `last` where there is none before.
 std::int32_t next_after(std::int32_t step, std::int32_t every, std::int32_t last) {
   if (every <= 0) return last;
@@ -81,7 +77,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const tess::Time before_emission = pe.now();
   const auto emit = [&] { stations.broadcast<&Station::emit>(blocks); };
   co_await tess::epoch(emit);
-  result.emit_seconds = seconds(pe.now() - before_emission);
+  result.emit_seconds = tess::seconds(pe.now() - before_emission);
 
   tess::BalancerProxy balancer;
   const auto begin_balancing = [&] { balancer = tess::start_balancing(blocks, *options.balance); };
@@ -122,7 +118,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     const tess::Time begin = pe.now();
     co_await tess::epoch(move);
     if (rounds_between) co_await balancer.round();
-    result.seconds += seconds(pe.now() - begin);
+    result.seconds += tess::seconds(pe.now() - begin);
     step = to;
   }
   if (options.balance) result.rounds = balancer.history();

@@ -60,7 +60,7 @@ tess::Task go_round(Options options) {
     for (std::int32_t k = 0; k < options.messages; ++k) ring[{0}].send<&Station::pass>(token);
   };
   co_await tess::epoch(send_all);
-  const double seconds = std::chrono::duration<double>(pe.now() - begin).count();
+  const double seconds = tess::seconds(pe.now() - begin);
 
   tess::Future<std::int64_t> total;
   ring.broadcast<&Station::count>(total.callback());

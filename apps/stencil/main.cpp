@@ -64,7 +64,7 @@ tess::Task relax(Grid grid) {
   const tess::Time begin = pe.now();
   blocks.broadcast<&Block::step>(0);
   const Outcome outcome = co_await result;
-  const double seconds = std::chrono::duration<double>(pe.now() - begin).count();
+  const double seconds = tess::seconds(pe.now() - begin);
   tess::print(fmt::format(
       "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us a block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",

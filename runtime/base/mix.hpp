@@ -16,6 +16,11 @@ namespace tess {
   return x ^ (x >> 31U);
 }
 
+/// In [0, 1), by the upper bits of a hash.
+[[nodiscard]] constexpr double unit(std::uint64_t hash) noexcept {
+  return static_cast<double>(hash >> 11U) * 0x1p-53;
+}
+
 /// A hash of raw bytes, eight at a time.
 [[nodiscard]] inline std::uint64_t hash_bytes(const void* data, std::size_t n_bytes) noexcept {
   const auto* at = static_cast<const unsigned char*>(data);
@@ -39,7 +44,7 @@ class Random {
   /// 0 … n − 1; n must not be 0. The bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) noexcept { return (*this)() % n; }
   /// [0, 1)
-  double unit() noexcept { return static_cast<double>((*this)() >> 11U) * 0x1p-53; }
+  double unit() noexcept { return tess::unit((*this)()); }
   bool chance(double probability) noexcept { return unit() < probability; }
 
  private:

@@ -56,6 +56,11 @@ class Program {
 /// Time since the machine started: wall clock, or the virtual clock of the PE that asks.
 using Time = std::chrono::nanoseconds;
 
+/// As a number of seconds.
+[[nodiscard]] inline double seconds(Time time) {
+  return std::chrono::duration<double>(time).count();
+}
+
 class Machine {
  public:
   Machine() = default;

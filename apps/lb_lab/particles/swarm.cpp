@@ -44,7 +44,7 @@ Swarm::Swarm(const Problem& p)
 Particle Swarm::first(std::uint64_t number) const {
   const std::uint64_t hash = tess::mix(seed_ ^ tess::mix(number));
   const double x = (static_cast<double>(number) + 0.5) / static_cast<double>(n_particles_);
-  return {number, x * width_, unit(hash) * height_, 0, 0};
+  return {number, x * width_, tess::unit(hash) * height_, 0, 0};
 }
 
 Swarm::Place Swarm::attractor(double iteration) const {

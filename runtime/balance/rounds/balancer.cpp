@@ -29,10 +29,6 @@ struct MergeOutcomes {
   }
 };
 
-double seconds(Time time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 }  // namespace
 
 Balancer::Balancer(const Plan& plan)
