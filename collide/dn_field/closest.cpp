@@ -40,6 +40,13 @@ F shortened(const Placed& object, F bound, F way) {
   return (rest < 0.0F) & (way > 0.5F * object.cell) ? all(follow) : rest;
 }
 
+/// How far points that a spin takes along at `arm` come off their straight way. Others come off by
+/// the spin times their way more.
+F bent(const Placed& object, D3 arm) {
+  const F3 q = to_float(arm);
+  return 0.5F * object.spin * object.spin * sqrt(dot(q, q));
+}
+
 /// What growth takes from the free way: in the object's own coordinates, in which its surface
 /// rests, the particle's way is that in the world over the scale at the end, and begins with the
 /// velocity of its own place, not of the surface beside it.
@@ -91,8 +98,10 @@ void pass(const Placed& placed,
       const Frame& f = object.frame;
       const Vec3 shift = c - f.position;
       D3 u{};
+      [[maybe_unused]] F bend{};
       if (object.restless) {
         const D3 arm = from + shift;
+        if constexpr (Swept == Sweep::on) bend = bent(object, arm);
         u = stiff_velocity(f, arm);
         if (object.growth != 0) {
           // That of the surface itself, which is beside the particle.
@@ -103,6 +112,7 @@ void pass(const Placed& placed,
       if constexpr (Swept == Sweep::on) {
         F others = load<F>(closest.free + p);
         if (object.growth != 0) free = free - taken_by_growth(object, free, in, found.distance);
+        if (object.spin != 0) free = shortened(object, free * (1 / (1 + object.spin)), bend);
         // Where this is the only surface known there is nothing to compare.
         if (object.restless && bits((others < out_of_reach) | ~nearer) != 0) {
           const D3 gap = u - surface_velocities(closest, p);
@@ -195,6 +205,7 @@ Placed placed(const Object& object, LookUp kind, double step, bool restless) {
   result.frame = frame;
   result.step = step;
   result.growth = step * frame.scale_rate / frame.scale;
+  result.spin = static_cast<float>(step * norm(frame.angular_velocity));
   const Vec3 high =
       grid.origin + grid.cell * Vec3{1.0 * grid.n[0], 1.0 * grid.n[1], 1.0 * grid.n[2]};
   const auto furthest = [&](int axis) {

@@ -48,8 +48,12 @@ struct Placed {
   Frame frame;
   double step;    ///< the time of which this is the begin
   double growth;  ///< of the scale in it, as a part of the scale
+  float spin;     ///< by which it turns in it
   double swell;   ///< no surface moves faster by growth
   bool restless;  ///< some object of the scene moves
+
+  /// Whether straight ways are none as the object sees them.
+  [[nodiscard]] bool bends() const { return spin != 0 || growth != 0; }
 };
 
 /// Field::jump of what look-ups in this object read, in its own units.

@@ -33,11 +33,13 @@ inline F distance_in_world(const Placed& object, const Sample& found) {
   return found.distance < out_of_reach ? found.distance * object.scale - object.padding
                                        : found.distance;
 }
-/// Distance to the box of the grid along its furthest axis: no more than the true one.
+/// Distance to the box of the grid along its furthest axis: no more than the true one, also after
+/// the rounding of coordinates far away.
 inline F outside_by(const Placed& object, F3 g) {
   const auto beyond = [](F at, int n) { return max(-at, at - static_cast<float>(n - 1)); };
-  return object.cell * max(max(beyond(g.x, object.field.n[0]), beyond(g.y, object.field.n[1])),
-                           max(beyond(g.z, object.field.n[2]), F{}));
+  return 0.999999F * object.cell *
+         max(max(beyond(g.x, object.field.n[0]), beyond(g.y, object.field.n[1])),
+             max(beyond(g.z, object.field.n[2]), F{}));
 }
 
 inline F free_in_world(const Placed& object, const Sample& found, F3 g) {

@@ -91,9 +91,11 @@ void look_up_all(const Run& run,
   for (const Placed& object : objects) run.look_up(object, particles, last, closest);
 }
 
-/// The rules of the surface, for particles that may feel it.
+/// The rules of the surface, for particles that may feel it; the objects as they stand when the
+/// step begins and when it ends.
 void meet_surface(const Run& run,
                   std::span<const Placed> objects,
+                  std::span<const Placed> objects_after,
                   const ParticleSpan& particles,
                   Buffers& buffers) {
   const Stepper::Plan& plan = run.plan;
@@ -107,7 +109,7 @@ void meet_surface(const Run& run,
   trace(run.constants, objects, plan.rules.look_up, scratch.untraced, particles, scratch.energy);
   scratch.untraced.clear();
   if (!plan.rules.spring) return;
-  look_up_all(run, objects, particles, closest, *buffers.after);
+  look_up_all(run, objects_after, particles, closest, *buffers.after);
   const Moved moved =
       limit_spring(run.constants.spring, run.setting, particles, closest, *buffers.after, scratch);
   // Objects that do not move say the same at the start of the next step.
@@ -142,8 +144,8 @@ bool screening_pays(
 /// size.
 struct Moments {
   std::vector<VelocityChanges> changes;
-  std::vector<std::vector<Placed>> objects;
-  std::vector<Run> grown;  ///< empty where no object grows
+  std::vector<std::vector<Placed>> objects;  ///< and when the last step ends
+  std::vector<Run> grown;                    ///< empty where no object grows
 
   [[nodiscard]] const Run& run(std::size_t i, const Run& all) const {
     return grown.empty() ? all : grown[i];
@@ -161,14 +163,18 @@ Moments moments_of(const Run& run, std::vector<Object>& objects, double first, i
   Moments result;
   for (int i = 0; i < n_steps; ++i)
     result.changes.push_back(velocity_changes(plan.rules, (first + i) * plan.step, plan.step));
-  result.objects.resize(static_cast<std::size_t>(n_steps));
-  for (auto& now : result.objects) {
-    if (growing) set_lengths(result.grown.emplace_back(run), objects);
+  const auto stand = [&] {
+    auto& now = result.objects.emplace_back();
     now.reserve(objects.size());
     for (const Object& object : objects)
       now.push_back(placed(object, plan.rules.look_up, plan.step, restless));
+  };
+  for (int i = 0; i < n_steps; ++i) {
+    if (growing) set_lengths(result.grown.emplace_back(run), objects);
+    stand();
     advance(objects, plan.step, 1);
   }
+  stand();
   return result;
 }
 
@@ -177,7 +183,7 @@ Moments moments_of(const Run& run, std::vector<Object>& objects, double first, i
 /// fly free; where not enough fly free to pay for that, all are taken as near.
 void fly(const Run& run, const Moments& moments, const ParticleSpan& block, Buffers& buffers) {
   const Stepper::Plan& plan = run.plan;
-  const int n_steps = static_cast<int>(moments.objects.size());
+  const int n_steps = static_cast<int>(moments.changes.size());
   const auto run_at = [&](int i) -> const Run& {
     return moments.run(static_cast<std::size_t>(i), run);
   };
@@ -191,7 +197,7 @@ void fly(const Run& run, const Moments& moments, const ParticleSpan& block, Buff
   };
   const auto step_near = [&](int i, const ParticleSpan& particles) {
     change_velocities(moments.changes[static_cast<std::size_t>(i)], particles);
-    meet_surface(run_at(i), objects_at(i), particles, buffers);
+    meet_surface(run_at(i), objects_at(i), objects_at(i + 1), particles, buffers);
   };
   if (!plan.looks_up) return plan.fly_free(run.constants, block, moments.changes);
   int i = 0;

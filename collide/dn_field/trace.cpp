@@ -1,6 +1,6 @@
 #include "collide/dn_field/trace.hpp"
 
-#include "collide/dn_field/placed_lanes.hpp"
+#include "collide/dn_field/seen_lanes.hpp"
 
 #include <algorithm>
 
@@ -13,7 +13,14 @@ constexpr int max_bounces = 16;
 // The shortest advances, in cells: into the next voxel; of blends, thinner than what a grid
 // resolves.
 constexpr float into_next = 1e-3F, blend_stride = 0.25F;
+constexpr double most_bent = 0.25;  // cells that a way may leave the straight one taken for it
 constexpr double never = HUGE_VAL;
+// Of the ways, in a step: who sinks no faster rests on the surface but for rounding.
+constexpr double at_rest = 1e-12;
+
+D norm1(D3 v) {
+  return abs(v.x) + abs(v.y) + abs(v.z);
+}
 
 Sample sample_of(const Placed& object, LookUp kind, F3 g) {
   if (kind == LookUp::trilinear) return sample<LookUp::trilinear, Ask::both>(object.field, g);
@@ -33,27 +40,33 @@ F way_in_voxel(F3 g, F3 way) {
   return min(min(along(g.x, way.x), along(g.y, way.y)), along(g.z, way.z));
 }
 
-/// What one object's field says at points p of a way, in world units.
+/// What one object's field says, in units of the world when the step begins.
 struct Here {
   D distance;  ///< `never` outside of the field
   D3 normal;   ///< unit or zero
-  D stride;    ///< part of the way for which that holds, or which is free
+  D stride;    ///< part of the step for which that holds, or which is free
 };
 
-Here ask(const Placed& object, LookUp kind, D3 p, D3 way) {
-  const D3 from = p - object.centre;
-  const F3 g = to_grid(object, to_float(from));
+Here ask(const Placed& object, LookUp kind, const Pose& pose, D3 x, D3 way, const Seen& seen) {
+  const F3 g = to_grid(object, to_float(seen.place - object.centre));
   const Sample found = sample_of(object, kind, g);
   const I in = found.distance < out_of_reach;
-  const D distance = to_double(distance_in_world(object, found));
-  const F free = free_in_world(object, found, g);
+  const F free = max(free_in_world(object, found, g), F{});
   const D3 n = to_double(only(in, to_world(object, found.normal)));
-  const F3 w = turned_to_grid(object, to_float(way));
+  const F3 w = turned_to_grid(object, to_float(seen.way));
   const F per_cell = 1.0F / sqrt(dot(w, w));
-  const F held = kind == LookUp::trilinear ? blend_stride * per_cell
-                                           : (in ? way_in_voxel(g, w) : F{}) + into_next * per_cell;
-  const F stride = max(free / object.cell * per_cell, held);
-  return {widen(in) ? distance : all(never), refined(n), to_double(stride)};
+  const F straight = kind == LookUp::trilinear
+                         ? blend_stride * per_cell
+                         : (in ? way_in_voxel(g, w) : F{}) + into_next * per_cell;
+  Here here{widen(in) ? to_double(distance_in_world(object, found)) : all(never), refined(n), {}};
+  if (object.bends()) {
+    const Bend bend = bend_of(object, pose, x, way);
+    const D held = min(to_double(straight), bend.time_within(most_bent * object.cell));
+    here.stride = min(max(bend.time_for(to_double(free)), held), bend.valid);
+  } else {
+    here.stride = to_double(max(free / object.cell * per_cell, straight));
+  }
+  return here;
 }
 
 struct Contact {
@@ -68,35 +81,27 @@ Contact select(L mask, const Contact& a, const Contact& b) {
           mask ? a.too_deep : b.too_deep};
 }
 
-/// A straight way in the world as seen from an object, at the size it has when the step begins: a
-/// straight way, too, which a growing object sees slow down. Fractions f of the step and of that
-/// way, t, are the same without growth; else t = f/(1 + f g), where 1 + f g is the scale at f over
-/// that at the begin.
-struct Seen {
-  D3 from, way;
-  double growth;
+/// What is left between a particle and where it meets an object, by what the field said of one
+/// place, as that object sees it.
+struct Gap {
+  const Placed& object;
+  const Here& field;
+  const D3& place;
+  double threshold;  ///< in the world: as the object sees it, it shrinks while the object grows
 
-  [[nodiscard]] D size(D f) const { return 1.0 + f * growth; }
-  [[nodiscard]] D seen(D f) const { return growth == 0 ? f : f / size(f); }
-  [[nodiscard]] D in_step(D t) const {
-    if (growth == 0) return t;
-    return t * growth < 1.0 ? t / (1.0 - t * growth) : all(never);
+  [[nodiscard]] D keeps_off(const Pose& pose) const {
+    const D off = threshold / pose.size();
+    // Both sides of a sheet look alike: turn back before it is as close as the look-up errs.
+    return object.two_sided ? max(off, all(static_cast<double>(object.cell - object.padding)))
+                            : off;
+  }
+  [[nodiscard]] D at(const Pose& pose, const Seen& seen) const {
+    return field.distance + dot(field.normal, seen.place - place) - keeps_off(pose);
+  }
+  [[nodiscard]] D rate(const Pose& pose, const Seen& seen) const {
+    return fma(object.growth / pose.size(), keeps_off(pose), dot(field.normal, seen.way));
   }
 };
-
-/// `x`: where the particles are after the fraction `elapsed` of the step, and fly by `way` a step.
-Seen seen_from(const Placed& object, double step, D3 x, D3 way, D elapsed) {
-  const D3 position = all(object.frame.position), from = x - elapsed * way;
-  D3 seen = fma(all(-step), stiff_velocity(object.frame, x - position), way);
-  if (object.growth != 0) seen = fma(all(-object.growth), from - position, seen);
-  return {from, seen, object.growth};
-}
-
-/// The velocity of the object's surface where it passes p.
-D3 surface_velocity(const Frame& frame, D3 p) {
-  const D3 arm = p - frame.position, stiff = stiff_velocity(frame, arm);
-  return frame.is_growing() ? fma(all(frame.scale_rate / frame.scale), arm, stiff) : stiff;
-}
 
 struct Scene {
   const RuleConstants& constants;
@@ -123,29 +128,35 @@ Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
     }
     D next = all(never);
     Contact contact;
+    const D f = elapsed + s;
+    const D3 here = fma(s, way, x);
     for (const Placed& object : objects) {
-      const Seen seen = seen_from(object, c.step, x, way, elapsed);
-      const D t = seen.seen(elapsed + s), size = seen.size(elapsed + s);
-      const D3 p = fma(t, seen.way, seen.from);
-      const Here here = ask(object, kind, p, seen.way);
-      const auto cell = static_cast<double>(object.cell);
-      const L moves = dot(seen.way, seen.way) > 0.0;
-      next = moves ? min(next, seen.in_step(t + here.stride) - elapsed) : next;
-      const D rise = dot(here.normal, seen.way);
-      // Both sides of a sheet look alike: turn back before it is as close as the look-up errs.
-      D threshold = seen.growth == 0 ? all(c.threshold) : c.threshold / size;
-      if (object.two_sided)
-        threshold = max(threshold, all(cell - static_cast<double>(object.padding)));
-      const D met = t + max((here.distance - threshold) / -rise, D{});
-      const D at = seen.in_step(met) - elapsed;
-      const L touches = settled(moves & (rise < 0.0) & (here.distance < never) &
-                                (met <= t + here.stride) & (at < contact.at));
+      const Pose pose(object, f);
+      const Seen seen = lanes::seen(object, pose, here, way);
+      const Here field = ask(object, kind, pose, here, way, seen);
+      next = min(next, s + field.stride);
+      const Gap gap{object, field, seen.place, c.threshold};
+      D closes = gap.rate(pose, seen);
+      const L sinks =
+          (closes < -at_rest * (norm1(way) + norm1(seen.way))) & (field.distance < never);
+      D met = max(gap.at(pose, seen) / -closes, D{});
+      if (object.bends() && any(sinks & (met <= 2.0 * field.stride)))
+        for (int newton = 0; newton < 2; ++newton) {
+          const D after = only(sinks, min(met, field.stride));
+          const Pose then(object, f + after);
+          const Seen seen_then = lanes::seen(object, then, fma(s + after, way, x), way);
+          closes = gap.rate(then, seen_then);
+          met = closes < 0.0 ? max(after - gap.at(then, seen_then) / closes, D{}) : met;
+        }
+      const L touches = settled(sinks & (met <= field.stride) & (s + met < contact.at));
       if (!any(touches)) continue;
-      D3 surface = p;
-      if (object.growth != 0) surface = fma(met, seen.way, fma(-threshold, here.normal, seen.from));
-      const D too_deep = max(c.threshold - c.slack - here.distance * size, D{});
-      contact = select(
-          touches, {at, here.normal, surface_velocity(object.frame, surface), too_deep}, contact);
+      // As the object stands there and then, so that who rests on it rests.
+      const D at = s + only(touches, met);
+      const Pose then(object, elapsed + at);
+      const D3 n = then.now(field.normal);
+      const D3 u = then.surface_velocity(fma(at, way, x), all(c.threshold) * n);
+      const D too_deep = max(c.threshold - c.slack - field.distance * then.size(), D{});
+      contact = select(touches, {at, n, u, too_deep}, contact);
     }
     const L found = going & (contact.at <= next) & (contact.at <= rest);
     first = select(found, contact, first);
@@ -156,8 +167,7 @@ Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
 }
 
 L finite(D3 v) {
-  const D size = abs(v.x) + abs(v.y) + abs(v.z);
-  return size < never;
+  return norm1(v) < never;
 }
 
 /// As many as a vector holds, or fewer.
@@ -205,7 +215,7 @@ void trace_vector(const Scene& scene,
     end = select(flies, w1, end);
     if (bounce + 1 == max_bounces) {
       end = select(flies, start, end);
-      rest = flies ? D{} : rest;
+      way = select(flies, all(c.step) * u, way);
     }
   }
   x = fma(rest, way, x);

@@ -11,8 +11,9 @@
 namespace tess::dn {
 
 /// Flies each of `from` through the step, with up to 16 bounces, and writes its particle. What has
-/// more bounces, in a crevice, stops at the last one until the next step. Adds to energy[particle]
-/// twice the work that the flight's acceleration did beyond that on the straight way.
+/// more bounces, in a crevice, goes with the last surface until the next step. Adds to
+/// energy[particle] twice the work that the flight's acceleration did beyond that on the straight
+/// way.
 void trace(const RuleConstants& constants,
            std::span<const Placed> objects,
            LookUp kind,
