@@ -38,9 +38,7 @@ struct Placed {
   float to_world[3][3];  ///< rows: a normal in the world
   float scale;           ///< world units per unit of the object
   float cell;            ///< in world units
-  float padding;  ///< taken off the distance: a look-up that blends the sides of a thin sheet
-                  ///< cannot see it closer than this
-  bool two_sided;
+  float padding;         ///< taken off the distance to a sheet that is met from either side
   bool compressed;
   float error;  ///< how far a compressed voxel may be off; in world units
   float doubt;  ///< that, and half a voxel's diagonal

@@ -89,12 +89,7 @@ struct Gap {
   const D3& place;
   double threshold;  ///< in the world: as the object sees it, it shrinks while the object grows
 
-  [[nodiscard]] D keeps_off(const Pose& pose) const {
-    const D off = threshold / pose.size();
-    // Both sides of a sheet look alike: turn back before it is as close as the look-up errs.
-    return object.two_sided ? max(off, all(static_cast<double>(object.cell - object.padding)))
-                            : off;
-  }
+  [[nodiscard]] D keeps_off(const Pose& pose) const { return threshold / pose.size(); }
   [[nodiscard]] D at(const Pose& pose, const Seen& seen) const {
     return field.distance + dot(field.normal, seen.place - place) - keeps_off(pose);
   }
