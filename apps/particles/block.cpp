@@ -106,9 +106,8 @@ void Block::advance_audited(Flock& flock,
     const double begin = cpu_seconds();
     station.stepper(species).run(flock.motion.span(), objects, step * dt, 1);
     station.spent(cpu_seconds() - begin);
-    const std::vector<tess::dn::Object> at_begin = objects;
+    note_tunnelled(stage, objects, before, flock);
     tess::dn::advance(objects, dt, 1);
-    note_tunnelled(stage, at_begin, objects, before, flock);
   }
 }
 

@@ -26,6 +26,20 @@ double least_distance(const std::vector<Object>& objects, Vec3 p) {
   return least;
 }
 
+/// How an object stands in a step, from its begin to its end: often enough that a straight way in
+/// the world is one between them, too, as the object sees it.
+std::vector<tess::dn::Frame> frames_in(const tess::dn::Frame& begin, double step) {
+  constexpr double angle = 0.05;  // off by 3e-4 of the way
+  const double turns = norm(begin.angular_velocity) * step / angle;
+  const int n = 1 + static_cast<int>(std::min(turns, 1000.0));
+  std::vector<tess::dn::Frame> frames{begin};
+  for (int i = 1; i <= n; ++i) {
+    frames.push_back(begin);
+    frames.back().advance(step * i / n);
+  }
+  return frames;
+}
+
 }  // namespace
 
 void measure(const Stage& stage,
@@ -68,16 +82,20 @@ void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into) {
 
 void note_tunnelled(const Stage& stage,
                     const std::vector<Object>& at_begin,
-                    const std::vector<Object>& at_end,
                     const tess::dn::Particles& before,
                     Flock& flock) {
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
     const tess::dn::Surface& surface = stage.scene.objects[o].surface;
+    const std::vector<tess::dn::Frame> frames = frames_in(at_begin[o].frame, stage.scene.dt);
+    const double part = 1 / static_cast<double>(frames.size() - 1);
     for (std::size_t p = 0; p < flock.size(); ++p) {
-      if (flock.tunnelled[p] != 0) continue;
-      const Vec3 from = at_begin[o].frame.to_object(before.position(p)),
-                 to = at_end[o].frame.to_object(flock.motion.position(p));
-      if (passes_surface(at_begin[o], surface, from, to)) flock.tunnelled[p] = 1;
+      const Vec3 begin = before.position(p), way = flock.motion.position(p) - begin;
+      Vec3 from = frames[0].to_object(begin);
+      for (std::size_t i = 1; i < frames.size() && flock.tunnelled[p] == 0; ++i) {
+        const Vec3 to = frames[i].to_object(begin + static_cast<double>(i) * part * way);
+        if (passes_surface(at_begin[o], surface, from, to)) flock.tunnelled[p] = 1;
+        from = to;
+      }
     }
   }
 }

@@ -23,10 +23,10 @@ void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into);
 /// Whether the trajectories hold particle `id` of `n`: `traced` of them, evenly spread.
 [[nodiscard]] bool is_traced(std::uint64_t id, std::uint64_t n, std::uint64_t traced);
 
-/// Marks particles whose last step, from `before` to where they are, went through a surface.
+/// Marks particles whose last step, from `before` to where they are, went through a surface of the
+/// objects, which are as when it began.
 void note_tunnelled(const Stage& stage,
                     const std::vector<tess::dn::Object>& at_begin,
-                    const std::vector<tess::dn::Object>& at_end,
                     const tess::dn::Particles& before,
                     Flock& flock);
 
