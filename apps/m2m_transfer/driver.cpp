@@ -11,7 +11,7 @@
 namespace tess::m2m {
 namespace {
 
-Problem read(const Request& request, Progress& progress) {
+Problem read(const Request& request, apps::Progress& progress) {
   progress.phase("reading");
   Pe& pe = current_pe();
   const Time start = pe.now();
@@ -20,7 +20,7 @@ Problem read(const Request& request, Progress& progress) {
   return problem;
 }
 
-Task transfer_once(const DriverOptions& options, Progress& progress) {
+Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   if (options.policies.size() > 1)
     fail(ErrorCode::bad_argument, "--policy is given more than once: that is for --study");
   if (options.request.target.empty())
@@ -42,7 +42,7 @@ Task transfer_once(const DriverOptions& options, Progress& progress) {
   print(table(problem.report));
 }
 
-Task run_study(const DriverOptions& options, Progress& progress) {
+Task run_study(const DriverOptions& options, apps::Progress& progress) {
   if (!options.out.empty())
     fail(ErrorCode::bad_argument, "--out is for one transfer, not for --study");
   std::vector<Request> requests = plan_study(options.request, options.policies);
@@ -71,7 +71,7 @@ Task run_study(const DriverOptions& options, Progress& progress) {
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
-  Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
+  apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
   return tess::run(setup, [&]() -> Task {
     return options.study ? run_study(options, progress) : transfer_once(options, progress);
   });

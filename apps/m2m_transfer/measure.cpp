@@ -44,7 +44,7 @@ void end(const DistributedMesh& mesh) {
 
 }  // namespace
 
-Task measure(Problem& problem, GroupProxy<Gauge> gauge, Progress& progress) {
+Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress) {
   Pe& pe = current_pe();
   TransferReport& report = problem.report;
   Future<Footprint> before, after, most;

@@ -4,13 +4,13 @@
 
 #include "apps/m2m_transfer/footprint.hpp"
 #include "apps/m2m_transfer/problem.hpp"
-#include "apps/m2m_transfer/progress.hpp"
+#include "apps/progress.hpp"
 #include "runtime/runtime.hpp"
 
 namespace tess::m2m {
 
 /// Fills in the target's fields (with one more, "status") and the report. The meshes' chares are
 /// gone when it is done. `gauge`: created before, known everywhere. `progress` is told the phases.
-Task measure(Problem& problem, GroupProxy<Gauge> gauge, Progress& progress);
+Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress);
 
 }  // namespace tess::m2m

@@ -57,12 +57,16 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const StageHandle handle{stage};
   const auto stations = tess::create_group<Station>();
   const auto blocks = tess::create<Block>(tess::sparse);
+  const auto now_at = [&](const char* phase) {
+    if (options.progress != nullptr) options.progress->phase(phase);
+  };
   const auto hand_out = [&] {
     const std::int32_t each = pe.machine().pes_per_process();
     for (std::int32_t first = 0; first < pe.n_pes(); first += each)
       stations[tess::PeId{first}].send<&Station::take>(handle);
   };
   co_await tess::epoch(hand_out);
+  now_at("building fields");
   const auto begin_fields = [&] { stations.broadcast<&Station::begin_fields>(); };
   co_await tess::epoch(begin_fields);
   const auto fill_fields = [&] { stations.broadcast<&Station::fill_fields>(); };
@@ -74,6 +78,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   result.audited = is_audited(scene);
   const auto prepare = [&] { stations.broadcast<&Station::prepare>(result.block); };
   co_await tess::epoch(prepare);
+  now_at("placing particles");
   const tess::Time before_emission = pe.now();
   const auto emit = [&] { stations.broadcast<&Station::emit>(blocks); };
   co_await tess::epoch(emit);
@@ -89,7 +94,11 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   stretch.audit = result.audited ? 1 : 0;
   const auto move = [&] { blocks.broadcast<&Block::move>(stretch); };
   std::int32_t step = 0;
+  now_at("steps");
   while (true) {
+    if (options.progress != nullptr)
+      options.progress->part(static_cast<std::uint32_t>(step),
+                             static_cast<std::uint32_t>(scene.steps));
     stretch.first = step;
     stretch.n_steps = 0;
     stretch.ask = asked(scene, step);

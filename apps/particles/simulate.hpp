@@ -6,6 +6,7 @@
 #include "apps/particles/measured.hpp"
 #include "apps/particles/scene.hpp"
 #include "apps/particles/station.hpp"
+#include "apps/progress.hpp"
 #include "runtime/balance/rounds/options.hpp"
 #include "runtime/balance/rounds/round.hpp"
 #include "runtime/runtime.hpp"
@@ -51,6 +52,7 @@ struct RunOptions {
   /// Blocks migrate: by rounds after each exchange of particles, where that is worth it, or beside
   /// the work (see runtime/balance.hpp). Absent: they stay, and no load is measured.
   std::optional<tess::BalanceOptions> balance{};
+  apps::Progress* progress = nullptr;  ///< is told what the run is at, if there is one
 };
 
 /// Whether a run of this scene looks at each step for particles that tunnel.

@@ -104,14 +104,26 @@ void study_look_ups(const Subject& subject,
   }
 }
 
+void now_at(const StudyOptions& options,
+            const char* phase,
+            std::size_t part = 0,
+            std::size_t n_parts = 0) {
+  if (options.progress == nullptr) return;
+  options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+  options.progress->phase(phase);
+}
+
 /// Rows of fields, and of memory apart.
 void study_fields(const Subject& subject,
                   const StudyOptions& options,
                   std::vector<StudyRow>& rows,
                   std::vector<StudyRow>& memory) {
   const Samples samples = samples_of(subject, options.n_samples);
+  const std::size_t n_fields = 3 * options.resolutions.size();
+  std::size_t field = 0;
   for (const Method method : {Method::exact, Method::normals, Method::potential})
     for (const int resolution : options.resolutions) {
+      now_at(options, "study: fields", ++field, n_fields);
       StudyRow row;
       row.part = "field";
       row.resolution = resolution;
@@ -219,7 +231,9 @@ std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options) {
   study_fields(subject, options, rows, memory);
   rows.insert(rows.end(), memory.begin(), memory.end());
   const BuiltField built = build_alone(object, Content::distance_and_normal);
+  now_at(options, "study: rules");
   study_rules(subject, options, built, rows);
+  now_at(options, "study: costs");
   study_cost(subject, built, options, rows);
   return rows;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "apps/particles/scene.hpp"
+#include "apps/progress.hpp"
 
 #include <cstdint>
 #include <string>
@@ -37,7 +38,8 @@ struct StudyOptions {
   std::vector<int> resolutions{16, 32, 64};
   std::size_t n_samples = 4000;  ///< points at which distance and normal are compared
   std::size_t n_bounces = 400;
-  std::size_t n_timed = 100'000;  ///< particles that are timed
+  std::size_t n_timed = 100'000;       ///< particles that are timed
+  apps::Progress* progress = nullptr;  ///< is told what the study is at, if there is one
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with

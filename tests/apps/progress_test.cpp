@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/progress.hpp"
+#include "apps/progress.hpp"
 
 #include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
@@ -9,7 +9,7 @@
 #include <thread>
 #include <unistd.h>
 
-using tess::m2m::Progress;
+using apps::Progress;
 using namespace std::chrono_literals;
 
 namespace {

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <thread>
 
-namespace tess::m2m {
+namespace apps {
 
 class Progress {
  public:
@@ -47,4 +47,4 @@ class Progress {
   std::jthread thread_;  // last: it uses all of the above
 };
 
-}  // namespace tess::m2m
+}  // namespace apps

@@ -1,10 +1,10 @@
-#include "apps/m2m_transfer/progress.hpp"
+#include "apps/progress.hpp"
 
 #include <fmt/format.h>
 #include <string>
 #include <unistd.h>
 
-namespace tess::m2m {
+namespace apps {
 
 Progress::Progress(std::FILE* terminal,
                    std::chrono::milliseconds first,
@@ -47,4 +47,4 @@ void Progress::show() {
   shown_ = true;
 }
 
-}  // namespace tess::m2m
+}  // namespace apps
