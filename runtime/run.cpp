@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <string_view>
 
 namespace tess {
@@ -24,8 +25,18 @@ std::int32_t whole_number(std::string_view option, std::string_view value, std::
 
 void print_error(const char* program, const Error& error) {
   const char* slash = std::strrchr(program, '/');
-  std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program, error.what());
+  std::fprintf(stderr,
+               "%s: error: %s\n",
+               slash != nullptr ? slash + 1 : program,
+               one_line(error.what()).c_str());
   std::fflush(stderr);
+}
+
+/// Memory ran out outside of any message: while input was read, or results written.
+const Error& out_of_memory() {
+  static const Error error(ErrorCode::environment,
+                           "memory is exhausted; ask for less, or give this machine more");
+  return error;
 }
 
 /// What a process that refuses its input gives to Machine::agree(), where others may give the
@@ -122,6 +133,9 @@ int guarded(const char* program, const std::function<int()>& body) {
   } catch (const Error& error) {
     print_error(program, error);
     return 2;
+  } catch (const std::bad_alloc&) {
+    print_error(program, out_of_memory());
+    return 2;
   }
 }
 
@@ -132,6 +146,9 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
     return body(setup);
   } catch (const Error& error) {
     refuse(setup, argc, argv, error);
+    return 2;
+  } catch (const std::bad_alloc&) {
+    refuse(setup, argc, argv, out_of_memory());
     return 2;
   }
 }

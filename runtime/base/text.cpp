@@ -4,7 +4,31 @@
 #include <charconv>
 #include <sstream>
 
-namespace tess::detail {
+namespace tess {
+
+std::string one_line(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '\n') {
+      out += "\\n";
+    } else if (c == '\t') {
+      out += "\\t";
+    } else if (c == '\r') {
+      out += "\\r";
+    } else if (byte < 0x20 || byte == 0x7f) {
+      out += "\\x";
+      out += digits[byte >> 4U];
+      out += digits[byte & 15U];
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+namespace detail {
 namespace {
 
 template <class... Format>
@@ -35,4 +59,5 @@ void append_streamed(std::string& out,
   out += std::move(stream).str();
 }
 
-}  // namespace tess::detail
+}  // namespace detail
+}  // namespace tess

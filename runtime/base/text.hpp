@@ -59,4 +59,8 @@ template <Writable... Parts>
   return out;
 }
 
+/// The text in one line: control characters become escapes (\n, \x1b). For messages that quote what
+/// somebody has typed.
+[[nodiscard]] std::string one_line(std::string_view text);
+
 }  // namespace tess

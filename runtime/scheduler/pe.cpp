@@ -4,6 +4,8 @@
 #include "runtime/collections/collection.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
+#include <new>
+
 namespace tess {
 namespace {
 
@@ -138,6 +140,8 @@ void Pe::run(Envelope* message) {
       std::rethrow_exception(std::exchange(kept_exception_, nullptr));
   } catch (const Error& error) {
     exception(error.what(), 2);
+  } catch (const std::bad_alloc&) {
+    runtime_.out_of_memory(*this, std::exchange(place_, {}));
   } catch (const std::exception& error) {
     exception(error.what(), 1);
   } catch (...) {
@@ -168,7 +172,7 @@ void Pe::exception(const char* what, int exit_code) {
   // Bad input is the user's to mend: one line, no trace. Everything else is a bug and says where it
   // was.
   if (exit_code == 2) {
-    runtime_.error_line(text("error: ", what));
+    runtime_.error_line(text("error: ", one_line(what)));
   } else {
     runtime_.error_line(text("tessera: uncaught exception: ", what, "\n  ", place));
   }

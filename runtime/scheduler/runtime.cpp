@@ -41,6 +41,7 @@ void census_arrives(Pe& pe, Runtime::Census&& census) {
 }
 
 constexpr std::size_t most_trace_records = 1'000'000;  // of each kind a PE: some 60 MB
+constexpr std::size_t reserve_bytes = 1U << 20U;
 
 template <auto Handler, class Payload>
 void send_to_all(Pe& pe, const Payload& payload) {
@@ -58,7 +59,8 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
     : machine_(machine),
       options_(options),
       main_(std::move(main)),
-      first_{machine.process().value * machine.pes_per_process()} {
+      first_{machine.process().value * machine.pes_per_process()},
+      reserve_(std::make_unique<std::byte[]>(reserve_bytes)) {
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);
   for (std::int32_t i = 0; i < n_here; ++i) {
@@ -168,6 +170,16 @@ std::string Runtime::describe(Pe& pe) const {
   if (context.action != nullptr) out += text(", in ", plain_name(context.action->name()));
   if (context.epoch.value != 0) out += text(", epoch ", context.epoch.value >> 24U);
   return out;
+}
+
+void Runtime::out_of_memory(Pe& pe, const std::string& place) {
+  if (!out_of_memory_.exchange(true)) {
+    reserve_.reset();
+    error_line(text("error: memory is exhausted ",
+                    place.empty() ? describe(pe) : place,
+                    "; ask for less, or spread the run over more machines"));
+  }
+  exit(pe, 2);
 }
 
 void Runtime::exit(Pe& pe, int code) {

@@ -1,7 +1,7 @@
 // A run on one process: its PEs on a machine, and how the run ends. It ends in one of four ways, on
 // all processes with one exit code: quiescence with nothing waiting (0); quiescence with something
 // waiting, a deadlock, reported as who waits for what (1); exit(code) of the program; an exception
-// (1, or 2 for bad input).
+// (1, or 2 for bad input and where memory ends).
 //
 //     exit asked -> PE 0: Stop to all PEs -> each stops user code, answers with the greatest code
 //     it was given
@@ -12,6 +12,7 @@
 #include "runtime/scheduler/pe.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -47,6 +48,8 @@ class Runtime final : public Program {
   void exit(Pe& pe, int code);
   /// Epoch 0 is done: on PE 0.
   void quiescent(Pe& pe);
+  /// Memory is at its end: one line a process, however many PEs meet it, and exit code 2.
+  void out_of_memory(Pe& pe, const std::string& place);
   /// "Block[3], Block::step on PE 2".
   [[nodiscard]] std::string describe(Pe& pe) const;
   /// Prints whole lines to standard error, never mixed with those of another thread.
@@ -84,11 +87,13 @@ class Runtime final : public Program {
   const RuntimeOptions options_;
   const std::function<void()> main_;
   const PeId first_;
-  std::deque<Pool> pools_;  // before the PEs: one may free what another allocated
+  std::unique_ptr<std::byte[]> reserve_;  // given up when memory ends, for the messages of the end
+  std::deque<Pool> pools_;                // before the PEs: one may free what another allocated
   std::vector<std::unique_ptr<Pe>> pes_;
   std::mutex output_;
   std::atomic<int> exit_code_{0};
   std::atomic<bool> left_{false};
+  std::atomic<bool> out_of_memory_{false};
   std::vector<std::string> still_;  // simulated machine: what waits if the run stands still
 
   // On PE 0 alone.

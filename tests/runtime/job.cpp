@@ -1,11 +1,12 @@
 // A job that ends as its argument says, while messages go round all PEs and would do so for ever;
 // run under mpirun by job_ends.sh.
 //
-//     test_job throw | fail | check | exit | codes=A,B | forget | wait
+//     test_job throw | fail | memory | check | exit | codes=A,B | forget | wait
 #include "runtime/runtime.hpp"
 
 #include <chrono>
 #include <cstdio>
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
@@ -46,6 +47,7 @@ class Actor : public tess::Chare<Actor, tess::Index1> {
     }
     if (ending == "throw") throw std::runtime_error("the bridge is out");
     if (ending == "fail") tess::fail(tess::ErrorCode::bad_value, "the dose is -1: give more");
+    if (ending == "memory") throw std::bad_alloc();
     if (ending == "exit") tess::exit(5);
     TESS_CHECK(ending != "check", "element ", index().x, " was told to");
   }

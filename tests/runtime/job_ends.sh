@@ -49,6 +49,9 @@ ends 1 "the bridge is out" -n 2 "$job" throw --pes 1
 ends 1 "on PE 3, Actor\[3\], in Actor::act" -n 2 "$job" throw --pes 2
 ends 2 "the dose is -1" -n 2 "$job" fail --pes 1
 once "the dose is -1"
+ends 2 "memory is exhausted on PE 1, Actor\[1\], in Actor::act" -n 2 "$job" memory --pes 1
+ends 2 "memory is exhausted on PE 3" -n 2 "$job" memory --pes 2
+once "memory is exhausted"
 ends 1 "element 1 was told to" -n 2 "$job" check --pes 1
 ends 1 "on PE 3, Actor\[3\], in Actor::act" -n 2 "$job" check --pes 2
 ends 5 "" -n 2 "$job" exit --pes 1

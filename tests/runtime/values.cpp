@@ -54,6 +54,12 @@ void check_round_trip(const T& value) {
 
 }  // namespace
 
+TEST_CASE("text in one line shows control characters as escapes and leaves the rest", "[runtime]") {
+  CHECK(tess::one_line("a\nb\r\tc\x1b[1m\x7f") == "a\\nb\\r\\tc\\x1b[1m\\x7f");
+  CHECK(tess::one_line("größer … \xff") == "größer … \xff");
+  CHECK(tess::one_line(std::string_view("\0", 1)) == "\\x00");
+}
+
 TEST_CASE("values come back from their bytes, and truncated bytes are refused", "[runtime]") {
   check_round_trip(42);
   check_round_trip(Plain{1, 2.5});
