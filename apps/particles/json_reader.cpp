@@ -1,8 +1,10 @@
 #include "apps/particles/json_reader.hpp"
 
+#include "apps/particles/shown.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/core.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -17,13 +19,6 @@ using tess::fail;
 
 const json& at(const void* value) {
   return *static_cast<const json*>(value);
-}
-
-std::string shown(const json& value) {
-  constexpr std::size_t longest = 60;
-  std::string out = value.dump(-1, ' ', false, json::error_handler_t::replace);
-  if (out.size() > longest) out = out.substr(0, longest) + " …";
-  return out;
 }
 
 std::string listed(std::initializer_list<std::string_view> words) {
@@ -43,18 +38,27 @@ std::string below(const std::string& place, std::string_view key) {
 std::string told(const json::exception& error) {
   const std::string whole = error.what();
   const auto at = whole.find("] ");
-  std::string out = at == std::string::npos ? whole : whole.substr(at + 2);
-  std::replace(out.begin(), out.end(), '\n', ' ');
-  return out;
+  constexpr std::size_t longest = 300;  // it quotes a text that is not closed as a whole
+  return shown_text(std::string_view(whole).substr(at == std::string::npos ? 0 : at + 2), longest);
 }
+
+constexpr int deepest = 32;  // the library's recursions stay far from the end of the stack
 
 json parse(const std::string& text, const std::string& name) {
   std::vector<std::set<std::string>> open;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
+    const bool opens =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (opens && depth >= deepest)
+      fail(ErrorCode::bad_file,
+           name,
+           ": is nested deeper than ",
+           deepest,
+           " lists and objects, and no key needs that; close them");
     if (event == json::parse_event_t::object_start) open.emplace_back();
     if (event == json::parse_event_t::object_end) open.pop_back();
     if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
-      fail(ErrorCode::bad_value, name, ": key ", parsed.dump(), " stands twice in one object");
+      fail(ErrorCode::bad_value, name, ": key ", shown(parsed), " stands twice in one object");
     return true;
   };
   try {
@@ -65,6 +69,9 @@ json parse(const std::string& text, const std::string& name) {
 }
 
 std::string contents(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    fail(ErrorCode::bad_file, path, ": is a directory; give the path of a JSON file");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream out;
   if (file) out << file.rdbuf();
@@ -77,6 +84,10 @@ std::string contents(const std::string& path) {
 void Node::refuse(const std::string& why) const {
   const std::string place = place_.empty() ? "the file" : place_;
   fail(ErrorCode::bad_value, file_, ": ", place, ": ", shown(at(value_)), " ", why);
+}
+
+void Node::blame(const std::string& what) const {
+  fail(ErrorCode::bad_value, file_, ": ", place_, ": ", what);
 }
 
 double Node::number(const Interval& allowed) const {
@@ -149,7 +160,7 @@ Keys Node::keys(std::initializer_list<std::string_view> known) const {
       fail(ErrorCode::bad_value,
            file_,
            ": ",
-           below(place_, key),
+           below(place_, shown_text(key)),
            ": unknown key; allowed here: ",
            listed(known));
   return Keys(*this);

@@ -46,6 +46,8 @@ class Node {
 
   /// Throws: the place, the value, and what is wrong with it.
   [[noreturn]] void refuse(const std::string& why) const;
+  /// Throws: the place and what is wrong, where that says more than the value.
+  [[noreturn]] void blame(const std::string& what) const;
   [[nodiscard]] const std::string& place() const { return place_; }
 
  private:

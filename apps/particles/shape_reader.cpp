@@ -1,6 +1,7 @@
 #include "apps/particles/shape_reader.hpp"
 
 #include "apps/particles/box_union.hpp"
+#include "apps/particles/shown.hpp"
 #include "collide/dn_field/grid.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/error.hpp"
@@ -55,6 +56,24 @@ Surface read_boxes(const Node& node) {
   }
 }
 
+/// Whatever is wrong with the file is told with the key that names it.
+Surface read_file(const Node& node, const std::string& folder) {
+  const std::filesystem::path name(node.text());
+  const std::string path = (name.is_absolute() ? name : folder / name).string();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    node.blame(path + ": is a directory; give the path of an OBJ file");
+  try {
+    return tess::dn::read_obj(path);
+  } catch (const tess::Error& error) {
+    constexpr std::size_t longest = 200;  // it quotes the rest of a line
+    const std::string_view what = error.what();
+    const bool named = what.starts_with(path);
+    node.blame(path + (named ? "" : ": ") +
+               shown_text(what.substr(named ? path.size() : 0), longest));
+  }
+}
+
 Surface read_shape(const Node& node, const std::string& folder, std::string& name) {
   const Keys keys = node.keys({"sphere", "box", "boxes", "torus", "cylinder", "plate", "file"});
   const std::string_view kind =
@@ -63,8 +82,7 @@ Surface read_shape(const Node& node, const std::string& folder, std::string& nam
   name = kind;
   if (kind == "file") {
     name = of.text();
-    const std::filesystem::path file(name);
-    return tess::dn::read_obj(file.is_absolute() ? name : (folder / file).string());
+    return read_file(of, folder);
   }
   if (kind == "boxes") return read_boxes(of);
   if (kind == "box")

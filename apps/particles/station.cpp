@@ -73,7 +73,11 @@ void Station::prepare(double block_edge) {
   objects_ = objects_of(*stage_);
   for (const double mass : stage_->masses) {
     const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
-    validate(rules, objects_);
+    try {
+      validate(rules, objects_);
+    } catch (const tess::Error& error) {
+      tess::fail(error.code(), stage_->scene.name, ": objects: ", error.what());
+    }
     steppers_.push_back(tess::dn::make_stepper(rules, stage_->scene.dt));
   }
 }

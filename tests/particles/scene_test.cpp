@@ -5,7 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <unistd.h>
 
 using namespace particles;
 
@@ -79,7 +82,10 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{}", "needs exactly one of sphere, box"},
       {"{\"box\": {\"half\": [1, 1, 1]}}",
        "{\"file\": \"none.obj\"}",
-       "none.obj: cannot be opened"},
+       "scene.json: objects[0].shape.file: none.obj: cannot be opened"},
+      {"{\"box\": {\"half\": [1, 1, 1]}}",
+       "{\"file\": \".\"}",
+       "scene.json: objects[0].shape.file: .: is a directory; give the path of an OBJ file"},
       {"\"count\": 5, ", "", "emitters[0].count: is missing; give how many particles"},
       {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
       {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},
@@ -112,8 +118,73 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
   const std::string told = refusal(scene_with(what, by));
   INFO(told);
   CHECK(told.find(message) != std::string::npos);
-  CHECK(told.find("scene.json: ") == (message.find("none.obj") == 0 ? std::string::npos : 0));
+  CHECK(told.find("scene.json: ") == 0);
   CHECK(told.find('\n') == std::string::npos);
+}
+
+TEST_CASE("what is nested deeper than any scene is refused, however deep", "[particles][scene]") {
+  const auto depth = GENERATE(std::size_t{40}, std::size_t{100'000});
+  for (const auto& [open, close] : {std::pair("[", "]"), std::pair("{\"a\":", "}")}) {
+    std::string text = "{\"dt\":";
+    for (std::size_t i = 0; i < depth; ++i) text += open;
+    text += "1";
+    CHECK(refusal(text).find("scene.json: is nested deeper than 32 lists and objects") == 0);
+    for (std::size_t i = 0; i < depth; ++i) text += close;
+    CHECK(refusal(text + "}").find("scene.json: is nested deeper than 32 lists and objects") == 0);
+  }
+  CHECK(refusal("{\"dt\":" + std::string(31, '[') + std::string(31, ']') + "}") ==
+        "scene.json: dt: " + std::string(31, '[') + std::string(29, ']') + " … is not a number");
+}
+
+TEST_CASE("keys and values are shown in one line, and cut between characters",
+          "[particles][scene]") {
+  CHECK(refusal("{\"dt\": 1, \"a\\nb\": 1}").find("scene.json: a\\nb: unknown key") == 0);
+  CHECK(refusal("{\"dt\": 1, \"\\u001b[1m\": 1}").find("scene.json: \\x1b[1m: unknown key") == 0);
+  CHECK(refusal("{\"dt\": \"a\\nb\"}") == "scene.json: dt: \"a\\nb\" is not a number");
+  for (const std::size_t start : {0U, 1U, 2U}) {
+    std::string text = std::string(start, 'x'), want = text;
+    for (int i = 0; i < 100; ++i) text += "€";  // three bytes
+    for (std::size_t i = 0; i < (59 - start) / 3; ++i) want += "€";
+    CHECK(refusal("{\"dt\": \"" + text + "\"}") ==
+          "scene.json: dt: \"" + want + " … is not a number");
+  }
+  const std::string long_key(1'000'000, 'k');
+  CHECK(refusal("{\"" + long_key + "\": 1}").size() < 300);
+  CHECK(refusal("{\"" + long_key).size() < 400);
+}
+
+TEST_CASE("what is wrong with an OBJ file is told with the scene, the key and the file",
+          "[particles][scene]") {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("scene_test_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const std::string start = "v 0 0 0\nv 1 0 0\n", path = (folder / "mesh.obj").string();
+  const auto [third, message] = GENERATE(table<std::string, std::string>({
+      {"v nan 1 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (nan, 1, 0); remove it"},
+      {"v 0 1e400 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (0, inf, 0); remove it"},
+      {"v 0 1 0\nf 1 1 1\n", "surface has extent 0"},
+      {"v -1e308 1e308 0\nv 1e308 0 0\nf 1 4 3\n", "surface has extent inf"},
+      {"v 0 1 0\nf 1 2 9\n", "names vertex 9"},
+      {"", "holds no faces"},
+  }));
+  std::ofstream(path) << start << third;
+  const std::string scene = (folder / "scene.json").string();
+  std::ofstream(scene) << scene_with("{\"box\": {\"half\": [1, 1, 1]}}",
+                                     "{\"file\": \"mesh.obj\"}");
+  std::string told = "accepted";
+  try {
+    (void)read_scene(scene);
+  } catch (const tess::Error& error) {
+    told = error.what();
+  }
+  std::filesystem::remove_all(folder);
+  INFO(told);
+  CHECK(told.find(scene + ": objects[0].shape.file: " + path + ":") == 0);
+  CHECK(told.find(message) != std::string::npos);
+}
+
+TEST_CASE("a directory is named as one", "[particles][scene]") {
+  CHECK_THROWS_WITH(read_scene("."), ".: is a directory; give the path of a JSON file");
 }
 
 TEST_CASE("without swept look-up a step that passes the field is refused", "[particles][scene]") {
