@@ -11,8 +11,9 @@ namespace particles {
 
 class ExactSum {
  public:
-  /// Values that are not finite are left out; count them elsewhere.
+  /// Values that are not finite are added to one another alone: see total().
   void add(double value) {
+    if (!std::isfinite(value)) beyond_ += value;
     if (value == 0 || !std::isfinite(value)) return;
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);  // ±[1/2, 1)
@@ -35,9 +36,13 @@ class ExactSum {
     ExactSum small = other;
     small.carry();
     for (std::size_t i = 0; i < limbs_.size(); ++i) limbs_[i] += small.limbs_[i];
+    beyond_ += small.beyond_;
     carry();
   }
-  /// The sum, rounded in one fixed way: from the highest limb down, after the carries.
+  /// The sum of all values: infinite or not a number where one of them was.
+  [[nodiscard]] double total() const { return beyond_ == 0 ? value() : beyond_; }
+  /// The sum of the finite values, rounded in one fixed way: from the highest limb down, after the
+  /// carries.
   [[nodiscard]] double value() const {
     ExactSum whole = *this;
     whole.carry();
@@ -55,7 +60,7 @@ class ExactSum {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(limbs_, n_added_);
+    ar(limbs_, n_added_, beyond_);
   }
 
  private:
@@ -74,6 +79,7 @@ class ExactSum {
 
   std::array<std::int64_t, 72> limbs_{};
   std::uint32_t n_added_ = 0;
+  double beyond_ = 0;  // ±infinity and NaN add up to the same in every order
 };
 
 }  // namespace particles

@@ -93,12 +93,19 @@ void Node::blame(const std::string& what) const {
 double Node::number(const Interval& allowed) const {
   if (!at(value_).is_number()) refuse("is not a number");
   const auto value = at(value_).get<double>();
+  if (std::abs(value) > largest_number)
+    refuse(fmt::format("is beyond ±{:g}, the largest that can be reckoned with; choose other units",
+                       largest_number));
   const bool above =
       allowed.at_low == Interval::Low::excluded ? value > allowed.low : value >= allowed.low;
-  if (above && value <= allowed.high && std::isfinite(value)) return value;
+  const bool tiny = allowed.at_low == Interval::Low::excluded && allowed.low == 0 && above &&
+                    value < least_positive;
+  if (tiny)
+    refuse(fmt::format("is below {:g}, the least that can be reckoned with; choose other units",
+                       least_positive));
+  if (above && value <= allowed.high) return value;
   if (allowed.high < HUGE_VAL)
     refuse(fmt::format("is not within {} … {}", allowed.low, allowed.high));
-  if (allowed.low == -HUGE_VAL) refuse("is not finite");
   refuse(fmt::format("is not {} {}",
                      allowed.at_low == Interval::Low::excluded ? "above" : "at least",
                      allowed.low));

@@ -26,6 +26,10 @@ inline constexpr Interval any_number{};
 inline constexpr Interval positive{0, HUGE_VAL, Interval::Low::excluded};
 inline constexpr Interval not_negative{0, HUGE_VAL};
 
+/// No number of a file is larger: a length or a velocity can still be squared and multiplied by
+/// another in doubles. What must be above 0 is at least its inverse, for the same reason.
+inline constexpr double largest_number = 1e100, least_positive = 1e-100;
+
 class Keys;
 
 class Node {

@@ -33,10 +33,12 @@ struct Measured {
     potential.add(other.potential);
     hash += other.hash;
   }
+  /// Kinetic and potential; infinite or not a number where a particle's is beyond all doubles, as
+  /// is kinetic.total(). Particles that are not finite themselves have no part in it.
   [[nodiscard]] double energy() const {
     ExactSum both = kinetic;
     both.add(potential);
-    return both.value();
+    return both.total();
   }
   template <class Ar>
   void serialize(Ar& ar) {

@@ -66,7 +66,7 @@ std::string row_text(const Row& row, double dt) {
       row.step * dt,
       m.particles,
       m.blocks,
-      m.kinetic.value(),
+      m.kinetic.total(),
       m.energy(),
       m.fastest,
       distance_text(m.nearest),
@@ -81,7 +81,7 @@ nlohmann::ordered_json json_of(const Row& row, double dt) {
   out["step"] = row.step;
   out["time"] = row.step * dt;
   out["blocks"] = m.blocks;
-  out["kinetic"] = m.kinetic.value();
+  out["kinetic"] = m.kinetic.total();  // what is not finite is written as null
   out["energy"] = m.energy();
   out["fastest"] = m.fastest;
   if (m.nearest < HUGE_VAL) out["nearest"] = m.nearest;
@@ -221,7 +221,8 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
   out["study"] = nlohmann::ordered_json::array();
   for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
-  return out.dump(2) + "\n";
+  // A file's name may be any bytes; JSON holds UTF-8 alone.
+  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string explanation(const Scene& scene, const RunOptions& options) {

@@ -5,7 +5,7 @@ namespace particles {
 std::string scene_help() {
   return R"(A scene is one JSON object. Lengths, times and masses are in any units that agree. [x, y, z]: three
 numbers. A key without a default must be given; an unknown key, a key twice or a value out of its
-range is an error that names it.
+range is an error that names it. No number is beyond 1e100, and none that must be above 0 is below 1e-100.
 
 dt          time step, above 0
 steps       how many, 0 … 1e9

@@ -130,6 +130,36 @@ double least_scale(const Scene& scene, const SceneObject& object) {
   return frame.scale + std::min(0.0, frame.scale_rate) * scene.dt * scene.steps;
 }
 
+/// How far from the origin the object reaches in the whole run, at most.
+double furthest(const Scene& scene, const SceneObject& object) {
+  const tess::dn::Frame& frame = object.frame;
+  const double time = scene.dt * scene.steps;
+  const tess::dn::Bounds box = bounds(object.surface);
+  const double radius = std::max(norm(box.low), norm(box.high)) + object.thickness;
+  return norm(frame.position) + norm(frame.velocity) * time +
+         (frame.scale + std::max(0.0, frame.scale_rate) * time) * radius;
+}
+
+void check_magnitude(const Scene& scene, const std::string& file) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const double reach = furthest(scene, scene.objects[i]);
+    if (reach <= largest_number) continue;
+    tess::fail(tess::ErrorCode::bad_value,
+               file,
+               ": objects[",
+               i,
+               "]: by its shape, transform and motion it reaches ",
+               reach,
+               " from the origin in ",
+               scene.steps,
+               " steps of ",
+               scene.dt,
+               ", beyond ",
+               largest_number,
+               ", the largest that can be reckoned with; choose other units, or a slower motion");
+  }
+}
+
 /// What no key by itself can say: the rules fit the masses, the fields cover the rules.
 void check_rules(const Scene& scene, const std::string& file) {
   for (const double mass : species_of(scene)) {
@@ -261,6 +291,7 @@ Scene read(const JsonFile& file, const std::string& name) {
 }  // namespace
 
 void check_scene(const Scene& scene) {
+  check_magnitude(scene, scene.name);
   check_rules(scene, scene.name);
 }
 

@@ -56,6 +56,21 @@ Surface read_boxes(const Node& node) {
   }
 }
 
+/// As for the numbers of a scene.
+void check_magnitude(const Surface& surface) {
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    for (const double at : {surface.vertices[v].x, surface.vertices[v].y, surface.vertices[v].z})
+      if (!(std::abs(at) <= largest_number))
+        tess::fail(tess::ErrorCode::bad_mesh,
+                   "vertex ",
+                   v,
+                   " has the coordinate ",
+                   at,
+                   ", beyond ±",
+                   largest_number,
+                   "; choose other units");
+}
+
 /// Whatever is wrong with the file is told with the key that names it.
 Surface read_file(const Node& node, const std::string& folder) {
   const std::filesystem::path name(node.text());
@@ -64,7 +79,9 @@ Surface read_file(const Node& node, const std::string& folder) {
   if (std::filesystem::is_directory(path, unknown))
     node.blame(path + ": is a directory; give the path of an OBJ file");
   try {
-    return tess::dn::read_obj(path);
+    Surface surface = tess::dn::read_obj(path);
+    check_magnitude(surface);
+    return surface;
   } catch (const tess::Error& error) {
     constexpr std::size_t longest = 200;  // it quotes the rest of a line
     const std::string_view what = error.what();

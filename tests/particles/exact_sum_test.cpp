@@ -28,6 +28,26 @@ TEST_CASE("an exact sum does not depend on order or on how it is cut", "[particl
   }
 }
 
+TEST_CASE("an exact sum of what is not finite says so in its total", "[particles]") {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  ExactSum up, down;
+  up.add(1.5);
+  CHECK(up.total() == 1.5);
+  up.add(infinite);
+  CHECK(up.total() == infinite);
+  CHECK(up.value() == 1.5);
+  up.add(infinite);
+  CHECK(up.total() == infinite);
+  down.add(-infinite);
+  CHECK(down.total() == -infinite);
+  up.add(down);
+  CHECK(std::isnan(up.total()));
+  ExactSum none;
+  none.add(std::numeric_limits<double>::quiet_NaN());
+  none.add(3);
+  CHECK(std::isnan(none.total()));
+}
+
 TEST_CASE("an exact sum cancels to nothing but what is left", "[particles]") {
   ExactSum sum;
   for (const double value : {1e300, 3.0, -1e300, 1e-300, -0.5}) sum.add(value);

@@ -124,6 +124,22 @@ TEST_CASE("a block ends when it is empty and is made again by who enters it", "[
   }
 }
 
+TEST_CASE("an energy beyond all doubles is not reported as none", "[particles][run]") {
+  // All numbers are allowed, but not the velocities that come of them.
+  const Scene scene = parse_scene(R"({"dt": 1e60, "steps": 2,
+    "emitters": [{"count": 3, "box": {"low": [0, 0, 0], "high": [1, 1, 1]}}],
+    "rules": {"gravity": [0, 0, -1e100]}})",
+                                  "scene.json");
+  const Measured begin = run_scene(scene, "--pes=2").result.rows.front().measured;
+  const Measured end = run_scene(scene, "--pes=2").last();
+  CHECK(begin.energy() == Approx(1.5e100).epsilon(1));
+  CHECK(end.particles == 3);
+  CHECK(end.nonfinite == 0);
+  CHECK(end.kinetic.total() == HUGE_VAL);
+  CHECK(end.fastest == HUGE_VAL);
+  CHECK_FALSE(std::isfinite(end.energy()));
+}
+
 TEST_CASE("a run gives the same bits whatever a balancer moves", "[particles][run][balance]") {
   const Ran first = run_scene(lively_scene(), "--pes=1");
   CHECK(first.result.rounds.empty());
