@@ -1,5 +1,7 @@
 #include "apps/particles/driver.hpp"
 
+#include "apps/particles/memory.hpp"
+#include "apps/particles/output_check.hpp"
 #include "apps/particles/picture.hpp"
 #include "apps/particles/report.hpp"
 #include "apps/particles/simulate.hpp"
@@ -8,6 +10,7 @@
 #include "apps/plot/write_file.hpp"
 
 #include <filesystem>
+#include <fmt/ranges.h>
 
 namespace particles {
 namespace {
@@ -55,16 +58,15 @@ tess::Task run(Problem& problem) {
   if (!options.out.empty()) write_pictures(options.out, *stage, result);
 }
 
-void make_folder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error)
-    tess::fail(tess::ErrorCode::environment, "--out ", path, ": cannot be made: ", error.message());
-}
-
 }  // namespace
 
 int drive(tess::Setup& setup, const DriverOptions& options) {
+  if (!options.resolutions.empty() && !options.study)
+    tess::fail(
+        tess::ErrorCode::bad_argument,
+        "--resolutions ",
+        fmt::format("{}", fmt::join(options.resolutions, ",")),
+        ": is for a study; add --study, or leave it out (a scene has objects[i].resolution)");
   Problem problem{options, read_scene(options.scene), {}};
   if (options.steps >= 0) {
     problem.scene.steps = options.steps;
@@ -75,11 +77,12 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   if (options.out.empty()) problem.scene.outputs.slice.reset();
   const tess::Machine& machine = *setup.machine;
   problem.report = {machine.describe(), machine.n_pes(), machine.n_processes(), options.run};
-  if (!options.out.empty()) make_folder(options.out);
   if (options.study && problem.scene.objects.empty())
     tess::fail(tess::ErrorCode::bad_value,
                options.scene,
                ": objects: is empty; --study needs an object to bounce off");
+  check_memory(problem.scene, machine.n_processes());
+  prepare_outputs(problem.scene, options);
   if (options.explain && machine.process().value == 0)
     tess::print(explanation(problem.scene, options.run));
   return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });

@@ -7,9 +7,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace particles {
 
+/// As the command line gives them.
 struct DriverOptions {
   std::string scene;
   std::int32_t steps = -1;  ///< instead of the scene's; -1: the scene's

@@ -40,7 +40,10 @@ class ExactSum {
     carry();
   }
   /// The sum of all values: infinite or not a number where one of them was.
-  [[nodiscard]] double total() const { return beyond_ == 0 ? value() : beyond_; }
+  [[nodiscard]] double total() const {
+    if (std::isnan(beyond_)) return NAN;  // of one sign, whatever the order
+    return beyond_ == 0 ? value() : beyond_;
+  }
   /// The sum of the finite values, rounded in one fixed way: from the highest limb down, after the
   /// carries.
   [[nodiscard]] double value() const {

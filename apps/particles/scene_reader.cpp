@@ -1,4 +1,5 @@
 #include "apps/particles/json_reader.hpp"
+#include "apps/particles/memory.hpp"
 #include "apps/particles/rules_reader.hpp"
 #include "apps/particles/scene.hpp"
 #include "apps/particles/shape_reader.hpp"
@@ -7,7 +8,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <unistd.h>
 
 namespace particles {
 namespace {
@@ -231,29 +231,6 @@ void check_rules(const Scene& scene, const std::string& file) {
   }
 }
 
-/// Refuses fields that all the machine's memory cannot hold, before it is tried.
-void check_memory(const Scene& scene, const std::string& file) {
-  constexpr double bytes_per_voxel = 8;
-  const double there =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  double wanted = 0;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    wanted += bytes_per_voxel * std::pow(scene.objects[i].resolution, 3);
-    if (wanted > there)
-      tess::fail(tess::ErrorCode::environment,
-                 file,
-                 ": objects[",
-                 i,
-                 "].resolution: ",
-                 scene.objects[i].resolution,
-                 " makes the fields ",
-                 wanted / 1e9,
-                 " GB large, and this machine has ",
-                 there / 1e9,
-                 " GB");
-  }
-}
-
 Scene read(const JsonFile& file, const std::string& name) {
   const Keys keys = file.root().keys({"dt",
                                       "steps",
@@ -284,7 +261,7 @@ Scene read(const JsonFile& file, const std::string& name) {
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
   if (scene.compression) compress_fields(scene);
   check_scene(scene);
-  check_memory(scene, name);
+  check_field_memory(scene);
   return scene;
 }
 

@@ -131,6 +131,50 @@ refuses --resolutions "$particles" "$scratch/scene.json" --study --resolutions 1
 refuses --out "$particles" "$scratch/scene.json" --out "$scratch/wedge.obj"
 refuses 'unknown key' "${mpirun[@]}" --quiet -n 2 "$particles" "$(edited 's/"resolution"/"resolutoin"/')" --pes 1
 
+# What cannot be written is refused before anything runs.
+unwritable() {  # unwritable WORD COMMAND…: exit code 2, one line with WORD, and not a line of the table.
+  local word=$1
+  shift
+  "$@" >"$scratch/out.txt" 2>"$scratch/err" </dev/null
+  [[ $? == 2 && $(wc -l <"$scratch/err") == 1 && ! -s $scratch/out.txt ]] && grep -q -- "$word" "$scratch/err"
+  local told=$?  # "$(…)" below has an exit code of its own
+  check "$* ($(cat "$scratch/err"))" $told
+}
+unwritable '--json /nonexistent/x.json: cannot be written: its folder /nonexistent does not exist; give' \
+  "$particles" "$scratch/scene.json" --json /nonexistent/x.json
+unwritable "--json $scratch: cannot be written: is a directory; give" "$particles" "$scratch/scene.json" --json "$scratch"
+unwritable 'wedge.obj is not a directory' "$particles" "$scratch/scene.json" --json "$scratch/wedge.obj/x.json"
+for file in field.svg paths.svg trajectories.pvd trajectories/step_000000020.vtp; do
+  mkdir -p "$scratch/taken/$file"
+  unwritable "--out $scratch/taken: $scratch/taken/$file cannot be written: is a directory; move" \
+    "$particles" "$scratch/scene.json" --out "$scratch/taken"
+  rm -r "$scratch/taken"
+done
+mkdir -p "$scratch/taken/study.csv"
+unwritable 'study.csv cannot be written' "$particles" "$scratch/scene.json" --study --out "$scratch/taken"
+rm -r "$scratch/taken"
+: >"$scratch/taken"
+unwritable '--out .*taken cannot be made a folder' "$particles" "$scratch/scene.json" --out "$scratch/taken"
+unwritable '--json' "${mpirun[@]}" --quiet -n 2 "$particles" "$scratch/scene.json" --pes 1 --json /nonexistent/x.json
+unwritable '--resolutions 16,32: is for a study; add --study' "$particles" "$scratch/scene.json" --resolutions 16,32
+"$particles" "$scratch/scene.json" --pes 1 --steps 0 --json "$scratch/new/r.json" --out "$scratch/new" >"$scratch/out.txt" 2>&1 &&
+  [[ -s $scratch/new/r.json ]]
+check "--json into the folder that --out makes" $?
+
+# Names are bytes: one that is not UTF-8 is written with what it has of that, one with a newline is shown in one line.
+odd=$scratch/b$'\xff'd.json
+cp "$scratch/scene.json" "$odd"
+same "$particles" "$odd" --pes 1
+unwritable 'none\\n.json: cannot be read' "$particles" "$scratch/none"$'\n'".json"
+
+# Memory: what cannot fit is refused, what does not fit after all ends in one line.
+limited() { (ulimit -v 1000000 && "$@"); }
+crowded() { edited "s/\"count\": 500/\"count\": $1/"; }
+refuses 'emitters: 1000000000 particles make the run .* GB large' limited "$particles" "$(crowded 1000000000)" --pes 1 --steps 0
+refuses 'emitters: 20000000 particles make the run' limited "$particles" "$(crowded 20000000)" --pes 1 --steps 0
+refuses 'memory is exhausted' limited "$particles" "$(crowded 15000000)" --pes 1 --steps 0
+refuses 'memory is exhausted' limited "$particles" "$(crowded 15000000)" --pes 2 --steps 0
+
 "$particles" "$scratch/scene.json" --steps 0 --balance rotate --explain >"$scratch/out.txt" &&
   grep -q 'balancer: used, rotate, a round at each exchange' "$scratch/out.txt"
 check "--explain names the balancer" $?

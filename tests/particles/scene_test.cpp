@@ -1,6 +1,7 @@
 #include "apps/particles/scene.hpp"
 
 #include "apps/particles/emit.hpp"
+#include "apps/particles/memory.hpp"
 #include "runtime/error.hpp"
 
 #include <catch2/catch.hpp>
@@ -237,6 +238,30 @@ TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
                                    R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
   CHECK(told.find("].resolution: 1024 makes the fields ") != std::string::npos);
   CHECK(told.find("scene.json: objects[") == 0);
+}
+
+TEST_CASE("particles and results that no memory can hold are refused", "[particles][scene]") {
+  const auto needs = [](Scene scene, int n_processes) -> std::string {
+    try {
+      check_memory(scene, n_processes);
+    } catch (const tess::Error& error) {
+      return error.what();
+    }
+    return "fits";
+  };
+  Scene scene = parse_scene(scene_with("\"steps\": 10", "\"steps\": 1000000000"), "scene.json");
+  CHECK(needs(scene, 1) == "fits");
+  const auto n = static_cast<std::uint64_t>(usable_memory() / 50);  // a particle takes more
+  scene.emitters[0].count = n;
+  CHECK(needs(scene, 1).find("scene.json: emitters: " + std::to_string(n) +
+                             " particles make the run ") == 0);
+  CHECK(needs(scene, 4) == "fits");
+  scene.emitters[0].count = 1000;
+  Scene rows = scene, paths = scene;
+  rows.outputs.statistics = 1;
+  CHECK(needs(rows, 4).find("scene.json: outputs.statistics: 1 (a row every so many steps)") == 0);
+  paths.outputs.trajectories = 2;
+  CHECK(needs(paths, 4).find("scene.json: outputs.trajectories: 2 (positions every") == 0);
 }
 
 TEST_CASE("a scene is what its file says", "[particles][scene]") {

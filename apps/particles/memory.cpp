@@ -1,0 +1,97 @@
+#include "apps/particles/memory.hpp"
+
+#include "apps/particles/measured.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace particles {
+namespace {
+
+/// Counts what is needed, and throws at the first that is too much.
+class Needs {
+ public:
+  explicit Needs(const Scene& scene) : scene_(scene), there_(usable_memory()) {}
+
+  /// `place` and `value`: of the key that asks for it. what: "makes the fields".
+  template <class Value>
+  void add(double bytes, const std::string& place, const Value& value, const char* what) {
+    wanted_ += bytes;
+    if (wanted_ <= there_) return;
+    tess::fail(tess::ErrorCode::environment,
+               scene_.name,
+               ": ",
+               place,
+               ": ",
+               value,
+               " ",
+               what,
+               " ",
+               wanted_ / 1e9,
+               " GB large, and this process may have ",
+               there_ / 1e9,
+               " GB; ask for less");
+  }
+
+  void add_fields() {
+    constexpr double bytes_per_voxel = 8;
+    for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
+      const double n = scene_.objects[i].resolution;
+      add(bytes_per_voxel * n * n * n,
+          tess::text("objects[", i, "].resolution"),
+          scene_.objects[i].resolution,
+          "makes the fields");
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  double there_, wanted_ = 0;
+};
+
+/// How many times something is done that is done every so many steps, and at both ends.
+double n_times(const Scene& scene, int every) {
+  return every > 0 ? 2.0 + scene.steps / every : 2.0;
+}
+
+}  // namespace
+
+double usable_memory() {
+  const double machine =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return machine;
+  return std::min(machine, static_cast<double>(limit.rlim_cur));
+}
+
+void check_field_memory(const Scene& scene) {
+  Needs(scene).add_fields();
+}
+
+void check_memory(const Scene& scene, int n_processes) {
+  constexpr double bytes_per_particle = 6 * sizeof(double) + sizeof(std::uint64_t) + 1,  // a Flock
+      bytes_per_sample = 6 * sizeof(double) + sizeof(std::uint64_t);
+  const auto n = static_cast<double>(scene.n_particles());
+  const Outputs& outputs = scene.outputs;
+  Needs needs(scene);
+  needs.add_fields();
+  needs.add(bytes_per_particle * n / n_processes,
+            "emitters",
+            scene.n_particles(),
+            n_processes == 1 ? "particles make the run"
+                             : "particles, shared by the processes, make the run");
+  needs.add(n_times(scene, outputs.statistics) * sizeof(Measured),
+            "outputs.statistics",
+            outputs.statistics,
+            "(a row every so many steps) makes the run");
+  if (outputs.trajectories > 0)
+    needs.add(n_times(scene, outputs.trajectories) * bytes_per_sample *
+                  std::min(n, static_cast<double>(outputs.traced)),
+              "outputs.trajectories",
+              outputs.trajectories,
+              "(positions every so many steps) makes the run");
+}
+
+}  // namespace particles
