@@ -84,7 +84,7 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   check_memory(problem.scene, machine.n_processes());
   prepare_outputs(problem.scene, options);
   if (options.explain && machine.process().value == 0)
-    tess::print(explanation(problem.scene, options.run));
+    tess::print(explanation(problem.scene, options));
   return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });
 }
 

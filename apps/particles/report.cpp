@@ -122,6 +122,43 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
   return out;
 }
 
+/// "rules and the picture", "rules", "the picture" or nothing.
+std::string who_asks(bool rules, bool picture) {
+  if (rules && picture) return "rules and the picture (outputs.slice)";
+  if (rules) return "rules";
+  return picture ? "the picture alone (outputs.slice)" : "";
+}
+
+/// Which fields are built, what they hold, and for whom.
+std::string explanation_of_fields(const Scene& scene, const DriverOptions& options) {
+  std::string out;
+  const auto line = [&out](const char* name, const std::string& used_by, const char* without) {
+    out += used_by.empty() ? fmt::format("  {}: left out{}\n", name, without)
+                           : fmt::format("  {}: used, by {}\n", name, used_by);
+  };
+  const bool any = !scene.objects.empty(), pictured = any && scene.outputs.slice,
+             asked = any && needs_field(scene.rules);
+  line("distances", who_asks(asked, pictured), "");
+  line("normals",
+       who_asks(asked && needed_content(scene.rules) == tess::dn::Content::distance_and_normal,
+                pictured),
+       "");
+  const bool built = asked || pictured;
+  if (built) {
+    out += fmt::format("  fields: built, objects {}\n", scene.objects.size());
+    out += scene.compression ? fmt::format("  compression: used, within {} cells and {} degrees\n",
+                                           scene.compression->cells,
+                                           scene.compression->degrees)
+                             : "  compression: left out, flat fields\n";
+    if (!scene.compression && !options.json.empty())
+      out += "  compressed copies: made after the run, for their size in the --json file\n";
+  } else if (any) {
+    out += "  fields: left out, no rule asks for a surface and no picture shows one\n";
+  }
+  if (options.study) out += "  study: builds fields of its own, of the first object\n";
+  return out;
+}
+
 }  // namespace
 
 std::string table(const Scene& scene, const RunResult& result, const Report& report) {
@@ -225,16 +262,11 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string explanation(const Scene& scene, const RunOptions& options) {
+std::string explanation(const Scene& scene, const DriverOptions& options) {
   std::string out = "this scene, rule by rule\n";
-  for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
-  if (!needs_field(scene.rules) && !scene.objects.empty())
-    out += "  fields: left out, no rule asks for a surface\n";
-  if (needs_field(scene.rules) && !scene.objects.empty())
-    out += scene.compression ? fmt::format("  compression: used, within {} cells and {} degrees\n",
-                                           scene.compression->cells,
-                                           scene.compression->degrees)
-                             : "  compression: left out, flat fields\n";
+  for (const std::string& rule : tess::dn::explain(scene.rules))
+    if (!rule.starts_with("distances:") && !rule.starts_with("normals:")) out += "  " + rule + "\n";
+  out += explanation_of_fields(scene, options);
   const auto count = [&scene](bool (tess::dn::Frame::*holds)() const) {
     return std::count_if(scene.objects.begin(),
                          scene.objects.end(),
@@ -248,10 +280,11 @@ std::string explanation(const Scene& scene, const RunOptions& options) {
   out += fmt::format("  step loops: {}, one for each mass\n", n_species);
   out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"
                            : "  looking at each step for particles that tunnel: left out\n";
-  out += options.balance ? fmt::format("  balancer: used, {}, {}\n",
-                                       options.balance->strategy,
-                                       when_texts[static_cast<std::size_t>(options.balance->when)])
-                         : "  balancer: left out, blocks stay and no load is measured\n";
+  const auto& balance = options.run.balance;
+  out += balance ? fmt::format("  balancer: used, {}, {}\n",
+                               balance->strategy,
+                               when_texts[static_cast<std::size_t>(balance->when)])
+                 : "  balancer: left out, blocks stay and no load is measured\n";
   if (scene.outputs.trajectories == 0) out += "  trajectories: left out\n";
   return out;
 }

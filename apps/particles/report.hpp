@@ -1,6 +1,7 @@
 // What a run of a scene has to show: a table for people, JSON for programs.
 #pragma once
 
+#include "apps/particles/driver.hpp"
 #include "apps/particles/scene.hpp"
 #include "apps/particles/simulate.hpp"
 #include "apps/particles/study.hpp"
@@ -21,7 +22,7 @@ struct Report {
 [[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);
 [[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);
 
-/// What the scene uses and what it leaves out, for --explain.
-[[nodiscard]] std::string explanation(const Scene& scene, const RunOptions& options);
+/// What the run uses and builds, what for, and what it leaves out, for --explain.
+[[nodiscard]] std::string explanation(const Scene& scene, const DriverOptions& options);
 
 }  // namespace particles

@@ -175,6 +175,23 @@ refuses 'emitters: 20000000 particles make the run' limited "$particles" "$(crow
 refuses 'memory is exhausted' limited "$particles" "$(crowded 15000000)" --pes 1 --steps 0
 refuses 'memory is exhausted' limited "$particles" "$(crowded 15000000)" --pes 2 --steps 0
 
+# --explain says what is built and for whom.
+falls='s/, "impact": {"restitution": 0.6}//'
+explains() {  # explains LINE COMMAND…
+  local line=$1
+  shift
+  "$@" --steps 0 --explain >"$scratch/out.txt" 2>&1 && grep -q -- "$line" "$scratch/out.txt"
+  check "$* explains '$line'" $?
+}
+explains 'normals: used, by rules and the picture' "$particles" "$scratch/scene.json" --out "$scratch/out"
+explains 'normals: used, by rules$' "$particles" "$scratch/scene.json"
+explains 'distances: used, by the picture alone' "$particles" "$(edited "$falls")" --out "$scratch/out"
+explains 'normals: used, by the picture alone' "$particles" "$(edited "$falls")" --out "$scratch/out"
+explains 'fields: built, objects 1' "$particles" "$(edited "$falls")" --out "$scratch/out"
+explains 'fields: left out, no rule asks' "$particles" "$(edited "$falls")"
+explains 'distances: left out' "$particles" "$(edited "$falls")"
+explains 'compressed copies: made after the run' "$particles" "$scratch/scene.json" --json "$scratch/again.json"
+
 "$particles" "$scratch/scene.json" --steps 0 --balance rotate --explain >"$scratch/out.txt" &&
   grep -q 'balancer: used, rotate, a round at each exchange' "$scratch/out.txt"
 check "--explain names the balancer" $?
