@@ -38,16 +38,21 @@ void write_pictures(const std::string& folder, const Stage& stage, const RunResu
   plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));
 }
 
-tess::Task run(Problem& problem) {
+tess::Task run(Problem& problem, apps::Progress& progress) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
   RunResult result;
   const DriverOptions& options = problem.options;
-  co_await simulate(stage, result, options.run);
+  RunOptions run_options = options.run;
+  run_options.progress = &progress;
+  co_await simulate(stage, result, run_options);
+  progress.clear();
   tess::print(table(stage->scene, result, problem.report));
   if (options.study) {
     StudyOptions study_options;
+    study_options.progress = &progress;
     if (!options.resolutions.empty()) study_options.resolutions = options.resolutions;
     problem.report.study = study(stage->scene, study_options);
+    progress.clear();
     tess::print(study_table(problem.report.study));
     if (!options.out.empty()) write_study(options.out, problem.report.study);
   }
@@ -85,7 +90,8 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   prepare_outputs(problem.scene, options);
   if (options.explain && machine.process().value == 0)
     tess::print(explanation(problem.scene, options));
-  return tess::run(setup, [&problem]() -> tess::Task { return run(problem); });
+  apps::Progress progress(machine.process().value == 0 ? stderr : nullptr);
+  return tess::run(setup, [&]() -> tess::Task { return run(problem, progress); });
 }
 
 }  // namespace particles
