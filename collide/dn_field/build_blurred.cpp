@@ -41,6 +41,24 @@ std::uint32_t code_of(float x, float y, float z) {
       direction({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
 }
 
+void require_met(const Surface& surface,
+                 const Grid& grid,
+                 const std::vector<SurfaceVoxel>& voxels) {
+  if (!voxels.empty()) return;
+  const auto corner = [](Vec3 p) { return text("(", p.x, ", ", p.y, ", ", p.z, ")"); };
+  const Bounds box = bounds(surface);
+  fail(ErrorCode::bad_argument,
+       "no voxel of the grid meets the surface, which the blurred methods start from: voxels from ",
+       corner(grid.origin),
+       " to ",
+       corner(grid.centre(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1)),
+       ", surface from ",
+       corner(box.low),
+       " to ",
+       corner(box.high),
+       "; put the grid around the surface, or take the exact method");
+}
+
 bool has_body(const Field& field, std::size_t at, Vec3 normal) {
   const auto& n = field.grid.n;
   const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
@@ -140,6 +158,7 @@ Field build_blurred(const Surface& surface, const Grid& grid, const BlurredOptio
        }});
   field.method = options.method;
   const auto voxels = surface_voxels(surface, grid);
+  require_met(surface, grid, voxels);
   const Report rest = [&](double done) { report(exact_share + (1 - exact_share) * done); };
   if (options.method == Method::normals) {
     blur_normals(field, how, voxels, rest);

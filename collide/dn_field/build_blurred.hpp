@@ -28,8 +28,9 @@ struct BlurredOptions {
 /// Builds the field of `surface` on `grid`. On a sphere of 14 cells radius normals are within
 /// 6° of the exact ones (mean 1°), by the potential within 22° (mean 3°). Throws as build_exact
 /// does, and Error(bad_argument) for
-/// a blur out of range, a two-sided field by normals, and an object of near-zero thickness by
-/// normals: one where more than a tenth of the surface's voxels have nothing inside behind them.
+/// a blur out of range, a surface that meets no voxel of the grid, a two-sided field by normals,
+/// and an object of near-zero thickness by normals: one where more than a tenth of the surface's
+/// voxels have nothing inside behind them.
 [[nodiscard]] Field build_blurred(const Surface& surface,
                                   const Grid& grid,
                                   const BlurredOptions& options);

@@ -3,9 +3,12 @@
 #include "collide/dn_field/prepared_triangle.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tess::dn {
 namespace {
+constexpr double tie = 1e-9;  // of a cell: a face between two layers of voxels meets both
+constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of the coordinates
 
 struct Range {
   int first, last;  // inclusive
@@ -16,11 +19,21 @@ Range voxels_near(double low, double high, double origin, double cell, int n) {
           static_cast<int>(std::clamp(std::ceil((high - origin) / cell), -1.0, n - 1.0))};
 }
 
+double largest(const Bounds& box) {
+  double most = 0;
+  for (const Vec3 p : {box.low, box.high})
+    most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return most;
+}
+
 }  // namespace
 
 std::vector<SurfaceVoxel> surface_voxels(const Surface& surface, const Grid& grid) {
   std::vector<std::uint32_t> hits(grid.size(), 0);
   std::vector<std::pair<std::size_t, Vec3>> found;
+  Bounds all = bounds(surface);
+  all.extend(grid.origin);
+  const double slack = tie * grid.cell + rounding * largest(all);
   for (std::size_t number = 0; number < surface.triangles.size(); ++number) {
     const auto corners = surface.corners(number);
     const PreparedTriangle t = prepare(corners);
@@ -28,7 +41,7 @@ std::vector<SurfaceVoxel> surface_voxels(const Surface& surface, const Grid& gri
     for (const Vec3 p : corners) box.extend(p);
     const double half = 0.5 * grid.cell;
     const double span = std::abs(t.normal.x) + std::abs(t.normal.y) + std::abs(t.normal.z);
-    const double reach = half * std::max(1.0, span);
+    const double reach = half * std::max(1.0, span) + slack;
     const auto [i0, i1] = voxels_near(box.low.x, box.high.x, grid.origin.x, grid.cell, grid.n[0]);
     const auto [j0, j1] = voxels_near(box.low.y, box.high.y, grid.origin.y, grid.cell, grid.n[1]);
     const auto [k0, k1] = voxels_near(box.low.z, box.high.z, grid.origin.z, grid.cell, grid.n[2]);

@@ -15,7 +15,8 @@ struct SurfaceVoxel {
 };
 
 /// All voxels whose cube a triangle meets, in the order of the grid. A triangle meets a voxel when
-/// it comes as near to the centre as the plane of a face may and still cut the cube.
+/// it comes as near to the centre as the plane of a face may and still cut the cube. One that lies
+/// between two layers, to rounding, meets both. Empty where the surface stands outside the grid.
 [[nodiscard]] std::vector<SurfaceVoxel> surface_voxels(const Surface& surface, const Grid& grid);
 
 }  // namespace tess::dn

@@ -28,6 +28,46 @@ TEST_CASE("the voxels of a surface are those its triangles cut", "[dn_field]") {
   CHECK(wrong == 0);
 }
 
+TEST_CASE("a flat face between two layers of voxels meets both, wherever the grid stands",
+          "[dn_field]") {
+  for (const double aside : {0.0, 0.1, -7.3, 1e5})
+    for (int n = 6; n <= 60; n += 2) {
+      Surface plate = make_plate(1, 1);
+      for (Vec3& p : plate.vertices) p += Vec3{aside, -aside, aside};
+      const Grid grid = grid_around(bounds(plate), n, 0.4);
+      const auto voxels = surface_voxels(plate, grid);
+      const auto middle = grid.index(n / 2, n / 2, n / 2);
+      int below = 0, above = 0;
+      for (const SurfaceVoxel& v : voxels) {
+        below += v.at == middle - grid.index(0, 0, 1);
+        above += v.at == middle;
+      }
+      INFO("resolution " << n << ", aside " << aside);
+      CHECK(below == 1);
+      CHECK(above == 1);
+    }
+}
+
+TEST_CASE("a plate between two layers is refused by normals and served by potential on both sides",
+          "[dn_field]") {
+  const Surface plate = make_plate(1, 1);
+  for (const int n : {20, 21}) {
+    const Grid grid = grid_around(bounds(plate), n, 0.4);
+    CHECK(refusal([&] {
+            (void)build_blurred(plate, grid, {Method::normals, Sides::one, 0.4, {}, {}});
+          }).find("near-zero thickness") != std::string::npos);
+    const Field field = build_blurred(plate, grid, {Method::potential, Sides::two, 0.4, {}, {}});
+    for (const int k : {n / 2 - 2, n / 2 + 2})
+      CHECK(decoded(field.normal[grid.index(n / 2, n / 2, k)]).z ==
+            Approx(k < n / 2 ? -1 : 1).epsilon(0.01));
+  }
+  const Grid away{{5, 5, 5}, 0.1, {8, 8, 8}};
+  for (const Method method : {Method::normals, Method::potential})
+    CHECK(refusal([&] {
+            (void)build_blurred(plate, away, {method, Sides::one, 0.4, {}, {}});
+          }).find("no voxel of the grid") != std::string::npos);
+}
+
 /// The greatest and the mean angle to the exact normals of a sphere, in degrees, over all voxels
 /// with one at least `core` from the middle.
 std::pair<double, double> angles_off(const Field& field, double core) {
