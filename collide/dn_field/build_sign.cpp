@@ -1,34 +1,20 @@
 #include "collide/dn_field/build_sign.hpp"
 
+#include "collide/dn_field/disjoint_sets.hpp"
+
 #include <algorithm>
-#include <numeric>
 
 namespace tess::dn {
 namespace {
 constexpr int tile_edge = 16, least_edge = 2;
 constexpr double accuracies[] = {2, 4, 12, HUGE_VAL};
 
-/// The connected pieces of a rim, as the lowest vertex number of each vertex's piece.
-std::vector<std::uint32_t> pieces(const std::vector<RimEdge>& edges, std::size_t n_vertices) {
-  std::vector<std::uint32_t> parent(n_vertices);
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const RimEdge& e : edges) {
-    const auto [low, high] = std::minmax({root(e.from), root(e.to)});
-    parent[high] = low;
-  }
-  for (std::uint32_t v = 0; v < n_vertices; ++v) parent[v] = root(v);
-  return parent;
-}
-
 /// Triangles that close `surface`, and the apexes that they need, appended to its vertices. An apex
 /// stands a little off the middle of its rim, so that caps do not lie in planes of voxels.
 std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
                                                 const std::vector<RimEdge>& edges) {
-  const auto piece = pieces(edges, surface.vertices.size());
+  DisjointSets pieces(surface.vertices.size());
+  for (const RimEdge& e : edges) pieces.join(e.from, e.to);
   struct Middle {
     Vec3 sum;
     double count = 0;
@@ -37,7 +23,7 @@ std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
   };
   std::vector<Middle> middle(surface.vertices.size());
   for (const RimEdge& e : edges) {
-    Middle& m = middle[piece[e.from]];
+    Middle& m = middle[pieces.set_of(e.from)];
     for (const std::uint32_t v : {e.from, e.to}) {
       m.sum += surface.vertices[v];
       m.box.extend(surface.vertices[v]);
@@ -52,7 +38,8 @@ std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
   }
   std::vector<std::array<std::uint32_t, 3>> caps;
   for (const RimEdge& e : edges)
-    for (int i = 0; i < e.surplus; ++i) caps.push_back({e.to, e.from, middle[piece[e.from]].apex});
+    for (int i = 0; i < e.surplus; ++i)
+      caps.push_back({e.to, e.from, middle[pieces.set_of(e.from)].apex});
   return caps;
 }
 

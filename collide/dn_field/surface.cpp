@@ -1,5 +1,6 @@
 #include "collide/dn_field/surface.hpp"
 
+#include "collide/dn_field/surface_edges.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -88,36 +89,12 @@ void validate(const Surface& surface) {
 }
 
 std::vector<RimEdge> rim(const Surface& surface) {
-  // Sorted by the lower vertex by counting, then the few edges of each vertex by the upper one.
-  const auto each_edge = [&](const auto& visit) {
-    for (const auto& t : surface.triangles)
-      for (std::size_t i = 0; i < 3; ++i)
-        if (t[i] != t[(i + 1) % 3]) visit(t[i], t[(i + 1) % 3]);
-  };
-  std::vector<std::size_t> begin(surface.vertices.size() + 2, 0);
-  each_edge([&](std::uint32_t a, std::uint32_t b) { ++begin[std::min(a, b) + std::size_t{2}]; });
-  for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
-  struct Upper {
-    std::uint32_t vertex;
-    int balance;
-  };
-  std::vector<Upper> upper(begin.back());
-  each_edge([&](std::uint32_t a, std::uint32_t b) {
-    upper[begin[std::min(a, b) + std::size_t{1}]++] = {std::max(a, b), a < b ? 1 : -1};
-  });
   std::vector<RimEdge> edges;
-  for (std::uint32_t low = 0; low < surface.vertices.size(); ++low) {
-    const auto first = upper.begin() + static_cast<std::ptrdiff_t>(begin[low]);
-    const auto last = upper.begin() + static_cast<std::ptrdiff_t>(begin[low + std::size_t{1}]);
-    std::sort(first, last, [](Upper a, Upper b) { return a.vertex < b.vertex; });
-    for (auto at = first; at != last;) {
-      const std::uint32_t high = at->vertex;
-      int balance = 0;
-      for (; at != last && at->vertex == high; ++at) balance += at->balance;
-      if (balance > 0) edges.push_back({low, high, balance});
-      if (balance < 0) edges.push_back({high, low, -balance});
-    }
-  }
+  each_edge(surface, [&](const EdgeUse& edge) {
+    const int surplus = edge.up - edge.down;
+    if (surplus > 0) edges.push_back({edge.low, edge.high, surplus});
+    if (surplus < 0) edges.push_back({edge.high, edge.low, -surplus});
+  });
   return edges;
 }
 
