@@ -5,6 +5,7 @@
 #include "collide/dn_field/build_exact.hpp"
 #include "collide/dn_field/build_voxels.hpp"
 #include "collide/dn_field/normal_code.hpp"
+#include "collide/dn_field/outward.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -135,18 +136,20 @@ void blur_potential(Field& field,
 
 }  // namespace
 
-Field build_blurred(const Surface& surface, const Grid& grid, const BlurredOptions& options) {
+Field build_blurred(const Surface& given, const Grid& grid, const BlurredOptions& options) {
   if (options.method == Method::exact)
     fail(ErrorCode::bad_argument, "a blurred field by the exact method; take build_exact");
   if (options.method == Method::normals && options.sides == Sides::two)
     fail(ErrorCode::bad_argument,
          "a two-sided field by the normals method, which serves one side alone; take the potential "
          "or the exact method");
-  validate(surface);
+  validate(given);
   require_thick(grid, options.thickness);
   const Blur how = options.blur.rounds == 0 ? choose_blur(grid, options.thickness) : options.blur;
   require_blur(how);
   require_buildable(grid, bytes_per_voxel);
+  const OutwardSurface outward(given);  // its triangles' normals are what is blurred
+  const Surface& surface = options.sides == Sides::one ? outward.surface() : given;
   const auto report = [&](double done) {
     if (options.progress) options.progress(done);
   };

@@ -14,11 +14,15 @@ constexpr int block_edge = 4;
 constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are asked for at once
 constexpr double just_beyond = 1 + 1e-9;
 
-const Surface& validated(const Surface& surface, const Grid& grid, const ExactOptions& options) {
+/// None where the field has two sides, after all that must be refused was refused.
+std::optional<OutwardSurface> outward_of(const Surface& surface,
+                                         const Grid& grid,
+                                         const ExactOptions& options) {
   validate(surface);
   require_thick(grid, options.thickness);
   require_buildable(grid, options.content == Content::distance ? 4 : 8);
-  return surface;
+  if (options.sides == Sides::two) return std::nullopt;
+  return std::optional<OutwardSurface>(std::in_place, surface);
 }
 
 int up_to(int voxel, int step, int n) {
@@ -46,8 +50,14 @@ Slab slab_of(Field& field, int first, int last) {
 }
 
 ExactBuilder::ExactBuilder(const Surface& surface, const Grid& grid, ExactOptions options)
-    : grid_(grid), options_(std::move(options)), tree_(validated(surface, grid, options_)) {
-  if (options_.sides == Sides::one) inside_.emplace(surface, tree_, grid);
+    : ExactBuilder(surface, outward_of(surface, grid, options), grid, options) {}
+
+ExactBuilder::ExactBuilder(const Surface& surface,
+                           const std::optional<OutwardSurface>& outward,
+                           const Grid& grid,
+                           ExactOptions options)
+    : grid_(grid), options_(std::move(options)), tree_(outward ? outward->surface() : surface) {
+  if (outward) inside_.emplace(*outward, tree_, grid);
 }
 
 Field ExactBuilder::empty_field() const {

@@ -1,5 +1,6 @@
 // The exact construction: signed distance by the closest feature of the mesh, sign by the winding
-// number, so that meshes with holes and flipped triangles work. The surface may be far denser or
+// number, so that meshes with holes and flipped triangles work, and those turned inside out
+// (outward.hpp). The surface may be far denser or
 // coarser than the grid. Blocks of 4³ voxels walk a tree of the triangles together; blocks further
 // than the thickness are not asked for.
 //
@@ -64,6 +65,11 @@ class ExactBuilder {
 
  private:
   struct Shelf;  // up to four layers
+  /// `outward`: of `surface`, for one-sided fields.
+  ExactBuilder(const Surface& surface,
+               const std::optional<OutwardSurface>& outward,
+               const Grid& grid,
+               ExactOptions options);
   void fill_block(int i, int j, const Shelf& shelf) const;
   double build_shelf(const Slab& slab, int first, int last) const;
 

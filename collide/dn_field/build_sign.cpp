@@ -50,14 +50,11 @@ double off_integer(double x) {
 
 }  // namespace
 
-Inside::Inside(const Surface& surface, const Bvh& tree, const Grid& grid)
+Inside::Inside(const OutwardSurface& surface, const Bvh& tree, const Grid& grid)
     : tree_(tree), grid_(grid) {
-  if (is_closed(surface)) {
-    lines_.emplace(surface, grid);
-    return;
-  }
-  Surface whole = welded(surface);
-  if (const auto edges = rim(whole); !edges.empty()) {
+  Surface whole = surface.surface();
+  if (!surface.is_closed()) {
+    const auto edges = rim(whole);
     Surface caps;
     caps.triangles = close(whole, edges);
     caps.vertices = whole.vertices;

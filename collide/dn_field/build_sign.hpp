@@ -11,6 +11,7 @@
 
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/grid.hpp"
+#include "collide/dn_field/outward.hpp"
 #include "collide/dn_field/winding_lines.hpp"
 
 #include <optional>
@@ -20,7 +21,7 @@ namespace tess::dn {
 class Inside {
  public:
   /// `tree` is that of `surface` and must outlive this.
-  Inside(const Surface& surface, const Bvh& tree, const Grid& grid);
+  Inside(const OutwardSurface& surface, const Bvh& tree, const Grid& grid);
 
   /// inside: (last − first) × n[1] × n[0], x fastest; 1 inside, 0 outside, for layers first to last
   /// − 1.
