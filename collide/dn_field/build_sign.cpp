@@ -43,6 +43,17 @@ std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
   return caps;
 }
 
+/// What a sum over the triangles of `surface` costs, in no unit: how many there are, times how far
+/// the average one is felt on its own.
+double cost(const Surface& surface) {
+  double area = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    area += norm(cross(b - a, c - a));
+  }
+  return area * static_cast<double>(surface.triangles.size());
+}
+
 /// How far from the nearest integer.
 double off_integer(double x) {
   return std::abs(x - std::round(x));
@@ -58,16 +69,23 @@ Inside::Inside(const OutwardSurface& surface, const Bvh& tree, const Grid& grid)
     Surface caps;
     caps.triangles = close(whole, edges);
     caps.vertices = whole.vertices;
+    if (cost(caps) > cost(whole)) return;
     caps_.emplace(caps);
     whole.triangles.insert(whole.triangles.end(), caps.triangles.begin(), caps.triangles.end());
   }
   lines_.emplace(std::move(whole), grid);
 }
 
+WindingEstimate Inside::excess(Vec3 p, double radius, double accuracy) const {
+  if (caps_) return caps_->winding_estimate(p, radius, accuracy);
+  const WindingEstimate all = tree_.winding_estimate(p, radius, accuracy);
+  return {-all.value, all.error};
+}
+
 bool Inside::decide_voxel(Vec3 p, int winding) const {
   for (const double accuracy : accuracies) {
-    const WindingEstimate caps = caps_->winding_estimate(p, 0, accuracy);
-    if (off_integer(caps.value + 0.5) > caps.error) return winding > caps.value + 0.5;
+    const WindingEstimate off = excess(p, 0, accuracy);
+    if (off_integer(off.value + 0.5) > off.error) return winding > off.value + 0.5;
   }
   return tree_.winding_number(p, 0) > 0.5;
 }
@@ -84,12 +102,10 @@ void Inside::decide(const Tile& tile,
   };
   const Vec3 corner = grid_.centre(low[0], low[1], low[2]);
   const Vec3 other = grid_.centre(high[0] - 1, high[1] - 1, high[2] - 1);
-  const WindingEstimate caps =
-      caps_->winding_estimate(0.5 * (corner + other), 0.5 * norm(other - corner), 2);
-  if (off_integer(caps.value + 0.5) > caps.error) {
-    each([&](int, int, int, std::size_t at) {
-      inside[at] = winding[at] > caps.value + 0.5 ? 1 : 0;
-    });
+  const WindingEstimate off = excess(0.5 * (corner + other), 0.5 * norm(other - corner), 2);
+  if (off_integer(off.value + 0.5) > off.error) {
+    each(
+        [&](int, int, int, std::size_t at) { inside[at] = winding[at] > off.value + 0.5 ? 1 : 0; });
     return;
   }
   const int edge = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
@@ -114,11 +130,12 @@ void Inside::decide(const Tile& tile,
 
 void Inside::layers(int first, int last, std::span<std::uint8_t> inside) const {
   const auto layer = static_cast<std::size_t>(grid_.n[0]) * static_cast<std::size_t>(grid_.n[1]);
-  std::vector<std::int16_t> winding(inside.size());
-  for (int k = first; k < last; ++k)
-    lines_->layer(k,
-                  std::span(winding).subspan(static_cast<std::size_t>(k - first) * layer, layer));
-  if (!caps_) {
+  std::vector<std::int16_t> winding(inside.size(), 0);
+  if (lines_)
+    for (int k = first; k < last; ++k)
+      lines_->layer(k,
+                    std::span(winding).subspan(static_cast<std::size_t>(k - first) * layer, layer));
+  if (lines_ && !caps_) {
     for (std::size_t at = 0; at < inside.size(); ++at) inside[at] = winding[at] > 0 ? 1 : 0;
   } else {
     for (int k = first; k < last; k += tile_edge)

@@ -6,7 +6,9 @@
 //
 // So what has to be summed over triangles is the caps alone, and that only where their share is
 // near a half: elsewhere one estimate decides a tile of voxels. A closed surface has no caps and
-// costs the lines. Immutable once made; any thread.
+// costs the lines. Where so many triangles are flipped or missing that rims run into each other,
+// cones span the whole body and cost more than the surface: then there are no caps and lines, and
+// the surface itself is summed, by the same estimates. Immutable once made; any thread.
 #pragma once
 
 #include "collide/dn_field/bvh.hpp"
@@ -35,12 +37,14 @@ class Inside {
               int first,
               std::span<const std::int16_t> winding,
               std::span<std::uint8_t> inside) const;
+  /// What the lines' count is above the winding number of the surface.
+  [[nodiscard]] WindingEstimate excess(Vec3 p, double radius, double accuracy) const;
   [[nodiscard]] bool decide_voxel(Vec3 p, int winding) const;
 
   const Bvh& tree_;
   Grid grid_;
   std::optional<Bvh> caps_;
-  std::optional<WindingLines> lines_;
+  std::optional<WindingLines> lines_;  // none: their count is 0
 };
 
 }  // namespace tess::dn

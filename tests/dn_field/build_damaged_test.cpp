@@ -5,6 +5,9 @@
 #include "tests/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 
+#include <ctime>
+#include <random>
+
 namespace {
 
 using namespace tess::dn;
@@ -21,6 +24,14 @@ Surface joined(Surface surface, const Surface& other, Vec3 by = {}) {
   for (const Vec3 p : other.vertices) surface.vertices.push_back(p + by);
   for (const auto& [a, b, c] : other.triangles)
     surface.triangles.push_back({first + a, first + b, first + c});
+  return surface;
+}
+
+/// About the share `part` of all triangles the other way round.
+Surface with_share_flipped(Surface surface, double part) {
+  std::mt19937 random(5);
+  for (auto& t : surface.triangles)
+    if (std::uniform_real_distribution<double>(0, 1)(random) < part) std::swap(t[0], t[1]);
   return surface;
 }
 
@@ -47,8 +58,7 @@ TEST_CASE("a closed mesh turned inside out is what it bounds, normals too", "[dn
     const Grid grid = grid_around(bounds(right), 36, 0.4);
     for (const Method method : {Method::exact, Method::normals, Method::potential}) {
       const Field wanted = field_of(right, grid, method), found = field_of(wrong, grid, method);
-      CHECK(found.distance == wanted.distance);
-      CHECK(found.normal == wanted.normal);
+      CHECK((found.distance == wanted.distance && found.normal == wanted.normal));
     }
   }
   const Grid grid = grid_around(bounds(shell), 35, 0.4);
@@ -86,6 +96,35 @@ TEST_CASE("an open dish keeps its hollow outside, whichever way it faces", "[dn_
       inside += norm(p) < 0.8 && field.distance[at] < 0;
     });
     CHECK(inside == 0);
+  }
+}
+
+TEST_CASE(
+    "however many triangles are flipped, the sign is the winding number's and costs no more "
+    "than summing them",
+    "[dn_field]") {
+  const Surface ball = make_sphere(1, 40);
+  const Grid grid = grid_around(bounds(ball), 40, 0.4);
+  const ExactOptions options{Sides::one, Content::distance, 3 * grid.cell, {}};
+  const auto built = [&](const Surface& surface) {
+    const std::clock_t begin = std::clock();
+    Field field = build_exact(surface, grid, options);
+    return std::pair{std::move(field), static_cast<double>(std::clock() - begin)};
+  };
+  const double whole = built(ball).second;
+  for (const double part : {0.02, 0.1, 0.2, 0.3, 0.4}) {
+    const Surface flipped = with_share_flipped(ball, part);
+    const auto [field, took] = built(flipped);
+    const Bvh tree(flipped);
+    int wrong = 0;
+    for_each_voxel(grid, [&, &f = field](std::size_t at, Vec3 p) {
+      if (at % 41 != 0) return;
+      const double w = tree.winding_number(p, 0);
+      if (std::abs(w - 0.5) > 0.01) wrong += (f.distance[at] < 0) != (w > 0.5);
+    });
+    INFO("flipped " << part << ": " << took / whole << " times the time of the whole mesh");
+    CHECK(wrong == 0);
+    CHECK(took < 60 * whole);  // caps that span the body took 600 times
   }
 }
 
