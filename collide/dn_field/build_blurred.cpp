@@ -15,6 +15,7 @@ namespace {
 constexpr double exact_share = 0.5;     // of the progress
 constexpr double inward_step = 1.25;    // cells behind a voxel of the surface: inside, or thin
 constexpr double thin_share = 0.1;      // of the surface's voxels
+constexpr double flipped_share = 0.1;   // of the edges: more, and flips are why nothing is inside
 constexpr float least_vector = 1e-12F;  // shorter has no direction
 constexpr double bytes_per_voxel = 36;  // field, three components before and after, hits
 
@@ -73,27 +74,42 @@ bool has_body(const Field& field, std::size_t at, Vec3 normal) {
   return field.distance[field.grid.index(behind[0], behind[1], behind[2])] < 0;
 }
 
-void require_body(const Field& field, const std::vector<SurfaceVoxel>& voxels) {
+void require_body(const Field& field,
+                  const Surface& surface,
+                  const std::vector<SurfaceVoxel>& voxels) {
   std::size_t thin = 0;
   for (const SurfaceVoxel& v : voxels)
     if (!has_body(field, v.at, v.normal)) ++thin;
-  if (static_cast<double>(thin) > thin_share * static_cast<double>(voxels.size()))
+  if (static_cast<double>(thin) <= thin_share * static_cast<double>(voxels.size())) return;
+  const double disagreeing = disagreeing_share(welded(surface));
+  if (disagreeing > flipped_share)
     fail(ErrorCode::bad_argument,
-         "the object is of near-zero thickness in ",
+         "the orientation of triangles disagrees at ",
+         100 * disagreeing,
+         " % of the edges between two, and ",
          thin,
          " of ",
          voxels.size(),
-         " voxels of its surface, with cells of ",
-         field.grid.cell,
-         "; the normals method fails there: take the potential or the exact method, or a higher "
-         "resolution");
+         " voxels of the surface have no inside behind them; the normals method needs triangles "
+         "that agree which side is out: orient them, or take a two-sided field by the potential or "
+         "the exact method");
+  fail(ErrorCode::bad_argument,
+       "the object is of near-zero thickness in ",
+       thin,
+       " of ",
+       voxels.size(),
+       " voxels of its surface, with cells of ",
+       field.grid.cell,
+       "; the normals method fails there: take the potential or the exact method, or a higher "
+       "resolution");
 }
 
 void blur_normals(Field& field,
+                  const Surface& surface,
                   const Blur& how,
                   const std::vector<SurfaceVoxel>& voxels,
                   const Report& done) {
-  require_body(field, voxels);
+  require_body(field, surface, voxels);
   std::array<std::vector<float>, 3> parts;
   for (int a = 0; a < 3; ++a) {
     auto& part = parts[static_cast<std::size_t>(a)];
@@ -164,7 +180,7 @@ Field build_blurred(const Surface& given, const Grid& grid, const BlurredOptions
   require_met(surface, grid, voxels);
   const Report rest = [&](double done) { report(exact_share + (1 - exact_share) * done); };
   if (options.method == Method::normals) {
-    blur_normals(field, how, voxels, rest);
+    blur_normals(field, surface, how, voxels, rest);
   } else {
     blur_potential(field, how, voxels, rest);
   }

@@ -98,6 +98,16 @@ std::vector<RimEdge> rim(const Surface& surface) {
   return edges;
 }
 
+double disagreeing_share(const Surface& surface) {
+  double between_two = 0, disagreeing = 0;
+  each_edge(surface, [&](const EdgeUse& edge) {
+    if (edge.up + edge.down != 2) return;
+    between_two += 1;
+    if (edge.up != edge.down) disagreeing += 1;
+  });
+  return between_two > 0 ? disagreeing / between_two : 0;
+}
+
 Surface welded(const Surface& surface) {
   std::vector<std::uint32_t> order(surface.vertices.size()), merged(surface.vertices.size());
   std::iota(order.begin(), order.end(), 0U);

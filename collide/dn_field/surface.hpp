@@ -46,6 +46,10 @@ struct RimEdge {
   return rim(surface).empty();
 }
 
+/// The share of edges between two triangles that run along it the same way, so that one of them is
+/// flipped. 0 where no two triangles meet.
+[[nodiscard]] double disagreeing_share(const Surface& surface);
+
 /// Merges vertices of bit-equal position, so that a triangle soup whose seams agree counts as
 /// closed.
 [[nodiscard]] Surface welded(const Surface& surface);

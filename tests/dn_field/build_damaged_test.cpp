@@ -128,4 +128,22 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a refusal by normals tells flipped triangles from an object without thickness",
+          "[dn_field]") {
+  const auto refused = [](const Surface& surface) {
+    const Grid grid = grid_around(bounds(surface), 30, 0.3);
+    return refusal([&] { (void)field_of(surface, grid, Method::normals); });
+  };
+  const Surface ball = make_sphere(1, 24), plate = make_plate(1, 6);
+  for (const Surface& whole : {ball, torn(ball, 0)}) {
+    const std::string reason = refused(with_share_flipped(whole, 0.3));
+    CHECK(reason.find("orientation of triangles disagrees") != std::string::npos);
+    CHECK(reason.find("near-zero thickness") == std::string::npos);
+  }
+  for (const Surface& thin : {plate, with_flipped(plate, 72), make_box({1, 1, 0.01})})
+    CHECK(refused(thin).find("near-zero thickness") != std::string::npos);
+  CHECK(disagreeing_share(ball) == 0);
+  CHECK(disagreeing_share(with_share_flipped(ball, 0.3)) == Approx(0.42).margin(0.05));
+}
+
 }  // namespace
