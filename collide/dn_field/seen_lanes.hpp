@@ -41,6 +41,14 @@ class Pose {
     const Vec3 v = object_.frame.velocity;
     return (x - object_.frame.position) - D3{time * v.x, time * v.y, time * v.z};
   }
+  /// A point as the object sees it; and the other way about.
+  [[nodiscard]] D3 seen(D3 x) const { return 1.0 / size_ * begin(arm(x)) + object_.frame.position; }
+  [[nodiscard]] D3 place(D3 seen) const {
+    const D time = f_ * object_.step;
+    const D3 arm = size_ * now(seen - object_.frame.position);
+    const Vec3 v = object_.frame.velocity;
+    return D3{time * v.x, time * v.y, time * v.z} + (arm + object_.frame.position);
+  }
   /// Of the surface at `x`, which stands `beside` its own points (growth takes those along).
   [[nodiscard]] D3 surface_velocity(D3 x, D3 beside) const {
     const Frame& frame = object_.frame;
@@ -67,11 +75,10 @@ struct Seen {
 inline Seen seen(const Placed& object, const Pose& pose, D3 x, D3 way) {
   const Frame& frame = object.frame;
   const D3 drift = way - object.step * frame.velocity, q = pose.arm(x);
-  if (!object.bends()) return {q + frame.position, drift};
+  if (!object.bends()) return {pose.seen(x), drift};
   const D3 rate = drift - cross(object.step * frame.angular_velocity, q);
   const D per = 1.0 / pose.size();
-  return {per * pose.begin(q) + frame.position,
-          per * pose.begin(fma(-object.growth * per, q, rate))};
+  return {pose.seen(x), per * pose.begin(fma(-object.growth * per, q, rate))};
 }
 
 /// How a way bends, in a time t up to `valid`: it comes no further than speed t + gain t², and no

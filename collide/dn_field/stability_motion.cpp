@@ -159,6 +159,43 @@ void approaching_walls(Rows& rows) {
   }
 }
 
+/// Who rests on a surface that moves far in a step goes with it; a room that spins keeps who flies
+/// in it.
+void taken_along(Rows& rows) {
+  const Field slab = plane_field(cube_grid(1.5, 60), direction({1, 0, 3}));
+  for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
+    for (const double cells : {0.1, 1.0, 10.0}) {
+      const double step = 0.01, speed = cells * slab.grid.cell / step;
+      std::vector<Object> objects{{&slab, {}}};
+      objects[0].frame.velocity = {0, 0, speed};
+      const int n_steps = static_cast<int>(1.5 / (speed * step));
+      const Particle end =
+          flown(impact(0, Sweep::on, look_up), step, n_steps, objects, {{-0.2, 0.1, 0.4}, {}});
+      advance(objects, step, n_steps);
+      const Vec3 seen = objects[0].frame.to_object(end.position);
+      const double depth = -dot(seen, direction({1, 0, 3})) / slab.grid.cell;
+      rows.add("taken along: depth", "cells a step", cells, depth, 0.75);
+    }
+  constexpr double wall = 0.8;
+  const Field room = room_field(cube_grid(1.2, 61), wall);
+  for (const double angle : {0.01, 0.3, 3.0, 300.0})
+    for (const double speed : {1.0, 1e3}) {  // rooms a step
+      const double step = 0.01;
+      std::vector<Object> objects{{&room, {}}};
+      objects[0].frame.angular_velocity = angle / step * direction({2, -1, 3});
+      const Particle end = flown(
+          impact(0.7, Sweep::on), step, 50, objects, {{}, speed / step * direction({1, 2, -2})});
+      advance(objects, step, 50);
+      const Vec3 seen = objects[0].frame.to_object(end.position);
+      const double out = std::max({std::abs(seen.x), std::abs(seen.y), std::abs(seen.z)}) - wall;
+      rows.add("spinning room: cells out of it",
+               "radians a step",
+               angle,
+               is_finite(seen) ? out / room.grid.cell : HUGE_VAL,
+               1);
+    }
+}
+
 /// Held by drag on a slope for a million steps: it creeps with the speed that balances gravity, and
 /// stays on it.
 void slope(Rows& rows) {
@@ -243,6 +280,7 @@ void extreme_motion(Rows& rows) {
   corners(rows);
   moving_walls(rows);
   approaching_walls(rows);
+  taken_along(rows);
   slope(rows);
   all_rules(rows);
 }

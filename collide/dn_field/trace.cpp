@@ -72,13 +72,14 @@ Here ask(const Placed& object, LookUp kind, const Pose& pose, D3 x, D3 way, cons
 struct Contact {
   D at = all(never);  ///< fraction of the step
   D3 normal{}, surface_velocity{};
-  D too_deep{};
+  D too_deep{}, object{};  ///< its number
 };
 Contact select(L mask, const Contact& a, const Contact& b) {
   return {mask ? a.at : b.at,
           select(mask, a.normal, b.normal),
           select(mask, a.surface_velocity, b.surface_velocity),
-          mask ? a.too_deep : b.too_deep};
+          mask ? a.too_deep : b.too_deep,
+          mask ? a.object : b.object};
 }
 
 /// What is left between a particle and where it meets an object, by what the field said of one
@@ -104,16 +105,61 @@ struct Scene {
   LookUp kind;
 };
 
+/// Ways in the world that begin at the fraction `begin` of the step, x + s × way.
+struct Ways {
+  D3 x, way;
+  D begin;
+
+  [[nodiscard]] D3 at(D s) const { return fma(s, way, x); }
+};
+
+/// The contact with object `o` within the stride from s on that its field allows; `next` is cut to
+/// where that ends.
+Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D& next) {
+  const RuleConstants& c = scene.constants;
+  const Placed& object = scene.objects[o];
+  const Pose pose(object, ways.begin + s);
+  const D3 x = ways.at(s);
+  const Seen seen = lanes::seen(object, pose, x, ways.way);
+  const Here here = ask(object, scene.kind, pose, x, ways.way, seen);
+  next = min(next, s + here.stride);
+  const Gap gap{object, here, seen.place, c.threshold};
+  const D closes = gap.rate(pose, seen);
+  const L sinks =
+      (closes < -at_rest * (norm1(ways.way) + norm1(seen.way))) & (here.distance < never);
+  D met = max(gap.at(pose, seen) / -closes, D{});
+  const L may = settled(sinks & (met <= 2.0 * here.stride));
+  if (!any(may)) return {};
+  if (object.bends())
+    for (int newton = 0; newton < 2; ++newton) {
+      const D after = only(may, min(met, here.stride));
+      const Pose then(object, ways.begin + s + after);
+      const Seen seen_then = lanes::seen(object, then, ways.at(s + after), ways.way);
+      const D rate = gap.rate(then, seen_then);
+      const D better = max(after - gap.at(then, seen_then) / rate, D{});
+      met = (may & (rate < 0.0)) ? better : met;
+    }
+  // As the object stands there and then, so that who rests on it rests.
+  const L touches = may & (met <= here.stride);
+  const D at = s + only(touches, met);
+  const Pose then(object, ways.begin + at);
+  const D3 n = then.now(here.normal);
+  return {touches ? at : all(never),
+          n,
+          then.surface_velocity(ways.at(at), all(c.threshold) * n),
+          max(c.threshold - c.slack - here.distance * then.size(), D{}),
+          all(static_cast<double>(o))};
+}
+
 /// The first contacts on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on,
 /// for particles that fly; `at` is `never` where there is none. `rest` is shortened where the way
 /// could not be followed to its end.
 Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
-  const auto& [c, objects, kind] = scene;
   std::size_t budget = 1024;  // advances; each leads into another voxel
-  for (const Placed& object : objects)
+  for (const Placed& object : scene.objects)
     budget +=
         8 * static_cast<std::size_t>(object.field.n[0] + object.field.n[1] + object.field.n[2]);
-  const D elapsed = 1.0 - rest;
+  const Ways ways{x, way, 1.0 - rest};
   Contact first;
   D s{};
   for (L going = flies & (s <= rest); any(going); going = going & (s <= rest)) {
@@ -123,35 +169,9 @@ Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
     }
     D next = all(never);
     Contact contact;
-    const D f = elapsed + s;
-    const D3 here = fma(s, way, x);
-    for (const Placed& object : objects) {
-      const Pose pose(object, f);
-      const Seen seen = lanes::seen(object, pose, here, way);
-      const Here field = ask(object, kind, pose, here, way, seen);
-      next = min(next, s + field.stride);
-      const Gap gap{object, field, seen.place, c.threshold};
-      D closes = gap.rate(pose, seen);
-      const L sinks =
-          (closes < -at_rest * (norm1(way) + norm1(seen.way))) & (field.distance < never);
-      D met = max(gap.at(pose, seen) / -closes, D{});
-      if (object.bends() && any(sinks & (met <= 2.0 * field.stride)))
-        for (int newton = 0; newton < 2; ++newton) {
-          const D after = only(sinks, min(met, field.stride));
-          const Pose then(object, f + after);
-          const Seen seen_then = lanes::seen(object, then, fma(s + after, way, x), way);
-          closes = gap.rate(then, seen_then);
-          met = closes < 0.0 ? max(after - gap.at(then, seen_then) / closes, D{}) : met;
-        }
-      const L touches = settled(sinks & (met <= field.stride) & (s + met < contact.at));
-      if (!any(touches)) continue;
-      // As the object stands there and then, so that who rests on it rests.
-      const D at = s + only(touches, met);
-      const Pose then(object, elapsed + at);
-      const D3 n = then.now(field.normal);
-      const D3 u = then.surface_velocity(fma(at, way, x), all(c.threshold) * n);
-      const D too_deep = max(c.threshold - c.slack - field.distance * then.size(), D{});
-      contact = select(touches, {at, n, u, too_deep}, contact);
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      const Contact here = contact_with(scene, o, ways, s, next);
+      contact = select(here.at < contact.at, here, contact);
     }
     const L found = going & (contact.at <= next) & (contact.at <= rest);
     first = select(found, contact, first);
@@ -163,6 +183,19 @@ Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
 
 L finite(D3 v) {
   return norm1(v) < never;
+}
+
+/// Who touches an object at the fraction f of the step, at x, and flies by `slides` along it: goes
+/// with it to the step's end.
+void take_along(
+    const Scene& scene, const Contact& contact, L touches, D f, D3& x, D3 slides, D3& velocity) {
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Pose now(scene.objects[o], f), last(scene.objects[o], all(1.0));
+    const L on = touches & (contact.object == static_cast<double>(o));
+    x = select(on, last.place(now.seen(x)), x);
+    const D3 along = last.now(now.begin(slides));
+    velocity = select(on, last.surface_velocity(x, D3{}) + along, velocity);
+  }
 }
 
 /// As many as a vector holds, or fewer.
@@ -209,8 +242,8 @@ void trace_vector(const Scene& scene,
     way = select(flies, rest_way, way);
     end = select(flies, w1, end);
     if (bounce + 1 == max_bounces) {
-      end = select(flies, start, end);
-      way = select(flies, all(c.step) * u, way);
+      take_along(scene, contact, flies, 1.0 - rest, x, start - u, end);
+      rest = only(~flies, rest);
     }
   }
   x = fma(rest, way, x);

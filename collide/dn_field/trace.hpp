@@ -11,7 +11,7 @@
 namespace tess::dn {
 
 /// Flies each of `from` through the step, with up to 16 bounces, and writes its particle. What has
-/// more bounces, in a crevice, goes with the last surface until the next step. Adds to
+/// more bounces, in a crevice, is taken along by the last surface until the next step. Adds to
 /// energy[particle] twice the work that the flight's acceleration did beyond that on the straight
 /// way.
 void trace(const RuleConstants& constants,
