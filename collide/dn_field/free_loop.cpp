@@ -31,13 +31,19 @@ void fly(const FlightConstants& constants,
     return;
   }
   // A kick's root and quotient take long: the next vector is begun meanwhile, not the next step.
-  for (const VelocityChanges& step : changes)
+  const auto fly_step = [&](const auto& change) {
     for (std::size_t p = 0; p < particles.count; p += width) {
-      D3 x = places(particles, p), v = changed(step, x, velocities(particles, p));
+      D3 x = places(particles, p), v = change(x, velocities(particles, p));
       fly_one<Flies>(c, x, v);
       set_places(particles, p, x);
       set_velocities(particles, p, v);
     }
+  };
+  for (const VelocityChanges& step : changes)
+    if (step.kicks.size() == 1 && !(step.drag > 0))
+      fly_step([kick = step.kicks.front()](D3 x, D3 v) { return kicked(kick, x, v); });
+    else
+      fly_step([&step](D3 x, D3 v) { return changed(step, x, v); });
 }
 
 }  // namespace
