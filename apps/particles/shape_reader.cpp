@@ -3,6 +3,7 @@
 #include "apps/particles/box_union.hpp"
 #include "apps/particles/shown.hpp"
 #include "collide/dn_field/grid.hpp"
+#include "collide/dn_field/outward.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/error.hpp"
 
@@ -197,6 +198,9 @@ SceneObject read_object(const Node& node, const std::string& folder, double dt) 
         static_cast<tess::dn::Method>(keys["method"].word({"exact", "normals", "potential"}));
   if (keys.has("sides"))
     object.sides = static_cast<tess::dn::Sides>(keys["sides"].word({"one", "two"}));
+  // Emitters, audits and the study see the triangles as the field does.
+  if (object.sides == tess::dn::Sides::one)
+    object.surface = Surface(tess::dn::OutwardSurface(object.surface).surface());
   const tess::dn::Bounds box = tess::dn::bounds(object.surface);
   const Vec3 size = box.size();
   object.thickness = 0.25 * std::max({size.x, size.y, size.z});

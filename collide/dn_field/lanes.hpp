@@ -202,12 +202,21 @@ template <class V>
 struct Two {
   V first, second;
 };
+#ifdef __AVX2__
+using Half = std::int64_t __attribute__((vector_size(32)));
+inline Half gather_four(const std::uint32_t* table, __m128i at) {
+  const __m256i zero = _mm256_setzero_si256(), every = _mm256_cmpeq_epi64(zero, zero);
+  return (Half)_mm256_mask_i32gather_epi64(
+      zero, reinterpret_cast<const long long*>(table), at, every, 4);
+}
+#endif
 inline Two<I> gather_two(const std::uint32_t* table, I at) {
 #ifdef __AVX512F__
-  const L both = (L)_mm512_mask_i32gather_epi64((__m512i)L{}, 0xFF, (__m256i)at, table, 4);
+  const Half low = gather_four(table, _mm256_castsi256_si128((__m256i)at)),
+             high = gather_four(table, _mm256_extracti128_si256((__m256i)at, 1));
+  const L both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 #elif defined(__AVX2__)
-  const L both =
-      (L)_mm256_i32gather_epi64(reinterpret_cast<const long long*>(table), (__m128i)at, 4);
+  const L both = gather_four(table, (__m128i)at);
 #else
   L both;
   for (int i = 0; i < width; ++i) both[i] = load<std::int64_t>(table + at[i]);

@@ -60,7 +60,7 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
       options_(options),
       main_(std::move(main)),
       first_{machine.process().value * machine.pes_per_process()},
-      reserve_(std::make_unique<std::byte[]>(reserve_bytes)) {
+      reserve_(std::make_unique_for_overwrite<std::byte[]>(reserve_bytes)) {
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);
   for (std::int32_t i = 0; i < n_here; ++i) {

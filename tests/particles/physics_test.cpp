@@ -107,6 +107,17 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
 }
 
+TEST_CASE("who stands still beside what spins has not gone through it", "[particles][physics]") {
+  // Seen from the ball each flies a circle of three radians a step around it.
+  const Scene scene = parse_scene(R"({"dt": 0.01, "steps": 20,
+    "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 16}}, "resolution": 24, "thickness": 0.5,
+                 "motion": {"spin": [0, 0, 300]}}],
+    "emitters": [{"count": 100, "box": {"low": [0.9, -1, -0.1], "high": [1.1, 1, 0.1]}}],
+    "rules": {"impact": {"restitution": 0.5}}, "outputs": {"audit": true}})",
+                                  "scene.json");
+  CHECK(run_scene(scene, "--pes=1").last().tunnelled == 0);
+}
+
 TEST_CASE("what slides on the ground does not slide into the house that stands on it",
           "[particles][physics]") {
   // The house reaches into the ground: taken as two boxes, the ground went on inside.
