@@ -132,17 +132,16 @@ std::string who_asks(bool rules, bool picture) {
 /// Which fields are built, what they hold, and for whom.
 std::string explanation_of_fields(const Scene& scene, const DriverOptions& options) {
   std::string out;
-  const auto line = [&out](const char* name, const std::string& used_by, const char* without) {
-    out += used_by.empty() ? fmt::format("  {}: left out{}\n", name, without)
+  const auto line = [&out](const char* name, const std::string& used_by) {
+    out += used_by.empty() ? fmt::format("  {}: left out\n", name)
                            : fmt::format("  {}: used, by {}\n", name, used_by);
   };
   const bool any = !scene.objects.empty(), pictured = any && scene.outputs.slice,
              asked = any && needs_field(scene.rules);
-  line("distances", who_asks(asked, pictured), "");
+  line("distances", who_asks(asked, pictured));
   line("normals",
        who_asks(asked && needed_content(scene.rules) == tess::dn::Content::distance_and_normal,
-                pictured),
-       "");
+                pictured));
   const bool built = asked || pictured;
   if (built) {
     out += fmt::format("  fields: built, objects {}\n", scene.objects.size());
@@ -264,8 +263,7 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
 
 std::string explanation(const Scene& scene, const DriverOptions& options) {
   std::string out = "this scene, rule by rule\n";
-  for (const std::string& rule : tess::dn::explain(scene.rules))
-    if (!rule.starts_with("distances:") && !rule.starts_with("normals:")) out += "  " + rule + "\n";
+  for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
   out += explanation_of_fields(scene, options);
   const auto count = [&scene](bool (tess::dn::Frame::*holds)() const) {
     return std::count_if(scene.objects.begin(),

@@ -9,6 +9,7 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace tess::dn {
 namespace {
@@ -164,8 +165,9 @@ Field build_blurred(const Surface& given, const Grid& grid, const BlurredOptions
   const Blur how = options.blur.rounds == 0 ? choose_blur(grid, options.thickness) : options.blur;
   require_blur(how);
   require_buildable(grid, bytes_per_voxel);
-  const OutwardSurface outward(given);  // its triangles' normals are what is blurred
-  const Surface& surface = options.sides == Sides::one ? outward.surface() : given;
+  std::optional<OutwardSurface> outward;  // its triangles' normals are what is blurred
+  if (options.sides == Sides::one) outward.emplace(given);
+  const Surface& surface = outward ? outward->surface() : given;
   const auto report = [&](double done) {
     if (options.progress) options.progress(done);
   };

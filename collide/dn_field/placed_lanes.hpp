@@ -47,12 +47,13 @@ inline F free_in_world(const Placed& object, const Sample& found, F3 g) {
                                        : outside_by(object, g);
 }
 
+inline D3 cross(Vec3 a, D3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 /// Velocity of the object at points `arm` from its origin, growth apart.
 inline D3 stiff_velocity(const Frame& f, D3 arm) {
-  const Vec3 w = f.angular_velocity;
-  return {f.velocity.x + (w.y * arm.z - w.z * arm.y),
-          f.velocity.y + (w.z * arm.x - w.x * arm.z),
-          f.velocity.z + (w.x * arm.y - w.y * arm.x)};
+  return all(f.velocity) + cross(f.angular_velocity, arm);
 }
 
 }  // namespace tess::dn::lanes

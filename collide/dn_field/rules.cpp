@@ -126,8 +126,6 @@ std::vector<std::string> explain(const Rules& rules) {
   line("wind", rules.wind.has_value());
   line("air drag", rules.air_drag.has_value());
   line("explosions", !rules.explosions.empty());
-  line("distances", needs_field(rules));
-  line("normals", needed_content(rules) == Content::distance_and_normal);
   return lines;
 }
 

@@ -8,10 +8,6 @@
 
 namespace tess::dn::lanes {
 
-inline D3 cross(Vec3 a, D3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// v turned about the unit vector `axis` (Rodrigues).
 inline D3 turned(D3 v, Vec3 axis, Turn by) {
   const D along = (1.0 - by.cosine) * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
@@ -36,29 +32,24 @@ class Pose {
     return spins_ ? turned(v, axis_, {by_.cosine, -by_.sine}) : v;
   }
   /// From the object's origin.
-  [[nodiscard]] D3 arm(D3 x) const {
-    const D time = f_ * object_.step;
-    const Vec3 v = object_.frame.velocity;
-    return (x - object_.frame.position) - D3{time * v.x, time * v.y, time * v.z};
-  }
+  [[nodiscard]] D3 arm(D3 x) const { return (x - object_.frame.position) - gone(); }
   /// A point as the object sees it; and the other way about.
   [[nodiscard]] D3 seen(D3 x) const { return 1.0 / size_ * begin(arm(x)) + object_.frame.position; }
   [[nodiscard]] D3 place(D3 seen) const {
-    const D time = f_ * object_.step;
-    const D3 arm = size_ * now(seen - object_.frame.position);
-    const Vec3 v = object_.frame.velocity;
-    return D3{time * v.x, time * v.y, time * v.z} + (arm + object_.frame.position);
+    return gone() + (size_ * now(seen - object_.frame.position) + object_.frame.position);
   }
   /// Of the surface at `x`, which stands `beside` its own points (growth takes those along).
   [[nodiscard]] D3 surface_velocity(D3 x, D3 beside) const {
     const Frame& frame = object_.frame;
     const D3 q = arm(x);
-    D3 u = all(frame.velocity);
-    if (spins_) u = u + cross(frame.angular_velocity, q);
+    const D3 u = spins_ ? stiff_velocity(frame, q) : all(frame.velocity);
     return frame.is_growing() ? fma(frame.scale_rate / frame.scale / size_, q - beside, u) : u;
   }
 
  private:
+  /// The way of the object's origin since the step's begin.
+  [[nodiscard]] D3 gone() const { return f_ * object_.step * all(object_.frame.velocity); }
+
   const Placed& object_;
   D f_, size_;
   bool spins_;
@@ -74,8 +65,9 @@ struct Seen {
 /// A particle at x at f that flies by `way` a step, in the world.
 inline Seen seen(const Placed& object, const Pose& pose, D3 x, D3 way) {
   const Frame& frame = object.frame;
-  const D3 drift = way - object.step * frame.velocity, q = pose.arm(x);
+  const D3 drift = way - object.step * frame.velocity;
   if (!object.bends()) return {pose.seen(x), drift};
+  const D3 q = pose.arm(x);
   const D3 rate = drift - cross(object.step * frame.angular_velocity, q);
   const D per = 1.0 / pose.size();
   return {pose.seen(x), per * pose.begin(fma(-object.growth * per, q, rate))};
