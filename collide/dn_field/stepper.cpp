@@ -11,9 +11,10 @@
 namespace tess::dn {
 namespace {
 
-constexpr int steps_at_once = 64;     // for which the objects' positions are made in advance
-constexpr int furthest_ahead = 16;    // steps that one screening may serve
-constexpr int steps_unscreened = 32;  // for which all count as near where screening did not pay
+constexpr int steps_at_once = 64;        // for which the objects' positions are made in advance
+constexpr int furthest_ahead = 16;       // steps that one screening may serve
+constexpr int steps_unscreened = 32;     // for which all count as near where screening did not pay
+constexpr std::size_t sample_size = 32;  // particles of a block that are screened to see if it pays
 
 /// The number of steps since time 0, whole where `time` is meant to be a sum or multiple of steps:
 /// then a run from there sees the same times to the bit as one that came by.
@@ -28,6 +29,7 @@ struct Buffers {
   Closest *closest = &first, *after = &second;  ///< at the step's start and end
   bool known = false;                           ///< `closest` is up to date
   Near near;
+  bool screening_paid = true;  ///< the last time, whichever block it was
   Scratch scratch;
 
   void new_particles(std::size_t count) {
@@ -196,7 +198,8 @@ void fly(const Run& run, const Moments& moments, const ParticleSpan& block, Buff
         .subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
   };
   const auto step_near = [&](int i, const ParticleSpan& particles) {
-    change_velocities(moments.changes[static_cast<std::size_t>(i)], particles);
+    const VelocityChanges& now = moments.changes[static_cast<std::size_t>(i)];
+    if (!now.none()) change_velocities(now, particles);
     meet_surface(run_at(i), objects_at(i), objects_at(i + 1), particles, buffers);
   };
   if (!plan.looks_up) return plan.fly_free(run.constants, block, moments.changes);
@@ -206,16 +209,23 @@ void fly(const Run& run, const Moments& moments, const ParticleSpan& block, Buff
   while (i < n_steps) {
     int next = std::min(i + ahead, n_steps);
     const double gained = speed_gained(run, changes(i, next));
-    screen(objects_at(i),
-           plan.rules.look_up,
-           plan.sweep,
-           {static_cast<float>(run_at(i).reach),
-            static_cast<float>((next - i) * plan.step),
-            static_cast<float>(gained),
-            next - i > 1 || plan.rules.spring.has_value()},
-           block,
-           near);
-    const bool pays = screening_pays(plan, near.count, block.count, next - i, n_steps - i);
+    const auto screening_of = [&](const ParticleSpan& particles) {
+      screen(objects_at(i),
+             plan.rules.look_up,
+             plan.sweep,
+             {static_cast<float>(run_at(i).reach),
+              static_cast<float>((next - i) * plan.step),
+              static_cast<float>(gained),
+              next - i > 1 || plan.rules.spring.has_value()},
+             particles,
+             near);
+      return screening_pays(plan, near.count, particles.count, next - i, n_steps - i);
+    };
+    // Where it did not pay before, a few of the block tell whether to look at the others.
+    const bool pays = (buffers.screening_paid ||
+                       screening_of(block.part(0, std::min(sample_size, block.count)))) &&
+                      screening_of(block);
+    buffers.screening_paid = pays;
     if (!pays) {
       ahead = std::max(1, ahead / 2);
       next = std::min(i + steps_unscreened, n_steps);

@@ -20,7 +20,6 @@ VelocityChanges velocity_changes(const Rules& rules, double time, double step) {
 }
 
 void change_velocities(const VelocityChanges& changes, const ParticleSpan& span) {
-  if (changes.none()) return;
   const ParticleSpan particles = span;  // which no store can change
   for (std::size_t p = 0; p < particles.count; p += width) {
     const D3 v = changed(changes, places(particles, p), velocities(particles, p));
