@@ -8,6 +8,7 @@
 #include "apps/particles/study.hpp"
 #include "apps/particles/vtp.hpp"
 #include "apps/plot/write_file.hpp"
+#include "collide/dn_field/field_file.hpp"
 
 #include <filesystem>
 #include <fmt/ranges.h>
@@ -26,9 +27,12 @@ tess::dn::Field flat_field(const FieldInTheMaking& of) {
   return of.compressed() ? expanded(*of.compressed()) : of.field();
 }
 
-void write_pictures(const std::string& folder, const Stage& stage, const RunResult& result) {
+void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {
   const Scene& scene = stage.scene;
   const std::filesystem::path in(folder);
+  if (scene.outputs.fields)
+    for (std::size_t i = 0; i < stage.fields.size(); ++i)
+      save_field(stage.fields[i].field(), (in / field_file_name(i)).string());
   if (const auto& slice = scene.outputs.slice)
     plot::write_file(
         (in / "field.svg").string(),
@@ -60,7 +64,7 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
     problem.report.bytes_compressed = compressed_bytes(*stage);
     plot::write_file(options.json, json(stage->scene, result, problem.report));
   }
-  if (!options.out.empty()) write_pictures(options.out, *stage, result);
+  if (!options.out.empty()) write_files(options.out, *stage, result);
 }
 
 }  // namespace
@@ -80,6 +84,7 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   if (options.compressed) compress_fields(problem.scene);
   if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
   if (options.out.empty()) problem.scene.outputs.slice.reset();
+  if (options.out.empty()) problem.scene.outputs.fields = false;
   const tess::Machine& machine = *setup.machine;
   problem.report = {machine.describe(), machine.n_pes(), machine.n_processes(), options.run};
   if (options.study && problem.scene.objects.empty())

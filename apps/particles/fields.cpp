@@ -1,9 +1,6 @@
 #include "apps/particles/fields.hpp"
 
-#include "apps/particles/blurred_field.hpp"
-
 #include <algorithm>
-#include <numbers>
 
 namespace particles {
 namespace {
@@ -22,67 +19,6 @@ bool crosses(Vec3 from, Vec3 to, const std::array<Vec3, 3>& triangle) {
   const double v = dot(along, q) / determinant, t = dot(ac, q) / determinant;
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t <= 1;
 }
-
-}  // namespace
-
-Content content_of(const Scene& scene) {
-  return scene.outputs.slice ? Content::distance_and_normal : needed_content(scene.rules);
-}
-
-void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
-  start_ = std::chrono::steady_clock::now();
-  const Grid grid = grid_around(bounds(object.surface), object.resolution, object.thickness);
-  if (object.method != Method::exact) {
-    field_ = blurred_field(object.surface, grid, object.method, object.sides, object.thickness);
-    if (content == Content::distance) field_.normal = {};
-    return;
-  }
-  ExactOptions options;
-  options.sides = object.sides;
-  options.content = content;
-  options.thickness = object.thickness;
-  builder_.emplace(object.surface, grid, options);
-  field_ = builder_->empty_field();
-  slabs_.assign(static_cast<std::size_t>(n_parts), {});
-}
-
-void FieldInTheMaking::fill(int part) {
-  if (!builder_) return;
-  const auto n_parts = static_cast<int>(slabs_.size());
-  constexpr int block = 4;  // layers that are built together
-  const int layers = field_.grid.n[2], blocks = (layers + block - 1) / block;
-  const auto edge = [&](int of) {
-    return std::min(layers, block * static_cast<int>(std::int64_t{blocks} * of / n_parts));
-  };
-  const int first = edge(part), last = edge(part + 1);
-  if (first == last) return;
-  slabs_[static_cast<std::size_t>(part)] = builder_->build(slab_of(field_, first, last));
-}
-
-void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
-  if (builder_) builder_->finish(field_, slabs_);
-  builder_.reset();
-  flat_bytes_ = field_.bytes();
-  if (compression) {
-    compressed_ = compress(field_, bound_of(*compression, field_));
-    field_ = outline(*compressed_);
-  }
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
-BuiltField build_alone(const SceneObject& object, Content content) {
-  FieldInTheMaking making;
-  making.begin(object, content, 1);
-  making.fill(0);
-  making.finish();
-  return {making.field(), making.seconds()};
-}
-
-ErrorBound bound_of(const Compression& compression, const Field& field) {
-  return {compression.cells * field.grid.cell, compression.degrees * std::numbers::pi / 180};
-}
-
-namespace {
 
 /// Interpolated between the voxels of a grid; value: double(int i, int j, int k).
 template <class Value>

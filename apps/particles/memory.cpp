@@ -1,11 +1,10 @@
 #include "apps/particles/memory.hpp"
 
 #include "apps/particles/measured.hpp"
+#include "runtime/base/usable_memory.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
-#include <sys/resource.h>
-#include <unistd.h>
 
 namespace particles {
 namespace {
@@ -13,7 +12,7 @@ namespace {
 /// Counts what is needed, and throws at the first that is too much.
 class Needs {
  public:
-  explicit Needs(const Scene& scene) : scene_(scene), there_(usable_memory()) {}
+  explicit Needs(const Scene& scene) : scene_(scene), there_(tess::usable_memory()) {}
 
   /// `place` and `value`: of the key that asks for it. what: "makes the fields".
   template <class Value>
@@ -36,13 +35,14 @@ class Needs {
   }
 
   void add_fields() {
-    constexpr double bytes_per_voxel = 8;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
-      const double n = scene_.objects[i].resolution;
-      add(bytes_per_voxel * n * n * n,
-          tess::text("objects[", i, "].resolution"),
-          scene_.objects[i].resolution,
-          "makes the fields");
+      const SceneObject& object = scene_.objects[i];
+      const bool blurs = object.field.empty() && object.method != tess::dn::Method::exact;
+      const double bytes_per_voxel = blurs ? 36 : 8;
+      add(bytes_per_voxel * static_cast<double>(object.grid.size()),
+          tess::text("objects[", i, "].", object.field.empty() ? "resolution" : "field"),
+          object.grid.n[0],
+          "voxels along an axis make the fields");
     }
   }
 
@@ -57,14 +57,6 @@ double n_times(const Scene& scene, int every) {
 }
 
 }  // namespace
-
-double usable_memory() {
-  const double machine =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return machine;
-  return std::min(machine, static_cast<double>(limit.rlim_cur));
-}
 
 void check_field_memory(const Scene& scene) {
   Needs(scene).add_fields();

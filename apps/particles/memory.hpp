@@ -6,10 +6,8 @@
 
 namespace particles {
 
-/// Bytes that this process may have: the machine's memory, or less where the shell limits it.
-[[nodiscard]] double usable_memory();
-
-/// Of the fields, flat; each process builds all of them. Throws Error(environment).
+/// Of the fields, flat, while they are built; each process builds all of them. Throws
+/// Error(environment).
 void check_field_memory(const Scene& scene);
 
 /// Of fields, of the particles, which `n_processes` share, and of what process 0 gathers: rows of

@@ -1,5 +1,6 @@
 #include "apps/particles/observe.hpp"
 
+#include "apps/particles/fields.hpp"
 #include "runtime/base/mix.hpp"
 
 #include <algorithm>

@@ -71,14 +71,16 @@ void prepare_folder(const Scene& scene, const DriverOptions& options) {
   const std::string& folder = options.out;
   const fs::path in(folder);
   make_folder(folder, in);
-  std::vector<const char*> names;
+  std::vector<std::string> names;
+  if (scene.outputs.fields)
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) names.push_back(field_file_name(i));
   if (scene.outputs.slice) names.push_back("field.svg");
   if (scene.outputs.trajectories > 0) {
     names.insert(names.end(), {"paths.svg", "trajectories.pvd"});
     make_folder(folder, in / "trajectories");
     require_begun(folder, in / "trajectories", "step_");
   }
-  for (const char* name : names) require_in_folder(folder, in / name);
+  for (const std::string& name : names) require_in_folder(folder, in / name);
   if (options.study) require_begun(folder, in, "study");
 }
 

@@ -1,5 +1,7 @@
 #include "apps/particles/report.hpp"
 
+#include "apps/particles/field_making.hpp"
+
 #include <algorithm>
 #include <array>
 #include <fmt/core.h>
@@ -122,11 +124,16 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
   return out;
 }
 
-/// "rules and the picture", "rules", "the picture" or nothing.
-std::string who_asks(bool rules, bool picture) {
-  if (rules && picture) return "rules and the picture (outputs.slice)";
-  if (rules) return "rules";
-  return picture ? "the picture alone (outputs.slice)" : "";
+/// "rules, the picture (outputs.slice)", or nothing.
+std::string who_asks(const Scene& scene, bool rules) {
+  std::string out;
+  const auto add = [&out](bool asks, const char* who) {
+    if (asks) out += (out.empty() ? "" : ", ") + std::string(who);
+  };
+  add(rules, "rules");
+  add(scene.outputs.slice.has_value(), "the picture (outputs.slice)");
+  add(scene.outputs.fields, "the files (outputs.fields)");
+  return out;
 }
 
 /// Which fields are built, what they hold, and for whom.
@@ -136,15 +143,19 @@ std::string explanation_of_fields(const Scene& scene, const DriverOptions& optio
     out += used_by.empty() ? fmt::format("  {}: left out\n", name)
                            : fmt::format("  {}: used, by {}\n", name, used_by);
   };
-  const bool any = !scene.objects.empty(), pictured = any && scene.outputs.slice,
-             asked = any && needs_field(scene.rules);
-  line("distances", who_asks(asked, pictured));
+  const bool any = !scene.objects.empty(), asked = any && needs_field(scene.rules);
+  line("distances", who_asks(scene, asked));
   line("normals",
-       who_asks(asked && needed_content(scene.rules) == tess::dn::Content::distance_and_normal,
-                pictured));
-  const bool built = asked || pictured;
-  if (built) {
-    out += fmt::format("  fields: built, objects {}\n", scene.objects.size());
+       who_asks(scene,
+                asked && needed_content(scene.rules) == tess::dn::Content::distance_and_normal));
+  if (any && builds_fields(scene)) {
+    const auto n_read =
+        std::count_if(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+          return !object.field.empty();
+        });
+    out += fmt::format("  fields: {} built, {} read from files\n",
+                       scene.objects.size() - static_cast<std::size_t>(n_read),
+                       n_read);
     out += scene.compression ? fmt::format("  compression: used, within {} cells and {} degrees\n",
                                            scene.compression->cells,
                                            scene.compression->degrees)

@@ -31,12 +31,21 @@ tess::dn::Rules for_mass(tess::dn::Rules rules, double mass) {
 
 void compress_fields(Scene& scene) {
   if (!scene.compression) scene.compression.emplace();
+  if (scene.outputs.fields)
+    tess::fail(tess::ErrorCode::bad_value,
+               scene.name,
+               ": outputs.fields: true, and the fields are compressed; files hold what was built, "
+               "leave out one of the two");
   if (needs_field(scene.rules) && scene.rules.look_up == tess::dn::LookUp::trilinear)
     tess::fail(
         tess::ErrorCode::bad_value,
         scene.name,
         ": rules.look_up: trilinear cannot ask compressed fields; choose nearest or tangent, "
         "or leave out the compression");
+}
+
+std::string field_file_name(std::size_t object) {
+  return tess::text("field_", object, ".dnf");
 }
 
 std::vector<double> species_of(const Scene& scene) {

@@ -3,6 +3,7 @@
 // by scene_help() and nowhere else.
 #pragma once
 
+#include "collide/dn_field/build_plan.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/frame.hpp"
 #include "collide/dn_field/rules.hpp"
@@ -16,14 +17,16 @@
 
 namespace particles {
 
-/// An object with the field that is built around it.
+/// An object with the field around it.
 struct SceneObject {
   std::string name;
   tess::dn::Surface surface;
-  int resolution = 60;   ///< voxels along each axis
+  tess::dn::Grid grid;   ///< of the field
   double thickness = 0;  ///< of the field beyond the surface, in the object's units
   tess::dn::Method method = tess::dn::Method::exact;
   tess::dn::Sides sides = tess::dn::Sides::one;
+  tess::dn::Blur blur;    ///< of the methods that blur; no rounds: chosen from the thickness
+  std::string field;      ///< file that the field is read from; empty: it is built
   tess::dn::Frame frame;  ///< at the first step, with its velocities
 };
 
@@ -62,6 +65,7 @@ struct Outputs {
     double at = 0;  ///< on the axis, in the object's units
   };
   std::optional<Slice> slice;  ///< a picture of the field
+  bool fields = false;         ///< files of the fields, for runs to come
   std::optional<bool> audit;   ///< look at each step for particles that tunnel; absent: chosen
 };
 
@@ -100,6 +104,9 @@ void check_scene(const Scene& scene);
 /// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's
 /// look-up cannot ask compressed fields.
 void compress_fields(Scene& scene);
+
+/// What a run calls the file of its object's field.
+[[nodiscard]] std::string field_file_name(std::size_t object);
 
 /// All keys of a scene file, with their units and defaults.
 [[nodiscard]] std::string scene_help();

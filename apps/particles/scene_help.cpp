@@ -26,10 +26,13 @@ objects     a list (default: none); of each:
                     overlap keep their inner faces, which count as surface: join them before
   resolution  voxels along each axis of the field, 4 … 1024 (default 60)
   thickness   of the field beyond the object, in its own units (default: a quarter of its extent)
-  choose      instead of the two: {"max_speed": v, "detail": d}: the field covers a step at speed v
-              and has two voxels across d
+  choose      instead of the two: {"max_speed": v, "detail": d}: the field covers a step at speed v (two
+              cells where that would be above 512³ voxels and impacts are swept) and has two voxels across d
   method      exact (default), normals, potential
   sides       one (default): negative distances inside; two: thin shells, distances from either side
+  blur        {"radius": 2 … 4 voxels, "rounds": n}: of normals and potential (default: through the thickness)
+  field       "field_0.dnf": instead of all of these, the field from a file that outputs.fields wrote, relative
+              to the scene file; one of another shape is refused
   transform   {"position": [x, y, z], "rotation": [x, y, z] (degrees about that vector), "scale": s}
               or {"position": …, "matrix": [row, row, row]}: rotation times uniform scale, no shear
   motion      {"velocity": [x, y, z], "spin": [x, y, z] (radians a second about that vector), "scale": r}:
@@ -65,6 +68,8 @@ outputs
               they stand at first, moving ones in outline as they stand at last)
   traced      how many particles the trajectories hold (default 200)
   axis        x, y or z (default): along which the pictures look
+  fields      true: with --out, the fields as they were built, field_0.dnf for the first object, …; not with
+              compression
   slice       {"object": 0, "at": 0}: with --out, a picture of the object's field, cut at that place on the axis
 )";
 }

@@ -1,9 +1,8 @@
 #include "apps/particles/json_reader.hpp"
 #include "apps/particles/memory.hpp"
+#include "apps/particles/object_reader.hpp"
 #include "apps/particles/rules_reader.hpp"
 #include "apps/particles/scene.hpp"
-#include "apps/particles/shape_reader.hpp"
-#include "collide/dn_field/grid.hpp"
 #include "runtime/error.hpp"
 
 #include <cmath>
@@ -88,13 +87,17 @@ Emitter read_emitter(const Node& node, std::size_t n_objects) {
 
 Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) {
   constexpr int most = static_cast<int>(most_steps);
-  const Keys keys = node.keys({"statistics", "trajectories", "traced", "axis", "slice", "audit"});
+  const Keys keys =
+      node.keys({"statistics", "trajectories", "traced", "axis", "slice", "fields", "audit"});
   Outputs outputs;
   keys.read("statistics", outputs.statistics, 0, most);
   keys.read("trajectories", outputs.trajectories, 0, most);
   if (keys.has("traced"))
     outputs.traced = static_cast<std::uint64_t>(keys["traced"].whole(1, most_particles));
   if (keys.has("axis")) outputs.axis = static_cast<int>(keys["axis"].word({"x", "y", "z"}));
+  keys.read("fields", outputs.fields);
+  if (outputs.fields && objects.empty())
+    keys["fields"].refuse("needs an object, and the scene has none");
   if (keys.has("audit")) outputs.audit = keys["audit"].yes_or_no();
   if (keys.has("slice")) {
     if (objects.empty()) keys["slice"].refuse("needs an object, and the scene has none");
@@ -104,10 +107,9 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
     outputs.slice = Outputs::Slice{static_cast<std::size_t>(object), 0};
     slice.read("at", outputs.slice->at);
     const SceneObject& of = objects[outputs.slice->object];
-    const tess::dn::Grid grid =
-        tess::dn::grid_around(bounds(of.surface), of.resolution, of.thickness);
-    const double low = component(grid.origin, outputs.axis),
-                 high = low + grid.cell * (of.resolution - 1), at = outputs.slice->at;
+    const auto axis = static_cast<std::size_t>(outputs.axis);
+    const double low = component(of.grid.origin, outputs.axis),
+                 high = low + of.grid.cell * (of.grid.n[axis] - 1), at = outputs.slice->at;
     if (at < low || at > high)
       keys["slice"].refuse(
           tess::text("cuts at ", at, ", which is not within the field: ", low, " … ", high));
@@ -249,15 +251,17 @@ Scene read(const JsonFile& file, const std::string& name) {
   keys.read("block", scene.block, positive);
   keys.read("exchange", scene.exchange, 1, most);
   if (keys.has("compression")) scene.compression = read_compression(keys["compression"]);
+  if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
+  const StepDemand demand{scene.dt,
+                          scene.rules.impact && scene.rules.impact->sweep == tess::dn::Sweep::on};
   const std::string folder = std::filesystem::path(name).parent_path().string();
   if (keys.has("objects"))
     for (const Node& item : keys["objects"].items())
-      scene.objects.push_back(read_object(item, folder, scene.dt));
+      scene.objects.push_back(read_object(item, folder, demand));
   for (const Node& item : keys.need("emitters", "a list of at least one emitter").items(1))
     scene.emitters.push_back(read_emitter(item, scene.objects.size()));
   if (scene.n_particles() > static_cast<std::uint64_t>(most_particles))
     keys["emitters"].refuse(tess::text("makes more than ", most_particles, " particles"));
-  if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
   if (scene.compression) compress_fields(scene);
   check_scene(scene);

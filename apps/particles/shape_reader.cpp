@@ -2,8 +2,6 @@
 
 #include "apps/particles/box_union.hpp"
 #include "apps/particles/shown.hpp"
-#include "collide/dn_field/grid.hpp"
-#include "collide/dn_field/outward.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/error.hpp"
 
@@ -74,8 +72,7 @@ void check_magnitude(const Surface& surface) {
 
 /// Whatever is wrong with the file is told with the key that names it.
 Surface read_file(const Node& node, const std::string& folder) {
-  const std::filesystem::path name(node.text());
-  const std::string path = (name.is_absolute() ? name : folder / name).string();
+  const std::string path = path_beside(folder, node.text());
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown))
     node.blame(path + ": is a directory; give the path of an OBJ file");
@@ -90,6 +87,13 @@ Surface read_file(const Node& node, const std::string& folder) {
     node.blame(path + (named ? "" : ": ") +
                shown_text(what.substr(named ? path.size() : 0), longest));
   }
+}
+
+}  // namespace
+
+std::string path_beside(const std::string& folder, const std::string& name) {
+  const std::filesystem::path path(name);
+  return (path.is_absolute() ? path : folder / path).string();
 }
 
 Surface read_shape(const Node& node, const std::string& folder, std::string& name) {
@@ -133,97 +137,6 @@ Surface read_shape(const Node& node, const std::string& folder, std::string& nam
   const Node minor = torus.need("minor", "the radius of the tube");
   if (minor.number(positive) >= major) minor.refuse("is not below major");
   return tess::dn::make_torus(major, minor.number(), n);
-}
-
-tess::dn::Frame read_transform(const Node& node) {
-  const Keys keys = node.keys({"position", "rotation", "scale", "matrix"});
-  tess::dn::Frame frame;
-  Vec3 position;
-  keys.read("position", position);
-  if (keys.has("matrix")) {
-    if (keys.has("rotation") || keys.has("scale"))
-      node.refuse("has a matrix beside rotation or scale; give either");
-    const std::vector<Node> rows = keys["matrix"].items();
-    if (rows.size() != 3) keys["matrix"].refuse("is not a list of three rows");
-    const Vec3 x = rows[0].vector(), y = rows[1].vector(), z = rows[2].vector();
-    try {
-      return tess::dn::frame_from({{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}}, position);
-    } catch (const tess::Error& error) {
-      keys["matrix"].refuse(std::string("cannot be used: ") + error.what());
-    }
-  }
-  Vec3 degrees;
-  keys.read("rotation", degrees);
-  keys.read("scale", frame.scale, positive);
-  frame.axes = tess::dn::rotation((std::numbers::pi / 180) * degrees);
-  frame.position = position;
-  return frame;
-}
-
-/// Resolution and thickness from how fast the particles are and how fine the object is.
-void choose(const Node& node, const tess::dn::Bounds& box, double dt, SceneObject& object) {
-  constexpr std::size_t most_voxels = std::size_t{512} * 512 * 512;
-  const Keys keys = node.keys({"max_speed", "detail"});
-  const double scale = object.frame.scale;
-  const tess::dn::Demand demand{
-      keys.need("max_speed", "the largest speed relative to the surface").number(positive) / scale,
-      dt,
-      keys.need("detail", "the size of the smallest feature").number(positive)};
-  try {
-    const tess::dn::Choice choice = tess::dn::choose(box, demand, most_voxels);
-    object.resolution = choice.grid.n[0];
-    object.thickness = choice.thickness;
-  } catch (const tess::Error& error) {
-    node.refuse(std::string("cannot be met: ") + error.what());
-  }
-}
-
-}  // namespace
-
-SceneObject read_object(const Node& node, const std::string& folder, double dt) {
-  const Keys keys = node.keys(
-      {"shape", "resolution", "thickness", "method", "sides", "transform", "motion", "choose"});
-  SceneObject object;
-  const Node shape = keys.need("shape", "one of sphere, box, boxes, torus, cylinder, plate, file");
-  object.surface = read_shape(shape, folder, object.name);
-  if (keys.has("transform")) object.frame = read_transform(keys["transform"]);
-  if (keys.has("motion")) {
-    const Keys motion = keys["motion"].keys({"velocity", "spin", "scale"});
-    motion.read("velocity", object.frame.velocity);
-    motion.read("spin", object.frame.angular_velocity);
-    motion.read("scale", object.frame.scale_rate);
-  }
-  if (keys.has("method"))
-    object.method =
-        static_cast<tess::dn::Method>(keys["method"].word({"exact", "normals", "potential"}));
-  if (keys.has("sides"))
-    object.sides = static_cast<tess::dn::Sides>(keys["sides"].word({"one", "two"}));
-  // Emitters, audits and the study see the triangles as the field does.
-  if (object.sides == tess::dn::Sides::one)
-    object.surface = Surface(tess::dn::OutwardSurface(object.surface).surface());
-  const tess::dn::Bounds box = tess::dn::bounds(object.surface);
-  const Vec3 size = box.size();
-  object.thickness = 0.25 * std::max({size.x, size.y, size.z});
-  if (keys.has("choose")) {
-    if (keys.has("resolution") || keys.has("thickness"))
-      keys["choose"].refuse("stands beside resolution or thickness; give either");
-    choose(keys["choose"], box, dt, object);
-    return object;
-  }
-  keys.read("thickness", object.thickness, positive);
-  keys.read("resolution", object.resolution, 4, 1024);
-  const tess::dn::Grid grid = [&] {
-    try {
-      return tess::dn::grid_around(box, object.resolution, object.thickness);
-    } catch (const tess::Error& error) {
-      node.refuse(std::string("cannot have a field: ") + error.what());
-    }
-  }();
-  if (object.thickness < 2 * grid.cell)
-    (keys.has("thickness") ? keys["thickness"] : node)
-        .refuse(tess::text(
-            "is thinner than two cells of ", grid.cell, "; raise the thickness or the resolution"));
-  return object;
 }
 
 }  // namespace particles

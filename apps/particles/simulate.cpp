@@ -60,6 +60,10 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const auto now_at = [&](const char* phase) {
     if (options.progress != nullptr) options.progress->phase(phase);
   };
+  const auto now_at_part = [&](int part, int n_parts) {
+    if (options.progress != nullptr)
+      options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+  };
   const auto hand_out = [&] {
     const std::int32_t each = pe.machine().pes_per_process();
     for (std::int32_t first = 0; first < pe.n_pes(); first += each)
@@ -69,8 +73,16 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   now_at("building fields");
   const auto begin_fields = [&] { stations.broadcast<&Station::begin_fields>(); };
   co_await tess::epoch(begin_fields);
-  const auto fill_fields = [&] { stations.broadcast<&Station::fill_fields>(); };
-  co_await tess::epoch(fill_fields);
+  int n_stages = 0;  // the same in all processes
+  for (const FieldInTheMaking& field : stage->fields)
+    n_stages = std::max(n_stages, field.n_stages());
+  std::int32_t filled = 0;
+  const auto fill_fields = [&] { stations.broadcast<&Station::fill_fields>(filled); };
+  for (; filled < n_stages; ++filled) {
+    now_at_part(filled + 1, n_stages);
+    co_await tess::epoch(fill_fields);
+  }
+  now_at_part(0, 0);
   const auto finish_fields = [&] { stations.broadcast<&Station::finish_fields>(); };
   co_await tess::epoch(finish_fields);
   result.block = block_edge(scene);
@@ -96,9 +108,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   std::int32_t step = 0;
   now_at("steps");
   while (true) {
-    if (options.progress != nullptr)
-      options.progress->part(static_cast<std::uint32_t>(step),
-                             static_cast<std::uint32_t>(scene.steps));
+    now_at_part(step, scene.steps);
     stretch.first = step;
     stretch.n_steps = 0;
     stretch.ask = asked(scene, step);

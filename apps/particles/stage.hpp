@@ -4,7 +4,7 @@
 #pragma once
 
 #include "apps/particles/emit.hpp"
-#include "apps/particles/fields.hpp"
+#include "apps/particles/field_making.hpp"
 #include "apps/particles/scene.hpp"
 
 #include <memory>
@@ -18,7 +18,7 @@ struct Stage {
       : scene(std::move(of)),
         source(scene),
         masses(species_of(scene)),
-        fields(needs_field(scene.rules) || scene.outputs.slice ? scene.objects.size() : 0) {}
+        fields(builds_fields(scene) ? scene.objects.size() : 0) {}
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 

@@ -34,38 +34,45 @@ void Station::take(StageHandle handle) {
   for (std::int32_t i = 1; i < n; ++i) group()[tess::PeId{first + i}].send<&Station::take>(handle);
 }
 
+template <class Action>
+void Station::make(std::size_t field, const Action& action) {
+  const Scene& scene = stage_->scene;
+  try {
+    action(stage_->fields[field]);
+  } catch (const tess::Error& error) {
+    tess::fail(error.code(), scene.name, ": objects[", field, "]: ", error.what());
+  } catch (const std::bad_alloc&) {
+    tess::fail(tess::ErrorCode::environment,
+               scene.name,
+               ": objects[",
+               field,
+               "].resolution: memory does not hold a field of ",
+               scene.objects[field].grid.n[0],
+               "³ voxels; lower it");
+  }
+}
+
 void Station::begin_fields() {
   const auto [first, n] = pes_of_process();
   const auto mine = static_cast<std::size_t>(pe().value - first);
   const Scene& scene = stage_->scene;
-  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n)) {
-    const SceneObject& object = scene.objects[i];
-    try {
-      stage_->fields[i].begin(object, content_of(scene), n);
-    } catch (const tess::Error& error) {
-      tess::fail(error.code(), scene.name, ": objects[", i, "]: ", error.what());
-    } catch (const std::bad_alloc&) {
-      tess::fail(tess::ErrorCode::environment,
-                 scene.name,
-                 ": objects[",
-                 i,
-                 "].resolution: memory does not hold a field of ",
-                 object.resolution,
-                 "³ voxels; lower it");
-    }
-  }
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
+    make(i, [&, parts = n](FieldInTheMaking& field) {
+      field.begin(scene.objects[i], content_of(scene), parts);
+    });
 }
 
-void Station::fill_fields() {
-  const auto [first, n] = pes_of_process();
-  for (FieldInTheMaking& field : stage_->fields) field.fill(pe().value - first);
+void Station::fill_fields(std::int32_t stage) {
+  const std::int32_t part = pe().value - pes_of_process().first;
+  for (std::size_t i = 0; i < stage_->fields.size(); ++i)
+    make(i, [&](FieldInTheMaking& field) { field.fill(stage, part); });
 }
 
 void Station::finish_fields() {
   const auto [first, n] = pes_of_process();
   const auto mine = static_cast<std::size_t>(pe().value - first);
   for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
-    stage_->fields[i].finish(stage_->scene.compression);
+    make(i, [&](FieldInTheMaking& field) { field.finish(stage_->scene.compression); });
 }
 
 void Station::prepare(double block_edge) {

@@ -33,7 +33,7 @@ class Station : public tess::Group<Station> {
   // Set-up, an epoch each. The first PEs of processes take the stage, and pass it on; all build.
   void take(StageHandle handle);
   void begin_fields();
-  void fill_fields();
+  void fill_fields(std::int32_t stage);
   void finish_fields();
   void prepare(double block_edge);
   /// Makes this PE's share of the particles and sends them to their blocks.
@@ -60,6 +60,10 @@ class Station : public tess::Group<Station> {
   void give_build_seconds(tess::Callback<std::vector<double>> target);
 
  private:
+  /// Does `action` to a field; what it throws is said of its object.
+  template <class Action>
+  void make(std::size_t field, const Action& action);
+
   std::shared_ptr<Stage> stage_;
   Space space_;
   std::vector<tess::dn::Stepper> steppers_;

@@ -1,6 +1,6 @@
 #include "apps/particles/study.hpp"
 
-#include "apps/particles/fields.hpp"
+#include "apps/particles/field_making.hpp"
 #include "apps/particles/study_rules.hpp"
 #include "runtime/error.hpp"
 
@@ -13,9 +13,10 @@ namespace {
 using namespace tess::dn;
 
 BuiltField built_or_empty(SceneObject object, int resolution, Method method, std::string& note) {
-  object.resolution = resolution;
   object.method = method;
+  object.field.clear();
   try {
+    object.grid = grid_around(bounds(object.surface), resolution, object.thickness);
     return build_alone(object, Content::distance_and_normal);
   } catch (const tess::Error& error) {
     note = error.what();
@@ -173,7 +174,7 @@ void study_cost(const Subject& subject,
   const std::size_t first = rows.size();
   StudyRow row;
   row.part = "cost";
-  row.resolution = subject.object.resolution;
+  row.resolution = subject.object.grid.n[0];
   row.method = name_of(subject.object.method);
   const std::size_t n = options.n_timed;
   row.rule = "no collision";

@@ -87,7 +87,7 @@ void study_rules(const Subject& subject,
   const Object object{&built.field, {}};
   StudyRow row;
   row.part = "rule";
-  row.resolution = subject.object.resolution;
+  row.resolution = subject.object.grid.n[0];
   row.method = name_of(subject.object.method);
   row.stored = "flat";
   row.look_up = name_of(look_up_of_rules);

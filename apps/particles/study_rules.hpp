@@ -2,7 +2,7 @@
 // triangles give. Serial; private to the study.
 #pragma once
 
-#include "apps/particles/fields.hpp"
+#include "apps/particles/field_making.hpp"
 #include "apps/particles/study_measure.hpp"
 
 namespace particles {

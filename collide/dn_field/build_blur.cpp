@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace tess::dn {
 namespace {
@@ -29,24 +30,29 @@ std::vector<Tap> kernel(int radius) {
 
 }  // namespace
 
-void blur_once(const Grid& grid, int radius, std::vector<float>& values) {
-  const std::vector<float> before = values;
+void blur_layers(const Grid& grid,
+                 int radius,
+                 std::span<const float> before,
+                 std::span<float> after,
+                 int first,
+                 int last) {
   const auto nx = static_cast<std::ptrdiff_t>(grid.n[0]);
+  const int low = std::max(0, first - radius), high = std::min(grid.n[2], last + radius);
   const auto row = [&](int j, int k) { return grid.index(0, j, k); };
   const auto number = [&](int j, int k) {
-    return static_cast<std::size_t>(k) * static_cast<std::size_t>(grid.n[1]) +
+    return static_cast<std::size_t>(k - low) * static_cast<std::size_t>(grid.n[1]) +
            static_cast<std::size_t>(j);
   };
-  std::vector<std::uint8_t> empty(number(0, grid.n[2]));  // most rows are, in the first rounds
-  for (int k = 0; k < grid.n[2]; ++k)
+  std::vector<std::uint8_t> empty(number(0, high));  // most rows are, in the first rounds
+  for (int k = low; k < high; ++k)
     for (int j = 0; j < grid.n[1]; ++j) {
       const float* const from = &before[row(j, k)];
       empty[number(j, k)] = std::all_of(from, from + nx, [](float v) { return v == 0; }) ? 1 : 0;
     }
   const auto taps = kernel(radius);
-  for (int k = 0; k < grid.n[2]; ++k)
+  for (int k = first; k < last; ++k)
     for (int j = 0; j < grid.n[1]; ++j) {
-      float* const to = &values[row(j, k)];
+      float* const to = &after[row(j, k)];
       std::fill(to, to + nx, 0.0F);
       for (const auto& [dx, dy, dz, weight] : taps) {
         const int y = j + dy, z = k + dz;
@@ -54,8 +60,8 @@ void blur_once(const Grid& grid, int radius, std::vector<float>& values) {
           continue;
         const float* const from = &before[row(y, z)];
         const std::ptrdiff_t shift = dx;
-        const auto first = std::max<std::ptrdiff_t>(0, -shift), last = std::min(nx, nx - shift);
-        for (std::ptrdiff_t i = first; i < last; ++i) to[i] += weight * from[i + shift];
+        const auto begin = std::max<std::ptrdiff_t>(0, -shift), end = std::min(nx, nx - shift);
+        for (std::ptrdiff_t i = begin; i < end; ++i) to[i] += weight * from[i + shift];
       }
     }
 }

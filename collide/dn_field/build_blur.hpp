@@ -4,11 +4,17 @@
 #include "collide/dn_field/build_plan.hpp"
 
 #include <span>
-#include <vector>
 
 namespace tess::dn {
 
-/// Values beyond the grid count as zero; the weights sum up to one. values: grid.size().
-void blur_once(const Grid& grid, int radius, std::vector<float>& values);
+/// Blurs `before` into the layers `first` to `last` − 1 of `after`; both hold grid.size() values.
+/// Values beyond the grid count as zero; the weights sum up to one. Different layers at once from
+/// any threads; how the layers are split changes no value.
+void blur_layers(const Grid& grid,
+                 int radius,
+                 std::span<const float> before,
+                 std::span<float> after,
+                 int first,
+                 int last);
 
 }  // namespace tess::dn

@@ -2,41 +2,22 @@
 
 #include "collide/dn_field/build_blur.hpp"
 #include "collide/dn_field/build_checks.hpp"
-#include "collide/dn_field/build_exact.hpp"
-#include "collide/dn_field/build_voxels.hpp"
 #include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/outward.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace tess::dn {
 namespace {
 constexpr double exact_share = 0.5;     // of the progress
+constexpr int layers_at_once = 16;      // between two calls for progress
 constexpr double inward_step = 1.25;    // cells behind a voxel of the surface: inside, or thin
 constexpr double thin_share = 0.1;      // of the surface's voxels
 constexpr double flipped_share = 0.1;   // of the edges: more, and flips are why nothing is inside
 constexpr float least_vector = 1e-12F;  // shorter has no direction
 constexpr double bytes_per_voxel = 36;  // field, three components before and after, hits
-
-using Report = std::function<void(double)>;
-
-/// Restores `first` on the surface after every round.
-void blur(const Grid& grid,
-          const Blur& how,
-          const std::vector<SurfaceVoxel>& voxels,
-          std::vector<float>& values,
-          const Report& done) {
-  std::vector<float> first;
-  first.reserve(voxels.size());
-  for (const SurfaceVoxel& v : voxels) first.push_back(values[v.at]);
-  for (int round = 0; round < how.rounds; ++round) {
-    blur_once(grid, how.radius, values);
-    for (std::size_t i = 0; i < voxels.size(); ++i) values[voxels[i].at] = first[i];
-    done((round + 1.0) / how.rounds);
-  }
-}
+constexpr int smoothing_radius = 2;     // of the potential, before its gradient is taken
 
 std::uint32_t code_of(float x, float y, float z) {
   if (std::fabs(x) + std::fabs(y) + std::fabs(z) < least_vector) return no_normal;
@@ -75,14 +56,84 @@ bool has_body(const Field& field, std::size_t at, Vec3 normal) {
   return field.distance[field.grid.index(behind[0], behind[1], behind[2])] < 0;
 }
 
-void require_body(const Field& field,
-                  const Surface& surface,
-                  const std::vector<SurfaceVoxel>& voxels) {
+/// What must be refused before anything is made; the surface that is blurred.
+Surface checked(const Surface& surface, const Grid& grid, const BlurredOptions& options) {
+  if (options.method == Method::exact)
+    fail(ErrorCode::bad_argument, "a blurred field by the exact method; take build_exact");
+  if (options.method == Method::normals && options.sides == Sides::two)
+    fail(ErrorCode::bad_argument,
+         "a two-sided field by the normals method, which serves one side alone; take the potential "
+         "or the exact method");
+  validate(surface);
+  require_thick(grid, options.thickness);
+  if (options.blur.rounds != 0) require_blur(options.blur);
+  require_buildable(grid, bytes_per_voxel);
+  return options.sides == Sides::one ? Surface(OutwardSurface(surface).surface()) : surface;
+}
+
+Blur blur_of(const Grid& grid, const BlurredOptions& options) {
+  return options.blur.rounds == 0 ? choose_blur(grid, options.thickness) : options.blur;
+}
+
+}  // namespace
+
+BlurredBuilder::BlurredBuilder(const Surface& surface,
+                               const Grid& grid,
+                               const BlurredOptions& options)
+    : BlurredBuilder(checked(surface, grid, options), grid, options, blur_of(grid, options)) {}
+
+BlurredBuilder::BlurredBuilder(Surface surface,
+                               const Grid& grid,
+                               const BlurredOptions& options,
+                               Blur blur)
+    : surface_(std::move(surface)),
+      blur_(blur),
+      // The potential once more with nothing restored: the steps of the voxels are no slope.
+      n_blurs_(options.method == Method::potential ? blur.rounds + 1 : blur.rounds),
+      exact_(surface_, grid, {options.sides, Content::distance_and_normal, options.thickness, {}}),
+      field_(exact_.empty_field()),
+      slabs_(static_cast<std::size_t>(grid.n[2])),
+      voxels_(surface_voxels(surface_, grid)) {
+  require_met(surface_, grid, voxels_);
+  field_.method = options.method;
+  const std::size_t n_parts = options.method == Method::normals ? 3 : 1;
+  for (auto& side : values_) side.assign(n_parts, Values(grid.size()));
+  for (std::size_t part = 0; part < n_parts; ++part)
+    for (const SurfaceVoxel& v : voxels_) values_[0][part][v.at] = seed(v, part);
+}
+
+/// What a voxel of the surface begins with, and gets back after every round.
+float BlurredBuilder::seed(const SurfaceVoxel& voxel, std::size_t part) const {
+  return field_.method == Method::potential
+             ? 1.0F
+             : static_cast<float>(component(voxel.normal, static_cast<int>(part)));
+}
+
+std::span<const SurfaceVoxel> BlurredBuilder::voxels_in(int first, int last) const {
+  const auto from = [this](int layer) {
+    return std::ranges::lower_bound(voxels_, field_.grid.index(0, 0, layer), {}, &SurfaceVoxel::at);
+  };
+  return {from(first), from(last)};
+}
+
+void BlurredBuilder::build_distances(int first, int last) {
+  if (first < last)
+    slabs_[static_cast<std::size_t>(first)] = exact_.build(slab_of(field_, first, last));
+}
+
+void BlurredBuilder::build_round(int round, int first, int last) {
+  const bool by_normals = field_.method == Method::normals;
+  if (round == 0 && first == 0 && by_normals) require_body();
+  if (round < n_blurs_) return blur(round, first, last);
+  by_normals ? set_normals(first, last) : set_gradients(first, last);
+}
+
+void BlurredBuilder::require_body() const {
   std::size_t thin = 0;
-  for (const SurfaceVoxel& v : voxels)
-    if (!has_body(field, v.at, v.normal)) ++thin;
-  if (static_cast<double>(thin) <= thin_share * static_cast<double>(voxels.size())) return;
-  const double disagreeing = disagreeing_share(welded(surface));
+  for (const SurfaceVoxel& v : voxels_)
+    if (!has_body(field_, v.at, v.normal)) ++thin;
+  if (static_cast<double>(thin) <= thin_share * static_cast<double>(voxels_.size())) return;
+  const double disagreeing = disagreeing_share(welded(surface_));
   if (disagreeing > flipped_share)
     fail(ErrorCode::bad_argument,
          "the orientation of triangles disagrees at ",
@@ -90,7 +141,7 @@ void require_body(const Field& field,
          " % of the edges between two, and ",
          thin,
          " of ",
-         voxels.size(),
+         voxels_.size(),
          " voxels of the surface have no inside behind them; the normals method needs triangles "
          "that agree which side is out: orient them, or take a two-sided field by the potential or "
          "the exact method");
@@ -98,95 +149,84 @@ void require_body(const Field& field,
        "the object is of near-zero thickness in ",
        thin,
        " of ",
-       voxels.size(),
+       voxels_.size(),
        " voxels of its surface, with cells of ",
-       field.grid.cell,
+       field_.grid.cell,
        "; the normals method fails there: take the potential or the exact method, or a higher "
        "resolution");
 }
 
-void blur_normals(Field& field,
-                  const Surface& surface,
-                  const Blur& how,
-                  const std::vector<SurfaceVoxel>& voxels,
-                  const Report& done) {
-  require_body(field, surface, voxels);
-  std::array<std::vector<float>, 3> parts;
-  for (int a = 0; a < 3; ++a) {
-    auto& part = parts[static_cast<std::size_t>(a)];
-    part.assign(field.grid.size(), 0);
-    for (const SurfaceVoxel& v : voxels) part[v.at] = static_cast<float>(component(v.normal, a));
-    blur(field.grid, how, voxels, part, [&](double share) { done((a + share) / 3); });
+void BlurredBuilder::blur(int round, int first, int last) {
+  const auto& before = values_[static_cast<std::size_t>(round % 2)];
+  auto& after = values_[static_cast<std::size_t>((round + 1) % 2)];
+  const bool restores = round < blur_.rounds;
+  for (std::size_t part = 0; part < before.size(); ++part) {
+    blur_layers(field_.grid,
+                restores ? blur_.radius : smoothing_radius,
+                before[part],
+                after[part],
+                first,
+                last);
+    if (!restores) continue;
+    for (const SurfaceVoxel& v : voxels_in(first, last)) after[part][v.at] = seed(v, part);
   }
-  for (std::size_t at = 0; at < field.normal.size(); ++at)
-    if (field.normal[at] != no_normal)
-      field.normal[at] = code_of(parts[0][at], parts[1][at], parts[2][at]);
 }
 
-void blur_potential(Field& field,
-                    const Blur& how,
-                    const std::vector<SurfaceVoxel>& voxels,
-                    const Report& done) {
-  const Grid& grid = field.grid;
-  std::vector<float> potential(grid.size(), 0);
-  for (const SurfaceVoxel& v : voxels) potential[v.at] = 1;
-  blur(grid, how, voxels, potential, done);
-  blur_once(grid, 2, potential);  // nothing restored: the steps of the voxels are no slope
-  std::vector<std::uint8_t> ridge(grid.size(), 0);
-  for (const SurfaceVoxel& v : voxels) ridge[v.at] = 1;
+void BlurredBuilder::set_normals(int first, int last) {
+  const auto& parts = values_[static_cast<std::size_t>(n_blurs_ % 2)];
+  const Grid& grid = field_.grid;
+  for (std::size_t at = grid.index(0, 0, first); at < grid.index(0, 0, last); ++at)
+    if (field_.normal[at] != no_normal)
+      field_.normal[at] = code_of(parts[0][at], parts[1][at], parts[2][at]);
+}
+
+/// On the surface itself, its ridge, the potential has no gradient: the exact normals stay there.
+void BlurredBuilder::set_gradients(int first, int last) {
+  const Values& potential = values_[static_cast<std::size_t>(n_blurs_ % 2)].front();
+  const Grid& grid = field_.grid;
   const auto slope = [&](std::size_t at, int voxel, int n, std::size_t stride) {
     const std::size_t up = voxel + 1 < n ? at + stride : at, down = voxel > 0 ? at - stride : at;
     const float width = up - down == 2 * stride ? 0.5F : 1.0F;
     return width * (potential[down] - potential[up]);  // away from the object
   };
-  for (int k = 0; k < grid.n[2]; ++k)
+  auto ridge = voxels_in(first, last);
+  for (int k = first; k < last; ++k)
     for (int j = 0; j < grid.n[1]; ++j)
       for (int i = 0; i < grid.n[0]; ++i) {
         const std::size_t at = grid.index(i, j, k);
-        if (field.normal[at] == no_normal || ridge[at] != 0) continue;
-        const float sign = field.distance[at] < 0 ? -1.0F : 1.0F;
-        field.normal[at] = code_of(sign * slope(at, i, grid.n[0], 1),
-                                   sign * slope(at, j, grid.n[1], grid.index(0, 1, 0)),
-                                   sign * slope(at, k, grid.n[2], grid.index(0, 0, 1)));
+        if (!ridge.empty() && ridge.front().at == at) {
+          ridge = ridge.subspan(1);
+          continue;
+        }
+        if (field_.normal[at] == no_normal) continue;
+        const float sign = field_.distance[at] < 0 ? -1.0F : 1.0F;
+        field_.normal[at] = code_of(sign * slope(at, i, grid.n[0], 1),
+                                    sign * slope(at, j, grid.n[1], grid.index(0, 1, 0)),
+                                    sign * slope(at, k, grid.n[2], grid.index(0, 0, 1)));
       }
 }
 
-}  // namespace
+Field BlurredBuilder::finish() {
+  exact_.finish(field_, slabs_);
+  return std::move(field_);
+}
 
-Field build_blurred(const Surface& given, const Grid& grid, const BlurredOptions& options) {
-  if (options.method == Method::exact)
-    fail(ErrorCode::bad_argument, "a blurred field by the exact method; take build_exact");
-  if (options.method == Method::normals && options.sides == Sides::two)
-    fail(ErrorCode::bad_argument,
-         "a two-sided field by the normals method, which serves one side alone; take the potential "
-         "or the exact method");
-  validate(given);
-  require_thick(grid, options.thickness);
-  const Blur how = options.blur.rounds == 0 ? choose_blur(grid, options.thickness) : options.blur;
-  require_blur(how);
-  require_buildable(grid, bytes_per_voxel);
-  std::optional<OutwardSurface> outward;  // its triangles' normals are what is blurred
-  if (options.sides == Sides::one) outward.emplace(given);
-  const Surface& surface = outward ? outward->surface() : given;
+Field build_blurred(const Surface& surface, const Grid& grid, const BlurredOptions& options) {
+  BlurredBuilder builder(surface, grid, options);
   const auto report = [&](double done) {
     if (options.progress) options.progress(done);
   };
-  Field field = build_exact(
-      surface,
-      grid,
-      {options.sides, Content::distance_and_normal, options.thickness, [&](double done) {
-         report(exact_share * done);
-       }});
-  field.method = options.method;
-  const auto voxels = surface_voxels(surface, grid);
-  require_met(surface, grid, voxels);
-  const Report rest = [&](double done) { report(exact_share + (1 - exact_share) * done); };
-  if (options.method == Method::normals) {
-    blur_normals(field, surface, how, voxels, rest);
-  } else {
-    blur_potential(field, how, voxels, rest);
+  const int n = grid.n[2];
+  for (int k = 0; k < n; k += layers_at_once) {
+    const int next = std::min(k + layers_at_once, n);
+    builder.build_distances(k, next);
+    report(exact_share * next / n);
   }
-  return field;
+  for (int round = 0; round < builder.n_rounds(); ++round) {
+    builder.build_round(round, 0, n);
+    report(exact_share + (1 - exact_share) * (round + 1) / builder.n_rounds());
+  }
+  return builder.finish();
 }
 
 }  // namespace tess::dn

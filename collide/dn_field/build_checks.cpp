@@ -1,18 +1,9 @@
 #include "collide/dn_field/build_checks.hpp"
 
+#include "runtime/base/usable_memory.hpp"
 #include "runtime/error.hpp"
 
-#include <unistd.h>
-
 namespace tess::dn {
-namespace {
-
-double memory_bytes() {
-  const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-  return pages > 0 && page > 0 ? static_cast<double>(pages) * static_cast<double>(page) : HUGE_VAL;
-}
-
-}  // namespace
 
 void require_buildable(const Grid& grid, double bytes_per_voxel) {
   const auto [nx, ny, nz] = grid.n;
@@ -30,13 +21,13 @@ void require_buildable(const Grid& grid, double bytes_per_voxel) {
          ", ",
          grid.origin.z,
          "); cells must be positive and all of it finite");
-  const double wanted = bytes_per_voxel * nx * ny * nz, there = memory_bytes();
+  const double wanted = bytes_per_voxel * nx * ny * nz, there = usable_memory();
   if (wanted > there)
     fail(ErrorCode::environment,
          grid_text,
          " takes ",
          wanted / 1e9,
-         " GB to build, this machine has ",
+         " GB to build, this process may have ",
          there / 1e9,
          "; lower the resolution");
 }

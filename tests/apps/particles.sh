@@ -94,6 +94,27 @@ sed 's/"steps": 60/"steps": 60, "compression": {}/' "$scratch/scene.json" >"$scr
 same "$particles" "$scratch/cut.json" --pes 2
 want=$flat
 
+# The blurred constructions, too, are the work of all PEs; a field from a file gives what the built one gave.
+for method in normals potential; do
+  sed "s/\"resolution\": 24/\"resolution\": 64, \"method\": \"$method\", \"blur\": {\"radius\": 2, \"rounds\": 3}/" \
+    "$scratch/scene.json" >"$scratch/blurred.json"
+  "$particles" "$scratch/blurred.json" --pes 1 --json "$scratch/first.json" >"$scratch/out.txt" || failed=$((failed + 1))
+  want=$(hash_of "$scratch/first.json")
+  for pes in 2 5; do same "$particles" "$scratch/blurred.json" --pes $pes; done
+  same "${mpirun[@]}" -n 2 "$particles" "$scratch/blurred.json" --pes 2
+  same "$particles" "$scratch/blurred.json" --sim pes=4,per-process=2,seed=3
+  sed 's/"slice": {}/"fields": true/' "$scratch/blurred.json" >"$scratch/saving.json"
+  same "$particles" "$scratch/saving.json" --pes 2 --out "$scratch/saved"
+  sed 's/"resolution": 64, .*"motion"/"field": "saved\/field_0.dnf", "motion"/' "$scratch/blurred.json" >"$scratch/loading.json"
+  grep -q '"field": "saved/field_0.dnf", "motion"' "$scratch/loading.json"
+  check "the scene loads a field" $?
+  same "$particles" "$scratch/loading.json" --pes 2
+  same "${mpirun[@]}" -n 2 "$particles" "$scratch/loading.json" --pes 1
+done
+"$particles" "$scratch/loading.json" --steps 0 --explain >"$scratch/out.txt" && grep -q 'fields: 0 built, 1 read from files' "$scratch/out.txt"
+check "--explain says that a field is read" $?
+want=$flat
+
 # refuses WORD COMMAND…: exit code 2, one line with WORD, nothing written.
 refuses() {
   local word=$1
@@ -113,6 +134,14 @@ refuses 'unknown key' "$particles" "$(edited 's/"resolution"/"resolutoin"/')"
 refuses 'compression.cells: 0.6 is not within 0 … 0.5' "$particles" "$(edited 's/"steps": 60/"steps": 60, "compression": {"cells": 0.6}/')"
 refuses 'trilinear' "$particles" --compressed "$(edited 's/"rules": {/"rules": {"look_up": "trilinear", /')"
 refuses 'none.obj: cannot be opened' "$particles" "$(edited 's/wedge.obj/none.obj/')"
+cp "$scratch/saved/field_0.dnf" "$scratch/damaged.dnf"
+printf 'x' | dd of="$scratch/damaged.dnf" bs=1 seek=3000 conv=notrunc status=none
+sed 's/saved.field_0.dnf/damaged.dnf/' "$scratch/loading.json" >"$scratch/bad.json"
+refuses 'objects\[0\].field: .*damaged.dnf: damaged: its checksum' "$particles" "$scratch/bad.json"
+sed 's/wedge.obj/other.obj/' "$scratch/loading.json" >"$scratch/bad.json"
+sed 's/v 0 0 1/v 0 0 0.7/' "$scratch/wedge.obj" >"$scratch/other.obj"
+refuses 'is the field of another shape' "$particles" "$scratch/bad.json"
+refuses 'outputs.fields: true, and the fields are compressed' "$particles" "$scratch/saving.json" --compressed
 refuses 'is not JSON' "$particles" "$(edited 's/"dt": 0.01,/"dt": 0.01/')"
 printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >"$scratch/nan.obj"
 printf 'v 0 0 0\n' >"$scratch/empty.obj"
@@ -183,11 +212,11 @@ explains() {  # explains LINE COMMAND…
   "$@" --steps 0 --explain >"$scratch/out.txt" 2>&1 && grep -q -- "$line" "$scratch/out.txt"
   check "$* explains '$line'" $?
 }
-explains 'normals: used, by rules and the picture' "$particles" "$scratch/scene.json" --out "$scratch/out"
+explains 'normals: used, by rules, the picture' "$particles" "$scratch/scene.json" --out "$scratch/out"
 explains 'normals: used, by rules$' "$particles" "$scratch/scene.json"
-explains 'distances: used, by the picture alone' "$particles" "$(edited "$falls")" --out "$scratch/out"
-explains 'normals: used, by the picture alone' "$particles" "$(edited "$falls")" --out "$scratch/out"
-explains 'fields: built, objects 1' "$particles" "$(edited "$falls")" --out "$scratch/out"
+explains 'distances: used, by the picture' "$particles" "$(edited "$falls")" --out "$scratch/out"
+explains 'normals: used, by the picture' "$particles" "$(edited "$falls")" --out "$scratch/out"
+explains 'fields: 1 built, 0 read from files' "$particles" "$(edited "$falls")" --out "$scratch/out"
 explains 'fields: left out, no rule asks' "$particles" "$(edited "$falls")"
 explains 'distances: left out' "$particles" "$(edited "$falls")"
 explains 'compressed copies: made after the run' "$particles" "$scratch/scene.json" --json "$scratch/again.json"

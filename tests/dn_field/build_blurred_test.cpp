@@ -6,6 +6,8 @@
 #include "tests/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 
+#include <thread>
+
 namespace {
 
 using namespace tess::dn;
@@ -107,6 +109,33 @@ TEST_CASE("both of the paper's methods give a sphere's normals, and exact distan
       CHECK(worst < (method == Method::normals ? 6 : 22));
       CHECK(mean < (method == Method::normals ? 1.5 : 4));
     }
+}
+
+TEST_CASE("a blurred field does not depend on how its layers are split, or by whom", "[dn_field]") {
+  const Surface torus = make_torus(1, 0.4, 24);
+  const Grid grid = grid_around(bounds(torus), 26, 0.3);
+  for (const Method method : {Method::normals, Method::potential}) {
+    const BlurredOptions options{method, Sides::one, 0.3, {3, 2}, {}};
+    const Field whole = build_blurred(torus, grid, options);
+    for (const std::vector<int>& cuts :
+         {std::vector<int>{0, 26}, {0, 4, 4, 12, 26}, {0, 1, 2, 7, 25, 26}}) {
+      BlurredBuilder builder(torus, grid, options);
+      const auto each_part = [&cuts](const auto& build) {
+        std::vector<std::jthread> threads;
+        for (std::size_t i = cuts.size() - 1; i > 0; --i)
+          threads.emplace_back([&build, from = cuts[i - 1], to = cuts[i]] { build(from, to); });
+      };
+      each_part([&](int first, int last) { builder.build_distances(first, last); });
+      CHECK(builder.n_rounds() == (method == Method::normals ? 3 : 4));
+      for (int round = 0; round < builder.n_rounds(); ++round)
+        each_part([&](int first, int last) { builder.build_round(round, first, last); });
+      const Field field = builder.finish();
+      CHECK(field.distance == whole.distance);
+      CHECK(field.normal == whole.normal);
+      CHECK(field.thickness == whole.thickness);
+      CHECK(field.jump == whole.jump);
+    }
+  }
 }
 
 TEST_CASE("the potential of a thin plate points away from it on both sides", "[dn_field]") {

@@ -2,6 +2,10 @@
 
 #include "apps/particles/emit.hpp"
 #include "apps/particles/memory.hpp"
+#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/field_file.hpp"
+#include "collide/dn_field/shapes.hpp"
+#include "runtime/base/usable_memory.hpp"
 #include "runtime/error.hpp"
 
 #include <catch2/catch.hpp>
@@ -50,6 +54,18 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"\"resolution\": 20",
        "\"resolutoin\": 20",
        "objects[1].resolutoin: unknown key; allowed here: shape"},
+      {"\"thickness\": 0.5",
+       "\"blur\": {\"radius\": 2, \"rounds\": 3}",
+       "objects[1].blur: {\"radius\":2,\"rounds\":3} stands beside the exact method"},
+      {"\"thickness\": 0.5",
+       "\"method\": \"potential\", \"blur\": {\"radius\": 5, \"rounds\": 3}",
+       "objects[1].blur.radius: 5 is not within 2 … 4"},
+      {"\"thickness\": 0.5",
+       "\"field\": \"none.dnf\"",
+       "objects[1].resolution: 20 stands beside a field from a file"},
+      {"\"resolution\": 20, \"thickness\": 0.5",
+       "\"field\": \"none.dnf\"",
+       "objects[1].field: none.dnf: cannot be opened; give the path of a field file"},
       {"\"thickness\": 0.5", "\"thickness\": 0", "objects[1].thickness: 0 is not above 0"},
       {"\"thickness\": 0.5",
        "\"thickness\": 0.1",
@@ -230,13 +246,65 @@ TEST_CASE("a picture outside of the field is refused", "[particles][scene]") {
                            "within the field: -1.5 … 1.5") != std::string::npos);
 }
 
+TEST_CASE("a chosen field covers the step, or two cells where impacts are swept and it cannot",
+          "[particles][scene]") {
+  const auto scene = [](const std::string& speed, const std::string& sweep) {
+    return R"({"dt": 0.01, "steps": 1,
+      "objects": [{"shape": {"sphere": {"radius": 1}}, "choose": {"max_speed": )" +
+           speed + R"(, "detail": 0.2}}],
+      "emitters": [{"count": 1, "sphere": {"radius": 1}}],
+      "rules": {"impact": {"restitution": 1, "sweep": )" +
+           sweep + "}}}";
+  };
+  const auto thickness = [&](const std::string& speed) {
+    return parse_scene(scene(speed, "true"), "scene.json").objects[0].thickness;
+  };
+  CHECK(thickness("20") == Approx(0.4));   // a step of 0.2, and two cells of 0.1
+  CHECK(thickness("1e6") == Approx(0.2));  // 1e4 a step
+  CHECK(refusal(scene("1e6", "false")).find("objects[0].choose") != std::string::npos);
+}
+
+TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("tess_field_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const auto with_field = [&](const std::string& shape) {
+    return "{\"dt\": 0.01, \"steps\": 1, \"objects\": [{\"shape\": " + shape +
+           ", \"field\": \"a.dnf\"}], \"emitters\": [{\"count\": 1, \"sphere\": {\"radius\": 1}}]}";
+  };
+  const auto read = [&](const std::string& text) -> std::string {
+    try {
+      const Scene scene = parse_scene(text, (folder / "scene.json").string());
+      const SceneObject& object = scene.objects.front();
+      return tess::text(
+          object.grid.n[0], " ", object.thickness, " ", object.sides == tess::dn::Sides::two);
+    } catch (const tess::Error& error) {
+      return error.what();
+    }
+  };
+  const std::string box = R"({"box": {"half": [1, 1, 1]}})",
+                    other = R"({"box": {"half": [1, 1, 1.2]}})";
+  const tess::dn::Surface surface = tess::dn::make_box({1, 1, 1});
+  tess::dn::save_field(build_exact(surface,
+                                   grid_around(bounds(surface), 16, 0.5),
+                                   {tess::dn::Sides::two, tess::dn::Content::distance, 0.4, {}}),
+                       (folder / "a.dnf").string());
+  CHECK(read(with_field(box)) == "16 0.4 1");
+  CHECK(read(with_field(other))
+            .find("objects[0].field: " + (folder / "a.dnf").string() +
+                  ": is the field of another shape") != std::string::npos);
+  std::ofstream(folder / "a.dnf", std::ios::app) << "x";
+  CHECK(read(with_field(box)).find("a.dnf: longer than it says") != std::string::npos);
+  fs::remove_all(folder);
+}
+
 TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
   const std::string large = R"({"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 1024})";
   std::string objects = large;
   for (int i = 0; i < 999; ++i) objects += "," + large;  // 8.6 TB
   const std::string told = refusal(R"({"dt": 1, "steps": 0, "objects": [)" + objects +
                                    R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
-  CHECK(told.find("].resolution: 1024 makes the fields ") != std::string::npos);
+  CHECK(told.find("].resolution: 1024 voxels along an axis make the fields ") != std::string::npos);
   CHECK(told.find("scene.json: objects[") == 0);
 }
 
@@ -251,7 +319,7 @@ TEST_CASE("particles and results that no memory can hold are refused", "[particl
   };
   Scene scene = parse_scene(scene_with("\"steps\": 10", "\"steps\": 1000000000"), "scene.json");
   CHECK(needs(scene, 1) == "fits");
-  const auto n = static_cast<std::uint64_t>(usable_memory() / 50);  // a particle takes more
+  const auto n = static_cast<std::uint64_t>(tess::usable_memory() / 50);  // a particle takes more
   scene.emitters[0].count = n;
   CHECK(needs(scene, 1).find("scene.json: emitters: " + std::to_string(n) +
                              " particles make the run ") == 0);
@@ -271,9 +339,9 @@ TEST_CASE("a scene is what its file says", "[particles][scene]") {
   CHECK(scene.steps == 10);
   REQUIRE(scene.objects.size() == 2);
   CHECK(scene.objects[0].surface.triangles.size() == 12);
-  CHECK(scene.objects[0].resolution == 60);
+  CHECK(scene.objects[0].grid.n[0] == 60);
   CHECK(scene.objects[0].thickness == 0.5);
-  CHECK(scene.objects[1].resolution == 20);
+  CHECK(scene.objects[1].grid.n[0] == 20);
   CHECK(scene.n_particles() == 5);
   CHECK(species_of(scene) == std::vector<double>{2});
   REQUIRE(scene.rules.impact);

@@ -1,0 +1,55 @@
+#include "runtime/base/usable_memory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace tess {
+namespace {
+namespace fs = std::filesystem;
+
+/// The least number in the files `name` of a group and all above it; "max" is none.
+double least_limit(const fs::path& mount, fs::path group, const char* name) {
+  double least = HUGE_VAL;
+  for (group = group.relative_path();; group = group.parent_path()) {
+    std::ifstream file(mount / group / name);
+    double limit = 0;
+    if (file >> limit) least = std::min(least, limit);
+    if (group.empty()) return least;
+  }
+}
+
+}  // namespace
+
+double control_group_limit(std::istream& groups, const fs::path& mount) {
+  double least = HUGE_VAL;
+  // number:controllers:path; version 2 has one line without controllers.
+  for (std::string line; std::getline(groups, line);) {
+    const auto first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string_view controllers =
+        std::string_view(line).substr(first + 1, second - first - 1);
+    const fs::path group = line.substr(second + 1);
+    if (controllers.empty()) least = std::min(least, least_limit(mount, group, "memory.max"));
+    if (controllers.find("memory") != std::string::npos)
+      least = std::min(least, least_limit(mount / "memory", group, "memory.limit_in_bytes"));
+  }
+  return least;
+}
+
+double usable_memory() {
+  const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+  double there =
+      pages > 0 && page > 0 ? static_cast<double>(pages) * static_cast<double>(page) : HUGE_VAL;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    there = std::min(there, static_cast<double>(limit.rlim_cur));
+  std::ifstream groups("/proc/self/cgroup");
+  return std::min(there, control_group_limit(groups, "/sys/fs/cgroup"));
+}
+
+}  // namespace tess
