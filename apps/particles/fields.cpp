@@ -6,20 +6,6 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-/// Whether the segment crosses the triangle (Möller and Trumbore 1997), from either side.
-bool crosses(Vec3 from, Vec3 to, const std::array<Vec3, 3>& triangle) {
-  const auto& [a, b, c] = triangle;
-  const Vec3 along = to - from, ab = b - a, ac = c - a;
-  const Vec3 h = cross(along, ac);
-  const double determinant = dot(ab, h);
-  if (determinant == 0) return false;
-  const Vec3 s = from - a;
-  const double u = dot(s, h) / determinant;
-  const Vec3 q = cross(s, ab);
-  const double v = dot(along, q) / determinant, t = dot(ac, q) / determinant;
-  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t <= 1;
-}
-
 /// Interpolated between the voxels of a grid; value: double(int i, int j, int k).
 template <class Value>
 double interpolated(const Grid& grid, const Value& value, Vec3 p) {
@@ -58,44 +44,6 @@ double distance_at(const Object& object, Vec3 p) {
     return static_cast<double>(voxel_distance(*object.compressed, i, j, k));
   };
   return interpolated(object.field->grid, value, p);
-}
-
-bool passes_surface(const Object& object, const Surface& surface, Vec3 from, Vec3 to) {
-  const Field& field = *object.field;
-  const double length = norm(to - from), cell = field.grid.cell;
-  if (!std::isfinite(length)) return false;
-  const double begin = distance_at(object, from);
-  if (begin < HUGE_VAL && std::abs(begin) > length + 2 * cell) return false;
-  if (field.sides == Sides::two) {
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-      if (crosses(from, to, surface.corners(t))) return true;
-    return false;
-  }
-  if (begin < -cell) return false;
-  // The part of the way that lies in the grid, cut into pieces of half a cell.
-  const Vec3 low = field.grid.origin, along = to - from;
-  const Vec3 high =
-      field.grid.centre(field.grid.n[0] - 1, field.grid.n[1] - 1, field.grid.n[2] - 1);
-  double first = 0, last = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double a = component(from, axis), d = component(along, axis);
-    if (d == 0) {
-      if (a < component(low, axis) || a > component(high, axis)) return false;
-      continue;
-    }
-    const double one = (component(low, axis) - a) / d, other = (component(high, axis) - a) / d;
-    first = std::max(first, std::min(one, other));
-    last = std::min(last, std::max(one, other));
-  }
-  if (!(first <= last)) return false;
-  const auto pieces =
-      static_cast<std::size_t>(std::ceil((last - first) * length / (0.5 * cell))) + 1;
-  for (std::size_t i = 0; i <= pieces; ++i) {
-    const double t =
-        first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
-    if (distance_at(object, from + t * along) < -cell) return true;
-  }
-  return false;
 }
 
 }  // namespace particles

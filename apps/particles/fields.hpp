@@ -4,7 +4,6 @@
 
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/stepper.hpp"
-#include "collide/dn_field/surface.hpp"
 
 namespace particles {
 
@@ -14,13 +13,5 @@ namespace particles {
 [[nodiscard]] double distance_at(const tess::dn::Field& field, tess::dn::Vec3 p);
 /// The same of an object's field, flat or compressed; its frame is not asked.
 [[nodiscard]] double distance_at(const tess::dn::Object& object, tess::dn::Vec3 p);
-
-/// A particle's way through the surface of an object in one step. It counts where the way reaches
-/// more than a cell below the surface and began above it (fields of one side), or crosses a
-/// triangle (of two sides). Nearer to the surface the field itself is not sure.
-[[nodiscard]] bool passes_surface(const tess::dn::Object& object,
-                                  const tess::dn::Surface& surface,
-                                  tess::dn::Vec3 from,
-                                  tess::dn::Vec3 to);
 
 }  // namespace particles

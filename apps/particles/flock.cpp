@@ -9,7 +9,7 @@ void Flock::append(const Flock& other) {
   join(motion.x, other.motion.x), join(motion.y, other.motion.y), join(motion.z, other.motion.z);
   join(motion.vx, other.motion.vx), join(motion.vy, other.motion.vy);
   join(motion.vz, other.motion.vz);
-  join(ids, other.ids), join(tunnelled, other.tunnelled);
+  join(ids, other.ids), join(marks, other.marks);
 }
 
 void Flock::remove(std::size_t p) {
@@ -19,7 +19,7 @@ void Flock::remove(std::size_t p) {
   };
   take(motion.x), take(motion.y), take(motion.z);
   take(motion.vx), take(motion.vy), take(motion.vz);
-  take(ids), take(tunnelled);
+  take(ids), take(marks);
 }
 
 }  // namespace particles

@@ -2,6 +2,7 @@
 // independent of one another: their order means nothing, an id names a particle.
 #pragma once
 
+#include "apps/particles/passage.hpp"
 #include "collide/dn_field/particles.hpp"
 
 #include <cstdint>
@@ -12,20 +13,17 @@ namespace particles {
 struct Flock {
   tess::dn::Particles motion;
   std::vector<std::uint64_t> ids;
-  std::vector<std::uint8_t> tunnelled;  ///< 1: it has been through a surface
+  std::vector<Mark> marks;  ///< whether they have been through a surface
 
   [[nodiscard]] std::size_t size() const { return ids.size(); }
 
-  void add(std::uint64_t id,
-           tess::dn::Vec3 position,
-           tess::dn::Vec3 velocity,
-           std::uint8_t through) {
+  void add(std::uint64_t id, tess::dn::Vec3 position, tess::dn::Vec3 velocity, Mark mark) {
     motion.push_back(position, velocity);
     ids.push_back(id);
-    tunnelled.push_back(through);
+    marks.push_back(mark);
   }
   void add(const Flock& other, std::size_t p) {
-    add(other.ids[p], other.motion.position(p), other.motion.velocity(p), other.tunnelled[p]);
+    add(other.ids[p], other.motion.position(p), other.motion.velocity(p), other.marks[p]);
   }
   void append(const Flock& other);
   /// Takes out particle p; the last one takes its place.

@@ -5,6 +5,7 @@
 #include "collide/dn_field/field_file.hpp"
 #include "collide/dn_field/field_match.hpp"
 #include "collide/dn_field/outward.hpp"
+#include "collide/dn_field/walls.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -41,13 +42,14 @@ Frame read_transform(const Node& node) {
 
 /// Grid, thickness and blur from how fast the particles are and how fine the object is. Where
 /// impacts are swept, two cells do if a whole step is too much for a field.
-void choose(const Node& node, const Bounds& box, const StepDemand& of, SceneObject& object) {
+void choose(
+    const Node& node, const Bounds& box, double dt, const Rules& rules, SceneObject& object) {
   constexpr std::size_t most_voxels = std::size_t{512} * 512 * 512;
   const Keys keys = node.keys({"max_speed", "detail"});
   const Demand demand{
       keys.need("max_speed", "the largest speed relative to the surface").number(positive) /
           object.frame.scale,
-      of.dt,
+      dt,
       keys.need("detail", "the size of the smallest feature").number(positive)};
   const auto plan = [&](Coverage coverage) {
     const FieldPlan chosen = choose_plan(box, demand, coverage, most_voxels);
@@ -57,7 +59,7 @@ void choose(const Node& node, const Bounds& box, const StepDemand& of, SceneObje
     try {
       plan(Coverage::step);
     } catch (const tess::Error&) {
-      if (!of.swept) throw;
+      if (!rules.impact || rules.impact->sweep == Sweep::off) throw;
       plan(Coverage::swept);
     }
   } catch (const tess::Error& error) {
@@ -119,7 +121,10 @@ void read_field(const Keys& keys, const std::string& folder, SceneObject& object
 
 }  // namespace
 
-SceneObject read_object(const Node& node, const std::string& folder, const StepDemand& demand) {
+SceneObject read_object(const Node& node,
+                        const std::string& folder,
+                        double dt,
+                        const Rules& rules) {
   const Keys keys = node.keys({"shape",
                                "field",
                                "resolution",
@@ -145,8 +150,11 @@ SceneObject read_object(const Node& node, const std::string& folder, const StepD
   if (keys.has("sides")) object.sides = static_cast<Sides>(keys["sides"].word({"one", "two"}));
   if (keys.has("field")) read_field(keys, folder, object);
   // Emitters, audits and the study see the triangles as the field does.
-  if (object.sides == Sides::one)
+  if (object.sides == Sides::one) {
     object.surface = Surface(OutwardSurface(object.surface).surface());
+    if (rules.impact || rules.spring)
+      object.walls = wall_thicknesses(object.surface, Bvh(object.surface));
+  }
   if (keys.has("field")) return object;
   const Bounds box = bounds(object.surface);
   const Vec3 size = box.size();
@@ -155,7 +163,7 @@ SceneObject read_object(const Node& node, const std::string& folder, const StepD
     for (const char* key : {"resolution", "thickness", "blur"})
       if (keys.has(key))
         keys["choose"].refuse(std::string("stands beside ") + key + "; give either");
-    choose(keys["choose"], box, demand, object);
+    choose(keys["choose"], box, dt, rules, object);
     return object;
   }
   give_field(keys, node, box, object);

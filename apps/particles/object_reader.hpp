@@ -8,15 +8,11 @@
 
 namespace particles {
 
-/// What fields that are chosen by speed have to cover.
-struct StepDemand {
-  double dt = 0;
-  bool swept = false;  ///< impacts are followed along the step, at any speed
-};
-
-/// `folder`: where relative paths of files start. Throws tess::Error for what is wrong.
+/// `folder`: where relative paths of files start. The step and the rules say what a field has to
+/// do. Throws tess::Error for what is wrong.
 [[nodiscard]] SceneObject read_object(const Node& node,
                                       const std::string& folder,
-                                      const StepDemand& demand);
+                                      double dt,
+                                      const tess::dn::Rules& rules);
 
 }  // namespace particles

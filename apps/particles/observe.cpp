@@ -1,6 +1,7 @@
 #include "apps/particles/observe.hpp"
 
 #include "apps/particles/fields.hpp"
+#include "apps/particles/passage.hpp"
 #include "runtime/base/mix.hpp"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ void measure(const Stage& stage,
   for (std::size_t p = 0; p < flock.size(); ++p) {
     const Vec3 position = flock.motion.position(p), velocity = flock.motion.velocity(p);
     ++into.particles;
-    into.tunnelled += flock.tunnelled[p];
+    into.tunnelled += static_cast<std::uint64_t>(flock.marks[p] == tunnelled);
     into.hash += hash_of(flock.ids[p], position, velocity);
     if (!is_finite(position) || !is_finite(velocity)) {
       ++into.nonfinite;
@@ -86,15 +87,16 @@ void note_tunnelled(const Stage& stage,
                     const tess::dn::Particles& before,
                     Flock& flock) {
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
-    const tess::dn::Surface& surface = stage.scene.objects[o].surface;
+    const auto& tree = stage.triangles[o];
+    const tess::dn::Bvh* const triangles = tree ? &*tree : nullptr;
     const std::vector<tess::dn::Frame> frames = frames_in(at_begin[o].frame, stage.scene.dt);
     const double part = 1 / static_cast<double>(frames.size() - 1);
     for (std::size_t p = 0; p < flock.size(); ++p) {
       const Vec3 begin = before.position(p), way = flock.motion.position(p) - begin;
       Vec3 from = frames[0].to_object(begin);
-      for (std::size_t i = 1; i < frames.size() && flock.tunnelled[p] == 0; ++i) {
+      for (std::size_t i = 1; i < frames.size(); ++i) {
         const Vec3 to = frames[i].to_object(begin + static_cast<double>(i) * part * way);
-        if (passes_surface(at_begin[o], surface, from, to)) flock.tunnelled[p] = 1;
+        flock.marks[p] = mark_after(flock.marks[p], at_begin[o], triangles, from, to);
         from = to;
       }
     }
@@ -110,7 +112,7 @@ void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& 
       if (!(distance_at(objects[o], now) < -field.grid.cell)) continue;
       const Vec3 start =
           stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
-      if (!(distance_at(objects[o], start) < -field.grid.cell)) flock.tunnelled[p] = 1;
+      if (!(distance_at(objects[o], start) < -field.grid.cell)) flock.marks[p] = tunnelled;
     }
   }
 }

@@ -1,8 +1,10 @@
 #include "apps/particles/scene.hpp"
 
+#include "collide/dn_field/walls.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace particles {
 
@@ -42,6 +44,20 @@ void compress_fields(Scene& scene) {
         scene.name,
         ": rules.look_up: trilinear cannot ask compressed fields; choose nearest or tangent, "
         "or leave out the compression");
+}
+
+double thin_share(const Scene& scene, const SceneObject& object) {
+  if (!scene.rules.impact || object.sides == tess::dn::Sides::two) return 0;
+  return share_thinner(object.walls, least_wall(scene.rules, object));
+}
+
+double kept_off(const tess::dn::Rules& rules, const SceneObject& object) {
+  return rules.impact ? 2 * rules.impact->threshold / object.frame.scale : 0;
+}
+
+double least_wall(const tess::dn::Rules& rules, const SceneObject& object) {
+  const double diagonals = rules.look_up == tess::dn::LookUp::nearest ? 1.5 : 1;
+  return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(rules, object);
 }
 
 std::string field_file_name(std::size_t object) {

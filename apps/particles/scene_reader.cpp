@@ -162,6 +162,37 @@ void check_magnitude(const Scene& scene, const std::string& file) {
   }
 }
 
+/// A field knows no wall that fits between its voxels: particles would pass and nobody see it.
+void check_walls(const Scene& scene, const std::string& file) {
+  constexpr double most_thin = 0.1;  // of the surface; edges may be, of a body that is not
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    const double thin = thin_share(scene, object);
+    if (thin <= most_thin) continue;
+    const double needed = least_wall(scene.rules, object);
+    // All but most_thin of the walls are thicker than this one.
+    const auto places = static_cast<double>(object.walls.size());
+    const double wall = object.walls[static_cast<std::size_t>(most_thin * places)];
+    const double shrink =
+        (wall + kept_off(scene.rules, object)) / (needed + kept_off(scene.rules, object));
+    const double resolution = std::ceil((object.grid.n[0] - 1) / shrink) + 1;
+    tess::fail(tess::ErrorCode::bad_value,
+               file,
+               ": objects[",
+               i,
+               "].shape: ",
+               100 * thin,
+               " % of its surface is an open sheet, or a wall thinner than ",
+               needed,
+               ", which a field of ",
+               object.grid.n[0],
+               " voxels needs; particles would pass it: take sides two",
+               shrink > 0 && resolution <= 1024
+                   ? tess::text(", or a resolution of ", resolution, " or more")
+                   : "");
+  }
+}
+
 /// What no key by itself can say: the rules fit the masses, the fields cover the rules.
 void check_rules(const Scene& scene, const std::string& file) {
   for (const double mass : species_of(scene)) {
@@ -252,12 +283,10 @@ Scene read(const JsonFile& file, const std::string& name) {
   keys.read("exchange", scene.exchange, 1, most);
   if (keys.has("compression")) scene.compression = read_compression(keys["compression"]);
   if (keys.has("rules")) scene.rules = read_rules(keys["rules"]);
-  const StepDemand demand{scene.dt,
-                          scene.rules.impact && scene.rules.impact->sweep == tess::dn::Sweep::on};
   const std::string folder = std::filesystem::path(name).parent_path().string();
   if (keys.has("objects"))
     for (const Node& item : keys["objects"].items())
-      scene.objects.push_back(read_object(item, folder, demand));
+      scene.objects.push_back(read_object(item, folder, scene.dt, scene.rules));
   for (const Node& item : keys.need("emitters", "a list of at least one emitter").items(1))
     scene.emitters.push_back(read_emitter(item, scene.objects.size()));
   if (scene.n_particles() > static_cast<std::uint64_t>(most_particles))
@@ -274,6 +303,7 @@ Scene read(const JsonFile& file, const std::string& name) {
 void check_scene(const Scene& scene) {
   check_magnitude(scene, scene.name);
   check_rules(scene, scene.name);
+  check_walls(scene, scene.name);
 }
 
 Scene read_scene(const std::string& path) {

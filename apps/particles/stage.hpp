@@ -6,8 +6,10 @@
 #include "apps/particles/emit.hpp"
 #include "apps/particles/field_making.hpp"
 #include "apps/particles/scene.hpp"
+#include "collide/dn_field/bvh.hpp"
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,7 +20,8 @@ struct Stage {
       : scene(std::move(of)),
         source(scene),
         masses(species_of(scene)),
-        fields(builds_fields(scene) ? scene.objects.size() : 0) {}
+        fields(builds_fields(scene) ? scene.objects.size() : 0),
+        triangles(scene.objects.size()) {}
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
@@ -26,6 +29,7 @@ struct Stage {
   const Source source;
   const std::vector<double> masses;      ///< a species is an index into this
   std::vector<FieldInTheMaking> fields;  ///< of the objects; empty where no rule asks for a surface
+  std::vector<std::optional<tess::dn::Bvh>> triangles;  ///< of objects whose audit asks them
 
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
 };

@@ -1,6 +1,7 @@
 #include "apps/particles/station.hpp"
 
 #include "apps/particles/block.hpp"
+#include "apps/particles/simulate.hpp"
 
 #include <map>
 #include <new>
@@ -58,7 +59,12 @@ void Station::begin_fields() {
   const Scene& scene = stage_->scene;
   for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
     make(i, [&, parts = n](FieldInTheMaking& field) {
-      field.begin(scene.objects[i], content_of(scene), parts);
+      const SceneObject& object = scene.objects[i];
+      field.begin(object, content_of(scene), parts);
+      const bool thin =
+          !object.walls.empty() && object.walls.front() < 2 * least_wall(scene.rules, object);
+      const bool asked = object.sides == tess::dn::Sides::two || thin;
+      if (asked && is_audited(scene)) stage_->triangles[i].emplace(object.surface);
     });
 }
 

@@ -5,8 +5,7 @@
 namespace tess::dn {
 namespace {
 constexpr std::uint32_t leaf_size = 4;
-constexpr std::size_t max_depth = 64;  // median splits: log2 of the number of triangles
-constexpr double slack = 1 + 1e-9;     // boxes are pruned only where rounding cannot have decided
+constexpr double slack = 1 + 1e-9;  // boxes are pruned only where rounding cannot have decided
 
 double gap2(const Bounds& a, const Bounds& b) {
   const double x = std::max({0.0, a.low.x - b.high.x, b.low.x - a.high.x});

@@ -28,6 +28,12 @@ struct PointBlock {
   alignas(64) std::array<std::uint64_t, size> place{};
 };
 
+/// Where a segment crosses a triangle.
+struct Crossing {
+  double at = 0;               ///< of the way, 0 … 1
+  std::uint32_t triangle = 0;  ///< number in the surface the tree was made from
+};
+
 /// A winding number for all points of a ball, and an estimate of how far off it is anywhere in it.
 struct WindingEstimate {
   double value = 0;
@@ -49,6 +55,10 @@ class Bvh {
   /// Whether the box of some leaf comes nearer than sqrt(`limit2`) to `box`. False: no triangle
   /// does.
   [[nodiscard]] bool may_reach(const Bounds& box, double limit2) const;
+
+  /// Appends all crossings of the segment, from either side, in no order. At an edge between two
+  /// triangles both may tell, or by rounding none.
+  void crossings(Vec3 from, Vec3 to, std::vector<Crossing>& into) const;
 
   /// The generalised winding number (Jacobson et al. 2013): 1 inside, 0 outside a closed surface,
   /// in between near holes. Clusters further than `accuracy` times their radius count as one dipole
@@ -74,6 +84,8 @@ class Bvh {
   }
 
  private:
+  static constexpr std::size_t max_depth =
+      64;  // splits are at the median: log2 of the number of triangles
   struct Node {
     Bounds box;
     std::uint32_t first = 0;  // leaf: first triangle; inner: first of two children

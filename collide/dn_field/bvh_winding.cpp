@@ -7,7 +7,6 @@ namespace tess::dn {
 namespace {
 constexpr double opening_ratio = 2.0;  // dipole error at most a few per cent of the cluster's share
 constexpr double undecided_half_width = 0.2;  // |w - 1/2| below it: ask again without approximation
-constexpr std::size_t max_depth = 64;
 constexpr double truncated = 0.5;  // of the first-order bound: what a dipole misses by its extent
 constexpr double touching = 1e-9;  // of the corners' distances: nearer, the side is rounding
 

@@ -149,7 +149,8 @@ refuses 'vertex 2 of triangle 0' "$particles" "$(edited 's/wedge.obj/nan.obj/')"
 refuses 'holds no faces' "$particles" "$(edited 's/wedge.obj/empty.obj/')"
 refuses 'shear' "$particles" \
   "$(edited 's/"motion"/"transform": {"matrix": [[1, 1, 0], [0, 1, 0], [0, 0, 1]]}, "motion"/')"
-refuses 'near-zero\|thin\|nothing inside' "$particles" "$(edited 's/{"file": "wedge.obj"}/{"plate": {"half": 1}}/; s/"motion"/"method": "normals", "motion"/')"
+refuses 'near-zero\|thin\|nothing inside' "$particles" "$(edited 's/{"file": "wedge.obj"}/{"plate": {"half": 1}}/; s/"motion"/"method": "normals", "motion"/; s/"impact": {"restitution": 0.6}/"surface_drag": {"rate": 1, "threshold": 0.1}/')"
+refuses 'open sheet.*take sides two' "$particles" "$(edited 's/{"file": "wedge.obj"}/{"plate": {"half": 1}}/')"
 refuses 'missing.json' "$particles" "$scratch/missing.json"
 refuses SCENE "$particles"
 refuses greedy_refine "$particles" "$scratch/scene.json" --balance nonsense

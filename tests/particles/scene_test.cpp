@@ -264,6 +264,33 @@ TEST_CASE("a chosen field covers the step, or two cells where impacts are swept 
   CHECK(refusal(scene("1e6", "false")).find("objects[0].choose") != std::string::npos);
 }
 
+TEST_CASE("bodies too thin for their field are refused where particles bounce off them",
+          "[particles][scene]") {
+  const auto told =
+      [](const std::string& shape, const std::string& more, const std::string& rules) {
+        return refusal(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": )" + shape +
+                       R"(, "resolution": 30, "thickness": 0.4)" + more +
+                       R"(}], "emitters": [{"count": 1, "sphere": {"radius": 1}}], "rules": {)" +
+                       rules + "}}");
+      };
+  const std::string plate = R"({"plate": {"half": 1}})",
+                    thin = R"({"box": {"half": [1, 1, 0.02]}})",
+                    bounce = R"("impact": {"restitution": 1})";
+  CHECK(
+      told(plate, "", bounce) ==
+      "scene.json: objects[0].shape: 100 % of its surface is an open sheet, or a wall thinner than "
+      "0.167232, which a field of 30 voxels needs; particles would pass it: take sides two");
+  CHECK(told(thin, "", bounce).find("take sides two, or a resolution of 123 or more") !=
+        std::string::npos);
+  CHECK(told(thin, R"(, "sides": "two")", bounce) == "accepted");
+  CHECK(told(thin, "", R"("spring": {"stiffness": 1, "reach": 0.1})") == "accepted");
+  CHECK(told(thin, "", R"("impact": {"restitution": 1, "threshold": 0.08})") == "accepted");
+  const std::string wall = R"({"box": {"half": [1, 1, 0.1]}})";
+  CHECK(told(wall, "", bounce) == "accepted");
+  CHECK(told(wall, "", bounce + R"(, "look_up": "nearest")").find("a resolution of ") !=
+        std::string::npos);
+}
+
 TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("tess_field_" + std::to_string(getpid()));

@@ -1,0 +1,91 @@
+#include "apps/particles/passage.hpp"
+
+#include "apps/particles/fields.hpp"
+
+#include <algorithm>
+
+namespace particles {
+namespace {
+using namespace tess::dn;
+
+constexpr Mark first_direction = 2;  // of 27
+
+/// A direction to 30 degrees, as a mark.
+Mark mark_of(Vec3 normal) {
+  constexpr double none = 0.38;  // of a unit vector: a component that counts as 0
+  const auto third = [](double part) { return part > none ? 2 : part < -none ? 0 : 1; };
+  return static_cast<Mark>(first_direction + third(normal.x) + 3 * third(normal.y) +
+                           9 * third(normal.z));
+}
+Vec3 direction_of(Mark mark) {
+  const int code = mark - first_direction;
+  return direction({code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0});
+}
+
+Mark after_walls(Mark mark, const Bvh& triangles, Vec3 from, Vec3 to) {
+  constexpr double opposite = -0.5;
+  std::vector<Crossing> crossings;
+  triangles.crossings(from, to, crossings);
+  std::ranges::sort(crossings, {}, &Crossing::at);
+  for (const Crossing& crossing : crossings) {
+    const Vec3 normal = triangles.normal(crossing.triangle);
+    if (normal == Vec3{}) continue;
+    if (dot(to - from, normal) < 0) {
+      mark = mark_of(normal);
+      continue;
+    }
+    if (mark >= first_direction && dot(direction_of(mark), normal) < opposite) return tunnelled;
+    mark = unmarked;
+  }
+  return mark;
+}
+
+/// Whether a way reaches more than a cell below the surface, and begins above that.
+bool goes_below(const Object& object, Vec3 from, Vec3 to) {
+  const Field& field = *object.field;
+  const double length = norm(to - from), cell = field.grid.cell, begin = distance_at(object, from);
+  if (begin < -cell) return false;
+  // The part of the way that lies in the grid, cut into pieces of half a cell.
+  const Vec3 low = field.grid.origin, along = to - from;
+  const Vec3 high =
+      field.grid.centre(field.grid.n[0] - 1, field.grid.n[1] - 1, field.grid.n[2] - 1);
+  double first = 0, last = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = component(from, axis), d = component(along, axis);
+    if (d == 0) {
+      if (a < component(low, axis) || a > component(high, axis)) return false;
+      continue;
+    }
+    const double one = (component(low, axis) - a) / d, other = (component(high, axis) - a) / d;
+    first = std::max(first, std::min(one, other));
+    last = std::min(last, std::max(one, other));
+  }
+  if (!(first <= last)) return false;
+  const auto pieces =
+      static_cast<std::size_t>(std::ceil((last - first) * length / (0.5 * cell))) + 1;
+  for (std::size_t i = 0; i <= pieces; ++i) {
+    const double t =
+        first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
+    if (distance_at(object, from + t * along) < -cell) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Mark mark_after(Mark mark, const Object& object, const Bvh* triangles, Vec3 from, Vec3 to) {
+  const Field& field = *object.field;
+  const double length = norm(to - from);
+  if (mark == tunnelled || !std::isfinite(length)) return mark;
+  const double begin = distance_at(object, from);
+  if (begin < HUGE_VAL && std::abs(begin) > length + 2 * field.grid.cell) return mark;
+  if (field.sides == Sides::two) {
+    std::vector<Crossing> crossings;
+    triangles->crossings(from, to, crossings);
+    return crossings.empty() ? mark : tunnelled;
+  }
+  if (goes_below(object, from, to)) return tunnelled;
+  return triangles != nullptr ? after_walls(mark, *triangles, from, to) : mark;
+}
+
+}  // namespace particles
