@@ -6,21 +6,13 @@
 #include "apps/lb_lab/replay.hpp"
 #include "apps/lb_lab/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
+#include "apps/plot/write_file.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 namespace lb_lab {
 namespace {
-
-void make_directory(const std::string& option, const std::string& path) {
-  if (path.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) tess::fail(tess::ErrorCode::environment, option, ": ", path, ": ", error.message());
-}
 
 tess::Task measure(Settings settings, double steps_a_second) {
   tess::Pe& pe = tess::current_pe();
@@ -36,12 +28,6 @@ tess::Task measure(Settings settings, double steps_a_second) {
     std::fprintf(stderr, "lb_lab: wrong answer: %s\n", sweep.wrong.c_str());
     tess::exit(1);
   }
-}
-
-/// A run of minutes is not to end in a file that cannot be written.
-void make_file(const std::string& option, const std::string& path) {
-  if (path.empty() || std::ofstream(path, std::ios::app)) return;
-  tess::fail(tess::ErrorCode::environment, option, ": ", path, " cannot be written");
 }
 
 void add_options(CLI::App& app, Settings& s) {
@@ -96,9 +82,9 @@ int start(tess::Setup& setup, int argc, char** argv) {
   const std::int32_t n_pes = setup.machine->n_pes();
   complete(settings, n_pes);
   // On all processes: a fault has to meet them all.
-  make_directory("--plot", settings.plot);
-  make_directory("--save-snapshot", settings.snapshots);
-  make_file("--json", settings.json);
+  plot::make_folder("--plot", settings.plot);
+  plot::make_folder("--save-snapshot", settings.snapshots);
+  plot::require_writable("--json", settings.json);
   double steps_a_second = 0;
   if (talks) {
     if (settings.explain) tess::print_text(explain_text(settings, n_pes));

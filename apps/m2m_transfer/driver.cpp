@@ -23,6 +23,8 @@ Problem read(const Request& request, apps::Progress& progress) {
 Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   if (options.policies.size() > 1)
     fail(ErrorCode::bad_argument, "--policy is given more than once: that is for --study");
+  plot::require_writable("--json", options.json);
+  plot::require_writable("--out", options.out);
   if (options.request.target.empty())
     fail(ErrorCode::bad_argument, "TARGET is missing (--help lists the arguments)");
   Request request = options.request;
@@ -45,6 +47,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
 Task run_study(const DriverOptions& options, apps::Progress& progress) {
   if (!options.out.empty())
     fail(ErrorCode::bad_argument, "--out is for one transfer, not for --study");
+  plot::require_writable("--json", options.json);
   std::vector<Request> requests = plan_study(options.request, options.policies);
   prepare_folder(*options.study);
   const auto gauge = create_group<Gauge>();

@@ -49,6 +49,8 @@ refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy n
 refuses SOURCE "${transfer[@]}"
 
 # A study: nothing in its folder.
+refuses "missing/result.json: cannot be written: its folder" "$bin/m2m_transfer" kuhn:2 kuhn:3 --json "$scratch/missing/result.json"
+refuses "--out $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --out "$scratch"
 study=("$bin/m2m_transfer" --json "$scratch/result.json")
 refuses kuhn:x "${study[@]}" kuhn:2,x --study "$scratch/result.exo"
 refuses missing.msh "${study[@]}" "kuhn:2,4" "$scratch/missing.msh" --study "$scratch/result.exo"
