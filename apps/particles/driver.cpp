@@ -23,6 +23,22 @@ struct Problem {
   Report report;
 };
 
+/// What the fields take compressed; of flat ones, what they would by the usual compression. None
+/// where that cannot be made, as for lack of memory: a run is more than this number.
+std::optional<std::uint64_t> compressed_bytes(const Stage& stage) {
+  std::uint64_t bytes = 0;
+  try {
+    for (const FieldInTheMaking& of : stage.fields)
+      bytes += of.compressed() ? of.compressed()->bytes()
+                               : compress(of.field(), bound_of({}, of.field())).bytes();
+  } catch (const std::bad_alloc&) {
+    return std::nullopt;
+  } catch (const tess::Error&) {
+    return std::nullopt;
+  }
+  return bytes;
+}
+
 tess::dn::Field flat_field(const FieldInTheMaking& of) {
   return of.compressed() ? expanded(*of.compressed()) : of.field();
 }
@@ -51,6 +67,14 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
   co_await simulate(stage, result, run_options);
   progress.clear();
   tess::print(table(stage->scene, result, problem.report));
+  // First what the run has found: an extra that fails shall not take it along.
+  if (!options.out.empty()) write_files(options.out, *stage, result);
+  const auto write_json = [&] {
+    if (!options.json.empty())
+      plot::write_file(options.json, json(stage->scene, result, problem.report));
+  };
+  write_json();
+  if (!options.json.empty()) problem.report.bytes_compressed = compressed_bytes(*stage);
   if (options.study) {
     StudyOptions study_options;
     study_options.progress = &progress;
@@ -60,11 +84,7 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
     tess::print(study_table(problem.report.study));
     if (!options.out.empty()) write_study(options.out, problem.report.study);
   }
-  if (!options.json.empty()) {
-    problem.report.bytes_compressed = compressed_bytes(*stage);
-    plot::write_file(options.json, json(stage->scene, result, problem.report));
-  }
-  if (!options.out.empty()) write_files(options.out, *stage, result);
+  write_json();
 }
 
 }  // namespace
@@ -81,10 +101,12 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
     problem.scene.steps = options.steps;
     check_scene(problem.scene);
   }
+  if (options.out.empty()) {  // nobody asks for them
+    problem.scene.outputs.trajectories = 0;
+    problem.scene.outputs.slice.reset();
+    problem.scene.outputs.fields = false;
+  }
   if (options.compressed) compress_fields(problem.scene);
-  if (options.out.empty()) problem.scene.outputs.trajectories = 0;  // nobody asks for them
-  if (options.out.empty()) problem.scene.outputs.slice.reset();
-  if (options.out.empty()) problem.scene.outputs.fields = false;
   const tess::Machine& machine = *setup.machine;
   problem.report = {machine.describe(), machine.n_pes(), machine.n_processes(), options.run};
   if (options.study && problem.scene.objects.empty())

@@ -1,5 +1,6 @@
 #include "apps/particles/emit.hpp"
 
+#include "collide/dn_field/surface_points.hpp"
 #include "runtime/base/mix.hpp"
 
 #include <algorithm>
@@ -32,16 +33,6 @@ double lattice_at(double low, double high, std::uint64_t i, std::uint64_t n) {
                 : low + (high - low) * (static_cast<double>(i) / static_cast<double>(n - 1));
 }
 
-std::vector<double> area_sums(const tess::dn::Surface& surface) {
-  std::vector<double> sums;
-  double sum = 0;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto [a, b, c] = surface.corners(t);
-    sums.push_back(sum += 0.5 * norm(cross(b - a, c - a)));
-  }
-  return sums;
-}
-
 void add_random_velocity(Start& start, double spread, Numbers& random) {
   if (spread == 0) return;
   const double x = random.between(-spread, spread), y = random.between(-spread, spread),
@@ -55,20 +46,16 @@ Source::Source(const Scene& scene) : scene_(scene), first_{0}, areas_(scene.obje
   for (const Emitter& emitter : scene.emitters) {
     first_.push_back(first_.back() + emitter.count);
     if (emitter.where == Emitter::Where::surface && areas_[emitter.object].empty())
-      areas_[emitter.object] = area_sums(scene.objects[emitter.object].surface);
+      areas_[emitter.object] = tess::dn::area_sums(scene.objects[emitter.object].surface);
   }
 }
 
 Start Source::from_surface(const Emitter& emitter, std::uint64_t number) const {
   Numbers random(emitter.seed, number);
   const SceneObject& object = scene_.objects[emitter.object];
-  const std::vector<double>& sums = areas_[emitter.object];
-  const double area = random.unit() * sums.back();
-  const auto at = std::upper_bound(sums.begin(), sums.end() - 1, area) - sums.begin();
-  const auto [a, b, c] = object.surface.corners(static_cast<std::size_t>(at));
-  const double root = std::sqrt(random.unit()), v = random.unit();
-  const Vec3 on = (1 - root) * a + (root * (1 - v)) * b + (root * v) * c;
-  const Vec3 normal = direction(cross(b - a, c - a));
+  const double first = random.unit(), second = random.unit(), third = random.unit();
+  const auto [on, normal, triangle] =
+      tess::dn::point_on(object.surface, areas_[emitter.object], first, second, third);
   const tess::dn::Frame& frame = object.frame;
   Start start;
   start.position =
@@ -121,7 +108,8 @@ Start Source::particle(std::uint64_t id) const {
 Bounds Source::bounds() const {
   Bounds box;
   for (const Emitter& emitter : scene_.emitters) {
-    const Vec3 r{emitter.outer, emitter.outer, emitter.outer};
+    const double reach = std::max(std::abs(emitter.inner), std::abs(emitter.outer));
+    const Vec3 r{reach, reach, reach};
     if (emitter.where == Emitter::Where::sphere) {
       box.extend(emitter.centre - r);
       box.extend(emitter.centre + r);

@@ -1,8 +1,8 @@
 #include "apps/particles/exact_bounce.hpp"
 
+#include "collide/dn_field/surface_points.hpp"
 #include "runtime/base/mix.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,19 +41,12 @@ std::vector<Bounce> exact_bounces(const Surface& surface,
                                   std::uint64_t seed) {
   constexpr double steepest = std::numbers::pi / 3;
   tess::Random random(seed);
-  std::vector<double> areas;
-  double area = 0;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto [a, b, c] = surface.corners(t);
-    areas.push_back(area += 0.5 * norm(cross(b - a, c - a)));
-  }
+  const std::vector<double> areas = area_sums(surface);
   std::vector<Bounce> bounces;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto at = std::upper_bound(areas.begin(), areas.end() - 1, random.unit() * area);
-    const auto [a, b, c] = surface.corners(static_cast<std::size_t>(at - areas.begin()));
-    const double root = std::sqrt(random.unit()), part = random.unit();
-    const Vec3 point = (1 - root) * a + (root * (1 - part)) * b + (root * part) * c;
-    const Vec3 normal = direction(cross(b - a, c - a));
+    const double first = random.unit(), second = random.unit(), third = random.unit();
+    const auto [point, normal, triangle] = point_on(surface, areas, first, second, third);
+    const auto [a, b, c] = surface.corners(triangle);
     const Vec3 side = direction(b - a), other = cross(normal, side);
     const double tilt = steepest * random.unit(), turn = 2 * std::numbers::pi * random.unit();
     const Vec3 out =

@@ -10,6 +10,8 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
+constexpr int block_layers = 4;  // that are built together
+
 /// The layers `first` to `last` − 1.
 struct Layers {
   int first, last;
@@ -17,20 +19,15 @@ struct Layers {
 
 /// The part-th of n_parts of them, cut where blocks of layers that are built together end.
 Layers share(Layers of, int part, int n_parts) {
-  constexpr int block = 4;
-  const int n_blocks = (of.last - of.first + block - 1) / block;
+  const int n_blocks = (of.last - of.first + block_layers - 1) / block_layers;
   const auto edge = [&](int at) {
-    return std::min(of.last,
-                    of.first + block * static_cast<int>(std::int64_t{n_blocks} * at / n_parts));
+    return std::min(
+        of.last, of.first + block_layers * static_cast<int>(std::int64_t{n_blocks} * at / n_parts));
   };
   return {edge(part), edge(part + 1)};
 }
 
 }  // namespace
-
-bool builds_fields(const Scene& scene) {
-  return needs_field(scene.rules) || scene.outputs.slice || scene.outputs.fields;
-}
 
 Content content_of(const Scene& scene) {
   return scene.outputs.slice || scene.outputs.fields ? Content::distance_and_normal
@@ -44,9 +41,11 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
   if (!object.field.empty()) {
     field_ = load_field(object.field);
     if (content == Content::distance_and_normal && field_.normal.empty())
-      tess::fail(tess::ErrorCode::bad_file,
-                 object.field,
-                 ": holds no normals, which this scene's rules or pictures ask for; save it again");
+      tess::fail(
+          tess::ErrorCode::bad_file,
+          object.field,
+          ": holds no normals, which rules, pictures or files of this scene ask for; take one that "
+          "outputs.fields wrote");
     return;
   }
   n_layers_ = object.grid.n[2];
@@ -63,7 +62,10 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
 
 int FieldInTheMaking::n_distance_stages() const {
   constexpr std::size_t voxels_a_stage = std::size_t{1} << 24U;  // some tenths of a second
-  return static_cast<int>(n_voxels_ / voxels_a_stage) + 1;
+  // Each with blocks enough for all parts.
+  const auto most =
+      static_cast<std::size_t>(std::max(1, n_layers_ / (4 * block_layers * n_parts_)));
+  return static_cast<int>(std::min(most, n_voxels_ / voxels_a_stage + 1));
 }
 
 int FieldInTheMaking::n_stages() const {
@@ -92,7 +94,8 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
   if (blurred_) field_ = blurred_->finish();
   exact_.reset();
   blurred_.reset();
-  if (content_ == Content::distance) field_.normal = {};
+  if (content_ == Content::distance)
+    field_.normal = std::vector<std::uint32_t>();  // and the memory
   flat_bytes_ = field_.bytes();
   if (compression) {
     compressed_ = compress(field_, bound_of(*compression, field_));
@@ -106,7 +109,8 @@ BuiltField build_alone(const SceneObject& object, Content content) {
   making.begin(object, content, 1);
   for (int stage = 0; stage < making.n_stages(); ++stage) making.fill(stage, 0);
   making.finish();
-  return {making.field(), making.seconds()};
+  const double seconds = making.seconds();
+  return {std::move(making).take(), seconds};
 }
 
 ErrorBound bound_of(const Compression& compression, const Field& field) {

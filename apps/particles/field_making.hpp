@@ -9,12 +9,10 @@
 
 #include <chrono>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace particles {
-
-/// Whether anything asks for the fields: rules, a picture, or files of them.
-[[nodiscard]] bool builds_fields(const Scene& scene);
 
 /// What the fields of this scene must hold: what its rules need, and normals for pictures and
 /// files.
@@ -24,8 +22,9 @@ namespace particles {
 /// finished by one. The field does not depend on how many there are.
 class FieldInTheMaking {
  public:
-  /// The part that is one PE's: a tree of the triangles, and which voxels are inside; or the whole
-  /// field from a file. Throws Error(bad_file) for one without normals where `content` has them.
+  /// The part that is one PE's: a tree of the triangles, and for the methods that blur the voxels
+  /// of the surface; or the whole field from a file. Throws Error(bad_file) for one without normals
+  /// where `content` has them.
   void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
   /// Known once begun; none for a field from a file.
   [[nodiscard]] int n_stages() const;
@@ -40,6 +39,8 @@ class FieldInTheMaking {
   [[nodiscard]] const std::optional<tess::dn::CompressedField>& compressed() const {
     return compressed_;
   }
+  /// The flat field, moved out.
+  [[nodiscard]] tess::dn::Field take() && { return std::move(field_); }
   /// What the step loop asks, for an object that stands there.
   [[nodiscard]] tess::dn::Object object(const tess::dn::Frame& frame) const {
     return {&field_, frame, compressed_ ? &*compressed_ : nullptr};

@@ -13,7 +13,7 @@ namespace particles {
 struct Flock {
   tess::dn::Particles motion;
   std::vector<std::uint64_t> ids;
-  std::vector<Mark> marks;  ///< whether they have been through a surface
+  std::vector<Mark> marks;  ///< for the audit
 
   [[nodiscard]] std::size_t size() const { return ids.size(); }
 

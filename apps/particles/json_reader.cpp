@@ -112,6 +112,15 @@ double Node::number(const Interval& allowed) const {
 }
 
 std::int64_t Node::whole(std::int64_t low, std::int64_t high) const {
+  if (at(value_).is_number_float()) {  // 1e6 is whole, too
+    constexpr double exact = 9007199254740992;
+    const auto value = at(value_).get<double>();
+    if (value != std::floor(value)) refuse("is not a whole number");
+    if (std::abs(value) > exact || value < static_cast<double>(low) ||
+        value > static_cast<double>(high))
+      refuse(fmt::format("is not within {} … {}", low, high));
+    return static_cast<std::int64_t>(value);
+  }
   if (!at(value_).is_number_integer()) refuse("is not a whole number");
   const bool too_large = at(value_).is_number_unsigned() &&
                          at(value_).get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX);

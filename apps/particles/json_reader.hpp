@@ -52,7 +52,6 @@ class Node {
   [[noreturn]] void refuse(const std::string& why) const;
   /// Throws: the place and what is wrong, where that says more than the value.
   [[noreturn]] void blame(const std::string& what) const;
-  [[nodiscard]] const std::string& place() const { return place_; }
 
  private:
   friend class Keys;

@@ -24,7 +24,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
   app.add_option("--steps", options.steps, "steps instead of the scene's")
       ->check(CLI::Range(0, 1'000'000'000));
   app.add_option("--json", options.json, "write the result as JSON");
-  app.add_option("--out", options.out, "folder for trajectories and pictures");
+  app.add_option(
+      "--out", options.out, "folder for trajectories, pictures, files of fields and the study");
   app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
   app.add_flag(
       "--study", options.study, "error against run time of every choice, on the first object");

@@ -1,6 +1,8 @@
 #include "apps/particles/memory.hpp"
 
 #include "apps/particles/measured.hpp"
+#include "apps/particles/passage.hpp"
+#include "collide/dn_field/build_blurred.hpp"
 #include "runtime/base/usable_memory.hpp"
 #include "runtime/error.hpp"
 
@@ -35,10 +37,11 @@ class Needs {
   }
 
   void add_fields() {
+    if (!builds_fields(scene_)) return;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
       const SceneObject& object = scene_.objects[i];
       const bool blurs = object.field.empty() && object.method != tess::dn::Method::exact;
-      const double bytes_per_voxel = blurs ? 36 : 8;
+      const double bytes_per_voxel = blurs ? tess::dn::bytes_per_voxel_blurring : 8;
       add(bytes_per_voxel * static_cast<double>(object.grid.size()),
           tess::text("objects[", i, "].", object.field.empty() ? "resolution" : "field"),
           object.grid.n[0],
@@ -63,7 +66,8 @@ void check_field_memory(const Scene& scene) {
 }
 
 void check_memory(const Scene& scene, int n_processes) {
-  constexpr double bytes_per_particle = 6 * sizeof(double) + sizeof(std::uint64_t) + 1,  // a Flock
+  constexpr double bytes_per_particle =
+                       6 * sizeof(double) + sizeof(std::uint64_t) + sizeof(Mark),  // a Flock
       bytes_per_sample = 6 * sizeof(double) + sizeof(std::uint64_t);
   const auto n = static_cast<double>(scene.n_particles());
   const Outputs& outputs = scene.outputs;

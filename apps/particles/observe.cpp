@@ -31,9 +31,9 @@ double least_distance(const std::vector<Object>& objects, Vec3 p) {
 /// How an object stands in a step, from its begin to its end: often enough that a straight way in
 /// the world is one between them, too, as the object sees it.
 std::vector<tess::dn::Frame> frames_in(const tess::dn::Frame& begin, double step) {
-  constexpr double angle = 0.05;  // off by 3e-4 of the way
-  const double turns = norm(begin.angular_velocity) * step / angle;
-  const int n = 1 + static_cast<int>(std::min(turns, 1000.0));
+  constexpr double angle = 0.05;  // off by 3e-4 of the distance from its origin
+  const double pieces = norm(begin.angular_velocity) * step / angle;
+  const int n = 1 + static_cast<int>(std::min(pieces, 1000.0));
   std::vector<tess::dn::Frame> frames{begin};
   for (int i = 1; i <= n; ++i) {
     frames.push_back(begin);
@@ -55,7 +55,7 @@ void measure(const Stage& stage,
   for (std::size_t p = 0; p < flock.size(); ++p) {
     const Vec3 position = flock.motion.position(p), velocity = flock.motion.velocity(p);
     ++into.particles;
-    into.tunnelled += static_cast<std::uint64_t>(flock.marks[p] == tunnelled);
+    into.tunnelled += static_cast<std::uint64_t>(flock.marks[p].what == Mark::through);
     into.hash += hash_of(flock.ids[p], position, velocity);
     if (!is_finite(position) || !is_finite(velocity)) {
       ++into.nonfinite;
@@ -96,7 +96,8 @@ void note_tunnelled(const Stage& stage,
       Vec3 from = frames[0].to_object(begin);
       for (std::size_t i = 1; i < frames.size(); ++i) {
         const Vec3 to = frames[i].to_object(begin + static_cast<double>(i) * part * way);
-        flock.marks[p] = mark_after(flock.marks[p], at_begin[o], triangles, from, to);
+        flock.marks[p] = mark_after(
+            flock.marks[p], static_cast<std::uint16_t>(o), at_begin[o], triangles, from, to);
         from = to;
       }
     }
@@ -112,7 +113,8 @@ void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& 
       if (!(distance_at(objects[o], now) < -field.grid.cell)) continue;
       const Vec3 start =
           stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
-      if (!(distance_at(objects[o], start) < -field.grid.cell)) flock.marks[p] = tunnelled;
+      if (!(distance_at(objects[o], start) < -field.grid.cell))
+        flock.marks[p] = {Mark::through, 0, static_cast<std::uint16_t>(o)};
     }
   }
 }

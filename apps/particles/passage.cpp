@@ -8,21 +8,17 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-constexpr Mark first_direction = 2;  // of 27
-
-/// A direction to 30 degrees, as a mark.
-Mark mark_of(Vec3 normal) {
+/// A direction to 30 degrees as a number, and back.
+std::uint8_t code_of(Vec3 normal) {
   constexpr double none = 0.38;  // of a unit vector: a component that counts as 0
   const auto third = [](double part) { return part > none ? 2 : part < -none ? 0 : 1; };
-  return static_cast<Mark>(first_direction + third(normal.x) + 3 * third(normal.y) +
-                           9 * third(normal.z));
+  return static_cast<std::uint8_t>(third(normal.x) + 3 * third(normal.y) + 9 * third(normal.z));
 }
-Vec3 direction_of(Mark mark) {
-  const int code = mark - first_direction;
+Vec3 direction_of(int code) {
   return direction({code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0});
 }
 
-Mark after_walls(Mark mark, const Bvh& triangles, Vec3 from, Vec3 to) {
+Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 from, Vec3 to) {
   constexpr double opposite = -0.5;
   std::vector<Crossing> crossings;
   triangles.crossings(from, to, crossings);
@@ -31,11 +27,12 @@ Mark after_walls(Mark mark, const Bvh& triangles, Vec3 from, Vec3 to) {
     const Vec3 normal = triangles.normal(crossing.triangle);
     if (normal == Vec3{}) continue;
     if (dot(to - from, normal) < 0) {
-      mark = mark_of(normal);
-      continue;
+      mark = {Mark::inside, code_of(normal), number};
+    } else if (mark.what == Mark::inside && mark.object == number) {
+      const bool passed = dot(direction_of(mark.looks), normal) < opposite;
+      mark = {passed ? Mark::through : Mark::nothing, 0, number};
+      if (passed) break;
     }
-    if (mark >= first_direction && dot(direction_of(mark), normal) < opposite) return tunnelled;
-    mark = unmarked;
   }
   return mark;
 }
@@ -73,19 +70,25 @@ bool goes_below(const Object& object, Vec3 from, Vec3 to) {
 
 }  // namespace
 
-Mark mark_after(Mark mark, const Object& object, const Bvh* triangles, Vec3 from, Vec3 to) {
+Mark mark_after(Mark mark,
+                std::uint16_t number,
+                const Object& object,
+                const Bvh* triangles,
+                Vec3 from,
+                Vec3 to) {
+  const Mark through{Mark::through, 0, number};
   const Field& field = *object.field;
   const double length = norm(to - from);
-  if (mark == tunnelled || !std::isfinite(length)) return mark;
+  if (mark.what == Mark::through || !std::isfinite(length)) return mark;
   const double begin = distance_at(object, from);
   if (begin < HUGE_VAL && std::abs(begin) > length + 2 * field.grid.cell) return mark;
   if (field.sides == Sides::two) {
     std::vector<Crossing> crossings;
     triangles->crossings(from, to, crossings);
-    return crossings.empty() ? mark : tunnelled;
+    return crossings.empty() ? mark : through;
   }
-  if (goes_below(object, from, to)) return tunnelled;
-  return triangles != nullptr ? after_walls(mark, *triangles, from, to) : mark;
+  if (goes_below(object, from, to)) return through;
+  return triangles != nullptr ? after_walls(mark, number, *triangles, from, to) : mark;
 }
 
 }  // namespace particles

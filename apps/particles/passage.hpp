@@ -8,12 +8,15 @@
 
 namespace particles {
 
-/// What a particle has done so far: nothing, been through a surface, or, above those, entered a
-/// body through a wall; then the mark says which way the wall looks.
-using Mark = std::uint8_t;
-inline constexpr Mark unmarked = 0, tunnelled = 1;
+/// What a particle has done so far.
+struct Mark {
+  enum What : std::uint8_t { nothing, inside, through } what = nothing;
+  std::uint8_t looks = 0;    ///< inside, by a thin wall: which way that looks, to 30 degrees
+  std::uint16_t object = 0;  ///< inside: of this one; numbers above 65535 begin again
+};
 
-/// The mark after a straight way in the object's coordinates. A particle has been through a surface
+/// The mark after a straight way in the coordinates of the object of that number. A particle has
+/// been through a surface
 /// - of two sides: where it crosses a triangle;
 /// - of one side: where it is more than a cell below it, and was not when it began. Nearer to the
 ///   surface the field itself is not sure;
@@ -22,6 +25,7 @@ inline constexpr Mark unmarked = 0, tunnelled = 1;
 ///   before.
 /// `triangles`: null for fields of one side without thin walls.
 [[nodiscard]] Mark mark_after(Mark mark,
+                              std::uint16_t number,
                               const tess::dn::Object& object,
                               const tess::dn::Bvh* triangles,
                               tess::dn::Vec3 from,

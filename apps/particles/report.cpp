@@ -1,7 +1,5 @@
 #include "apps/particles/report.hpp"
 
-#include "apps/particles/field_making.hpp"
-
 #include <algorithm>
 #include <array>
 #include <fmt/core.h>
@@ -43,7 +41,7 @@ std::string method_of(const Scene& scene) {
 FieldCost total(const std::vector<FieldCost>& fields) {
   FieldCost sum;
   for (const FieldCost& field : fields) {
-    sum.build_seconds += field.build_seconds;
+    sum.build_seconds = std::max(sum.build_seconds, field.build_seconds);  // made together
     sum.cells += field.cells;
     sum.bytes += field.bytes;
     sum.bytes_used += field.bytes_used;
@@ -181,7 +179,7 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
   line("machine", report.machine);
   if (!result.fields.empty())
     line("fields",
-         fmt::format("{} of method {}, {} cells, {:.3f} MB{}, built in {:.3f} s",
+         fmt::format("{} of method {}, {} cells, {:.3f} MB{}, made in {:.3f} s",
                      result.fields.size(),
                      method_of(scene),
                      fields.cells,
@@ -196,7 +194,7 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
            fmt::format("{:.2g} % of objects[{}] is thinner than {:.3g}: particles may pass there",
                        100 * thin,
                        i,
-                       least_wall(scene.rules, scene.objects[i])));
+                       least_wall(scene, scene.objects[i])));
   line("blocks",
        fmt::format(
            "of {:.4g}, particles change them every {} steps", result.block, result.exchange));
@@ -252,8 +250,9 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
                   {"bytes", fields.bytes},
-                  {"bytes_compressed", report.bytes_compressed},
+                  {"bytes_compressed", nullptr},  // where it is not known
                   {"stored", scene.compression ? "compressed" : "flat"}};
+  if (report.bytes_compressed) out["field"]["bytes_compressed"] = *report.bytes_compressed;
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited ? "each step" : "last step";

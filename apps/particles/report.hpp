@@ -6,6 +6,7 @@
 #include "apps/particles/simulate.hpp"
 #include "apps/particles/study.hpp"
 
+#include <optional>
 #include <string>
 
 namespace particles {
@@ -15,7 +16,7 @@ struct Report {
   std::string machine;
   std::int32_t pes = 0, processes = 0;
   RunOptions run{};
-  std::uint64_t bytes_compressed = 0;  ///< of all fields, see compressed_bytes()
+  std::optional<std::uint64_t> bytes_compressed{};  ///< of all fields
   std::vector<StudyRow> study{};
 };
 

@@ -46,18 +46,30 @@ void compress_fields(Scene& scene) {
         "or leave out the compression");
 }
 
+double least_scale(const Scene& scene, const SceneObject& object) {
+  return object.frame.scale + std::min(0.0, object.frame.scale_rate) * scene.dt * scene.steps;
+}
+
+double greatest_scale(const Scene& scene, const SceneObject& object) {
+  return object.frame.scale + std::max(0.0, object.frame.scale_rate) * scene.dt * scene.steps;
+}
+
+bool builds_fields(const Scene& scene) {
+  return needs_field(scene.rules) || scene.outputs.slice || scene.outputs.fields;
+}
+
 double thin_share(const Scene& scene, const SceneObject& object) {
   if (!scene.rules.impact || object.sides == tess::dn::Sides::two) return 0;
-  return share_thinner(object.walls, least_wall(scene.rules, object));
+  return share_thinner(object.walls, least_wall(scene, object));
 }
 
-double kept_off(const tess::dn::Rules& rules, const SceneObject& object) {
-  return rules.impact ? 2 * rules.impact->threshold / object.frame.scale : 0;
+double kept_off(const Scene& scene, const SceneObject& object) {
+  return scene.rules.impact ? 2 * scene.rules.impact->threshold / greatest_scale(scene, object) : 0;
 }
 
-double least_wall(const tess::dn::Rules& rules, const SceneObject& object) {
-  const double diagonals = rules.look_up == tess::dn::LookUp::nearest ? 1.5 : 1;
-  return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(rules, object);
+double least_wall(const Scene& scene, const SceneObject& object) {
+  const double diagonals = scene.rules.look_up == tess::dn::LookUp::nearest ? 1.5 : 1;
+  return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(scene, object);
 }
 
 std::string field_file_name(std::size_t object) {

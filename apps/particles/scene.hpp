@@ -25,10 +25,11 @@ struct SceneObject {
   double thickness = 0;  ///< of the field beyond the surface, in the object's units
   tess::dn::Method method = tess::dn::Method::exact;
   tess::dn::Sides sides = tess::dn::Sides::one;
-  tess::dn::Blur blur;        ///< of the methods that blur; no rounds: chosen from the thickness
-  std::string field;          ///< file that the field is read from; empty: it is built
-  std::vector<double> walls;  ///< wall_thicknesses() of what impacts and springs meet
-  tess::dn::Frame frame;      ///< at the first step, with its velocities
+  tess::dn::Blur blur;  ///< of the methods that blur; no rounds: chosen from the thickness
+  std::string field;    ///< file that the field is read from; empty: it is built
+  std::vector<double>
+      walls;              ///< wall_thicknesses() of one-sided bodies that impacts or springs ask
+  tess::dn::Frame frame;  ///< at the first step, with its velocities
 };
 
 /// How far the voxels of compressed fields may be off: by default no more than nearest look-up adds
@@ -106,15 +107,22 @@ void check_scene(const Scene& scene);
 /// least_wall(), and open sheets. 0 for fields of two sides, and without impact.
 [[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
 
-/// What the impact's threshold adds to a wall on both sides, in the object's units.
-[[nodiscard]] double kept_off(const tess::dn::Rules& rules, const SceneObject& object);
+/// Whether anything asks for the fields: rules, a picture, or files of them.
+[[nodiscard]] bool builds_fields(const Scene& scene);
+
+/// Of an object in the whole run.
+[[nodiscard]] double least_scale(const Scene& scene, const SceneObject& object);
+[[nodiscard]] double greatest_scale(const Scene& scene, const SceneObject& object);
+
+/// What the impact's threshold adds to a wall on both sides, in the object's units, at least.
+[[nodiscard]] double kept_off(const Scene& scene, const SceneObject& object);
 
 /// The thickness, in the object's units, that its field needs of a wall: a voxel's diagonal, or a
 /// half more by nearest look-up, which errs by that much; less kept_off().
-[[nodiscard]] double least_wall(const tess::dn::Rules& rules, const SceneObject& object);
+[[nodiscard]] double least_wall(const Scene& scene, const SceneObject& object);
 
 /// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's
-/// look-up cannot ask compressed fields.
+/// look-up cannot ask compressed fields, and where files of the fields are asked for.
 void compress_fields(Scene& scene);
 
 /// What a run calls the file of its object's field.

@@ -5,7 +5,8 @@ namespace particles {
 std::string scene_help() {
   return R"(A scene is one JSON object. Lengths, times and masses are in any units that agree. [x, y, z]: three
 numbers. A key without a default must be given; an unknown key, a key twice or a value out of its
-range is an error that names it. No number is beyond 1e100, and none that must be above 0 is below 1e-100.
+range is an error that names it. No number is beyond 1e100, and none that must be above 0 is below 1e-100;
+cells, thicknesses and cells a step of fields are within 1e-15 … 1e15.
 
 dt          time step, above 0
 steps       how many, 0 … 1e9
@@ -26,13 +27,13 @@ objects     a list (default: none); of each:
                     overlap keep their inner faces, which count as surface: join them before
   resolution  voxels along each axis of the field, 4 … 1024 (default 60)
   thickness   of the field beyond the object, in its own units (default: a quarter of its extent)
-  choose      instead of the two: {"max_speed": v, "detail": d}: the field covers a step at speed v (two
+  choose      instead of resolution, thickness and blur: {"max_speed": v, "detail": d}: the field covers a step at speed v (two
               cells where that would be above 512³ voxels and impacts are swept) and has two voxels across d
   method      exact (default), normals, potential
   sides       one (default): negative distances inside; two: thin shells, distances from either side
   blur        {"radius": 2 … 4 voxels, "rounds": n}: of normals and potential (default: through the thickness)
-  field       "field_0.dnf": instead of all of these, the field from a file that outputs.fields wrote, relative
-              to the scene file; one of another shape is refused
+  field       "field_0.dnf": instead of resolution, thickness, choose, method, sides and blur, the field from a
+              file that outputs.fields wrote, relative to the scene file; one of another shape is refused
   transform   {"position": [x, y, z], "rotation": [x, y, z] (degrees about that vector), "scale": s}
               or {"position": …, "matrix": [row, row, row]}: rotation times uniform scale, no shear
   motion      {"velocity": [x, y, z], "spin": [x, y, z] (radians a second about that vector), "scale": r}:

@@ -126,12 +126,6 @@ Compression read_compression(const Node& node) {
   return compression;
 }
 
-/// Of the object in the whole run.
-double least_scale(const Scene& scene, const SceneObject& object) {
-  const tess::dn::Frame& frame = object.frame;
-  return frame.scale + std::min(0.0, frame.scale_rate) * scene.dt * scene.steps;
-}
-
 /// How far from the origin the object reaches in the whole run, at most.
 double furthest(const Scene& scene, const SceneObject& object) {
   const tess::dn::Frame& frame = object.frame;
@@ -139,7 +133,37 @@ double furthest(const Scene& scene, const SceneObject& object) {
   const tess::dn::Bounds box = bounds(object.surface);
   const double radius = std::max(norm(box.low), norm(box.high)) + object.thickness;
   return norm(frame.position) + norm(frame.velocity) * time +
-         (frame.scale + std::max(0.0, frame.scale_rate) * time) * radius;
+         greatest_scale(scene, object) * radius;
+}
+
+/// Fields and look-ups reckon in floats, and with squares: what they are given must be within
+/// their reach, the way of a step too.
+void check_units(const Scene& scene, const std::string& file) {
+  constexpr double largest = 1e15, least = 1e-15;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    const auto check = [&](double value, const char* what) {
+      if (value >= least && value <= largest) return;
+      tess::fail(tess::ErrorCode::bad_value,
+                 file,
+                 ": objects[",
+                 i,
+                 "]: ",
+                 what,
+                 " is ",
+                 value,
+                 ", not within ",
+                 least,
+                 " … ",
+                 largest,
+                 ", in which fields can be reckoned; choose other units");
+    };
+    check(object.grid.cell, "a cell of its field");
+    check(object.thickness, "its thickness");
+    check(object.grid.cell * least_scale(scene, object), "a cell in the world, at its smallest");
+    check(object.thickness * greatest_scale(scene, object), "its thickness in the world");
+    check(object.grid.cell * object.frame.scale / scene.dt, "a cell a step, as a speed,");
+  }
 }
 
 void check_magnitude(const Scene& scene, const std::string& file) {
@@ -169,12 +193,11 @@ void check_walls(const Scene& scene, const std::string& file) {
     const SceneObject& object = scene.objects[i];
     const double thin = thin_share(scene, object);
     if (thin <= most_thin) continue;
-    const double needed = least_wall(scene.rules, object);
+    const double needed = least_wall(scene, object);
     // All but most_thin of the walls are thicker than this one.
     const auto places = static_cast<double>(object.walls.size());
     const double wall = object.walls[static_cast<std::size_t>(most_thin * places)];
-    const double shrink =
-        (wall + kept_off(scene.rules, object)) / (needed + kept_off(scene.rules, object));
+    const double shrink = (wall + kept_off(scene, object)) / (needed + kept_off(scene, object));
     const double resolution = std::ceil((object.grid.n[0] - 1) / shrink) + 1;
     tess::fail(tess::ErrorCode::bad_value,
                file,
@@ -186,7 +209,10 @@ void check_walls(const Scene& scene, const std::string& file) {
                needed,
                ", which a field of ",
                object.grid.n[0],
-               " voxels needs; particles would pass it: take sides two",
+               " voxels needs; particles would pass it: take ",
+               object.field.empty() ? "" : "a field of ",
+               "sides two",
+               object.method == tess::dn::Method::normals ? " and another method" : "",
                shrink > 0 && resolution <= 1024
                    ? tess::text(", or a resolution of ", resolution, " or more")
                    : "");
@@ -303,6 +329,7 @@ Scene read(const JsonFile& file, const std::string& name) {
 void check_scene(const Scene& scene) {
   check_magnitude(scene, scene.name);
   check_rules(scene, scene.name);
+  if (builds_fields(scene)) check_units(scene, scene.name);
   check_walls(scene, scene.name);
 }
 

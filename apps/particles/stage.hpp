@@ -27,21 +27,13 @@ struct Stage {
 
   const Scene scene;
   const Source source;
-  const std::vector<double> masses;      ///< a species is an index into this
-  std::vector<FieldInTheMaking> fields;  ///< of the objects; empty where no rule asks for a surface
+  const std::vector<double> masses;  ///< a species is an index into this
+  std::vector<FieldInTheMaking>
+      fields;  ///< of the objects; empty where nobody asks, see builds_fields()
   std::vector<std::optional<tess::dn::Bvh>> triangles;  ///< of objects whose audit asks them
 
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
 };
-
-/// What the fields take compressed; of flat ones, what they would by the usual compression.
-[[nodiscard]] inline std::uint64_t compressed_bytes(const Stage& stage) {
-  std::uint64_t bytes = 0;
-  for (const FieldInTheMaking& of : stage.fields)
-    bytes += of.compressed() ? of.compressed()->bytes()
-                             : compress(of.field(), bound_of({}, of.field())).bytes();
-  return bytes;
-}
 
 struct StageHandle {
   std::shared_ptr<Stage> stage;

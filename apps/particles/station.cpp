@@ -17,7 +17,7 @@ std::pair<std::int32_t, std::int32_t> pes_of_process() {
   return {pe.id().value / each * each, each};
 }
 
-/// Where no frame of an object is given a field yet, it has none.
+/// None where no rule asks for a surface.
 std::vector<tess::dn::Object> objects_of(const Stage& stage) {
   std::vector<tess::dn::Object> objects;
   if (!stage.collides()) return objects;
@@ -47,9 +47,9 @@ void Station::make(std::size_t field, const Action& action) {
                scene.name,
                ": objects[",
                field,
-               "].resolution: memory does not hold a field of ",
+               "]: memory does not hold a field of ",
                scene.objects[field].grid.n[0],
-               "³ voxels; lower it");
+               "³ voxels; lower its resolution");
   }
 }
 
@@ -62,7 +62,7 @@ void Station::begin_fields() {
       const SceneObject& object = scene.objects[i];
       field.begin(object, content_of(scene), parts);
       const bool thin =
-          !object.walls.empty() && object.walls.front() < 2 * least_wall(scene.rules, object);
+          !object.walls.empty() && object.walls.front() < 2 * least_wall(scene, object);
       const bool asked = object.sides == tess::dn::Sides::two || thin;
       if (asked && is_audited(scene)) stage_->triangles[i].emplace(object.surface);
     });
@@ -114,7 +114,7 @@ void Station::emit(tess::ArrayProxy<Block> blocks) {
     arrivals.flocks.resize(stage.masses.size());
     const auto species = static_cast<std::size_t>(
         std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
-    arrivals.flocks[species].add(id, start.position, start.velocity, 0);
+    arrivals.flocks[species].add(id, start.position, start.velocity, Mark{});
     if (arrivals.flocks[species].size() < most_a_message) continue;
     send(to, arrivals);
     leaving.erase(to);

@@ -1,7 +1,7 @@
 // One round of a 3D blur with linear attenuation over the values of a grid.
 #pragma once
 
-#include "collide/dn_field/build_plan.hpp"
+#include "collide/dn_field/grid.hpp"
 
 #include <span>
 

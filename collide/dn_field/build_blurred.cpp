@@ -16,7 +16,6 @@ constexpr double inward_step = 1.25;    // cells behind a voxel of the surface: 
 constexpr double thin_share = 0.1;      // of the surface's voxels
 constexpr double flipped_share = 0.1;   // of the edges: more, and flips are why nothing is inside
 constexpr float least_vector = 1e-12F;  // shorter has no direction
-constexpr double bytes_per_voxel = 36;  // field, three components before and after, hits
 constexpr int smoothing_radius = 2;     // of the potential, before its gradient is taken
 
 std::uint32_t code_of(float x, float y, float z) {
@@ -45,12 +44,11 @@ void require_met(const Surface& surface,
 
 bool has_body(const Field& field, std::size_t at, Vec3 normal) {
   const auto& n = field.grid.n;
-  const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
-  const std::array<std::size_t, 3> voxel{at % nx, at / nx % ny, at / nx / ny};
+  const std::array<int, 3> voxel = field.grid.voxel(at);
   const Vec3 inward = -inward_step * direction(normal);
   std::array<int, 3> behind{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const double to = static_cast<double>(voxel[a]) + component(inward, static_cast<int>(a));
+    const double to = voxel[a] + component(inward, static_cast<int>(a));
     behind[a] = static_cast<int>(std::clamp(std::round(to), 0.0, n[a] - 1.0));
   }
   return field.distance[field.grid.index(behind[0], behind[1], behind[2])] < 0;
@@ -67,7 +65,7 @@ Surface checked(const Surface& surface, const Grid& grid, const BlurredOptions& 
   validate(surface);
   require_thick(grid, options.thickness);
   if (options.blur.rounds != 0) require_blur(options.blur);
-  require_buildable(grid, bytes_per_voxel);
+  require_buildable(grid, bytes_per_voxel_blurring);
   return options.sides == Sides::one ? Surface(OutwardSurface(surface).surface()) : surface;
 }
 
@@ -80,16 +78,13 @@ Blur blur_of(const Grid& grid, const BlurredOptions& options) {
 BlurredBuilder::BlurredBuilder(const Surface& surface,
                                const Grid& grid,
                                const BlurredOptions& options)
-    : BlurredBuilder(checked(surface, grid, options), grid, options, blur_of(grid, options)) {}
+    : BlurredBuilder(checked(surface, grid, options), options, grid) {}
 
-BlurredBuilder::BlurredBuilder(Surface surface,
-                               const Grid& grid,
-                               const BlurredOptions& options,
-                               Blur blur)
+BlurredBuilder::BlurredBuilder(Surface surface, const BlurredOptions& options, const Grid& grid)
     : surface_(std::move(surface)),
-      blur_(blur),
+      blur_(blur_of(grid, options)),
       // The potential once more with nothing restored: the steps of the voxels are no slope.
-      n_blurs_(options.method == Method::potential ? blur.rounds + 1 : blur.rounds),
+      n_blurs_(options.method == Method::potential ? blur_.rounds + 1 : blur_.rounds),
       exact_(surface_, grid, {options.sides, Content::distance_and_normal, options.thickness, {}}),
       field_(exact_.empty_field()),
       slabs_(static_cast<std::size_t>(grid.n[2])),

@@ -20,6 +20,9 @@
 
 namespace tess::dn {
 
+/// While a field is built: the field, three components before and after a round, and some more.
+inline constexpr double bytes_per_voxel_blurring = 36;
+
 struct BlurredOptions {
   Method method = Method::normals;       ///< normals or potential
   Sides sides = Sides::one;              ///< the normals method serves one side alone
@@ -51,11 +54,14 @@ class BlurredBuilder {
   /// The field, once all is built; then this builder is empty.
   [[nodiscard]] Field finish();
 
+  BlurredBuilder(const BlurredBuilder&) = delete;
+  BlurredBuilder& operator=(const BlurredBuilder&) = delete;
+
  private:
   using Values = std::vector<float>;
 
   /// `surface`: its triangles' normals are what is blurred.
-  BlurredBuilder(Surface surface, const Grid& grid, const BlurredOptions& options, Blur blur);
+  BlurredBuilder(Surface surface, const BlurredOptions& options, const Grid& grid);
   [[nodiscard]] float seed(const SurfaceVoxel& voxel, std::size_t part) const;
   [[nodiscard]] std::span<const SurfaceVoxel> voxels_in(int first, int last) const;
   void require_body() const;

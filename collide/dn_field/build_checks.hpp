@@ -6,8 +6,8 @@
 namespace tess::dn {
 
 /// Throws Error(bad_argument) for a grid without voxels, or whose cells or origin have no finite
-/// size, and Error(environment) where `bytes_per_voxel` for all its voxels are more than this
-/// machine has memory.
+/// size, and Error(environment) where `bytes_per_voxel` for all its voxels are more than
+/// usable_memory().
 void require_buildable(const Grid& grid, double bytes_per_voxel);
 
 /// Throws Error(bad_argument) for a thickness below two cells, or NaN.

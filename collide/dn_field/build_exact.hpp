@@ -50,6 +50,8 @@ class ExactBuilder {
   /// Error(bad_argument) for a thickness below two cells, a grid without voxels or cells without
   /// size, and Error(environment) for a field that memory cannot hold.
   ExactBuilder(const Surface& surface, const Grid& grid, ExactOptions options);
+  ExactBuilder(const ExactBuilder&) = delete;  // its parts know one another by address
+  ExactBuilder& operator=(const ExactBuilder&) = delete;
 
   /// A field with room for all layers, thickness as asked for.
   [[nodiscard]] Field empty_field() const;

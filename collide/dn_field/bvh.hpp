@@ -1,7 +1,7 @@
 // A tree of boxes over the triangles of a surface, for the two questions that construction asks of
-// every voxel: which point of the surface is closest, and how often does the surface wind around
-// me. Voxels ask for the closest triangle as a block of 4³, which walks the tree once. Immutable
-// once made; queries may run on any thread.
+// every voxel, which point of the surface is closest, and how often does the surface wind around
+// me, and for what a straight way crosses. Voxels ask for the closest triangle as a block of 4³,
+// which walks the tree once. Immutable once made; queries may run on any thread.
 #pragma once
 
 #include "collide/dn_field/prepared_triangle.hpp"

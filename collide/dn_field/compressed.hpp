@@ -1,8 +1,9 @@
 // A field in a fifth of the memory and less: two levels, blocks of 4³ to 16³ voxels, each divided
 // into equal cells as coarse as the error bound lets it (section 3.2).
 //
-//     block (i >> e, j >> e, k >> e)  ->  first entry << 3 | s      cells of 2^s voxels, 0 <= s <=
-//     e entry                           ->  distance at the cell's middle, normal
+//     block (i >> e, j >> e, k >> e)  ->  first entry << 3 | s; cells of 2^s voxels, s up to e
+//
+//     entry                           ->  distance at the cell's middle, normal
 //
 // An entry is a plane equation: a voxel of the cell has the distance of its centre from the plane,
 // cut off at the thickness. So a look-up is the same few steps whatever the division, without a

@@ -1,6 +1,7 @@
 #include "collide/dn_field/field_file.hpp"
 
 #include "collide/dn_field/checksum.hpp"
+#include "runtime/base/usable_memory.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -147,6 +148,14 @@ class FileReader {
                   body,
                   " bytes behind its head, not ",
                   head.body_bytes));
+    if (const double there = usable_memory(); static_cast<double>(body) > there)
+      fail(ErrorCode::environment,
+           path_,
+           ": holds ",
+           static_cast<double>(body) / 1e9,
+           " GB, and this process may have ",
+           there / 1e9,
+           " GB");
     left_ = head.body_bytes;
     expected_ = head.checksum;
     checksum_.add(bytes_of(head).first(checked_head_bytes));
@@ -194,11 +203,21 @@ void require(bool condition, const FileReader& reader, const char* what) {
   if (!condition) reader.refuse(text("holds a field that cannot be: ", what));
 }
 
-void require_sound(
-    const FileReader& reader, const Grid& grid, Method method, Sides sides, float jump) {
-  require(grid.n[0] > 0 && grid.n[1] > 0 && grid.n[2] > 0 && grid.cell > 0,
+void require_sound(const FileReader& reader,
+                   const Grid& grid,
+                   Method method,
+                   Sides sides,
+                   double thickness,
+                   float jump) {
+  constexpr int most = 1 << 20;  // voxels along an axis: their number fits
+  for (const int n : grid.n)
+    require(n > 0 && n <= most, reader, "a grid without voxels, or of too many");
+  require(grid.cell > 0 && std::isfinite(grid.cell) && is_finite(grid.origin),
           reader,
-          "a grid without voxels");
+          "cells or an origin that are not finite");
+  require(thickness > 0 && std::isfinite(thickness),
+          reader,
+          "a thickness that is not positive and finite");
   require(method <= Method::potential && sides <= Sides::two, reader, "an unknown method or side");
   require(jump >= 0, reader, "a jump that is negative or NaN");
 }
@@ -235,7 +254,7 @@ AnyField read(FileReader& reader, Kind kind) {
   reader.head(kind);
   each_member(reader, field);
   reader.finish();
-  require_sound(reader, field.grid, field.method, field.sides, field.jump);
+  require_sound(reader, field.grid, field.method, field.sides, field.thickness, field.jump);
   return field;
 }
 

@@ -12,15 +12,14 @@ double mismatch(const Field& field, const Surface& surface) {
   validate(surface);
   const Bvh tree(surface);
   const std::size_t size = field.grid.size();
-  const auto nx = static_cast<std::size_t>(field.grid.n[0]),
-             ny = static_cast<std::size_t>(field.grid.n[1]);
   double worst = 0;
-  for (std::size_t i = 0; i < n_voxels; ++i) {
-    const std::size_t at = mix(i) % size;  // every so many would all stand in one plane
-    const Vec3 p = field.grid.centre(
-        static_cast<int>(at % nx), static_cast<int>(at / nx % ny), static_cast<int>(at / nx / ny));
+  for (std::size_t sample = 0; sample < n_voxels; ++sample) {
+    const std::size_t at = mix(sample) % size;  // every so many would all stand in one plane
+    const auto [i, j, k] = field.grid.voxel(at);
+    const Vec3 p = field.grid.centre(i, j, k);
     const double exact = std::min(std::sqrt(tree.closest(p).distance2), field.thickness);
-    worst = std::max(worst, std::abs(std::abs(static_cast<double>(field.distance[at])) - exact));
+    const double off = std::abs(std::abs(static_cast<double>(field.distance[at])) - exact);
+    if (!(off <= worst)) worst = off;  // NaN, too
   }
   return worst / field.grid.cell;
 }

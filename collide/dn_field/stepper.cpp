@@ -71,11 +71,4 @@ void Stepper::run(ParticleSpan particles,
   rest.put_back();
 }
 
-const Rules& Stepper::rules() const {
-  return plan_->rules;
-}
-double Stepper::step() const {
-  return plan_->step;
-}
-
 }  // namespace tess::dn

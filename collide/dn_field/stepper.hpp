@@ -50,10 +50,7 @@ class Stepper {
            double time,
            int n_steps = 1) const;
 
-  [[nodiscard]] const Rules& rules() const;
-  [[nodiscard]] double step() const;
-
-  struct Plan;  ///< constants and loops of a scene; in stepper.cpp
+  struct Plan;  ///< constants and loops of a scene; in step_plan.hpp
 
  private:
   friend Stepper make_stepper(const Rules& rules, double step);

@@ -202,8 +202,8 @@ limited() { (ulimit -v 1000000 && "$@"); }
 crowded() { edited "s/\"count\": 500/\"count\": $1/"; }
 refuses 'emitters: 1000000000 particles make the run .* GB large' limited "$particles" "$(crowded 1000000000)" --pes 1 --steps 0
 refuses 'emitters: 20000000 particles make the run' limited "$particles" "$(crowded 20000000)" --pes 1 --steps 0
-refuses 'memory is exhausted' limited "$particles" "$(crowded 15000000)" --pes 1 --steps 0
-refuses 'memory is exhausted' limited "$particles" "$(crowded 15000000)" --pes 2 --steps 0
+refuses 'memory is exhausted' limited "$particles" "$(crowded 14000000)" --pes 1 --steps 0
+refuses 'memory is exhausted' limited "$particles" "$(crowded 14000000)" --pes 2 --steps 0
 
 # --explain says what is built and for whom.
 falls='s/, "impact": {"restitution": 0.6}//'

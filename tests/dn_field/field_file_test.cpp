@@ -123,6 +123,31 @@ TEST_CASE("particles move among loaded fields as among those that were saved, bi
   CHECK(moved({&outline_back, {}, &back}) == moved({&flat, {}, &compressed}));
 }
 
+TEST_CASE("a file that is whole but holds no field that can be is refused", "[dn_field]") {
+  const TemporaryFile file("unsound");
+  const auto told = [&](const auto& damage) {
+    Field field = small_field(Content::distance);
+    damage(field);
+    save_field(field, file.path());
+    return refusal([&] { (void)load_field(file.path()); });
+  };
+  CHECK(told([](Field&) {}).empty());
+  CHECK(told([](Field& field) {
+          field.grid.n = {1 << 30, 1 << 30, 16};  // whose product is 0 in 64 bits
+          field.distance.clear();
+        }).find("or of too many") != std::string::npos);
+  CHECK(told([](Field& field) { field.grid.n[1] = 0; }).find("without voxels") !=
+        std::string::npos);
+  CHECK(told([](Field& field) { field.grid.cell = HUGE_VAL; }).find("not finite") !=
+        std::string::npos);
+  CHECK(told([](Field& field) { field.grid.origin.y = std::nan(""); }).find("not finite") !=
+        std::string::npos);
+  CHECK(told([](Field& field) { field.thickness = std::nan(""); }).find("a thickness") !=
+        std::string::npos);
+  CHECK(told([](Field& field) { field.distance.pop_back(); }).find("another number of voxels") !=
+        std::string::npos);
+}
+
 TEST_CASE("damage at any byte of a file is refused, and so is every truncation", "[dn_field]") {
   const TemporaryFile file("damaged");
   const Field flat = small_field(Content::distance);

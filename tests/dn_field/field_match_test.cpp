@@ -28,6 +28,9 @@ TEST_CASE("a field matches its own surface, however it was built, and no other",
       CHECK(mismatch(field, moved) > 0.5 * 0.1 / grid.cell);
     }
   }
+  Field unknown = build_exact(box, grid_around(bounds(box), 16, 0.5));
+  unknown.distance.assign(unknown.distance.size(), NAN);
+  CHECK_FALSE(mismatch(unknown, box) < 1e9);
   CHECK(refusal([&] {
           (void)mismatch(build_exact(box, grid_around(bounds(box), 16, 0.5)), {});
         }).empty() == false);

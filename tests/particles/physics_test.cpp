@@ -1,5 +1,6 @@
 // What runs of scenes must show: energies that rules keep, particles that go through a surface or
 // cannot, and the paper's three regimes of flow around a shaft.
+#include "collide/dn_field/shapes.hpp"
 #include "tests/particles/run_scene.hpp"
 
 #include <fmt/core.h>
@@ -135,6 +136,27 @@ TEST_CASE("who passes a wall too thin for the field is counted, whichever way it
       n_through += below;
     }
   CHECK(n_through > 500);  // else this tests nothing
+}
+
+TEST_CASE("who dips under two walls in a corner has passed neither", "[particles][physics]") {
+  // Object 0 is met by its upper side, object 1 by its lower one.
+  const tess::dn::Surface plate = tess::dn::make_box({1, 1, 0.01});
+  const tess::dn::Field field = tess::dn::build_exact(plate, grid_around(bounds(plate), 20, 0.3));
+  const tess::dn::Object object{&field, {}};
+  const tess::dn::Bvh triangles(plate);
+  const auto after = [&](Mark mark, std::uint16_t number, double from, double to) {
+    return mark_after(mark, number, object, &triangles, {0.1, 0.2, from}, {0.1, 0.2, to});
+  };
+  const Mark in_floor = after({}, 0, 0.02, 0), in_both = after(in_floor, 1, -0.02, 0);
+  CHECK(in_floor.what == Mark::inside);
+  CHECK(in_both.object == 1);
+  CHECK(after(in_both, 0, 0, 0.02).what == Mark::inside);    // out of the floor: the other's mark
+  CHECK(after(in_both, 1, 0, -0.02).what == Mark::nothing);  // back where it came in
+  CHECK(after(in_floor, 1, 0, -0.02).what == Mark::inside);
+  CHECK(after(in_floor, 0, 0, -0.02).what == Mark::through);
+  CHECK(after(in_floor, 0, 0, 0.02).what == Mark::nothing);
+  CHECK(after({}, 0, 0.02, -0.02).what == Mark::through);  // in one step
+  CHECK(after({}, 0, 0, 0.02).what == Mark::nothing);      // began inside
 }
 
 TEST_CASE("who stands still beside what spins has not gone through it", "[particles][physics]") {

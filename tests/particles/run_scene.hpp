@@ -42,7 +42,7 @@ inline Measured run_serially(const Stage& stage) {
     const Start start = stage.source.particle(id);
     const auto species = static_cast<std::size_t>(
         std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
-    flocks[species].add(id, start.position, start.velocity, 0);
+    flocks[species].add(id, start.position, start.velocity, Mark{});
   }
   for (std::int32_t step = 0; step < scene.steps; ++step) {
     for (std::size_t s = 0; s < flocks.size(); ++s)

@@ -285,10 +285,40 @@ TEST_CASE("bodies too thin for their field are refused where particles bounce of
   CHECK(told(thin, R"(, "sides": "two")", bounce) == "accepted");
   CHECK(told(thin, "", R"("spring": {"stiffness": 1, "reach": 0.1})") == "accepted");
   CHECK(told(thin, "", R"("impact": {"restitution": 1, "threshold": 0.08})") == "accepted");
+  // The threshold, a length of the world, is less of an object that has grown.
+  CHECK(told(thin,
+             R"(, "motion": {"scale": 1000})",
+             R"("impact": {"restitution": 1, "threshold": 0.08})")
+            .find("needs; particles would pass it") != std::string::npos);
   const std::string wall = R"({"box": {"half": [1, 1, 0.1]}})";
   CHECK(told(wall, "", bounce) == "accepted");
   CHECK(told(wall, "", bounce + R"(, "look_up": "nearest")").find("a resolution of ") !=
         std::string::npos);
+}
+
+TEST_CASE("units in which floats cannot reckon are refused", "[particles][scene]") {
+  const auto scene = [](const std::string& size, const std::string& more, const std::string& dt) {
+    return R"({"dt": )" + dt + R"(, "steps": 1, "objects": [{"shape": {"sphere": {"radius": )" +
+           size + "}}" + more + R"(}], "emitters": [{"count": 1, "sphere": {"radius": 1}}],
+           "rules": {"impact": {"restitution": 1}}})";
+  };
+  for (const std::string fine : {"1e-12", "1", "1e12"})
+    CHECK(refusal(scene(fine, "", "0.01")) == "accepted");
+  CHECK(refusal(scene("1e30", "", "1")).find("objects[0]: a cell of its field is ") !=
+        std::string::npos);
+  CHECK(
+      refusal(scene("1", R"(, "transform": {"scale": 1e-20})", "1")).find("in the world, at its") !=
+      std::string::npos);
+  CHECK(refusal(scene("1", "", "1e30")).find("a cell a step, as a speed,") != std::string::npos);
+}
+
+TEST_CASE("a whole number may be written as 1e3", "[particles][scene]") {
+  CHECK(parse_scene(scene_with("\"count\": 5", "\"count\": 1e3"), "s").n_particles() == 1000);
+  CHECK(refusal(scene_with("\"count\": 5", "\"count\": 1.5")).find("is not a whole number") !=
+        std::string::npos);
+  CHECK(
+      refusal(scene_with("\"count\": 5", "\"count\": 1e30")).find("is not within 1 … 1000000000") !=
+      std::string::npos);
 }
 
 TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
@@ -329,8 +359,13 @@ TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
   const std::string large = R"({"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 1024})";
   std::string objects = large;
   for (int i = 0; i < 999; ++i) objects += "," + large;  // 8.6 TB
-  const std::string told = refusal(R"({"dt": 1, "steps": 0, "objects": [)" + objects +
-                                   R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
+  const auto scene = [&](const std::string& rules) {
+    return R"({"dt": 1, "steps": 0, "objects": [)" + objects +
+           R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}])" + rules + "}";
+  };
+  CHECK(refusal(scene("")) == "accepted");  // nobody asks for them
+  const std::string told =
+      refusal(scene(R"(, "rules": {"surface_drag": {"rate": 1, "threshold": 0.1}})"));
   CHECK(told.find("].resolution: 1024 voxels along an axis make the fields ") != std::string::npos);
   CHECK(told.find("scene.json: objects[") == 0);
 }
