@@ -60,7 +60,7 @@ bool builds_fields(const Scene& scene) {
 
 double thin_share(const Scene& scene, const SceneObject& object) {
   if (!scene.rules.impact || object.sides == tess::dn::Sides::two) return 0;
-  return share_thinner(object.walls, least_wall(scene, object));
+  return tess::dn::share_thinner(object.walls, least_wall(scene, object));
 }
 
 double kept_off(const Scene& scene, const SceneObject& object) {
