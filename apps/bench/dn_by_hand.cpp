@@ -35,12 +35,12 @@ struct Nearest {
         origin(field.grid.origin),
         per_cell(static_cast<float>(1 / field.grid.cell)) {}
 
-  [[nodiscard]] Voxel operator()(D3 x) const {
-    return voxel_from_corner(sampler.n,
-                             {to_float(x.x - origin.x) * per_cell + 0.5F,
-                              to_float(x.y - origin.y) * per_cell + 0.5F,
-                              to_float(x.z - origin.z) * per_cell + 0.5F});
+  [[nodiscard]] F3 grid(D3 x) const {
+    return {to_float(x.x - origin.x) * per_cell,
+            to_float(x.y - origin.y) * per_cell,
+            to_float(x.z - origin.z) * per_cell};
   }
+  [[nodiscard]] Voxel operator()(D3 x) const { return voxel_of(sampler.n, grid(x)); }
 
   Sampler sampler;
   Vec3 origin;
@@ -146,11 +146,15 @@ void spring_by_hand(const ParticleSpan& all, const Field& field, const Spring& s
     D3 n;
   };
   const auto look = [&](D3 x) {
-    const Voxel voxel = voxel_at(x);
+    const F3 g = voxel_at.grid(x);
+    const Voxel voxel = voxel_of(voxel_at.sampler.n, g);
     const I at = position(voxel_at.sampler, voxel);
-    const F d = gather(voxel_at.sampler.distance, at);
+    const F3 n = unit(decode(gather(voxel_at.sampler.normal, at)));
+    // By the tangent: constant in a voxel no spring is passive.
+    const F d = gather(voxel_at.sampler.distance, at) +
+                voxel_at.sampler.cell * dot(n, offset(voxel, g));
     return Found{to_double(voxel.in ? d : lanes::all(out_of_reach)) - spring.reach,
-                 refined(to_double(unit(decode(gather(voxel_at.sampler.normal, at)))))};
+                 refined(to_double(n))};
   };
   for (std::size_t first = 0; first < all.count; first += block) {
     const ParticleSpan b = all.part(first, std::min(block, all.count - first));

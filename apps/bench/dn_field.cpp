@@ -252,7 +252,7 @@ class Bench {
           *from,
           [&](Particles& p) { spring_by_hand(p.span(), field_, *spring.spring); },
           spring,
-          1e-5);
+          1e-4);
     }
   }
 

@@ -68,7 +68,7 @@ double kept_off(const Scene& scene, const SceneObject& object) {
 }
 
 double least_wall(const Scene& scene, const SceneObject& object) {
-  const double diagonals = scene.rules.look_up == tess::dn::LookUp::nearest ? 1.5 : 1;
+  const double diagonals = look_up_of(scene.rules) == tess::dn::LookUp::nearest ? 1.5 : 1;
   return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(scene, object);
 }
 

@@ -52,7 +52,7 @@ emitters    a list of at least one; of each:
   mass        above 0 (default 1)
   seed        of the random numbers (default 1); particle i is the same on any number of PEs
 rules       each may be left out
-  look_up     nearest, tangent (default), trilinear
+  look_up     nearest (springs take the tangent instead), tangent (default), trilinear
   spring      {"stiffness": k, "reach": d, "damping": 0}          force over depth below d
   impact      {"restitution": 0 … 1, "threshold": 0, "sweep": true}
   surface_drag   {"rate": c, "threshold": d, "law": "linear" or "quadratic"}

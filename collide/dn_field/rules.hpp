@@ -101,6 +101,11 @@ void validate(const Rules& rules);
 /// them.
 [[nodiscard]] Content needed_content(const Rules& rules);
 
+/// The look-up that steps take: that of the rules, but the tangent for springs instead of nearest,
+/// by which the depth of a voxel is the same all over it, and no force along the way passive: a
+/// particle that is pushed out would be pushed again.
+[[nodiscard]] LookUp look_up_of(const Rules& rules);
+
 /// The distance from the surface at which the first rule acts.
 [[nodiscard]] double reach(const Rules& rules);
 

@@ -93,6 +93,7 @@ Stepper make_stepper(const Rules& rules, double step) {
            rule_loop_at_rest(key),
            rule_loop_general(key),
            free_loop(flight_of(rules))};
+  plan->rules.look_up = look_up_of(rules);
   return Stepper(std::move(plan));
 }
 
