@@ -151,8 +151,8 @@ void spring_by_hand(const ParticleSpan& all, const Field& field, const Spring& s
     const I at = position(voxel_at.sampler, voxel);
     const F3 n = unit(decode(gather(voxel_at.sampler.normal, at)));
     // By the tangent: constant in a voxel no spring is passive.
-    const F d = gather(voxel_at.sampler.distance, at) +
-                voxel_at.sampler.cell * dot(n, offset(voxel, g));
+    const F d =
+        gather(voxel_at.sampler.distance, at) + voxel_at.sampler.cell * dot(n, offset(voxel, g));
     return Found{to_double(voxel.in ? d : lanes::all(out_of_reach)) - spring.reach,
                  refined(to_double(n))};
   };

@@ -1,9 +1,7 @@
 #include "apps/particles/object_reader.hpp"
 
 #include "apps/particles/shape_reader.hpp"
-#include "apps/particles/shown.hpp"
 #include "collide/dn_field/field_file.hpp"
-#include "collide/dn_field/field_match.hpp"
 #include "collide/dn_field/outward.hpp"
 #include "collide/dn_field/walls.hpp"
 #include "runtime/error.hpp"
@@ -95,28 +93,22 @@ void give_field(const Keys& keys, const Node& node, const Bounds& box, SceneObje
   if (keys.has("blur")) object.blur = read_blur(keys["blur"], object.method);
 }
 
-/// The field from a file. It is read again where it is used: a scene stays small.
-void read_field(const Keys& keys, const std::string& folder, SceneObject& object) {
-  constexpr double most_off = 0.01;  // cells; beyond rounding
+/// What a field from a file says of itself. It is read again where it is used: a scene stays small.
+/// Returns the fingerprint of the surface it was built from.
+std::uint64_t read_field(const Keys& keys, const std::string& folder, SceneObject& object) {
   for (const char* key : {"resolution", "thickness", "method", "sides", "blur", "choose"})
     if (keys.has(key))
       keys[key].refuse("stands beside a field from a file, which has its own; leave it out");
   const Node node = keys["field"];
   object.field = path_beside(folder, node.text());
-  double off = 0;
   try {
     const Field field = load_field(object.field);
     object.grid = field.grid, object.thickness = field.thickness;
     object.method = field.method, object.sides = field.sides;
-    off = mismatch(field, object.surface);
+    return field.surface;
   } catch (const tess::Error& error) {
     node.blame(error.what());
   }
-  if (!(off <= most_off))
-    node.blame(tess::text(object.field,
-                          ": is the field of another shape: distances differ by up to ",
-                          off,
-                          " of its cells; give that of this shape, or leave it out"));
 }
 
 }  // namespace
@@ -148,14 +140,18 @@ SceneObject read_object(const Node& node,
   if (keys.has("method"))
     object.method = static_cast<Method>(keys["method"].word({"exact", "normals", "potential"}));
   if (keys.has("sides")) object.sides = static_cast<Sides>(keys["sides"].word({"one", "two"}));
-  if (keys.has("field")) read_field(keys, folder, object);
+  const std::uint64_t of_field = keys.has("field") ? read_field(keys, folder, object) : 0;
   // Emitters, audits and the study see the triangles as the field does.
   if (object.sides == Sides::one) {
     object.surface = Surface(OutwardSurface(object.surface).surface());
-    if (rules.impact || rules.spring)
-      object.walls = wall_thicknesses(object.surface, Bvh(object.surface));
+    if (rules.impact || rules.spring) object.walls = walls_of(object.surface, Bvh(object.surface));
   }
-  if (keys.has("field")) return object;
+  if (keys.has("field")) {
+    if (of_field != fingerprint(object.surface))
+      keys["field"].blame(
+          object.field + ": is the field of another shape; give that of this one, or leave it out");
+    return object;
+  }
   const Bounds box = bounds(object.surface);
   const Vec3 size = box.size();
   object.thickness = 0.25 * std::max({size.x, size.y, size.z});

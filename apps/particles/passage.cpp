@@ -18,21 +18,34 @@ Vec3 direction_of(int code) {
   return direction({code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0});
 }
 
+/// Follows who enters the body and leaves it. Between two crossings the winding number says where
+/// the way is: faces that parts of the body have inside of it, and those that touch, count for
+/// nothing, however shallow the way.
 Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 from, Vec3 to) {
   constexpr double opposite = -0.5;
+  constexpr double together = 1e-9;  // of the way: an edge, or faces that touch
   std::vector<Crossing> crossings;
   triangles.crossings(from, to, crossings);
+  if (crossings.empty()) return mark;
   std::ranges::sort(crossings, {}, &Crossing::at);
-  for (const Crossing& crossing : crossings) {
-    const Vec3 normal = triangles.normal(crossing.triangle);
-    if (normal == Vec3{}) continue;
-    if (dot(to - from, normal) < 0) {
-      mark = {Mark::inside, code_of(normal), number};
-    } else if (mark.what == Mark::inside && mark.object == number) {
+  const Vec3 way = to - from;
+  const auto inside_between = [&](double begin, double end) {
+    return triangles.is_inside(from + (0.5 * (begin + end)) * way);
+  };
+  bool was_inside = inside_between(0, crossings.front().at);
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const double at = crossings[i].at, next = i + 1 < crossings.size() ? crossings[i + 1].at : 1;
+    if (i + 1 < crossings.size() && next - at < together) continue;
+    const bool inside = inside_between(at, next);
+    const Vec3 normal = triangles.normal(crossings[i].triangle);
+    if (!was_inside && !inside && mark.what != Mark::inside) mark.what = Mark::through;  // a sheet
+    if (!was_inside && inside) mark = {Mark::inside, code_of(normal), number};
+    if (was_inside && !inside && mark.what == Mark::inside && mark.object == number) {
       const bool passed = dot(direction_of(mark.looks), normal) < opposite;
       mark = {passed ? Mark::through : Mark::nothing, 0, number};
-      if (passed) break;
     }
+    if (mark.what == Mark::through) break;
+    was_inside = inside;
   }
   return mark;
 }

@@ -22,7 +22,7 @@ struct Mark {
 ///   surface the field itself is not sure;
 /// - of one side with thin walls, which have no place a cell below: where it leaves the body
 ///   through a triangle that looks the opposite way from the one it came in by, in this step or
-///   before.
+///   before, or crosses an open sheet of it.
 /// `triangles`: null for fields of one side without thin walls.
 [[nodiscard]] Mark mark_after(Mark mark,
                               std::uint16_t number,

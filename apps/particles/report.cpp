@@ -188,13 +188,16 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
                                                      static_cast<double>(fields.bytes_used) / 1e6)
                                        : "",
                      fields.build_seconds));
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    if (const double thin = thin_share(scene, scene.objects[i]); thin > 0)
-      line("thin",
-           fmt::format("{:.2g} % of objects[{}] is thinner than {:.3g}: particles may pass there",
-                       100 * thin,
-                       i,
-                       least_wall(scene, scene.objects[i])));
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    const double needed = least_wall(scene, object), share = thin_share(scene, object);
+    if (!scene.rules.impact || object.walls.least >= needed) continue;
+    line("thin",
+         fmt::format("{} % of objects[{}] is thinner than {:.3g}: particles may pass there",
+                     share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1",
+                     i,
+                     needed));
+  }
   line("blocks",
        fmt::format(
            "of {:.4g}, particles change them every {} steps", result.block, result.exchange));

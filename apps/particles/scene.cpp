@@ -1,6 +1,5 @@
 #include "apps/particles/scene.hpp"
 
-#include "collide/dn_field/walls.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -60,7 +59,7 @@ bool builds_fields(const Scene& scene) {
 
 double thin_share(const Scene& scene, const SceneObject& object) {
   if (!scene.rules.impact || object.sides == tess::dn::Sides::two) return 0;
-  return tess::dn::share_thinner(object.walls, least_wall(scene, object));
+  return object.walls.share_thinner_or_slanted(least_wall(scene, object));
 }
 
 double kept_off(const Scene& scene, const SceneObject& object) {

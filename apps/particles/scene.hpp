@@ -8,6 +8,7 @@
 #include "collide/dn_field/frame.hpp"
 #include "collide/dn_field/rules.hpp"
 #include "collide/dn_field/surface.hpp"
+#include "collide/dn_field/walls.hpp"
 
 #include <array>
 #include <cstdint>
@@ -25,10 +26,9 @@ struct SceneObject {
   double thickness = 0;  ///< of the field beyond the surface, in the object's units
   tess::dn::Method method = tess::dn::Method::exact;
   tess::dn::Sides sides = tess::dn::Sides::one;
-  tess::dn::Blur blur;  ///< of the methods that blur; no rounds: chosen from the thickness
-  std::string field;    ///< file that the field is read from; empty: it is built
-  std::vector<double>
-      walls;              ///< wall_thicknesses() of one-sided bodies that impacts or springs ask
+  tess::dn::Blur blur;    ///< of the methods that blur; no rounds: chosen from the thickness
+  std::string field;      ///< file that the field is read from; empty: it is built
+  tess::dn::Walls walls;  ///< of one-sided bodies that impacts or springs ask; else none
   tess::dn::Frame frame;  ///< at the first step, with its velocities
 };
 
@@ -103,8 +103,8 @@ struct Scene {
 /// those that read; to be done again by who changes a scene. Throws tess::Error.
 void check_scene(const Scene& scene);
 
-/// The share of an object's surface where particles may pass its field: walls thinner than
-/// least_wall(), and open sheets. 0 for fields of two sides, and without impact.
+/// The share of an object's surface where particles may pass its field: walls and edges thinner
+/// than least_wall(), and open sheets. 0 for fields of two sides, and without impact.
 [[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
 
 /// Whether anything asks for the fields: rules, a picture, or files of them.

@@ -188,15 +188,18 @@ void check_magnitude(const Scene& scene, const std::string& file) {
 
 /// A field knows no wall that fits between its voxels: particles would pass and nobody see it.
 void check_walls(const Scene& scene, const std::string& file) {
-  constexpr double most_thin = 0.1;  // of the surface; edges may be, of a body that is not
+  constexpr double most_thin = 0.1, most_slanted = 0.5;  // of the surface; the latter with edges
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    const double thin = thin_share(scene, object);
-    if (thin <= most_thin) continue;
-    const double needed = least_wall(scene, object);
-    // All but most_thin of the walls are thicker than this one.
-    const auto places = static_cast<double>(object.walls.size());
-    const double wall = object.walls[static_cast<std::size_t>(most_thin * places)];
+    const double needed = least_wall(scene, object), thin = thin_share(scene, object);
+    const bool by_walls = object.walls.share_thinner(needed) > most_thin;
+    if (thin == 0 || (!by_walls && thin <= most_slanted)) continue;
+    // All but as many as are let through are thicker than this one.
+    const auto& list = by_walls ? object.walls.opposite : object.walls.slanted;
+    const auto places =
+        static_cast<double>(object.walls.opposite.size() + object.walls.slanted.size());
+    const double wall = list[static_cast<std::size_t>(std::min(
+        (by_walls ? most_thin : most_slanted) * places, static_cast<double>(list.size() - 1)))];
     const double shrink = (wall + kept_off(scene, object)) / (needed + kept_off(scene, object));
     const double resolution = std::ceil((object.grid.n[0] - 1) / shrink) + 1;
     tess::fail(tess::ErrorCode::bad_value,

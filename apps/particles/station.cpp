@@ -61,8 +61,7 @@ void Station::begin_fields() {
     make(i, [&, parts = n](FieldInTheMaking& field) {
       const SceneObject& object = scene.objects[i];
       field.begin(object, content_of(scene), parts);
-      const bool thin =
-          !object.walls.empty() && object.walls.front() < 2 * least_wall(scene, object);
+      const bool thin = object.walls.least < 2 * least_wall(scene, object);
       const bool asked = object.sides == tess::dn::Sides::two || thin;
       if (asked && is_audited(scene)) stage_->triangles[i].emplace(object.surface);
     });

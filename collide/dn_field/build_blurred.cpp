@@ -78,7 +78,9 @@ Blur blur_of(const Grid& grid, const BlurredOptions& options) {
 BlurredBuilder::BlurredBuilder(const Surface& surface,
                                const Grid& grid,
                                const BlurredOptions& options)
-    : BlurredBuilder(checked(surface, grid, options), options, grid) {}
+    : BlurredBuilder(checked(surface, grid, options), options, grid) {
+  field_.surface = fingerprint(surface);  // as given, whatever was turned
+}
 
 BlurredBuilder::BlurredBuilder(Surface surface, const BlurredOptions& options, const Grid& grid)
     : surface_(std::move(surface)),

@@ -56,12 +56,16 @@ ExactBuilder::ExactBuilder(const Surface& surface,
                            const std::optional<OutwardSurface>& outward,
                            const Grid& grid,
                            ExactOptions options)
-    : grid_(grid), options_(std::move(options)), tree_(outward ? outward->surface() : surface) {
+    : grid_(grid),
+      surface_(fingerprint(surface)),
+      options_(std::move(options)),
+      tree_(outward ? outward->surface() : surface) {
   if (outward) inside_.emplace(*outward, tree_, grid);
 }
 
 Field ExactBuilder::empty_field() const {
   Field field{grid_, Method::exact, options_.sides, options_.thickness, {}, {}};
+  field.surface = surface_;
   field.distance.resize(grid_.size());
   if (options_.content == Content::distance_and_normal) field.normal.resize(grid_.size());
   return field;

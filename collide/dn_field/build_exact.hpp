@@ -76,6 +76,7 @@ class ExactBuilder {
   double build_shelf(const Slab& slab, int first, int last) const;
 
   Grid grid_;
+  std::uint64_t surface_;  // fingerprint
   ExactOptions options_;
   Bvh tree_;
   std::optional<Inside> inside_;

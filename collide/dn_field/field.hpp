@@ -34,6 +34,8 @@ struct Field {
   /// infinite where nobody looked. It lets the step loop leave distant particles alone for a while.
   float jump = HUGE_VALF;
 
+  std::uint64_t surface = 0;  ///< fingerprint() of the surface it was built from; 0: of none
+
   [[nodiscard]] std::size_t bytes() const {
     return distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
   }

@@ -15,7 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written as memory stands");
 
 constexpr std::array<char, 8> magic{'T', 'e', 's', 's', 'D', 'N', '\r', '\n'};
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 enum class Kind : std::uint32_t { flat = 1, compressed = 2 };
 
 struct Head {
@@ -44,7 +44,7 @@ void each_member(Pass& pass, auto& field) requires
     std::same_as<std::remove_const_t<std::remove_reference_t<decltype(field)>>, Field> {
   each_of_grid(pass, field.grid);
   pass.number(field.method), pass.number(field.sides), pass.number(field.thickness);
-  pass.number(field.jump);
+  pass.number(field.jump), pass.number(field.surface);
   pass.array(field.distance), pass.array(field.normal);
 }
 
@@ -259,6 +259,9 @@ AnyField read(FileReader& reader, Kind kind) {
 }
 
 std::ifstream opened(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
+    fail(ErrorCode::bad_file, path, ": is no file; give the path of a field file");
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(ErrorCode::bad_file, path, ": cannot be opened; give the path of a field file");
   return file;

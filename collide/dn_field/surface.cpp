@@ -1,6 +1,7 @@
 #include "collide/dn_field/surface.hpp"
 
 #include "collide/dn_field/surface_edges.hpp"
+#include "runtime/base/mix.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -52,6 +53,13 @@ Bounds bounds(const Surface& surface) {
   for (const auto& triangle : surface.triangles)
     for (const auto v : triangle) box.extend(surface.vertices[v]);
   return box;
+}
+
+std::uint64_t fingerprint(const Surface& surface) {
+  const auto hash = [](const auto& values) {
+    return tess::hash_bytes(values.data(), values.size() * sizeof(values[0]));
+  };
+  return tess::mix(hash(surface.vertices) ^ tess::mix(hash(surface.triangles))) | 1U;
 }
 
 void validate(const Surface& surface) {

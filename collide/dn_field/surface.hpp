@@ -29,6 +29,9 @@ struct Surface {
 /// finite.
 void validate(const Surface& surface);
 
+/// A hash of all vertices and triangles, in their order; never 0.
+[[nodiscard]] std::uint64_t fingerprint(const Surface& surface);
+
 /// Where a surface ends: an edge that runs `surplus` times more often from `from` to `to` than
 /// back.
 struct RimEdge {

@@ -8,13 +8,22 @@
 
 namespace tess::dn {
 
-/// Thicknesses at 1024 places spread evenly over the surface's area, the least first: how far
-/// along the inward normal the body ends at a face that looks the opposite way, to 30°. 0 where
-/// nothing is inside behind the place, as of a flat open sheet; HUGE_VAL where the body ends at a
-/// slant (an edge is no wall). `tree`: of the surface. Empty for a surface without area.
-[[nodiscard]] std::vector<double> wall_thicknesses(const Surface& surface, const Bvh& tree);
+/// How far along the inward normal the body ends, at 1024 places spread evenly over its area: 0
+/// where nothing is inside behind the place, as of a flat open sheet; HUGE_VAL where it does not
+/// end. Each list begins with the least.
+struct Walls {
+  std::vector<double> opposite;  ///< ending at a face that looks the opposite way, to 30°
+  std::vector<double> slanted;   ///< at another: of an edge, but also of a rod of three sides
+  /// The least of all, also in the middle of the triangles, 4096 at most: parts too small for the
+  /// places.
+  double least = HUGE_VAL;
 
-/// The share of places that are thinner.
-[[nodiscard]] double share_thinner(const std::vector<double>& thicknesses, double length);
+  /// The share of places that are thinner, by faces that look the opposite way; by any.
+  [[nodiscard]] double share_thinner(double length) const;
+  [[nodiscard]] double share_thinner_or_slanted(double length) const;
+};
+
+/// `tree`: of the surface. Nothing of a surface without area.
+[[nodiscard]] Walls walls_of(const Surface& surface, const Bvh& tree);
 
 }  // namespace tess::dn

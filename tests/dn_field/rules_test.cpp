@@ -174,7 +174,8 @@ TEST_CASE("an impact happens at its place and angle within the step", "[dn_field
   }
 }
 
-TEST_CASE("a spring gives nobody energy, by whichever look-up and however stiff", "[dn_field][rules]") {
+TEST_CASE("a spring gives nobody energy, by whichever look-up and however stiff",
+          "[dn_field][rules]") {
   const Surface ball = make_sphere(1, 40);
   const Field field = build_exact(ball, grid_around(bounds(ball), 40, 0.5));
   const Object object{&field, {}};

@@ -11,8 +11,16 @@ namespace {
 using namespace tess::dn;
 using namespace tess::dn::test;
 
-std::vector<double> thicknesses(const Surface& surface) {
-  return wall_thicknesses(surface, Bvh(surface));
+Walls walls(const Surface& surface) {
+  return walls_of(surface, Bvh(surface));
+}
+
+/// Both, the second moved.
+Surface beside(Surface one, const Surface& other, Vec3 by) {
+  const auto n = static_cast<std::uint32_t>(one.vertices.size());
+  for (const auto& t : other.triangles) one.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
+  for (const Vec3 p : other.vertices) one.vertices.push_back(p + by);
+  return one;
 }
 
 TEST_CASE("a segment crosses the triangles that brute force finds, at the same places",
@@ -56,39 +64,37 @@ TEST_CASE("a segment crosses the triangles that brute force finds, at the same p
 TEST_CASE("walls are as thick as they are", "[dn_field]") {
   // Faces of 4 × 4 a wall's thickness apart: 32 of the area 32 + 4 × 4 × thickness.
   for (const double thickness : {1e-4, 0.05, 0.3}) {
-    const std::vector<double> plate = thicknesses(make_box({2, 2, 0.5 * thickness}));
-    CHECK(plate.size() == 1024);
-    CHECK(plate.front() == Approx(thickness).epsilon(0.001));
-    CHECK(share_thinner(plate, 1.1 * thickness) ==
-          Approx(32 / (32 + 16 * thickness)).margin(0.002));
-    CHECK(share_thinner(plate, 0.9 * thickness) == 0);
-    if (thickness > 0.01) CHECK(plate.back() == Approx(4).epsilon(0.01));
+    const Walls plate = walls(make_box({2, 2, 0.5 * thickness}));
+    CHECK(plate.opposite.size() == 1024);
+    CHECK(plate.least == Approx(thickness).epsilon(0.001));
+    CHECK(plate.share_thinner(1.1 * thickness) == Approx(32 / (32 + 16 * thickness)).margin(0.002));
+    CHECK(plate.share_thinner(0.9 * thickness) == 0);
+    if (thickness > 0.01) CHECK(plate.opposite.back() == Approx(4).epsilon(0.01));
   }
-  const std::vector<double> ball = thicknesses(make_sphere(1, 40));
-  CHECK(ball.front() > 1.99);
-  CHECK(ball.back() < 2.01);
+  const Walls ball = walls(make_sphere(1, 40));
+  CHECK(ball.least > 1.98);
+  CHECK(ball.opposite.back() < 2.01);
 }
 
-TEST_CASE("an open sheet has no thickness, an edge is no wall, parts may overlap", "[dn_field]") {
-  CHECK(thicknesses(make_plate(1, 4)).back() == 0);
-  Surface lidless = without_last(make_box({1, 1, 1}), 2);
-  CHECK(share_thinner(thicknesses(lidless), 0.5) < 0.05);  // near the rim, by the winding number
-  // A pyramid: nothing looks the opposite way from a face, within 30 degrees.
+TEST_CASE("an open sheet has no thickness, an edge is slanted, parts may overlap", "[dn_field]") {
+  CHECK(walls(make_plate(1, 4)).opposite.back() == 0);
+  CHECK(walls(without_last(make_box({1, 1, 1}), 2)).share_thinner(0.5) < 0.05);  // near the rim
+  // A pyramid: nothing looks the opposite way from a face, within 30 degrees; its rim is thin.
   const Surface pyramid{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 1}},
                         {{3, 2, 1}, {3, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
-  CHECK(thicknesses(pyramid).front() == HUGE_VAL);
+  CHECK(walls(pyramid).share_thinner(1.5) == 0);
+  CHECK(walls(pyramid).share_thinner_or_slanted(0.1) == Approx(0.17).margin(0.04));
   // Two boxes, the second reaching half into the first: through both is one wall.
-  Surface both = make_box({1, 1, 0.5}), second = make_box({1, 1, 0.5});
-  for (const auto& triangle : second.triangles) {
-    auto shifted = triangle;
-    for (auto& v : shifted) v += static_cast<std::uint32_t>(both.vertices.size());
-    both.triangles.push_back(shifted);
-  }
-  for (const Vec3 p : second.vertices) both.vertices.push_back(p + Vec3{0.01, 0.02, 0.5});
-  const std::vector<double> joined = thicknesses(both);
-  CHECK(share_thinner(joined, 1.4) < 0.45);  // faces inside of the other part see its far side
-  CHECK(share_thinner(joined, 0.4) == 0);
-  CHECK(thicknesses({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}).empty());
+  const Surface box = make_box({1, 1, 0.5});
+  const Walls joined = walls(beside(box, box, {0.01, 0.02, 0.5}));
+  CHECK(joined.share_thinner(1.4) < 0.45);  // faces inside of the other part see its far side
+  CHECK(joined.share_thinner(0.4) == 0);
+  CHECK(walls({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}).opposite.empty());
+  // A part too small to be met by the places.
+  const Walls with_fin =
+      walls(beside(make_box({20, 20, 5}), make_box({0.1, 0.1, 0.001}), {0, 0, 9}));
+  CHECK(with_fin.share_thinner(0.01) == 0);
+  CHECK(with_fin.least == Approx(0.002).epsilon(0.05));
 }
 
 }  // namespace
