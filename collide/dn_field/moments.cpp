@@ -21,7 +21,7 @@ void set_lengths(Run& run, std::span<const Object> objects) {
   }
   run.constants.slack =
       (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest + off;
-  run.constants.stride = 0.5 * finest;
+  run.constants.stride = run.constants.sunk = 0.5 * finest;
   run.reach = reach(plan.rules) + 1e-3 * finest;
 }
 

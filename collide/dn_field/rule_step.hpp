@@ -39,7 +39,8 @@ struct Scratch {
 struct RuleConstants : FlightConstants {
   double curved = 0;  ///< 1 where no drag bends the flight off its parabola, else 0
   double restitution = 0, threshold = 0;
-  double slack = 0;   ///< depth below the threshold that is taken for the look-up's error
+  double slack = 0;  ///< depth below the threshold that is taken for the look-up's error
+  double sunk = 0;   ///< depth below that, at which a particle stays if nothing pays for lifting it
   double stride = 0;  ///< ways shorter than this are not traced
   FlowConstants flow;
   SpringConstants spring;
@@ -147,9 +148,28 @@ struct RuleStep {
   /// The way along the normal to where the look-up's error begins.
   D out_of(L deep) const { return only(deep, c.threshold - c.slack - d); }
 
-  /// They start at the surface if they are deep in it.
+  /// What lifts them costs what it gains against the acceleration, of their motion along the
+  /// surface; no rule gives that. Who is deeper than may be began there, and is lifted for nothing.
+  D lift(L deep) {
+    D up = out_of(deep);
+    if constexpr (accelerates<Flies, moves>) {
+      const D falls = max(-an, D{});
+      const L pays = settled(deep & (falls > 0.0));
+      if (!any(pays)) return up;
+      const D3 w = v1 - u;
+      const D square = dot(w, w), most = square / (2.0 * falls);
+      up = pays ? min(up, max(most, up - c.sunk)) : up;
+      const D left = max(square - 2.0 * falls * up, D{});
+      v1 = select(pays & (square > 0.0), fma(sqrt(left / square), w, u), v1);
+    }
+    return up;
+  }
+
+  /// They start at the surface if they are deep in it, or where what they pay for on the way
+  /// begins.
   void leave_to_trace(L far, L deep, const ParticleSpan& particles, Scratch& scratch) {
-    const D up = out_of(far & deep);
+    D up = out_of(far & deep);
+    if constexpr (accelerates<Flies, moves>) up = an < 0.0 ? max(up - c.sunk, D{}) : up;
     const D3 from = fma(up, n, places(particles, p));
     if constexpr (springs) work = work + an * up;
     for (int i = 0; i < width; ++i) {
@@ -172,14 +192,15 @@ struct RuleStep {
 
   void bounce(Met met) {
     const L hits = met.hits;
-    D up = out_of(met.deep);
+    D up{};
     const D s = only(hits, max((c.threshold - d) / climb, D{})), rest = 1.0 - s;
     if constexpr (bounces_alone) {
       const D kick = only(hits, -(1 + c.restitution) * rise);
       v1 = select(hits, fma(kick, n, v1), v1);
-      up = fma(rest * c.step, kick, up);
+      up = fma(rest * c.step, kick, out_of(met.deep));
     } else {
       fly_on(hits, s, rest);
+      up = lift(met.deep);
     }
     if constexpr (springs) work = work + an * up;
     way = select(hits | met.deep, fma(up, n, way), way);

@@ -226,13 +226,23 @@ void trace_vector(const Scene& scene,
     if (!any(flies)) break;
     const D s = only(flies, contact.at), fraction = only(rest > 0.0, s / rest);
     const D3 n = contact.normal, u = contact.surface_velocity;
-    x = select(flies, fma(s, way, fma(contact.too_deep, n, x)), x);
     rest = rest - s;
     const D3 met = fma(fraction, end - start, start);
     const D kick = -(1 + c.restitution) * min(dot(n, met - u), D{});
     start = select(flies, fma(kick, n, met), start);
     D3 a = all(c.acceleration);
     if (drags) a = fma(all(c.surface_rate), u, a);
+    // As in RuleStep::lift().
+    const D falls = max(-dot(n, a), D{});
+    const D3 slides = start - u;
+    const D square = dot(slides, slides);
+    const L pays = flies & (contact.too_deep > 0.0) & (falls > 0.0);
+    const D up = pays
+                     ? min(contact.too_deep, max(square / (2.0 * falls), contact.too_deep - c.sunk))
+                     : contact.too_deep;
+    const D left = max(square - 2.0 * falls * up, D{});
+    start = select(pays & (square > 0.0), fma(sqrt(left / square), slides, u), start);
+    x = select(flies, fma(s, way, fma(up, n, x)), x);
     D3 w1 = fma(rest, all(flow.keep - 1) * start + all(flow.gain) * a, start);
     D3 rest_way = all(flow.way_keep) * start + (rest * flow.way_gain) * a;
     const D sinks = dot(n, rest_way - all(c.step) * u);

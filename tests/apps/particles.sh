@@ -141,7 +141,7 @@ refuses 'objects\[0\].field: .*damaged.dnf: damaged: its checksum' "$particles" 
 sed 's/wedge.obj/other.obj/' "$scratch/loading.json" >"$scratch/bad.json"
 sed 's/v 0 0 1/v 0 0 0.7/' "$scratch/wedge.obj" >"$scratch/other.obj"
 refuses 'is the field of another shape' "$particles" "$scratch/bad.json"
-refuses 'outputs.fields: true, and the fields are compressed' "$particles" "$scratch/saving.json" --compressed
+refuses 'outputs.fields: true, and the fields are compressed' "$particles" "$scratch/saving.json" --compressed --out "$scratch/saved"
 refuses 'is not JSON' "$particles" "$(edited 's/"dt": 0.01,/"dt": 0.01/')"
 printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >"$scratch/nan.obj"
 printf 'v 0 0 0\n' >"$scratch/empty.obj"
