@@ -48,12 +48,11 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
           "outputs.fields wrote");
     return;
   }
-  n_layers_ = object.grid.n[2];
-  n_voxels_ = object.grid.size();
+  grid_ = object.grid;
   if (object.method == Method::exact) {
     const ExactOptions options{object.sides, content, object.thickness, {}};
     field_ = exact_.emplace(object.surface, object.grid, options).empty_field();
-    slabs_.assign(static_cast<std::size_t>(n_layers_), {});
+    slabs_.assign(static_cast<std::size_t>(grid_.n[2]), {});
   } else {
     const BlurredOptions options{object.method, object.sides, object.thickness, object.blur, {}};
     blurred_.emplace(object.surface, object.grid, options);
@@ -64,8 +63,8 @@ int FieldInTheMaking::n_distance_stages() const {
   constexpr std::size_t voxels_a_stage = std::size_t{1} << 24U;  // some tenths of a second
   // Each with blocks enough for all parts.
   const auto most =
-      static_cast<std::size_t>(std::max(1, n_layers_ / (4 * block_layers * n_parts_)));
-  return static_cast<int>(std::min(most, n_voxels_ / voxels_a_stage + 1));
+      static_cast<std::size_t>(std::max(1, grid_.n[2] / (4 * block_layers * n_parts_)));
+  return static_cast<int>(std::min(most, grid_.size() / voxels_a_stage + 1));
 }
 
 int FieldInTheMaking::n_stages() const {
@@ -75,7 +74,7 @@ int FieldInTheMaking::n_stages() const {
 
 void FieldInTheMaking::fill(int stage, int part) {
   if (stage >= n_stages()) return;
-  const Layers all{0, n_layers_};
+  const Layers all{0, grid_.n[2]};
   const int round = stage - n_distance_stages();
   const Layers mine =
       share(round < 0 ? share(all, stage, n_distance_stages()) : all, part, n_parts_);

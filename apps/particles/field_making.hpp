@@ -60,8 +60,8 @@ class FieldInTheMaking {
   tess::dn::Field field_;
   std::optional<tess::dn::CompressedField> compressed_;
   std::uint64_t flat_bytes_ = 0;
-  int n_parts_ = 0, n_layers_ = 0;
-  std::size_t n_voxels_ = 0;
+  int n_parts_ = 0;
+  tess::dn::Grid grid_;
   std::vector<tess::dn::BuiltSlab> slabs_;  // by their first layer
   std::chrono::steady_clock::time_point start_;
   double seconds_ = 0;

@@ -70,9 +70,8 @@ Blur read_blur(const Node& node, Method method) {
     node.refuse("stands beside the exact method, which blurs nothing; leave it out");
   const Keys keys = node.keys({"radius", "rounds"});
   constexpr std::int64_t most_rounds = 1000;
-  const Blur blur{static_cast<int>(keys.need("radius", "its radius in voxels, 2 to 4").whole(2, 4)),
-                  static_cast<int>(keys.need("rounds", "how often").whole(1, most_rounds))};
-  return blur;
+  return {static_cast<int>(keys.need("radius", "its radius in voxels, 2 to 4").whole(2, 4)),
+          static_cast<int>(keys.need("rounds", "how often").whole(1, most_rounds))};
 }
 
 void give_field(const Keys& keys, const Node& node, const Bounds& box, SceneObject& object) {

@@ -94,7 +94,7 @@ void note_tunnelled(const Stage& stage,
     for (std::size_t p = 0; p < flock.size(); ++p) {
       const Vec3 begin = before.position(p), way = flock.motion.position(p) - begin;
       Vec3 from = frames[0].to_object(begin);
-      for (std::size_t i = 1; i < frames.size(); ++i) {
+      for (std::size_t i = 1; i < frames.size() && flock.marks[p].what != Mark::through; ++i) {
         const Vec3 to = frames[i].to_object(begin + static_cast<double>(i) * part * way);
         flock.marks[p] = mark_after(
             flock.marks[p], static_cast<std::uint16_t>(o), at_begin[o], triangles, from, to);

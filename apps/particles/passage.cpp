@@ -50,10 +50,11 @@ Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 fro
   return mark;
 }
 
-/// Whether a way reaches more than a cell below the surface, and begins above that.
-bool goes_below(const Object& object, Vec3 from, Vec3 to) {
+/// Whether a way reaches more than a cell below the surface, and begins above that, at the distance
+/// `begin`.
+bool goes_below(const Object& object, double begin, Vec3 from, Vec3 to) {
   const Field& field = *object.field;
-  const double length = norm(to - from), cell = field.grid.cell, begin = distance_at(object, from);
+  const double length = norm(to - from), cell = field.grid.cell;
   if (begin < -cell) return false;
   // The part of the way that lies in the grid, cut into pieces of half a cell.
   const Vec3 low = field.grid.origin, along = to - from;
@@ -100,7 +101,7 @@ Mark mark_after(Mark mark,
     triangles->crossings(from, to, crossings);
     return crossings.empty() ? mark : through;
   }
-  if (goes_below(object, from, to)) return through;
+  if (goes_below(object, begin, from, to)) return through;
   return triangles != nullptr ? after_walls(mark, number, *triangles, from, to) : mark;
 }
 

@@ -196,10 +196,9 @@ void check_walls(const Scene& scene, const std::string& file) {
     if (thin == 0 || (!by_walls && thin <= most_slanted)) continue;
     // All but as many as are let through are thicker than this one.
     const auto& list = by_walls ? object.walls.opposite : object.walls.slanted;
-    const auto places =
-        static_cast<double>(object.walls.opposite.size() + object.walls.slanted.size());
-    const double wall = list[static_cast<std::size_t>(std::min(
-        (by_walls ? most_thin : most_slanted) * places, static_cast<double>(list.size() - 1)))];
+    const double let_through = (by_walls ? most_thin : most_slanted) * object.walls.n_places();
+    const double wall =
+        list[static_cast<std::size_t>(std::min(let_through, static_cast<double>(list.size() - 1)))];
     const double shrink = (wall + kept_off(scene, object)) / (needed + kept_off(scene, object));
     const double resolution = std::ceil((object.grid.n[0] - 1) / shrink) + 1;
     tess::fail(tess::ErrorCode::bad_value,

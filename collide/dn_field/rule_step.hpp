@@ -48,6 +48,18 @@ struct RuleConstants : FlightConstants {
 
 namespace lanes {
 
+/// How far of `up` somebody is lifted who falls with the acceleration `falls`, where he `pays`: the
+/// lift costs what it gains, of the velocity v relative to the surface's u; no rule gives that. Who
+/// is deeper than `sunk` began there, and is lifted to it for nothing.
+inline D lifted(L pays, D up, D falls, double sunk, D3 u, D3& v) {
+  const D3 w = v - u;
+  const D square = dot(w, w);
+  up = pays ? min(up, max(square / (2.0 * falls), up - sunk)) : up;
+  const D left = max(square - 2.0 * falls * up, D{});
+  v = select(pays & (square > 0.0), fma(sqrt(left / square), w, u), v);
+  return up;
+}
+
 template <Flight Flies, Impacts Hits, Springs Springy, Setting Where>
 struct RuleStep {
   static constexpr bool springs = Springy != Springs::none, hits_surface = Hits != Impacts::none;
@@ -148,19 +160,13 @@ struct RuleStep {
   /// The way along the normal to where the look-up's error begins.
   D out_of(L deep) const { return only(deep, c.threshold - c.slack - d); }
 
-  /// What lifts them costs what it gains against the acceleration, of their motion along the
-  /// surface; no rule gives that. Who is deeper than may be began there, and is lifted for nothing.
+  /// Where something accelerates them into the surface, they pay for it.
   D lift(L deep) {
-    D up = out_of(deep);
+    const D up = out_of(deep);
     if constexpr (accelerates<Flies, moves>) {
       const D falls = max(-an, D{});
       const L pays = settled(deep & (falls > 0.0));
-      if (!any(pays)) return up;
-      const D3 w = v1 - u;
-      const D square = dot(w, w), most = square / (2.0 * falls);
-      up = pays ? min(up, max(most, up - c.sunk)) : up;
-      const D left = max(square - 2.0 * falls * up, D{});
-      v1 = select(pays & (square > 0.0), fma(sqrt(left / square), w, u), v1);
+      if (any(pays)) return lifted(pays, up, falls, c.sunk, u, v1);
     }
     return up;
   }

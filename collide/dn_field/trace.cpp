@@ -232,16 +232,9 @@ void trace_vector(const Scene& scene,
     start = select(flies, fma(kick, n, met), start);
     D3 a = all(c.acceleration);
     if (drags) a = fma(all(c.surface_rate), u, a);
-    // As in RuleStep::lift().
     const D falls = max(-dot(n, a), D{});
-    const D3 slides = start - u;
-    const D square = dot(slides, slides);
     const L pays = flies & (contact.too_deep > 0.0) & (falls > 0.0);
-    const D up = pays
-                     ? min(contact.too_deep, max(square / (2.0 * falls), contact.too_deep - c.sunk))
-                     : contact.too_deep;
-    const D left = max(square - 2.0 * falls * up, D{});
-    start = select(pays & (square > 0.0), fma(sqrt(left / square), slides, u), start);
+    const D up = lifted(pays, contact.too_deep, falls, c.sunk, u, start);
     x = select(flies, fma(s, way, fma(up, n, x)), x);
     D3 w1 = fma(rest, all(flow.keep - 1) * start + all(flow.gain) * a, start);
     D3 rest_way = all(flow.way_keep) * start + (rest * flow.way_gain) * a;

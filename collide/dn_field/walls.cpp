@@ -7,7 +7,7 @@
 
 namespace tess::dn {
 namespace {
-constexpr std::size_t n_places = 1024;
+constexpr std::size_t places_asked = 1024;
 constexpr std::size_t most_triangles = 4096;
 constexpr double opposite = -0.87;  // cosine of 30° off
 constexpr double behind = 1e-6;     // of the extent: what is just inside
@@ -48,9 +48,9 @@ Walls walls_of(const Surface& surface, const Bvh& tree) {
     walls.least = std::min(walls.least, wall.thickness);
     return wall;
   };
-  for (std::size_t i = 0; i < n_places; ++i) {
+  for (std::size_t i = 0; i < places_asked; ++i) {
     // The i-th in the i-th of as many equal parts of the area.
-    const double part = (static_cast<double>(i) + tess::unit(mix(3 * i))) / n_places;
+    const double part = (static_cast<double>(i) + tess::unit(mix(3 * i))) / places_asked;
     const SurfacePoint place =
         point_on(surface, sums, part, tess::unit(mix(3 * i + 1)), tess::unit(mix(3 * i + 2)));
     if (place.normal == Vec3{}) continue;
@@ -69,13 +69,12 @@ Walls walls_of(const Surface& surface, const Bvh& tree) {
 }
 
 double Walls::share_thinner(double length) const {
-  const auto n = static_cast<double>(opposite.size() + slanted.size());
-  return n > 0 ? count_thinner(opposite, length) / n : 0;
+  return n_places() > 0 ? count_thinner(opposite, length) / n_places() : 0;
 }
 
 double Walls::share_thinner_or_slanted(double length) const {
-  const auto n = static_cast<double>(opposite.size() + slanted.size());
-  return n > 0 ? (count_thinner(opposite, length) + count_thinner(slanted, length)) / n : 0;
+  const double n = count_thinner(opposite, length) + count_thinner(slanted, length);
+  return n_places() > 0 ? n / n_places() : 0;
 }
 
 }  // namespace tess::dn

@@ -18,6 +18,9 @@ struct Walls {
   /// places.
   double least = HUGE_VAL;
 
+  [[nodiscard]] double n_places() const {
+    return static_cast<double>(opposite.size() + slanted.size());
+  }
   /// The share of places that are thinner, by faces that look the opposite way; by any.
   [[nodiscard]] double share_thinner(double length) const;
   [[nodiscard]] double share_thinner_or_slanted(double length) const;
