@@ -104,9 +104,10 @@ void Block::advance_audited(Flock& flock,
   for (std::int32_t step = stretch.first; step < stretch.first + stretch.n_steps; ++step) {
     const tess::dn::Particles before = flock.motion;
     const double begin = cpu_seconds();
-    station.stepper(species).run(flock.motion.span(), objects, step * dt, 1);
+    const std::vector<tess::dn::Waypoint> waypoints =
+        station.stepper(species).run_once(flock.motion.span(), objects, step * dt);
     station.spent(cpu_seconds() - begin);
-    note_tunnelled(stage, objects, before, flock);
+    note_tunnelled(stage, objects, before, waypoints, flock);
     tess::dn::advance(objects, dt, 1);
   }
 }

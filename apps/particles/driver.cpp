@@ -1,5 +1,6 @@
 #include "apps/particles/driver.hpp"
 
+#include "apps/particles/explain.hpp"
 #include "apps/particles/memory.hpp"
 #include "apps/particles/output_check.hpp"
 #include "apps/particles/picture.hpp"

@@ -42,8 +42,9 @@ class FieldInTheMaking {
   /// The flat field, moved out.
   [[nodiscard]] tess::dn::Field take() && { return std::move(field_); }
   /// What the step loop asks, for an object that stands there.
-  [[nodiscard]] tess::dn::Object object(const tess::dn::Frame& frame) const {
-    return {&field_, frame, compressed_ ? &*compressed_ : nullptr};
+  [[nodiscard]] tess::dn::Object object(const tess::dn::Frame& frame,
+                                        const tess::dn::Bvh* triangles) const {
+    return {&field_, frame, compressed_ ? &*compressed_ : nullptr, triangles};
   }
   /// Bytes of the flat field, whether it is kept or not.
   [[nodiscard]] std::uint64_t flat_bytes() const { return flat_bytes_; }

@@ -2,6 +2,7 @@
 
 #include "apps/particles/fields.hpp"
 #include "apps/particles/passage.hpp"
+#include "collide/dn_field/leg.hpp"
 #include "runtime/base/mix.hpp"
 
 #include <algorithm>
@@ -28,18 +29,24 @@ double least_distance(const std::vector<Object>& objects, Vec3 p) {
   return least;
 }
 
-/// How an object stands in a step, from its begin to its end: often enough that a straight way in
-/// the world is one between them, too, as the object sees it.
-std::vector<tess::dn::Frame> frames_in(const tess::dn::Frame& begin, double step) {
-  constexpr double angle = 0.05;  // off by 3e-4 of the distance from its origin
-  const double pieces = norm(begin.angular_velocity) * step / angle;
-  const int n = 1 + static_cast<int>(std::min(pieces, 1000.0));
-  std::vector<tess::dn::Frame> frames{begin};
-  for (int i = 1; i <= n; ++i) {
-    frames.push_back(begin);
-    frames.back().advance(step * i / n);
+/// Calls visit(leg) for the straight parts of each particle's way through a step, in the order of
+/// particles and time. visit: void(std::size_t particle, const Leg&).
+template <class Visit>
+void for_each_leg(const tess::dn::Particles& before,
+                  std::span<const tess::dn::Waypoint> waypoints,
+                  const tess::dn::Particles& after,
+                  const Visit& visit) {
+  auto next = waypoints.begin();
+  for (std::size_t p = 0; p < after.size(); ++p) {
+    tess::dn::Leg leg{0, 1, before.position(p), {}};
+    for (; next != waypoints.end() && next->particle == p; ++next) {
+      leg.end = next->part, leg.to = next->place;
+      visit(p, leg);
+      leg.begin = leg.end, leg.from = leg.to;
+    }
+    leg.end = 1, leg.to = after.position(p);
+    visit(p, leg);
   }
-  return frames;
 }
 
 }  // namespace
@@ -85,22 +92,21 @@ void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into) {
 void note_tunnelled(const Stage& stage,
                     const std::vector<Object>& at_begin,
                     const tess::dn::Particles& before,
+                    std::span<const tess::dn::Waypoint> waypoints,
                     Flock& flock) {
+  const double depth = greatest_depth(stage.scene.rules);
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
     const auto& tree = stage.triangles[o];
-    const tess::dn::Bvh* const triangles = tree ? &*tree : nullptr;
-    const std::vector<tess::dn::Frame> frames = frames_in(at_begin[o].frame, stage.scene.dt);
-    const double part = 1 / static_cast<double>(frames.size() - 1);
-    for (std::size_t p = 0; p < flock.size(); ++p) {
-      const Vec3 begin = before.position(p), way = flock.motion.position(p) - begin;
-      Vec3 from = frames[0].to_object(begin);
-      for (std::size_t i = 1; i < frames.size() && flock.marks[p].what != Mark::through; ++i) {
-        const Vec3 to = frames[i].to_object(begin + static_cast<double>(i) * part * way);
-        flock.marks[p] = mark_after(
-            flock.marks[p], static_cast<std::uint16_t>(o), at_begin[o], triangles, from, to);
-        from = to;
-      }
-    }
+    const Audited audited{
+        static_cast<std::uint16_t>(o), at_begin[o], tree ? &*tree : nullptr, depth};
+    for_each_leg(before, waypoints, flock.motion, [&](std::size_t p, const tess::dn::Leg& leg) {
+      Mark& mark = flock.marks[p];
+      if (mark.what == Mark::through) return;
+      any_piece(at_begin[o].frame, stage.scene.dt, leg, [&](Vec3 from, Vec3 to) {
+        mark = mark_after(mark, audited, from, to);
+        return mark.what == Mark::through;
+      });
+    });
   }
 }
 
@@ -108,12 +114,13 @@ void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& 
   for (std::size_t o = 0; o < objects.size(); ++o) {
     const tess::dn::Field& field = *objects[o].field;
     if (field.sides == tess::dn::Sides::two) continue;
+    const double deepest = -greatest_depth(stage.scene.rules) * field.grid.cell;
     for (std::size_t p = 0; p < flock.size(); ++p) {
       const Vec3 now = objects[o].frame.to_object(flock.motion.position(p));
-      if (!(distance_at(objects[o], now) < -field.grid.cell)) continue;
+      if (!(distance_at(objects[o], now) < deepest)) continue;
       const Vec3 start =
           stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
-      if (!(distance_at(objects[o], start) < -field.grid.cell))
+      if (!(distance_at(objects[o], start) < deepest))
         flock.marks[p] = {Mark::through, 0, static_cast<std::uint16_t>(o)};
     }
   }

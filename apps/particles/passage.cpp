@@ -50,12 +50,12 @@ Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 fro
   return mark;
 }
 
-/// Whether a way reaches more than a cell below the surface, and begins above that, at the distance
-/// `begin`.
-bool goes_below(const Object& object, double begin, Vec3 from, Vec3 to) {
+/// Whether a way reaches deeper below the surface than `depth`, and begins above that, at the
+/// distance `begin`.
+bool goes_below(const Object& object, double depth, double begin, Vec3 from, Vec3 to) {
   const Field& field = *object.field;
   const double length = norm(to - from), cell = field.grid.cell;
-  if (begin < -cell) return false;
+  if (begin < -depth) return false;
   // The part of the way that lies in the grid, cut into pieces of half a cell.
   const Vec3 low = field.grid.origin, along = to - from;
   const Vec3 high =
@@ -77,31 +77,31 @@ bool goes_below(const Object& object, double begin, Vec3 from, Vec3 to) {
   for (std::size_t i = 0; i <= pieces; ++i) {
     const double t =
         first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
-    if (distance_at(object, from + t * along) < -cell) return true;
+    if (distance_at(object, from + t * along) < -depth) return true;
   }
   return false;
 }
 
 }  // namespace
 
-Mark mark_after(Mark mark,
-                std::uint16_t number,
-                const Object& object,
-                const Bvh* triangles,
-                Vec3 from,
-                Vec3 to) {
+double greatest_depth(const Rules& rules) {
+  return rules.impact && look_up_of(rules) == LookUp::nearest ? 2 : 1;
+}
+
+Mark mark_after(Mark mark, const Audited& audited, Vec3 from, Vec3 to) {
+  const auto& [number, object, triangles, depth] = audited;
   const Mark through{Mark::through, 0, number};
   const Field& field = *object.field;
   const double length = norm(to - from);
   if (mark.what == Mark::through || !std::isfinite(length)) return mark;
   const double begin = distance_at(object, from);
-  if (begin < HUGE_VAL && std::abs(begin) > length + 2 * field.grid.cell) return mark;
+  if (begin < HUGE_VAL && std::abs(begin) > length + (depth + 1) * field.grid.cell) return mark;
   if (field.sides == Sides::two) {
     std::vector<Crossing> crossings;
     triangles->crossings(from, to, crossings);
     return crossings.empty() ? mark : through;
   }
-  if (goes_below(object, begin, from, to)) return through;
+  if (goes_below(object, depth * field.grid.cell, begin, from, to)) return through;
   return triangles != nullptr ? after_walls(mark, number, *triangles, from, to) : mark;
 }
 

@@ -23,7 +23,4 @@ struct Report {
 [[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);
 [[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);
 
-/// What the run uses and builds, what for, and what it leaves out, for --explain.
-[[nodiscard]] std::string explanation(const Scene& scene, const DriverOptions& options);
-
 }  // namespace particles

@@ -37,6 +37,12 @@ bool is_audited(const Scene& scene) {
                                       affordable);
 }
 
+bool keeps_triangles(const Scene& scene, const SceneObject& object) {
+  const bool sheet = object.sides == tess::dn::Sides::two,
+             thin = object.walls.least < 2 * least_wall(scene, object);
+  return (sheet && scene.rules.impact) || ((sheet || thin) && is_audited(scene));
+}
+
 double block_edge(const Scene& scene) {
   constexpr double particles_a_block = 2000, most_an_axis = 8;
   if (scene.block > 0) return scene.block;

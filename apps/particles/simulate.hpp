@@ -58,6 +58,10 @@ struct RunOptions {
 /// Whether a run of this scene looks at each step for particles that tunnel.
 [[nodiscard]] bool is_audited(const Scene& scene);
 
+/// Whether a run keeps the triangles of an object beside its field: for impacts on sheets, and for
+/// the audit of sheets and thin walls.
+[[nodiscard]] bool keeps_triangles(const Scene& scene, const SceneObject& object);
+
 /// The edge of blocks and the steps between exchanges that a run of this scene uses.
 [[nodiscard]] double block_edge(const Scene& scene);
 [[nodiscard]] std::int32_t exchange_interval(const Scene& scene);

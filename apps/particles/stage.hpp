@@ -30,9 +30,18 @@ struct Stage {
   const std::vector<double> masses;  ///< a species is an index into this
   std::vector<FieldInTheMaking>
       fields;  ///< of the objects; empty where nobody asks, see builds_fields()
-  std::vector<std::optional<tess::dn::Bvh>> triangles;  ///< of objects whose audit asks them
+  std::vector<std::optional<tess::dn::Bvh>>
+      triangles;  ///< of objects whose impacts or audit ask them
 
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
+  /// As they stand at the start, once their fields are built.
+  [[nodiscard]] std::vector<tess::dn::Object> objects() const {
+    std::vector<tess::dn::Object> objects;
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      objects.push_back(
+          fields[i].object(scene.objects[i].frame, triangles[i] ? &*triangles[i] : nullptr));
+    return objects;
+  }
 };
 
 struct StageHandle {

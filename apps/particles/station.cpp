@@ -17,15 +17,6 @@ std::pair<std::int32_t, std::int32_t> pes_of_process() {
   return {pe.id().value / each * each, each};
 }
 
-/// None where no rule asks for a surface.
-std::vector<tess::dn::Object> objects_of(const Stage& stage) {
-  std::vector<tess::dn::Object> objects;
-  if (!stage.collides()) return objects;
-  for (std::size_t i = 0; i < stage.fields.size(); ++i)
-    objects.push_back(stage.fields[i].object(stage.scene.objects[i].frame));
-  return objects;
-}
-
 }  // namespace
 
 void Station::take(StageHandle handle) {
@@ -61,9 +52,7 @@ void Station::begin_fields() {
     make(i, [&, parts = n](FieldInTheMaking& field) {
       const SceneObject& object = scene.objects[i];
       field.begin(object, content_of(scene), parts);
-      const bool thin = object.walls.least < 2 * least_wall(scene, object);
-      const bool asked = object.sides == tess::dn::Sides::two || thin;
-      if (asked && is_audited(scene)) stage_->triangles[i].emplace(object.surface);
+      if (keeps_triangles(scene, object)) stage_->triangles[i].emplace(object.surface);
     });
 }
 
@@ -82,7 +71,7 @@ void Station::finish_fields() {
 
 void Station::prepare(double block_edge) {
   space_ = Space::around(stage_->source.bounds(), block_edge);
-  objects_ = objects_of(*stage_);
+  if (stage_->collides()) objects_ = stage_->objects();
   for (const double mass : stage_->masses) {
     const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
     try {

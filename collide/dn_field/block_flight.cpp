@@ -1,5 +1,6 @@
 #include "collide/dn_field/block_flight.hpp"
 
+#include "collide/dn_field/sheet_guard.hpp"
 #include "collide/dn_field/spring_limit.hpp"
 #include "collide/dn_field/trace.hpp"
 #include "collide/dn_field/velocity_rules.hpp"
@@ -9,6 +10,7 @@
 namespace tess::dn {
 namespace {
 constexpr int steps_unscreened = 32;     // for which all count as near where screening did not pay
+constexpr int spring_rounds = 4;         // in which a particle is put where its energy lets it be
 constexpr std::size_t sample_size = 32;  // particles of a block that are screened to see if it pays
 
 /// The speed that a particle away from all surfaces gains in the steps of `changes`, at most.
@@ -34,9 +36,14 @@ bool screening_pays(
   return packed < near_step + first_look_up / std::min(left, steps_unscreened);
 }
 
+/// Each particle's stay in the order of time.
+void sort_by_particle(std::vector<Waypoint>& waypoints) {
+  std::ranges::stable_sort(waypoints, {}, &Waypoint::particle);
+}
+
 }  // namespace
 
-BlockFlight::BlockFlight() {
+BlockFlight::BlockFlight(bool keeps_waypoints) : keeps_waypoints_(keeps_waypoints) {
   clear(first_, block_size);
   clear(second_, block_size);
 }
@@ -55,25 +62,38 @@ void BlockFlight::look_up_all(const Run& run,
   for (const Placed& object : objects) run.look_up(object, particles, *closest_, closest);
 }
 
-/// The rules of the surface, for particles that may feel it; the objects as they stand when the
-/// step begins and when it ends.
+/// The rules of the surface, for particles that may feel it.
 void BlockFlight::meet_surface(const Run& run,
-                               std::span<const Placed> objects,
-                               std::span<const Placed> objects_after,
+                               const Moments& moments,
+                               int step,
                                const ParticleSpan& particles) {
   const Stepper::Plan& plan = run.plan;
+  const auto& objects = moments.objects_at(step);
+  const auto& sheets = moments.sheets_at(step);
   if (!known_) look_up_all(run, objects, particles, *closest_);
   const Closest& closest = *closest_;
   if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
     drag_quadratic(drag->rate * plan.step, drag->threshold, run.setting, particles, closest);
   if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, closest);
+  scratch_.keeps_waypoints = keeps_waypoints_ || !sheets.empty();
+  scratch_.waypoints.clear();
+  if (!sheets.empty() || plan.rules.spring) start_.remember(particles);
   run.loop(run.constants, particles, closest, scratch_);
-  trace(run.constants, objects, plan.rules.look_up, scratch_.untraced, particles, scratch_.energy);
-  scratch_.untraced.clear();
+  trace(run.constants, objects, plan.rules.look_up, particles, scratch_);
+  sort_by_particle(scratch_.waypoints);
+  if (!sheets.empty())
+    keep_off_sheets({run.constants, sheets, run.setting, closest, plan.sweep == Sweep::on},
+                    start_,
+                    scratch_.waypoints,
+                    particles);
   if (!plan.rules.spring) return;
-  look_up_all(run, objects_after, particles, *after_);
-  const Moved moved =
-      limit_spring(run.constants.spring, run.setting, particles, closest, *after_, scratch_);
+  const SpringLimit limit{run.constants.spring, plan.step, run.setting, closest, scratch_, start_};
+  Moved moved = Moved::some;
+  for (int round = 0; round <= spring_rounds && moved == Moved::some; ++round) {
+    look_up_all(run, moments.objects_at(step + 1), particles, *after_);
+    moved =
+        round < spring_rounds ? limit.cut(*after_, particles) : limit.put_back(*after_, particles);
+  }
   // Objects that do not move say the same at the start of the next step.
   known_ = run.setting == Setting::one_at_rest && moved == Moved::none;
   std::swap(closest_, after_);
@@ -85,8 +105,15 @@ void BlockFlight::step_near(const Run& run,
                             const ParticleSpan& particles) {
   const VelocityChanges& changes = moments.changes_at(step);
   if (!changes.none()) change_velocities(changes, particles);
-  meet_surface(
-      moments.run(step, run), moments.objects_at(step), moments.objects_at(step + 1), particles);
+  meet_surface(moments.run(step, run), moments, step, particles);
+}
+
+/// Of waypoints of packed particles.
+void BlockFlight::number_in_block() {
+  std::erase_if(scratch_.waypoints,
+                [&](const Waypoint& bend) { return bend.particle >= near_.count; });
+  for (Waypoint& bend : scratch_.waypoints) bend.particle = near_.index[bend.particle];
+  sort_by_particle(scratch_.waypoints);
 }
 
 bool BlockFlight::screen_for(
@@ -106,6 +133,7 @@ bool BlockFlight::screen_for(
 
 void BlockFlight::fly(const Run& run, const Moments& moments, const ParticleSpan& block) {
   const FreeLoop fly_free = run.plan.fly_free;
+  scratch_.waypoints.clear();
   if (!run.plan.looks_up) return fly_free(run.constants, block, moments.changes);
   const ParticleSpan some = block.part(0, std::min(sample_size, block.count));
   const int n_steps = moments.n_steps();
@@ -133,6 +161,7 @@ void BlockFlight::fly(const Run& run, const Moments& moments, const ParticleSpan
     fly_free(run.constants, block, moments.changes_in(i, next));
     i = next;
     near_.unpack(block);
+    if (keeps_waypoints_) number_in_block();
   }
 }
 

@@ -57,7 +57,7 @@ class Bvh {
   [[nodiscard]] bool may_reach(const Bounds& box, double limit2) const;
 
   /// Appends all crossings of the segment, from either side, in no order. At an edge between two
-  /// triangles both may tell, or by rounding none.
+  /// triangles both may tell.
   void crossings(Vec3 from, Vec3 to, std::vector<Crossing>& into) const;
 
   /// The generalised winding number (Jacobson et al. 2013): 1 inside, 0 outside a closed surface,

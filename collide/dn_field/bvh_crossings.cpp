@@ -23,9 +23,10 @@ bool may_meet(const Bounds& box, Vec3 from, Vec3 way) {
 }
 
 /// Where the segment crosses the triangle (Möller and Trumbore 1997), from either side; negative
-/// where it does not.
+/// where it does not. Triangles are a trifle larger than they are, so that nothing slips through an
+/// edge between two.
 double crossing_at(Vec3 from, Vec3 way, const std::array<Vec3, 3>& corner) {
-  constexpr double none = -1;
+  constexpr double none = -1, larger = 1e-9;
   const auto& [a, b, c] = corner;
   const Vec3 ab = b - a, ac = c - a, h = cross(way, ac);
   const double determinant = dot(ab, h);
@@ -34,7 +35,7 @@ double crossing_at(Vec3 from, Vec3 way, const std::array<Vec3, 3>& corner) {
   const double u = dot(s, h) / determinant;
   const Vec3 q = cross(s, ab);
   const double v = dot(way, q) / determinant, t = dot(ac, q) / determinant;
-  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t <= 1 ? t : none;
+  return u >= -larger && v >= -larger && u + v <= 1 + larger && t > 0 && t <= 1 ? t : none;
 }
 
 }  // namespace

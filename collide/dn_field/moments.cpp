@@ -3,6 +3,7 @@
 #include "collide/dn_field/velocity_rules.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tess::dn {
 namespace {
@@ -65,6 +66,11 @@ Moments moments_of(const Run& run, std::vector<Object>& objects, double first, i
   for (int i = 0; i < n_steps; ++i) {
     if (growing) set_lengths(result.grown.emplace_back(run), objects);
     stand();
+    auto& sheets = result.sheets.emplace_back();
+    if (plan.rules.impact)
+      std::ranges::copy_if(objects, std::back_inserter(sheets), [](const Object& object) {
+        return object.triangles != nullptr && object.field->sides == Sides::two;
+      });
     advance(objects, plan.step, 1);
   }
   stand();

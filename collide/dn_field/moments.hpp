@@ -28,6 +28,7 @@ struct Moments {
   std::vector<VelocityChanges> changes;
   std::vector<std::vector<Placed>> objects;  ///< and when the last step ends
   std::vector<Run> grown;                    ///< empty where no object grows
+  std::vector<std::vector<Object>> sheets;   ///< at each step; that impacts hold against triangles
 
   [[nodiscard]] int n_steps() const { return static_cast<int>(changes.size()); }
   [[nodiscard]] const Run& run(int step, const Run& all) const {
@@ -35,6 +36,9 @@ struct Moments {
   }
   [[nodiscard]] const std::vector<Placed>& objects_at(int step) const {
     return objects[static_cast<std::size_t>(step)];
+  }
+  [[nodiscard]] const std::vector<Object>& sheets_at(int step) const {
+    return sheets[static_cast<std::size_t>(step)];
   }
   [[nodiscard]] const VelocityChanges& changes_at(int step) const {
     return changes[static_cast<std::size_t>(step)];

@@ -30,9 +30,11 @@ struct Untraced {
   Vec3 position, start_velocity, end_velocity, way;
 };
 
-/// What the rule loop leaves for others.
+/// What the rule loop and the trace leave for others.
 struct Scratch {
   std::vector<Untraced> untraced;
+  std::vector<Waypoint> waypoints;  ///< numbers are those in the block
+  bool keeps_waypoints = false;
   alignas(64) double energy[block_size];  ///< twice the energy a particle may have; springs only
 };
 

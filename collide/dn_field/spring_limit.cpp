@@ -1,41 +1,76 @@
 #include "collide/dn_field/spring_limit.hpp"
 
 namespace tess::dn {
+namespace {
 
 using namespace lanes;
 
-Moved limit_spring(const SpringConstants& constants,
-                   Setting setting,
-                   const ParticleSpan& span,
-                   const Closest& before,
-                   const Closest& after,
-                   const Scratch& scratch) {
-  constexpr double noise = 1e-6;  // of float distances; cut, it would eat a soft spring's energy
-  const SpringConstants spring = constants;  // copies, which no store to a particle can change
+constexpr double noise = 1e-6;  // of float distances; cut, it would eat a soft spring's energy
+
+/// What particles p, p + 1, … have and may have: twice the energies, relative to the surface.
+struct Account {
+  D3 u, w;  // velocity of the surface; of the particles against it
+  D depth;  // in the spring, positive
+  D kinetic;
+  D energy;  // that they may have in all
+  D left;    // of that, for the motion
+  L over;    // who has more
+};
+
+Account account(const SpringLimit& limit,
+                const SpringConstants& spring,
+                const Closest& after,
+                const ParticleSpan& particles,
+                std::size_t p) {
+  Account a{};
+  a.depth = spring.reach - to_double(load<F>(after.distance + p));
+  if (limit.setting == Setting::general) a.u = surface_velocities(limit.before, p);
+  a.w = velocities(particles, p) - a.u;
+  a.kinetic = dot(a.w, a.w);
+  a.energy = max(load<D>(limit.scratch.energy + p), D{});
+  a.left = a.energy - spring.stiffness * a.depth * a.depth;
+  a.over = (a.depth > 0.0) & (a.kinetic - a.left > noise * a.energy) & (a.kinetic < HUGE_VAL);
+  return a;
+}
+
+/// The depth that the energy pays for.
+D paid(const SpringConstants& spring, D energy) {
+  return sqrt(energy * (1 / spring.stiffness));
+}
+
+}  // namespace
+
+Moved SpringLimit::cut(const Closest& after, const ParticleSpan& span) const {
+  const SpringConstants constants = spring;  // copies, which no store to a particle can change
   const ParticleSpan particles = span;
   Moved moved = Moved::none;
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const D depth = spring.reach - to_double(load<F>(after.distance + p));
-    D3 u{};
-    if (setting == Setting::general) u = surface_velocities(before, p);
-    const D3 v = velocities(particles, p), w = v - u;
-    const D energy = max(load<D>(scratch.energy + p), D{});
-    const D kinetic = dot(w, w), left = energy - spring.stiffness * depth * depth;
-    L over = (depth > 0.0) & (kinetic - left > noise * energy) & (kinetic < HUGE_VAL);
-    const D3 n = to_double(normals(after, p));
-    const D square = dot(n, n);
-    over = over & (square > 0.25);
-    const D scale = sqrt(only(left > 0.0, left / kinetic));
-    const D3 slowed = select(over, u + scale * w, v);
-    set_velocities(particles, p, slowed);
-    const D paid = sqrt(energy * (1 / spring.stiffness));
-    const L deeper = over & (depth > paid);
+    const Account a = account(*this, constants, after, particles, p);
+    if (!any(a.over)) continue;
+    const D scale = sqrt(only(a.left > 0.0, a.left / a.kinetic));
+    set_velocities(particles, p, select(a.over, a.u + scale * a.w, velocities(particles, p)));
+    const D push = a.depth - paid(constants, a.energy);
+    const L deeper = a.over & (push > 0.0);
     if (!any(deeper)) continue;
     moved = Moved::some;
-    const D push = depth - paid;
-    const D3 x = places(particles, p);
-    const D3 pushed = select(deeper, fma(push, refined(n, square), x), x);
-    set_places(particles, p, pushed);
+    const D3 n = to_double(normals(after, p)), x = places(particles, p);
+    const D square = dot(n, n);
+    set_places(particles, p, select(deeper & (square > 0.25), fma(push, refined(n, square), x), x));
+  }
+  return moved;
+}
+
+Moved SpringLimit::put_back(const Closest& after, const ParticleSpan& particles) const {
+  Moved moved = Moved::none;
+  for (std::size_t p = 0; p < particles.count; p += width) {
+    const Account a = account(*this, spring, after, particles, p);
+    const L deeper = a.over & (a.depth > paid(spring, a.energy));
+    if (!any(deeper)) continue;
+    moved = Moved::some;
+    const D3 taken_along = fma(all(step), a.u, start.places(p));
+    set_places(particles, p, select(deeper, taken_along, places(particles, p)));
+    set_velocities(
+        particles, p, select(deeper, a.u + (a.u - start.velocities(p)), velocities(particles, p)));
   }
   return moved;
 }

@@ -2,23 +2,29 @@
 // edges, on curved objects a particle can enter a stiff spring from the side, unnoticed by the
 // plane that the step was computed with, and would find potential energy that it never paid for.
 // After the step its depth is looked up again, and its speed, then its depth, cut to the energy it
-// had. Private to the step loop.
+// had; that again where it then stands, for a look-up may say another depth than was meant. Who
+// does not come to an end so turns back: from where the step began, taken along by the surface, the
+// other way about. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/rule_loop.hpp"
+#include "collide/dn_field/start.hpp"
 
 namespace tess::dn {
 
-/// Whether a particle was put elsewhere.
-enum class Moved : std::uint32_t { none, some };
+struct SpringLimit {
+  const SpringConstants& spring;
+  double step;
+  Setting setting;
+  const Closest& before;   ///< the closest surfaces when the step began
+  const Scratch& scratch;  ///< .energy: twice that of each particle, spring and way included
+  const Start& start;
 
-/// before, after: the closest surfaces at the step's start and end; scratch.energy: twice the
-/// energy of each particle, spring and way included, as the rule loop left it.
-Moved limit_spring(const SpringConstants& spring,
-                   Setting setting,
-                   const ParticleSpan& particles,
-                   const Closest& before,
-                   const Closest& after,
-                   const Scratch& scratch);
+  /// after: the closest surfaces of the particles where they stand now. Whoever was put elsewhere
+  /// is to be looked up again.
+  Moved cut(const Closest& after, const ParticleSpan& particles) const;
+  /// The last resort for those that cut() would still put elsewhere, or cannot.
+  Moved put_back(const Closest& after, const ParticleSpan& particles) const;
+};
 
 }  // namespace tess::dn

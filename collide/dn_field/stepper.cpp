@@ -53,20 +53,43 @@ void Stepper::run(ParticleSpan particles,
                   std::span<const Object> objects,
                   double time,
                   int n_steps) const {
+  run(particles, objects, time, n_steps, nullptr);
+}
+
+std::vector<Waypoint> Stepper::run_once(ParticleSpan particles,
+                                        std::span<const Object> objects,
+                                        double time) const {
+  std::vector<Waypoint> waypoints;
+  run(particles, objects, time, 1, &waypoints);
+  return waypoints;
+}
+
+void Stepper::run(ParticleSpan particles,
+                  std::span<const Object> objects,
+                  double time,
+                  int n_steps,
+                  std::vector<Waypoint>* waypoints) const {
   const Plan& plan = *plan_;
   const Run run = run_of(plan, objects);
   std::vector<Object> standing(objects.begin(), objects.end());
   if (!plan.looks_up) standing.clear();
   const double before = steps_before(time, plan.step);
-  const auto flight = std::make_unique<BlockFlight>();
+  const auto flight = std::make_unique<BlockFlight>(waypoints != nullptr);
   const std::size_t whole = particles.count / lanes::width * lanes::width;
   Rest rest(particles.part(whole, particles.count - whole));
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
     const Moments moments = moments_of(run, standing, before + done, now);
+    const auto fly = [&](std::size_t first, const ParticleSpan& block) {
+      flight->fly(run, moments, block);
+      if (waypoints == nullptr) return;
+      for (const Waypoint& bend : flight->waypoints())
+        if (first + bend.particle < particles.count)
+          waypoints->push_back({first + bend.particle, bend.part, bend.place});
+    };
     for (std::size_t first = 0; first < whole; first += block_size)
-      flight->fly(run, moments, particles.part(first, std::min(block_size, whole - first)));
-    if (whole < particles.count) flight->fly(run, moments, rest.span());
+      fly(first, particles.part(first, std::min(block_size, whole - first)));
+    if (whole < particles.count) fly(whole, rest.span());
   }
   rest.put_back();
 }

@@ -21,6 +21,8 @@
 
 namespace tess::dn {
 
+class Bvh;
+
 /// What particles collide with. The field is shared, read-only, and must outlive the object.
 struct Object {
   const Field* field = nullptr;
@@ -28,6 +30,9 @@ struct Object {
   /// If given, look-ups ask this, and `field` is what it was made from or its outline(). All
   /// objects of a scene have one or none has.
   const CompressedField* compressed = nullptr;
+  /// If given, of the surface that a two-sided field was built from: with it, impacts let nobody
+  /// through where two sheets meet, which the field alone does.
+  const Bvh* triangles = nullptr;
 };
 
 /// Moves all frames over n_steps; bit for bit what a run of n_steps sees.
@@ -38,6 +43,13 @@ void advance(std::span<Object> objects, double step, int n_steps);
 /// positive and finite; compressed and flat fields together, or the trilinear look-up of compressed
 /// ones.
 void validate(const Rules& rules, std::span<const Object> objects);
+
+/// Where the way of a fast particle bent in a step.
+struct Waypoint {
+  std::size_t particle = 0;
+  double part = 0;  ///< of the step, that had gone by
+  Vec3 place;
+};
 
 class Stepper {
  public:
@@ -50,11 +62,22 @@ class Stepper {
            double time,
            int n_steps = 1) const;
 
+  /// One such step. Tells the bounces, in the order of particles and of time, of those that went
+  /// further than was known to be free; the others' ways are straight but for half a voxel.
+  [[nodiscard]] std::vector<Waypoint> run_once(ParticleSpan particles,
+                                               std::span<const Object> objects,
+                                               double time) const;
+
   struct Plan;  ///< constants and loops of a scene; in step_plan.hpp
 
  private:
   friend Stepper make_stepper(const Rules& rules, double step);
   explicit Stepper(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {}
+  void run(ParticleSpan particles,
+           std::span<const Object> objects,
+           double time,
+           int n_steps,
+           std::vector<Waypoint>* waypoints) const;
   std::shared_ptr<const Plan> plan_;
 };
 

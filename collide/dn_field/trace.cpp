@@ -202,7 +202,7 @@ void take_along(
 void trace_vector(const Scene& scene,
                   std::span<const Untraced> from,
                   const ParticleSpan& particles,
-                  double* energy) {
+                  Scratch& scratch) {
   const RuleConstants& c = scene.constants;
   const auto lane = [&](Vec3 Untraced::*what) {
     D3 v{};
@@ -220,6 +220,12 @@ void trace_vector(const Scene& scene,
   const LinearFlow& flow = drags ? c.surface : c.air;
   D rest = all(1.0);
   L flies = can_fly;
+  const auto keep_waypoints = [&](L which) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (which[i] != 0)
+        scratch.waypoints.push_back({from[i].particle, 1 - rest[i], Vec3{x.x[i], x.y[i], x.z[i]}});
+  };
+  if (scratch.keeps_waypoints) keep_waypoints(flies);
   for (int bounce = 0; bounce < max_bounces; ++bounce) {
     const Contact contact = first_contact(scene, x, way, rest, flies);
     flies = flies & (contact.at < never);
@@ -248,6 +254,7 @@ void trace_vector(const Scene& scene,
       take_along(scene, contact, flies, 1.0 - rest, x, start - u, end);
       rest = only(~flies, rest);
     }
+    if (scratch.keeps_waypoints) keep_waypoints(flies);
   }
   x = fma(rest, way, x);
   const D work = dot(all(c.acceleration), x - x0 - way0);
@@ -255,7 +262,7 @@ void trace_vector(const Scene& scene,
     const std::size_t p = from[i].particle;
     particles.x[p] = x.x[i], particles.y[p] = x.y[i], particles.z[p] = x.z[i];
     particles.vx[p] = end.x[i], particles.vy[p] = end.y[i], particles.vz[p] = end.z[i];
-    if (can_fly[i] != 0) energy[p] += 2 * (c.air.gain / c.step) * work[i];
+    if (can_fly[i] != 0) scratch.energy[p] += 2 * (c.air.gain / c.step) * work[i];
   }
 }
 
@@ -264,13 +271,14 @@ void trace_vector(const Scene& scene,
 void trace(const RuleConstants& c,
            std::span<const Placed> objects,
            LookUp kind,
-           std::span<const Untraced> from,
            const ParticleSpan& particles,
-           double* energy) {
+           Scratch& scratch) {
+  const std::span<const Untraced> from = scratch.untraced;
   for (std::size_t first = 0; first < from.size(); first += width) {
     const std::size_t count = std::min<std::size_t>(width, from.size() - first);
-    trace_vector({c, objects, kind}, from.subspan(first, count), particles, energy);
+    trace_vector({c, objects, kind}, from.subspan(first, count), particles, scratch);
   }
+  scratch.untraced.clear();
 }
 
 }  // namespace tess::dn

@@ -10,15 +10,14 @@
 
 namespace tess::dn {
 
-/// Flies each of `from` through the step, with up to 16 bounces, and writes its particle. What has
-/// more bounces, in a crevice, is taken along by the last surface until the next step. Adds to
-/// energy[particle] twice the work that the flight's acceleration did beyond that on the straight
-/// way.
+/// Flies each of `scratch.untraced` through the step, with up to 16 bounces, and writes its
+/// particle. What has more bounces, in a crevice, is taken along by the last surface until the next
+/// step. Adds to scratch.energy[particle] twice the work that the flight's acceleration did beyond
+/// that on the straight way, and writes waypoints where they are kept.
 void trace(const RuleConstants& constants,
            std::span<const Placed> objects,
            LookUp kind,
-           std::span<const Untraced> from,
            const ParticleSpan& particles,
-           double* energy);
+           Scratch& scratch);
 
 }  // namespace tess::dn

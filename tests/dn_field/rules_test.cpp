@@ -4,6 +4,8 @@
 #include "runtime/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
+
 namespace {
 
 using namespace tess::dn;
@@ -176,32 +178,38 @@ TEST_CASE("an impact happens at its place and angle within the step", "[dn_field
 
 TEST_CASE("a spring gives nobody energy, by whichever look-up and however stiff",
           "[dn_field][rules]") {
-  const Surface ball = make_sphere(1, 40);
-  const Field field = build_exact(ball, grid_around(bounds(ball), 40, 0.5));
-  const Object object{&field, {}};
-  for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
-    for (const double stiffness : {1e2, 1e4, 1e6, 1e8}) {
-      Rules rules;
-      rules.look_up = look_up;
-      rules.spring = Spring{stiffness, 0, 0.1};
-      Particles particles;
-      for (int i = 1; i <= 400; ++i) {
-        const Vec3 from = 1.4 * direction({std::sin(i), std::sin(2.3 * i), std::sin(3.7 * i)});
-        const Vec3 aside = 0.4 * Vec3{std::sin(5.1 * i), std::sin(7.7 * i), std::sin(9.1 * i)};
-        particles.push_back(from, -1 * from + aside);
+  // Curved, with a medial axis within reach, and a corner seen from within: normals that change in
+  // a step, that blend to nothing, and that know one wall of three.
+  const Surface ball = make_sphere(1, 40), ring = make_torus(1, 0.4, 48);
+  const std::array fields{build_exact(ball, grid_around(bounds(ball), 40, 0.5)),
+                          build_exact(ring, grid_around(bounds(ring), 40, 0.5)),
+                          room_field(cube_grid(1.5, 40), 1)};
+  for (const Field& field : fields)
+    for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
+      for (const double stiffness : {1e2, 1e4, 1e6, 1e8, 1e12, 1e16}) {
+        const Object object{&field, {}};
+        const bool is_room = &field == &fields.back();
+        Rules rules;
+        rules.look_up = look_up;
+        rules.spring = Spring{stiffness, 0, 0.1};
+        Particles particles;
+        for (int i = 1; i <= 400; ++i) {
+          const Vec3 out = direction({std::sin(i), std::sin(2.3 * i), std::sin(3.7 * i)});
+          const Vec3 aside = 0.4 * Vec3{std::sin(5.1 * i), std::sin(7.7 * i), std::sin(9.1 * i)};
+          particles.push_back((is_room ? 0.5 : 1.8) * out, (is_room ? 1.4 : -1.4) * out + aside);
+        }
+        Particles before = particles;
+        make_stepper(rules, 0.01).run(particles.span(), {&object, 1}, 0, 300);
+        double most = 0;
+        for (std::size_t p = 0; p < particles.size(); ++p)
+          most = std::max(most, norm(particles.velocity(p)) / norm(before.velocity(p)));
+        INFO("field " << &field - fields.data() << ", look-up " << static_cast<int>(look_up)
+                      << ", stiffness " << stiffness);
+        CHECK(most < 1 + 1e-4);
+        // Soft against the step, it gives back what it took, less what is cut where it bends.
+        if (stiffness < 1e4 && !is_room)
+          CHECK(kinetic_energy(particles.span()) > 0.95 * kinetic_energy(before.span()));
       }
-      Particles before = particles;
-      make_stepper(rules, 0.01).run(particles.span(), {&object, 1}, 0, 200);
-      double most = 0;
-      for (std::size_t p = 0; p < particles.size(); ++p)
-        most = std::max(most, norm(particles.velocity(p)) / norm(before.velocity(p)));
-      INFO("look-up " << static_cast<int>(look_up) << ", stiffness " << stiffness);
-      // Between voxels the trilinear distance has no normal of its own.
-      CHECK(most < (look_up == LookUp::trilinear ? 1.05 : 1.001));
-      // Soft against the step, it gives back what it took.
-      if (stiffness < 1e4)
-        CHECK(kinetic_energy(particles.span()) > 0.98 * kinetic_energy(before.span()));
-    }
 }
 
 }  // namespace

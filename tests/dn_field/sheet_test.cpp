@@ -1,7 +1,11 @@
+#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <array>
 #include <random>
 
 namespace {
@@ -40,6 +44,81 @@ TEST_CASE("nobody passes a thin sheet, from either side, however it lies", "[dn_
                              << ", sweep " << (sweep == Sweep::on) << ", speed " << speed);
           CHECK(passed == 0);
         }
+}
+
+/// A room of five sheets: a long wedge closed at its ends. Its corners are `angle` and two of half
+/// the rest.
+struct WedgeRoom {
+  explicit WedgeRoom(double angle) {
+    const double half = 0.5 * angle;
+    const std::array<Vec3, 3> section{
+        {{0, 0, 0}, {std::cos(half), 0, std::sin(half)}, {std::cos(half), 0, -std::sin(half)}}};
+    for (const double y : {-0.8, 0.8})
+      for (const Vec3 corner : section) surface.vertices.push_back({corner.x, y, corner.z});
+    surface.triangles = {
+        {0, 1, 2}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {0, 2, 5}, {0, 5, 3}, {1, 2, 5}, {1, 5, 4}};
+    up = {-std::sin(half), 0, std::cos(half)}, down = {-std::sin(half), 0, -std::cos(half)};
+    back = std::cos(half);
+  }
+  /// How far from the nearest sheet, negative outside the room.
+  [[nodiscard]] double within(Vec3 p) const {
+    return std::min({-dot(up, p), -dot(down, p), back - p.x, 0.8 - std::abs(p.y)});
+  }
+  Surface surface;
+  Vec3 up, down;  // normals of the two that meet at `angle`, out of the room
+  double back;
+};
+
+TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rules]") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  int n_left_alone = 0;  // of those who know no triangles
+  for (const double angle : {0.5, 0.9, 1.57, 2.4})
+    for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
+      for (const double restitution : {0.0, 0.5, 1.0})
+        for (const double speed : {1.0, 30.0, 1e4})
+          for (const bool spins : {false, true}) {
+            const WedgeRoom room(angle);
+            const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
+            const Field field = build_exact(
+                room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
+            const Bvh triangles(room.surface);
+            Object object{&field, {}, nullptr, &triangles};
+            object.frame.axes = rotation({anywhere(random), anywhere(random), anywhere(random)});
+            if (spins) object.frame.angular_velocity = {1, -2, 3};
+            Rules rules;
+            rules.look_up = look_up;
+            rules.impact = Impact{restitution, 0, Sweep::on};
+            const Vec3 into_corner = object.frame.rotate({-9.81, 0, 0});
+            rules.gravity = Gravity{into_corner};
+            Particles particles;
+            while (particles.size() < 40) {
+              const Vec3 x{room.back * (0.55 + 0.1 * anywhere(random)),
+                           anywhere(random),
+                           0.2 * anywhere(random)};
+              if (room.within(x) < 2 * grid.cell) continue;
+              const Vec3 v{-1, 0.3 * anywhere(random), 0.5 * anywhere(random)};
+              particles.push_back(object.frame.to_world(x), speed * object.frame.rotate(v));
+            }
+            Particles alone = particles;
+            const Stepper stepper = make_stepper(rules, 0.005);
+            const int n_steps = speed > 100 ? 10 : 250;
+            const auto left = [&](Particles& some, const Bvh* known) {
+              std::vector<Object> objects{object};
+              objects[0].triangles = known;
+              stepper.run(some.span(), objects, 0, n_steps);
+              advance(objects, 0.005, n_steps);
+              int n = 0;
+              for (std::size_t p = 0; p < some.size(); ++p)
+                n += !(room.within(objects[0].frame.to_object(some.position(p))) > 0);
+              return n;
+            };
+            INFO("angle " << angle << ", look-up " << static_cast<int>(look_up) << ", restitution "
+                          << restitution << ", speed " << speed << ", spins " << spins);
+            CHECK(left(particles, &triangles) == 0);
+            n_left_alone += left(alone, nullptr);
+          }
+  CHECK(n_left_alone > 100);  // else the triangles keep nobody in
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST_CASE("who dips under two walls in a corner has passed neither", "[particles
   const tess::dn::Object object{&field, {}};
   const tess::dn::Bvh triangles(plate);
   const auto after = [&](Mark mark, std::uint16_t number, double from, double to) {
-    return mark_after(mark, number, object, &triangles, {0.1, 0.2, from}, {0.1, 0.2, to});
+    return mark_after(mark, {number, object, &triangles, 1}, {0.1, 0.2, from}, {0.1, 0.2, to});
   };
   const Mark in_floor = after({}, 0, 0.02, 0), in_both = after(in_floor, 1, -0.02, 0);
   CHECK(in_floor.what == Mark::inside);
@@ -157,6 +157,23 @@ TEST_CASE("who dips under two walls in a corner has passed neither", "[particles
   CHECK(after(in_floor, 0, 0, 0.02).what == Mark::nothing);
   CHECK(after({}, 0, 0.02, -0.02).what == Mark::through);  // in one step
   CHECK(after({}, 0, 0, 0.02).what == Mark::nothing);      // began inside
+}
+
+TEST_CASE("who bounces over a box in one step has not gone through it", "[particles][physics]") {
+  // Up over the box, off the ceiling, and down behind: the straight way leads through the box.
+  const Scene scene = parse_scene(R"({"dt": 1, "steps": 1,
+    "objects": [{"shape": {"box": {"half": [0.5, 1, 1]}}, "resolution": 60, "thickness": 0.5},
+                {"shape": {"box": {"half": [3, 3, 0.5]}}, "resolution": 60, "thickness": 0.5,
+                 "transform": {"position": [0, 0, 1.9]}}],
+    "emitters": [{"lattice": {"low": [-2, -0.5, 0.4], "high": [-2, 0.5, 0.4], "n": [1, 21, 1]},
+                  "velocity": [4, 0, 2]}],
+    "rules": {"impact": {"restitution": 1}},
+    "outputs": {"audit": true, "trajectories": 1, "traced": 100}})",
+                                  "scene.json");
+  const Ran ran = run_scene(scene, "--pes=1");
+  for (const Sample& sample : ran.result.trajectories.back().samples)
+    CHECK(norm(sample.position - tess::dn::Vec3{2, sample.position.y, 0.4}) < 1e-5);
+  CHECK(ran.last().tunnelled == 0);
 }
 
 TEST_CASE("who stands still beside what spins has not gone through it", "[particles][physics]") {

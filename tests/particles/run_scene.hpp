@@ -34,9 +34,7 @@ inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& h
 /// What the last row must hold, step by step over all particles of a stage whose fields are built.
 inline Measured run_serially(const Stage& stage) {
   const Scene& scene = stage.scene;
-  std::vector<tess::dn::Object> objects;
-  for (std::size_t i = 0; i < stage.fields.size(); ++i)
-    objects.push_back(stage.fields[i].object(scene.objects[i].frame));
+  std::vector<tess::dn::Object> objects = stage.objects();
   std::vector<Flock> flocks(stage.masses.size());
   for (std::uint64_t id = 0; id < stage.source.size(); ++id) {
     const Start start = stage.source.particle(id);
