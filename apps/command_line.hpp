@@ -1,27 +1,60 @@
-// Reading a program's own options, after tess::take_options() has taken the runtime's: one line and
-// exit 2 for what is wrong (tess::guarded), --help with the runtime's options below the program's.
+// A program's own options, after tess::take_options() has taken the runtime's: one line and exit 2
+// for what is wrong (tess::guarded), --help with the runtime's options below the program's. CLI11
+// reads them; it is compiled here and not in every program.
 #pragma once
 
-#include "runtime/machine/mpi.hpp"
 #include "runtime/run.hpp"
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace apps {
 
-/// Parses the command line into what the program bound to `app`. False if it printed the help: the
-/// program is done. Throws tess::Error for bad options.
-[[nodiscard]] inline bool parse(CLI::App& app, int argc, char** argv) {
-  app.footer(tess::options_help());
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    if (tess::speaks_for_job()) tess::print(app.help());
-    return false;
-  } catch (const CLI::ParseError& error) {
-    tess::fail(tess::ErrorCode::bad_argument, error.what(), " (--help lists the options)");
-  }
-  return true;
-}
+/// An option of a CommandLine, for what there is to say beyond its name.
+class Option {
+ public:
+  Option& between(std::int64_t least, std::int64_t most);
+  Option& positive();
+  Option& one_of(const std::vector<std::string>& values);
+  /// "a,b,c" are three values.
+  Option& separated_by(char separator);
+  /// So many values follow.
+  Option& takes(int least, int most);
+  /// Known once the line is parsed.
+  [[nodiscard]] bool is_given() const;
+
+ private:
+  friend class CommandLine;
+  explicit Option(CLI::Option* option) : option_(option) {}
+  CLI::Option* option_;
+};
+
+class CommandLine {
+ public:
+  explicit CommandLine(const std::string& description, const std::string& program = {});
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  /// "--name", or "NAME" by its place; `value` is the default and takes what is given. T: integers
+  /// of 32 and 64 bits, double, std::string, and vectors or optionals of some of them.
+  template <class T>
+  Option option(const std::string& name, T& value, const std::string& meaning);
+  Option flag(const std::string& name, bool& value, const std::string& meaning);
+
+  /// False if it printed the help, `footer` below it: the program is done. Throws tess::Error for
+  /// bad options.
+  [[nodiscard]] bool parse(int argc, char** argv, const std::string& footer = tess::options_help());
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
 
 }  // namespace apps

@@ -238,9 +238,10 @@ int main(int argc, char** argv) {
   return tess::guarded(argv[0], [&] {
     tess::Setup setup = tess::take_options(argc, argv);
     int repeat = 5;
-    CLI::App app("The cost of building, compressing and looking up distance/normal fields.");
-    app.add_option("--repeat", repeat, "how often each is measured")->check(CLI::Range(1, 1000));
-    if (!apps::parse(app, argc, argv)) return 0;
+    apps::CommandLine line(
+        "The cost of building, compressing and looking up distance/normal fields.");
+    line.option("--repeat", repeat, "how often each is measured").between(1, 1000);
+    if (!line.parse(argc, argv)) return 0;
     const bench::Report report("one core");
     return tess::run(setup, [&] { bench::measure({report, repeat}); });
   });

@@ -291,13 +291,11 @@ int main(int argc, char** argv) {
   return tess::guarded(argv[0], [&] {
     tess::Setup setup = tess::take_options(argc, argv);
     bench::Options options;
-    CLI::App app("The cost of a particle's step in a distance/normal field.");
-    app.add_option("--particles", options.particles, "how many")
-        ->check(CLI::Range(1000, 100'000'000));
-    app.add_option("--repeat", options.repeat, "how often each is measured")
-        ->check(CLI::Range(1, 1000));
-    app.add_option("--only", options.only, "measures whose name has this in it");
-    if (!apps::parse(app, argc, argv)) return 0;
+    apps::CommandLine line("The cost of a particle's step in a distance/normal field.");
+    line.option("--particles", options.particles, "how many").between(1000, 100'000'000);
+    line.option("--repeat", options.repeat, "how often each is measured").between(1, 1000);
+    line.option("--only", options.only, "measures whose name has this in it");
+    if (!line.parse(argc, argv)) return 0;
     const std::string machine = setup.machine->describe();
     const bench::Report report(
         machine.substr(0, std::min(machine.find(';'), machine.find(" on "))));

@@ -44,14 +44,12 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     bench::Options options;
     std::vector<std::string> names = bench::all_measures;
-    CLI::App app("The cost of messages, creation, collectives and migration.");
-    app.add_option("measures", names, "which (all by default; some need two PEs)")
-        ->check(CLI::IsMember(bench::all_measures));
-    app.add_option("--repeat", options.repeat, "how often each is measured")
-        ->check(CLI::Range(1, 1000));
-    app.add_option("--elements", options.elements, "of send_cost's array")
-        ->check(CLI::Range(1, 10'000'000));
-    if (!apps::parse(app, argc, argv)) return 0;
+    apps::CommandLine line("The cost of messages, creation, collectives and migration.");
+    line.option("measures", names, "which (all by default; some need two PEs)")
+        .one_of(bench::all_measures);
+    line.option("--repeat", options.repeat, "how often each is measured").between(1, 1000);
+    line.option("--elements", options.elements, "of send_cost's array").between(1, 10'000'000);
+    if (!line.parse(argc, argv)) return 0;
     const std::string machine = setup.machine->describe();
     const bench::Report report(bench::text_before(bench::text_before(machine, ";"), " on "));
     return tess::run(setup, [&] { return bench::measure(report, names, options); });

@@ -30,45 +30,41 @@ tess::Task measure(Settings settings, double steps_a_second) {
   }
 }
 
-void add_options(CLI::App& app, Settings& s) {
-  app.add_option("--workload", s.workloads, "names, or all (--list)")->delimiter(',');
-  app.add_option("--per-pe", s.per_pe, "chares on a PE: cuts of the same work")->delimiter(',');
-  app.add_option("--strategy", s.strategies, "names, or all (--list); none is always run")
-      ->delimiter(',');
-  app.add_option("--period", s.period, "iterations between rounds");
-  app.add_option("--iterations", s.n_iterations, "iterations of a run")
-      ->check(CLI::Range(1, 100'000'000));
-  app.add_option(
-      "--grain", s.grain, "mean work of a chare an iteration at the finest cut, as 250us");
-  app.add_option("--when", s.when, "at_sync, periodic (no barrier), automatic");
-  app.add_option("--prediction", s.prediction, "last, moving_average, linear_trend");
-  app.add_option("--speed", s.speeds, "of each PE, as 1,1,0.5")->delimiter(',');
-  app.add_option("--seed", s.seed, "of workloads and strategies that draw");
-  app.add_option("--cell-bytes", s.cell_bytes, "that migrate with a chare at the finest cut")
-      ->check(CLI::Range(0, 1 << 30));
-  app.add_option("--message-bytes", s.message_bytes, "ballast to each neighbour an iteration")
-      ->check(CLI::Range(0, 1 << 30));
-  app.add_option("--repeat", s.repeat, "runs of each; the fastest counts")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--json", s.json, "write the rows as JSON");
-  app.add_option("--plot", s.plot, "write SVG plots into a directory");
-  app.add_option(
-      "--save-snapshot", s.snapshots, "write what strategies were shown into a directory");
-  app.add_option(
+void add_options(apps::CommandLine& line, Settings& s) {
+  line.option("--workload", s.workloads, "names, or all (--list)").separated_by(',');
+  line.option("--per-pe", s.per_pe, "chares on a PE: cuts of the same work").separated_by(',');
+  line.option("--strategy", s.strategies, "names, or all (--list); none is always run")
+      .separated_by(',');
+  line.option("--period", s.period, "iterations between rounds");
+  line.option("--iterations", s.n_iterations, "iterations of a run").between(1, 100'000'000);
+  line.option("--grain", s.grain, "mean work of a chare an iteration at the finest cut, as 250us");
+  line.option("--when", s.when, "at_sync, periodic (no barrier), automatic");
+  line.option("--prediction", s.prediction, "last, moving_average, linear_trend");
+  line.option("--speed", s.speeds, "of each PE, as 1,1,0.5").separated_by(',');
+  line.option("--seed", s.seed, "of workloads and strategies that draw");
+  line.option("--cell-bytes", s.cell_bytes, "that migrate with a chare at the finest cut")
+      .between(0, 1 << 30);
+  line.option("--message-bytes", s.message_bytes, "ballast to each neighbour an iteration")
+      .between(0, 1 << 30);
+  line.option("--repeat", s.repeat, "runs of each; the fastest counts").between(1, 1000);
+  line.option("--json", s.json, "write the rows as JSON");
+  line.option("--plot", s.plot, "write SVG plots into a directory");
+  line.option("--save-snapshot", s.snapshots, "write what strategies were shown into a directory");
+  line.option(
       "--replay", s.replay, "run the strategies on saved snapshots (vt's LBDatafile) instead");
-  app.add_option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
-      ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--fold", s.fold, "how another number of PEs is filled: block, modulo");
-  app.add_flag("--explain", s.explain, "say what this run uses and what it left out");
+  line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
+      .between(1, 1 << 20);
+  line.option("--fold", s.fold, "how another number of PEs is filled: block, modulo");
+  line.flag("--explain", s.explain, "say what this run uses and what it left out");
 }
 
 int start(tess::Setup& setup, int argc, char** argv) {
   Settings settings;
   bool list = false;
-  CLI::App app("Experiments with overdecomposition and load balancing.", "lb_lab");
-  add_options(app, settings);
-  app.add_flag("--list", list, "say which workloads and strategies there are");
-  if (!apps::parse(app, argc, argv)) return 0;
+  apps::CommandLine line("Experiments with overdecomposition and load balancing.", "lb_lab");
+  add_options(line, settings);
+  line.flag("--list", list, "say which workloads and strategies there are");
+  if (!line.parse(argc, argv)) return 0;
   const bool talks = setup.machine->process() == tess::ProcessId{0};
   if (list) {
     if (talks) tess::print_text(list_text());

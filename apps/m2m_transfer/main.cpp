@@ -9,39 +9,38 @@ namespace {
 int run(tess::Setup& setup, int argc, char** argv) {
   tess::m2m::DriverOptions options;
   tess::m2m::Request& request = options.request;
-  CLI::App app("Moves fields between two tetrahedral meshes, and prints the error beside the time.",
-               "m2m_transfer");
-  app.add_option("SOURCE", request.source, "mesh: ExodusII, gmsh 2.2 or 4.1, or kuhn:N");
-  app.add_option("TARGET", request.target, "mesh: the same kinds");
-  app.add_option("--field",
-                 request.fields,
-                 "gaussian, linear, sin, or an expression in x, y, z; repeat for several");
-  app.add_option("--chares", request.n_chares, "chares of each mesh (default: --per-pe times PEs)")
-      ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--per-pe", request.per_pe, "chares of each mesh on each PE")
-      ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--policy", options.policies, "what vertices outside get: keep, value:V, nearest");
-  app.add_option("--partition", request.partition, "rcb or hsfc");
-  app.add_option("--voxel", request.voxel, "edge of a voxel (default: chosen from the source)")
-      ->check(CLI::PositiveNumber);
-  app.add_option(
-         "--repeat",
-         options.repeat,
-         "transfers in a row; the times are those of the fastest (default: 1, with --study 3)")
-      ->check(CLI::Range(1, 1000000));
-  app.add_option("--out", options.out, "write the target mesh with fields and status as ExodusII");
-  app.add_option("--json", options.json, "write the report as JSON");
-  app.add_flag("--explain", options.explain, "say what this transfer uses and what it left out");
+  apps::CommandLine line(
+      "Moves fields between two tetrahedral meshes, and prints the error beside the time.",
+      "m2m_transfer");
+  line.option("SOURCE", request.source, "mesh: ExodusII, gmsh 2.2 or 4.1, or kuhn:N");
+  line.option("TARGET", request.target, "mesh: the same kinds");
+  line.option("--field",
+              request.fields,
+              "gaussian, linear, sin, or an expression in x, y, z; repeat for several");
+  line.option("--chares", request.n_chares, "chares of each mesh (default: --per-pe times PEs)")
+      .between(1, 1 << 20);
+  line.option("--per-pe", request.per_pe, "chares of each mesh on each PE").between(1, 1 << 20);
+  line.option("--policy", options.policies, "what vertices outside get: keep, value:V, nearest");
+  line.option("--partition", request.partition, "rcb or hsfc");
+  line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the source)")
+      .positive();
+  line.option("--repeat",
+              options.repeat,
+              "transfers in a row; the times are those of the fastest (default: 1, with --study 3)")
+      .between(1, 1000000);
+  line.option("--out", options.out, "write the target mesh with fields and status as ExodusII");
+  line.option("--json", options.json, "write the report as JSON");
+  line.flag("--explain", options.explain, "say what this transfer uses and what it left out");
   std::string study;
-  const CLI::Option* studies =
-      app.add_option("--study",
-                     study,
-                     "error against run time over several transfers, into this folder (default: "
-                     "study): SOURCE and TARGET may be ladders, kuhn:8,16,32@0.2 or a.msh,b.msh; "
-                     "--policy may be repeated. Instead of a folder, a ladder without TARGET")
-          ->expected(0, 1);
-  if (!apps::parse(app, argc, argv)) return 0;
-  if (studies->count() != 0) {
+  const apps::Option studies =
+      line.option("--study",
+                  study,
+                  "error against run time over several transfers, into this folder (default: "
+                  "study): SOURCE and TARGET may be ladders, kuhn:8,16,32@0.2 or a.msh,b.msh; "
+                  "--policy may be repeated. Instead of a folder, a ladder without TARGET")
+          .takes(0, 1);
+  if (!line.parse(argc, argv)) return 0;
+  if (studies.is_given()) {
     const bool ladder = study.starts_with("kuhn:") && request.source.empty();
     if (ladder) request.source = study;
     options.study = ladder || study.empty() ? "study" : study;

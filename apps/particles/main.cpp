@@ -8,7 +8,6 @@
 #include "runtime/runtime.hpp"
 
 #include <cstring>
-#include <fmt/ranges.h>
 
 namespace {
 
@@ -19,39 +18,40 @@ int run(tess::Setup& setup, int argc, char** argv) {
     return 0;
   }
   particles::DriverOptions options;
-  CLI::App app("Particles against objects of any shape, by distance/normal fields.", "particles");
-  app.add_option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");
-  app.add_option("--steps", options.steps, "steps instead of the scene's")
-      ->check(CLI::Range(0, 1'000'000'000));
-  app.add_option("--json", options.json, "write the result as JSON");
-  app.add_option(
+  apps::CommandLine line("Particles against objects of any shape, by distance/normal fields.",
+                         "particles");
+  line.option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");
+  line.option("--steps", options.steps, "steps instead of the scene's").between(0, 1'000'000'000);
+  line.option("--json", options.json, "write the result as JSON");
+  line.option(
       "--out", options.out, "folder for trajectories, pictures, files of fields and the study");
-  app.add_flag("--explain", options.explain, "say what this scene uses and what it left out");
-  app.add_flag(
+  line.flag("--explain", options.explain, "say what this scene uses and what it left out");
+  line.flag(
       "--study", options.study, "error against run time of every choice, on the first object");
-  app.add_option("--resolutions",
-                 options.resolutions,
-                 "voxels an axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
-                 "16,32,64)")
-      ->delimiter(',')
-      ->check(CLI::Range(4, 1024));
-  app.add_flag("--compressed",
-               options.compressed,
-               "steps look up in compressed fields (as the scene's key compression)");
-  std::string balance;
-  app.add_option(
-      "--balance",
-      balance,
-      "blocks migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
-      "strategies: " +
-          fmt::format("{}", fmt::join(tess::balance::strategy_names(), ", ")));
+  line.option("--resolutions",
+              options.resolutions,
+              "voxels an axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
+              "16,32,64)")
+      .separated_by(',')
+      .between(4, 1024);
+  line.flag("--compressed",
+            options.compressed,
+            "steps look up in compressed fields (as the scene's key compression)");
+  std::string balance, strategies;
+  for (const auto& name : tess::balance::strategy_names())
+    strategies += (strategies.empty() ? "" : ", ") + std::string(name);
+  line.option("--balance",
+              balance,
+              "blocks migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
+              "strategies: " +
+                  strategies);
   bool stability = false;
-  app.add_flag("--stability",
-               stability,
-               "stiff and extreme cases of every rule; exit code 1 if one fails. Needs no SCENE");
+  line.flag("--stability",
+            stability,
+            "stiff and extreme cases of every rule; exit code 1 if one fails. Needs no SCENE");
   bool help_scene = false;
-  app.add_flag("--help-scene", help_scene, "describe the keys of a scene file");
-  if (!apps::parse(app, argc, argv)) return 0;
+  line.flag("--help-scene", help_scene, "describe the keys of a scene file");
+  if (!line.parse(argc, argv)) return 0;
   if (!balance.empty()) options.run.balance = tess::parse_balance(balance);
   const bool speaks = setup.machine->process().value == 0;
   if (stability && !particles::print_stability(speaks)) return 1;

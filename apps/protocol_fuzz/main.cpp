@@ -4,9 +4,9 @@
 //     protocol_fuzz --scenario tour --seeds 17:17 --pes 4
 //
 // A failure prints the command that repeats it; the last line is "N passed, N failed".
+#include "apps/command_line.hpp"
 #include "apps/protocol_fuzz/scenarios.hpp"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
@@ -77,21 +77,14 @@ bool passes(const Scenario& scenario, std::uint64_t seed, std::int32_t n_pes) {
 int fuzz(int argc, char** argv) {
   std::string name = "all", given_seeds = "0:99";
   std::int32_t n_pes = 0;
-  CLI::App options{"Protocol scenarios on the simulated machine in adversarial order"};
-  options.add_option("--scenario", name, "a scenario, or all");
-  options.add_option("--seeds", given_seeds, "FROM:TO, both included");
-  options.add_option("--pes", n_pes, "PEs (default: 1, 2, 3, 4, 7 or 8 by the seed)")
-      ->check(CLI::Range(1, 4096));
-  try {
-    options.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    std::printf("%s\n", options.help().c_str());
-    for (const Scenario& one : tess::fuzz::scenarios())
-      std::printf("  %-18s %s\n", one.name.data(), one.claim.data());
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    tess::fail(tess::ErrorCode::bad_argument, error.what());
-  }
+  apps::CommandLine line("Protocol scenarios on the simulated machine in adversarial order");
+  line.option("--scenario", name, "a scenario, or all");
+  line.option("--seeds", given_seeds, "FROM:TO, both included");
+  line.option("--pes", n_pes, "PEs (default: 1, 2, 3, 4, 7 or 8 by the seed)").between(1, 4096);
+  std::string scenarios = "Scenarios:\n";
+  for (const Scenario& one : tess::fuzz::scenarios())
+    scenarios += fmt::format("  {:<18} {}\n", one.name, one.claim);
+  if (!line.parse(argc, argv, scenarios)) return 0;
   const Seeds seeds = parse_seeds(given_seeds);
   if (name != "all") (void)tess::fuzz::scenario(name);
 

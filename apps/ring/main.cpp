@@ -79,14 +79,13 @@ tess::Task go_round(Options options) {
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     Options options;
-    CLI::App app("Messages around a ring of chares over all PEs.");
-    app.add_option("--stations", options.stations, "chares in the ring; 0: one a PE")
-        ->check(CLI::Range(0, 1'000'000));
-    app.add_option("--rounds", options.rounds, "how often each message goes round")
-        ->check(CLI::Range(1, 1'000'000));
-    app.add_option("--messages", options.messages, "how many go round at once")
-        ->check(CLI::Range(1, 100'000));
-    if (!apps::parse(app, argc, argv)) return 0;
+    apps::CommandLine line("Messages around a ring of chares over all PEs.");
+    line.option("--stations", options.stations, "chares in the ring; 0: one a PE")
+        .between(0, 1'000'000);
+    line.option("--rounds", options.rounds, "how often each message goes round")
+        .between(1, 1'000'000);
+    line.option("--messages", options.messages, "how many go round at once").between(1, 100'000);
+    if (!line.parse(argc, argv)) return 0;
     return tess::run(setup, [&] { return go_round(options); });
   });
 }

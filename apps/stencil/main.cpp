@@ -88,12 +88,11 @@ tess::Task relax(Grid grid) {
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     stencil::Grid grid{{64}, 4, 10'000};
-    CLI::App app("A two-dimensional Jacobi stencil on chares.");
-    app.add_option("--blocks", grid.n_blocks, "blocks on each axis")->check(CLI::Range(1, 4096));
-    app.add_option("--size", grid.problem.size, "grid points on each axis")
-        ->check(CLI::Range(1, 65536));
-    app.add_option("--steps", grid.n_steps, "Jacobi steps")->check(CLI::Range(1, 1'000'000'000));
-    if (!apps::parse(app, argc, argv)) return 0;
+    apps::CommandLine line("A two-dimensional Jacobi stencil on chares.");
+    line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
+    line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
+    line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
+    if (!line.parse(argc, argv)) return 0;
     if (grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument,
                  "--blocks: ",
