@@ -62,12 +62,10 @@ F taken_by_growth(const Placed& object, F free, I in, F distance) {
 }
 
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Storage How>
-void pass(const Placed& placed,
-          const ParticleSpan& span,
+void pass(const Placed& __restrict object,  // which no store can change
+          const ParticleSpan& __restrict particles,
           [[maybe_unused]] const Closest& last,
           Closest& closest) {
-  const Placed object = placed;  // copies, which no store can change
-  const ParticleSpan particles = span;
   const auto field = sampler_in<How>(object);
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
@@ -86,7 +84,7 @@ void pass(const Placed& placed,
       found = sample_again<Kind>(field, g, last, closest, p);
     else
       found = sample<Kind, Asked>(field, g);
-    [[maybe_unused]] const I in = found.distance < out_of_reach;
+    [[maybe_unused]] const I in = found.in;
     F free{};
     if constexpr (Swept == Sweep::on) free = free_in_world(object, found, g);
     found.distance = distance_in_world(object, found);

@@ -85,7 +85,7 @@ template <LookUp Kind, Ask Asked>
 requires(Kind != LookUp::trilinear) inline Sample sample(const PlaneSampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
   const Stored plane = planes_at(field, voxel);
-  const Stored stored{voxel.in ? plane.distance : all(out_of_reach), only(voxel.in, plane.normal)};
+  const Stored stored{plane.distance, only(voxel.in, plane.normal)};
   return answer<Kind, Asked>(field.cell, voxel, stored, g);
 }
 

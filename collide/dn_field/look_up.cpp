@@ -20,9 +20,11 @@ void answer(const Field& field, const Points& points, const Answers& answers) {
              oy = static_cast<float>(-grid.origin.y / grid.cell),
              oz = static_cast<float>(-grid.origin.z / grid.cell);
   const auto at = [&](const float* x, const float* y, const float* z) {
-    return sample<Kind, Asked>(
+    Sample found = sample<Kind, Asked>(
         sampler,
         {load<F>(x) * per_cell + ox, load<F>(y) * per_cell + oy, load<F>(z) * per_cell + oz});
+    found.distance = found.distance_or_far();
+    return found;
   };
   const std::size_t count = points.x.size();
   std::size_t p = 0;

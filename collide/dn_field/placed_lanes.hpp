@@ -30,8 +30,7 @@ namespace tess::dn::lanes {
 
 /// What a look-up found, in world units; out_of_reach outside of the field.
 inline F distance_in_world(const Placed& object, const Sample& found) {
-  return found.distance < out_of_reach ? found.distance * object.scale - object.padding
-                                       : found.distance;
+  return found.in ? found.distance * object.scale - object.padding : all(out_of_reach);
 }
 /// Distance to the box of the grid along its furthest axis: no more than the true one, also after
 /// the rounding of coordinates far away.
@@ -43,8 +42,7 @@ inline F outside_by(const Placed& object, F3 g) {
 }
 
 inline F free_in_world(const Placed& object, const Sample& found, F3 g) {
-  return found.distance < out_of_reach ? found.free * object.scale - object.error
-                                       : outside_by(object, g);
+  return found.in ? found.free * object.scale - object.error : outside_by(object, g);
 }
 
 inline D3 cross(Vec3 a, D3 b) {

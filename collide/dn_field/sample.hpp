@@ -32,10 +32,15 @@ inline Sampler sampler_of(const Field& field) {
 enum class Ask : std::uint32_t { distance, normal, both };
 
 struct Sample {
-  lanes::F distance;  ///< of the object, not of the world; out_of_reach outside
-  lanes::F3 normal;   ///< unit or zero
+  lanes::I in;        ///< whether the field reaches there; else the numbers mean nothing
+  lanes::F distance;  ///< of the object, not of the world
+  lanes::F3 normal;   ///< unit or zero; zero outside
   lanes::F free;      ///< no surface is nearer than this: what the voxel says, less the way from
                       ///< its centre (trilinear: less the longest such way)
+
+  [[nodiscard]] lanes::F distance_or_far() const {
+    return in ? distance : lanes::all(out_of_reach);
+  }
 };
 
 inline constexpr float half_diagonal = 0.8660255F;  // of a voxel, in cells
@@ -97,7 +102,7 @@ inline F3 offset(const Voxel& voxel, F3 g) {
           g.z - __builtin_convertvector(voxel.k, F)};
 }
 
-/// What a voxel stores: its distance, and its normal, unit or zero.
+/// What a voxel stores: its distance, and its normal, unit or zero; zero where there is no voxel.
 struct Stored {
   F distance;
   F3 normal;
@@ -109,10 +114,7 @@ inline Stored read(const Sampler& field, const Voxel& voxel) {
   const I at = position(field, voxel);
   if constexpr (Asked != Ask::distance || Kind == LookUp::tangent)
     stored.normal = only(voxel.in, unit(decode(gather(field.normal, at))));
-  if constexpr (Asked != Ask::normal) {
-    stored.distance = gather(field.distance, at);
-    stored.distance = voxel.in ? stored.distance : all(out_of_reach);
-  }
+  if constexpr (Asked != Ask::normal) stored.distance = gather(field.distance, at);
   return stored;
 }
 
@@ -123,17 +125,16 @@ inline Stored read_changed(const Sampler& field,
                            const Stored& before) {
   const I at = position(field, voxel);
   const F3 normal = only(voxel.in, unit(decode(gather(field.normal, at, changed))));
-  F distance = gather(field.distance, at, changed);
-  distance = voxel.in ? distance : all(out_of_reach);
+  const F distance = gather(field.distance, at, changed);
   return {changed ? distance : before.distance, select(changed, normal, before.normal)};
 }
 
 /// What the voxel's data say of g.
 template <LookUp Kind, Ask Asked>
 inline Sample answer(float cell, const Voxel& voxel, const Stored& stored, F3 g) {
-  Sample found{stored.distance, stored.normal, stored.distance};
+  Sample found{voxel.in, stored.distance, stored.normal, stored.distance};
   if constexpr (Asked != Ask::normal) {
-    const F3 from = only(voxel.in, offset(voxel, g));
+    const F3 from = offset(voxel, g);
     found.free = stored.distance - cell * sqrt(dot(from, from));
     if constexpr (Kind == LookUp::tangent)
       found.distance = stored.distance + cell * dot(stored.normal, from);
@@ -162,6 +163,7 @@ requires(Kind == LookUp::trilinear) inline Sample sample(const Sampler& field, F
           w = h.z - __builtin_convertvector(k, F);
   const I corner = k * field.layer + j * field.row + i;
   Sample found{};
+  found.in = in;
   for (int edge = 0; edge < 4; ++edge) {  // along x
     const int dy = edge & 1, dz = edge >> 1;
     const I at = corner + (dz * field.layer + dy * field.row);
@@ -176,10 +178,7 @@ requires(Kind == LookUp::trilinear) inline Sample sample(const Sampler& field, F
       found.normal = found.normal + (low * decode(first) + high * decode(second));
     }
   }
-  if constexpr (Asked != Ask::normal) {
-    found.distance = in ? found.distance : all(out_of_reach);
-    found.free = found.distance - half_diagonal * field.cell;
-  }
+  if constexpr (Asked != Ask::normal) found.free = found.distance - half_diagonal * field.cell;
   if constexpr (Asked != Ask::distance) found.normal = only(in, unit(found.normal));
   return found;
 }

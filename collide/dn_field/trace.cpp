@@ -50,7 +50,7 @@ struct Here {
 Here ask(const Placed& object, LookUp kind, const Pose& pose, D3 x, D3 way, const Seen& seen) {
   const F3 g = to_grid(object, to_float(seen.place - object.centre));
   const Sample found = sample_of(object, kind, g);
-  const I in = found.distance < out_of_reach;
+  const I in = found.in;
   const F free = max(free_in_world(object, found, g), F{});
   const D3 n = to_double(only(in, to_world(object, found.normal)));
   const F3 w = turned_to_grid(object, to_float(seen.way));

@@ -28,7 +28,7 @@ void sample_all(const Field& field, const float* points, float* out) {
                                        {lanes::load<lanes::F>(points + i),
                                         lanes::load<lanes::F>(points + sample_count + i),
                                         lanes::load<lanes::F>(points + 2 * sample_count + i)});
-    lanes::store(out + i, found.distance);
+    lanes::store(out + i, found.distance_or_far());
     lanes::store(out + sample_count + i, found.normal.x);
     lanes::store(out + 2 * sample_count + i, found.normal.y);
     lanes::store(out + 3 * sample_count + i, found.normal.z);
