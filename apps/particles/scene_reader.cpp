@@ -166,6 +166,29 @@ void check_units(const Scene& scene, const std::string& file) {
   }
 }
 
+/// A cell must be wide against what tells positions apart where the object is: particles there
+/// stand on a lattice of doubles.
+void check_offset(const Scene& scene, const std::string& file) {
+  constexpr double positions_a_cell = 16, unit = 2.2e-16;  // of a double, relative
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    const double cell = object.grid.cell * least_scale(scene, object),
+                 reach = furthest(scene, object);
+    if (cell >= positions_a_cell * unit * reach) continue;
+    tess::fail(tess::ErrorCode::bad_value,
+               file,
+               ": objects[",
+               i,
+               "]: a cell of its field is ",
+               cell,
+               " wide in the world, and positions ",
+               reach,
+               " from the origin, where it gets, are ",
+               unit * reach,
+               " apart; move the scene to the origin, or choose a coarser field");
+  }
+}
+
 void check_magnitude(const Scene& scene, const std::string& file) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const double reach = furthest(scene, scene.objects[i]);
@@ -332,6 +355,7 @@ void check_scene(const Scene& scene) {
   check_magnitude(scene, scene.name);
   check_rules(scene, scene.name);
   if (builds_fields(scene)) check_units(scene, scene.name);
+  if (needs_field(scene.rules)) check_offset(scene, scene.name);
   check_walls(scene, scene.name);
 }
 

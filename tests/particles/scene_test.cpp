@@ -310,6 +310,10 @@ TEST_CASE("units in which floats cannot reckon are refused", "[particles][scene]
       refusal(scene("1", R"(, "transform": {"scale": 1e-20})", "1")).find("in the world, at its") !=
       std::string::npos);
   CHECK(refusal(scene("1", "", "1e30")).find("a cell a step, as a speed,") != std::string::npos);
+  const std::string far = R"(, "transform": {"position": [1e9, 0, 0]})";
+  CHECK(refusal(scene("1e-3", far, "1")) == "accepted");
+  CHECK(refusal(scene("1e-6", far, "1")).find("from the origin, where it gets, are") !=
+        std::string::npos);
 }
 
 TEST_CASE("a whole number may be written as 1e3", "[particles][scene]") {
