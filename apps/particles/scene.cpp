@@ -67,7 +67,8 @@ double kept_off(const Scene& scene, const SceneObject& object) {
 }
 
 double least_wall(const Scene& scene, const SceneObject& object) {
-  const double diagonals = look_up_of(scene.rules) == tess::dn::LookUp::nearest ? 1.5 : 1;
+  const bool nearest = look_up_of(scene.rules) == tess::dn::LookUp::nearest;
+  const double diagonals = !nearest ? 1 : object.frame.is_moving() ? 3 : 1.5;
   return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(scene, object);
 }
 

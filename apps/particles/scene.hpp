@@ -117,8 +117,9 @@ void check_scene(const Scene& scene);
 /// What the impact's threshold adds to a wall on both sides, in the object's units, at least.
 [[nodiscard]] double kept_off(const Scene& scene, const SceneObject& object);
 
-/// The thickness, in the object's units, that its field needs of a wall: a voxel's diagonal, or a
-/// half more by nearest look-up, which errs by that much; less kept_off().
+/// The thickness, in the object's units, that its field needs of a wall: a voxel's diagonal; by
+/// nearest look-up, which errs by half of one wherever it stops and lifts, one and a half, or three
+/// if the object moves; less kept_off().
 [[nodiscard]] double least_wall(const Scene& scene, const SceneObject& object);
 
 /// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's

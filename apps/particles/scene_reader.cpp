@@ -275,8 +275,12 @@ void check_rules(const Scene& scene, const std::string& file) {
                  " steps of ",
                  scene.dt,
                  "; it must stay above 0");
-    const double covered = object.thickness * least;
-    if (reach > covered)
+    const double covered = object.thickness * least,
+                 within = least * tess::dn::covered(object.thickness,
+                                                    object.grid.cell,
+                                                    object.sides,
+                                                    look_up_of(scene.rules));
+    if (reach > within)
       tess::fail(tess::ErrorCode::bad_value,
                  file,
                  ": objects[",
@@ -285,6 +289,9 @@ void check_rules(const Scene& scene, const std::string& file) {
                  object.thickness,
                  " times scale ",
                  least,
+                 within < covered
+                     ? tess::text(", less ", covered - within, " that a sheet keeps off,")
+                     : "",
                  " is below the distance ",
                  reach,
                  " at which a rule begins to act");

@@ -80,20 +80,29 @@ void BlockFlight::meet_surface(const Run& run,
   if (!sheets.empty() || plan.rules.spring) start_.remember(particles);
   run.loop(run.constants, particles, closest, scratch_);
   trace(run.constants, objects, plan.rules.look_up, particles, scratch_);
-  sort_by_particle(scratch_.waypoints);
-  if (!sheets.empty())
-    keep_off_sheets({run.constants, sheets, run.setting, closest, plan.sweep == Sweep::on},
-                    start_,
-                    scratch_.waypoints,
-                    particles);
-  if (!plan.rules.spring) return;
-  const SpringLimit limit{run.constants.spring, plan.step, run.setting, closest, scratch_, start_};
-  Moved moved = Moved::some;
-  for (int round = 0; round <= spring_rounds && moved == Moved::some; ++round) {
-    look_up_all(run, moments.objects_at(step + 1), particles, *after_);
-    moved =
-        round < spring_rounds ? limit.cut(*after_, particles) : limit.put_back(*after_, particles);
+  Moved moved = Moved::none;
+  if (plan.rules.spring) {
+    const SpringLimit limit{run.constants, run.setting, closest, start_, scratch_};
+    moved = Moved::some;
+    for (int round = 0; round <= spring_rounds && moved == Moved::some; ++round) {
+      look_up_all(run, moments.objects_at(step + 1), particles, *after_);
+      moved = round < spring_rounds ? limit.cut(*after_, particles)
+                                    : limit.put_back(*after_, particles);
+    }
   }
+  sort_by_particle(scratch_.waypoints);
+  if (!sheets.empty()) {
+    const SheetScene scene{run.constants,
+                           sheets,
+                           run.setting,
+                           closest,
+                           plan.sweep == Sweep::on,
+                           plan.rules.spring.has_value(),
+                           sheets.size() == objects.size()};
+    if (keep_off_sheets(scene, start_, scratch_.waypoints, particles) == Moved::some)
+      moved = Moved::some;
+  }
+  if (!plan.rules.spring) return;
   // Objects that do not move say the same at the start of the next step.
   known_ = run.setting == Setting::one_at_rest && moved == Moved::none;
   std::swap(closest_, after_);

@@ -40,12 +40,6 @@ F shortened(const Placed& object, F bound, F way) {
   return (rest < 0.0F) & (way > 0.5F * object.cell) ? all(follow) : rest;
 }
 
-/// Of a sheet that is met from either side, in cells: closer to it than this a look-up may read a
-/// voxel of the other side. Who crosses a corner has not been in any voxel between.
-float look_up_thickness(LookUp kind) {
-  return kind == LookUp::nearest ? 2 * half_diagonal : 1.0F;
-}
-
 /// How far points that a spin takes along at `arm` come off their straight way. Others come off by
 /// the spin times their way more.
 F bent(const Placed& object, D3 arm) {
@@ -196,7 +190,7 @@ Placed placed(const Object& object, LookUp kind, double step, bool restless) {
   }
   result.scale = static_cast<float>(frame.scale);
   result.cell = static_cast<float>(cell);
-  if (field.sides == Sides::two) result.padding = look_up_thickness(kind) * result.cell;
+  if (field.sides == Sides::two) result.padding = sheet_clearance(kind) * result.cell;
   result.doubt = half_diagonal * static_cast<float>(cell);
   result.jump = static_cast<float>(jump_of(object) * frame.scale);
   result.compressed = object.compressed != nullptr;

@@ -15,6 +15,19 @@ namespace tess::dn {
 /// trilinear: interpolated between eight voxels, continuous; exact for planes, error of order 2.
 enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
 
+/// How far the step loop keeps particles from a sheet that is met from either side, in cells:
+/// closer to it a look-up may read a voxel of the other side. Who crosses a corner has not been in
+/// any voxel between.
+[[nodiscard]] constexpr float sheet_clearance(LookUp kind) {
+  return kind == LookUp::nearest ? 2 * 0.8660255F : 1.0F;
+}
+
+/// What is left of a field's thickness where particles are stopped: rules reach no further.
+[[nodiscard]] inline double covered(double thickness, double cell, Sides sides, LookUp kind) {
+  return sides == Sides::two ? thickness - static_cast<double>(sheet_clearance(kind)) * cell
+                             : thickness;
+}
+
 /// n points; all three spans have one length.
 struct Points {
   std::span<const float> x, y, z;

@@ -48,15 +48,17 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            i,
            " stores no normals and a rule or the tangent look-up needs them; build its field with "
            "distance and normal");
-    const double thickness = object.field->thickness * frame.scale;
-    if (reach(rules) > thickness)
+    const Field& field = *object.field;
+    const double within =
+        frame.scale * covered(field.thickness, field.grid.cell, field.sides, look_up_of(rules));
+    if (reach(rules) > within)
       fail(ErrorCode::bad_argument,
            "a rule reaches ",
            reach(rules),
-           " from the surface, and the field of object ",
+           " from where particles are stopped, and the field of object ",
            i,
            " only ",
-           thickness,
+           within,
            "; build a thicker field or shorten the rule's distance");
     if (!(frame.scale > 0) || !std::isfinite(frame.scale) || !std::isfinite(frame.scale_rate))
       fail(ErrorCode::bad_argument,

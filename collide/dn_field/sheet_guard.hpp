@@ -17,14 +17,16 @@ struct SheetScene {
   Setting setting;
   const Closest& closest;  ///< of the particles where they stand then
   bool knows_free;         ///< whether it holds Closest::free
+  bool springs;            ///< whether there are any
+  bool sheets_alone;       ///< there are no other objects
 };
 
 /// Who crossed a triangle of a sheet is put back to its own side and reflected, with no more energy
-/// than at the start. `waypoints`: by particle and time; leaves out those of whom it puts
-/// elsewhere.
-void keep_off_sheets(const SheetScene& scene,
-                     const Start& start,
-                     std::vector<Waypoint>& waypoints,
-                     const ParticleSpan& particles);
+/// than at the start. `waypoints`: by particle and time; leaves out those
+/// that who was put elsewhere did not reach.
+Moved keep_off_sheets(const SheetScene& scene,
+                      const Start& start,
+                      std::vector<Waypoint>& waypoints,
+                      const ParticleSpan& particles);
 
 }  // namespace tess::dn

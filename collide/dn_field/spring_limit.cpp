@@ -41,21 +41,26 @@ D paid(const SpringConstants& spring, D energy) {
 }  // namespace
 
 Moved SpringLimit::cut(const Closest& after, const ParticleSpan& span) const {
-  const SpringConstants constants = spring;  // copies, which no store to a particle can change
+  const SpringConstants spring = constants.spring;  // copies, which no store can change
   const ParticleSpan particles = span;
   Moved moved = Moved::none;
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const Account a = account(*this, constants, after, particles, p);
+    const Account a = account(*this, spring, after, particles, p);
     if (!any(a.over)) continue;
     const D scale = sqrt(only(a.left > 0.0, a.left / a.kinetic));
     set_velocities(particles, p, select(a.over, a.u + scale * a.w, velocities(particles, p)));
-    const D push = a.depth - paid(constants, a.energy);
+    const D push = a.depth - paid(spring, a.energy);
     const L deeper = a.over & (push > 0.0);
     if (!any(deeper)) continue;
     moved = Moved::some;
     const D3 n = to_double(normals(after, p)), x = places(particles, p);
     const D square = dot(n, n);
-    set_places(particles, p, select(deeper & (square > 0.25), fma(push, refined(n, square), x), x));
+    const L pushed = deeper & (square > 0.25);
+    const D3 way = push * refined(n, square);
+    set_places(particles, p, select(pushed, x + way, x));
+    const D work = only(pushed, dot(all(constants.acceleration), way));
+    const D energy = load<D>(scratch.energy + p);
+    store(scratch.energy + p, fma(all(2 * constants.air.gain / constants.step), work, energy));
   }
   return moved;
 }
@@ -63,11 +68,11 @@ Moved SpringLimit::cut(const Closest& after, const ParticleSpan& span) const {
 Moved SpringLimit::put_back(const Closest& after, const ParticleSpan& particles) const {
   Moved moved = Moved::none;
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const Account a = account(*this, spring, after, particles, p);
-    const L deeper = a.over & (a.depth > paid(spring, a.energy));
+    const Account a = account(*this, constants.spring, after, particles, p);
+    const L deeper = a.over & (a.depth > paid(constants.spring, a.energy));
     if (!any(deeper)) continue;
     moved = Moved::some;
-    const D3 taken_along = fma(all(step), a.u, start.places(p));
+    const D3 taken_along = fma(all(constants.step), a.u, start.places(p));
     set_places(particles, p, select(deeper, taken_along, places(particles, p)));
     set_velocities(
         particles, p, select(deeper, a.u + (a.u - start.velocities(p)), velocities(particles, p)));

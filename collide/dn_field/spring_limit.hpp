@@ -13,15 +13,14 @@
 namespace tess::dn {
 
 struct SpringLimit {
-  const SpringConstants& spring;
-  double step;
+  const RuleConstants& constants;
   Setting setting;
-  const Closest& before;   ///< the closest surfaces when the step began
-  const Scratch& scratch;  ///< .energy: twice that of each particle, spring and way included
+  const Closest& before;  ///< the closest surfaces when the step began
   const Start& start;
+  Scratch& scratch;  ///< .energy: twice that of each particle, spring and way included
 
   /// after: the closest surfaces of the particles where they stand now. Whoever was put elsewhere
-  /// is to be looked up again.
+  /// is to be looked up again, and has paid what that took against gravity.
   Moved cut(const Closest& after, const ParticleSpan& particles) const;
   /// The last resort for those that cut() would still put elsewhere, or cannot.
   Moved put_back(const Closest& after, const ParticleSpan& particles) const;

@@ -72,12 +72,13 @@ struct WedgeRoom {
 TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rules]") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> anywhere(-1, 1);
-  int n_left_alone = 0;  // of those who know no triangles
+  int n_scenes = 0, n_left_alone = 0;  // the latter of those who know no triangles
   for (const double angle : {0.5, 0.9, 1.57, 2.4})
     for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
       for (const double restitution : {0.0, 0.5, 1.0})
         for (const double speed : {1.0, 30.0, 1e4})
           for (const bool spins : {false, true}) {
+            const bool springs = n_scenes++ % 3 == 0;
             const WedgeRoom room(angle);
             const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
             const Field field = build_exact(
@@ -91,6 +92,7 @@ TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rule
             rules.impact = Impact{restitution, 0, Sweep::on};
             const Vec3 into_corner = object.frame.rotate({-9.81, 0, 0});
             rules.gravity = Gravity{into_corner};
+            if (springs) rules.spring = Spring{1e5, 0, 0.1};
             Particles particles;
             while (particles.size() < 40) {
               const Vec3 x{room.back * (0.55 + 0.1 * anywhere(random)),
@@ -114,11 +116,61 @@ TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rule
               return n;
             };
             INFO("angle " << angle << ", look-up " << static_cast<int>(look_up) << ", restitution "
-                          << restitution << ", speed " << speed << ", spins " << spins);
+                          << restitution << ", speed " << speed << ", spins " << spins
+                          << ", springs " << springs);
             CHECK(left(particles, &triangles) == 0);
             n_left_alone += left(alone, nullptr);
           }
   CHECK(n_left_alone > 100);  // else the triangles keep nobody in
+}
+
+TEST_CASE("who flies into the tip of two sheets comes out again", "[dn_field][rules]") {
+  for (const double angle : {0.4, 0.8, 1.9})
+    for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
+      const WedgeRoom room(angle);
+      const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
+      const Field field =
+          build_exact(room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
+      const Bvh triangles(room.surface);
+      const Object object{&field, {}, nullptr, &triangles};
+      Rules rules;
+      rules.look_up = look_up;
+      rules.impact = Impact{1, 0, Sweep::on};
+      Particles particles;
+      for (int p = 0; p < 100; ++p)
+        particles.push_back({0.6 * room.back, 0.006 * (p - 50), 0},
+                            {-3, 0.2 * std::sin(p), 0.6 * std::sin(2.3 * p)});
+      const Particles start = particles;
+      const Stepper stepper = make_stepper(rules, 0.01);
+      stepper.run(particles.span(), {&object, 1}, 0, 400);
+      const Particles before = particles;
+      stepper.run(particles.span(), {&object, 1}, 4, 5);
+      const Particles between = particles;
+      stepper.run(particles.span(), {&object, 1}, 4.05, 8);
+      INFO("angle " << angle << ", look-up " << static_cast<int>(look_up));
+      for (std::size_t p = 0; p < particles.size(); ++p) {
+        // Of ways of 0.15 and 0.4; one may lead back.
+        CHECK(std::max(norm(between.position(p) - before.position(p)),
+                       norm(particles.position(p) - before.position(p))) > 0.01);
+        CHECK(room.within(particles.position(p)) > 0);
+        CHECK(norm(particles.velocity(p)) == Approx(norm(start.velocity(p))).epsilon(1e-6));
+      }
+    }
+}
+
+TEST_CASE("what a rule reaches must lie within the field less what a sheet keeps off",
+          "[dn_field][rules]") {
+  const Field sheet = [] {
+    Field field = sheet_field(cube_grid(1, 21));
+    field.thickness = 0.3;
+    return field;
+  }();
+  const Object object{&sheet, {}};
+  Rules rules;
+  rules.spring = Spring{1, 0, 0.19};  // cells are 0.1 wide
+  CHECK_NOTHROW(validate(rules, {&object, 1}));
+  rules.spring->reach = 0.21;
+  CHECK_THROWS_WITH(validate(rules, {&object, 1}), Catch::Contains("only 0.2"));
 }
 
 }  // namespace
