@@ -1,6 +1,7 @@
 #include "collide/dn_field/field_file.hpp"
 
 #include "collide/dn_field/checksum.hpp"
+#include "runtime/base/open_file.hpp"
 #include "runtime/base/usable_memory.hpp"
 #include "runtime/error.hpp"
 
@@ -258,15 +259,6 @@ AnyField read(FileReader& reader, Kind kind) {
   return field;
 }
 
-std::ifstream opened(const std::string& path) {
-  std::error_code unknown;
-  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
-    fail(ErrorCode::bad_file, path, ": is no file; give the path of a field file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(ErrorCode::bad_file, path, ": cannot be opened; give the path of a field file");
-  return file;
-}
-
 }  // namespace
 
 void save_field(const Field& field, const std::string& path) {
@@ -295,12 +287,12 @@ CompressedField read_compressed_field(std::istream& file, const std::string& nam
 }
 
 Field load_field(const std::string& path) {
-  std::ifstream file = opened(path);
+  std::ifstream file = open_file(path, "a field file");
   return read_field(file, path);
 }
 
 CompressedField load_compressed_field(const std::string& path) {
-  std::ifstream file = opened(path);
+  std::ifstream file = open_file(path, "a field file");
   return read_compressed_field(file, path);
 }
 

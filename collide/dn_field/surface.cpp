@@ -2,12 +2,13 @@
 
 #include "collide/dn_field/surface_edges.hpp"
 #include "runtime/base/mix.hpp"
+#include "runtime/base/open_file.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <numeric>
+#include <ranges>
 #include <tuple>
 
 namespace tess::dn {
@@ -94,6 +95,16 @@ void validate(const Surface& surface) {
   if (!(norm(size) > 0) || !is_finite(size))
     fail(
         ErrorCode::bad_mesh, "surface has extent ", norm(size), "; it must be positive and finite");
+  const auto has_area = [&](std::size_t t) {
+    const auto [a, b, c] = surface.corners(t);
+    return norm(cross(b - a, c - a)) > 0;
+  };
+  const auto numbers = std::views::iota(std::size_t{0}, surface.triangles.size());
+  if (std::ranges::none_of(numbers, has_area))
+    fail(ErrorCode::bad_mesh,
+         "all ",
+         surface.triangles.size(),
+         " triangles are without area; a field needs a surface");
 }
 
 std::vector<RimEdge> rim(const Surface& surface) {
@@ -137,8 +148,7 @@ Surface welded(const Surface& surface) {
 }
 
 Surface read_obj(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) fail(ErrorCode::bad_file, path, ": cannot be opened; give the path of an OBJ file");
+  std::ifstream file = open_file(path, "an OBJ file");
   Surface surface;
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {

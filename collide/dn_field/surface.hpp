@@ -25,8 +25,8 @@ struct Surface {
 /// The box around all vertices that a triangle uses.
 [[nodiscard]] Bounds bounds(const Surface& surface);
 
-/// Throws Error(bad_mesh) for an empty surface, an index out of range or a vertex that is not
-/// finite.
+/// Throws Error(bad_mesh) for an empty surface, one without area, an index out of range or a vertex
+/// that is not finite.
 void validate(const Surface& surface);
 
 /// A hash of all vertices and triangles, in their order; never 0.
