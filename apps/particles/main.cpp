@@ -8,6 +8,7 @@
 #include "runtime/runtime.hpp"
 
 #include <cstring>
+#include <fmt/format.h>
 
 namespace {
 
@@ -37,14 +38,12 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.flag("--compressed",
             options.compressed,
             "steps look up in compressed fields (as the scene's key compression)");
-  std::string balance, strategies;
-  for (const auto& name : tess::balance::strategy_names())
-    strategies += (strategies.empty() ? "" : ", ") + std::string(name);
+  std::string balance;
   line.option("--balance",
               balance,
               "blocks migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
               "strategies: " +
-                  strategies);
+                  fmt::format("{}", fmt::join(tess::balance::strategy_names(), ", ")));
   bool stability = false;
   line.flag("--stability",
             stability,

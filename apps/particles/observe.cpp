@@ -29,26 +29,6 @@ double least_distance(const std::vector<Object>& objects, Vec3 p) {
   return least;
 }
 
-/// Calls visit(leg) for the straight parts of each particle's way through a step, in the order of
-/// particles and time. visit: void(std::size_t particle, const Leg&).
-template <class Visit>
-void for_each_leg(const tess::dn::Particles& before,
-                  std::span<const tess::dn::Waypoint> waypoints,
-                  const tess::dn::Particles& after,
-                  const Visit& visit) {
-  auto next = waypoints.begin();
-  for (std::size_t p = 0; p < after.size(); ++p) {
-    tess::dn::Leg leg{0, 1, before.position(p), {}};
-    for (; next != waypoints.end() && next->particle == p; ++next) {
-      leg.end = next->part, leg.to = next->place;
-      visit(p, leg);
-      leg.begin = leg.end, leg.from = leg.to;
-    }
-    leg.end = 1, leg.to = after.position(p);
-    visit(p, leg);
-  }
-}
-
 }  // namespace
 
 void measure(const Stage& stage,
@@ -95,18 +75,20 @@ void note_tunnelled(const Stage& stage,
                     std::span<const tess::dn::Waypoint> waypoints,
                     Flock& flock) {
   const double depth = greatest_depth(stage.scene.rules);
+  std::vector<tess::dn::Leg> legs;
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
-    const auto& tree = stage.triangles[o];
-    const Audited audited{
-        static_cast<std::uint16_t>(o), at_begin[o], tree ? &*tree : nullptr, depth};
-    for_each_leg(before, waypoints, flock.motion, [&](std::size_t p, const tess::dn::Leg& leg) {
+    const Audited audited{static_cast<std::uint16_t>(o), at_begin[o], depth};
+    for (std::size_t p = 0; p < flock.size(); ++p) {
       Mark& mark = flock.marks[p];
-      if (mark.what == Mark::through) return;
-      any_piece(at_begin[o].frame, stage.scene.dt, leg, [&](Vec3 from, Vec3 to) {
+      const auto has_passed = [&](Vec3 from, Vec3 to) {
         mark = mark_after(mark, audited, from, to);
         return mark.what == Mark::through;
-      });
-    });
+      };
+      if (mark.what == Mark::through) continue;
+      find_legs(p, before.position(p), waypoints, flock.motion.position(p), legs);
+      for (const tess::dn::Leg& leg : legs)
+        if (any_piece(at_begin[o].frame, stage.scene.dt, leg, has_passed)) break;
+    }
   }
 }
 

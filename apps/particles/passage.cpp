@@ -89,7 +89,8 @@ double greatest_depth(const Rules& rules) {
 }
 
 Mark mark_after(Mark mark, const Audited& audited, Vec3 from, Vec3 to) {
-  const auto& [number, object, triangles, depth] = audited;
+  const auto& [number, object, depth] = audited;
+  const Bvh* const triangles = object.triangles;
   const Mark through{Mark::through, 0, number};
   const Field& field = *object.field;
   const double length = norm(to - from);

@@ -23,8 +23,7 @@ struct Mark {
 /// An object as the audit sees it.
 struct Audited {
   std::uint16_t number;
-  const tess::dn::Object& object;
-  const tess::dn::Bvh* triangles;  ///< null for fields of one side without thin walls
+  const tess::dn::Object& object;  ///< its triangles: not of fields of one side without thin walls
   double depth;                    ///< greatest_depth()
 };
 

@@ -1,7 +1,7 @@
 // Straight parts of a particle's way through one step, as an object sees them that moves.
 #pragma once
 
-#include "collide/dn_field/frame.hpp"
+#include "collide/dn_field/stepper.hpp"
 
 #include <algorithm>
 
@@ -12,6 +12,20 @@ struct Leg {
   double begin = 0, end = 1;
   Vec3 from, to;
 };
+
+/// Fills `legs` with particle p's way through a step, in the order of time. waypoints: those of all
+/// particles, as Stepper::run_once() tells them.
+inline void find_legs(std::size_t p,
+                      Vec3 from,
+                      std::span<const Waypoint> waypoints,
+                      Vec3 to,
+                      std::vector<Leg>& legs) {
+  legs.assign(1, {0, 1, from, to});
+  for (const Waypoint& bend : std::ranges::equal_range(waypoints, p, {}, &Waypoint::particle)) {
+    legs.back().end = bend.part, legs.back().to = bend.place;
+    legs.push_back({bend.part, 1, bend.place, to});
+  }
+}
 
 /// How an object that stands as `frame` when the step begins stands at a fraction of it.
 [[nodiscard]] inline Frame frame_at(Frame frame, double step, double part) {

@@ -15,11 +15,13 @@ namespace tess::dn {
 /// trilinear: interpolated between eight voxels, continuous; exact for planes, error of order 2.
 enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
 
+inline constexpr float half_diagonal = 0.8660255F;  ///< of a voxel, in cells
+
 /// How far the step loop keeps particles from a sheet that is met from either side, in cells:
 /// closer to it a look-up may read a voxel of the other side. Who crosses a corner has not been in
 /// any voxel between.
 [[nodiscard]] constexpr float sheet_clearance(LookUp kind) {
-  return kind == LookUp::nearest ? 2 * 0.8660255F : 1.0F;
+  return kind == LookUp::nearest ? 2 * half_diagonal : 1.0F;
 }
 
 /// What is left of a field's thickness where particles are stopped: rules reach no further.

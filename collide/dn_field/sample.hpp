@@ -43,8 +43,6 @@ struct Sample {
   }
 };
 
-inline constexpr float half_diagonal = 0.8660255F;  // of a voxel, in cells
-
 namespace lanes {
 
 /// The point of the octahedron |x| + |y| + |z| = 1 that unfolds to (u, v).

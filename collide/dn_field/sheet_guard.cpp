@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <ranges>
 
 namespace tess::dn {
 namespace {
@@ -202,39 +203,34 @@ Moved keep_off_sheets(const SheetScene& scene,
                       const Start& start,
                       std::vector<Waypoint>& waypoints,
                       const ParticleSpan& particles) {
-  constexpr std::size_t nobody = block_size;
+  constexpr double never = HUGE_VAL;  // a part of the step that is not reached
   Guard guard(scene);
-  auto next = waypoints.begin();
   std::vector<Leg> legs;
   Moved moved = Moved::none;
   const auto look_at = [&](std::size_t p) {
     const Vec3 end{particles.x[p], particles.y[p], particles.z[p]},
         velocity{particles.vx[p], particles.vy[p], particles.vz[p]};
-    legs.assign(1, {0, 1, start.position(p), end});
-    const auto first = next;
-    for (; next != waypoints.end() && next->particle == p; ++next) {
-      legs.back().end = next->part, legs.back().to = next->place;
-      legs.push_back({next->part, 1, next->place, end});
-    }
+    find_legs(p, start.position(p), waypoints, end, legs);
     if (!is_finite(end) || !is_finite(velocity)) return;
     const auto kept = guard.kept_off(legs, start.velocity(p), velocity);
     if (!kept) return;
     moved = Moved::some;
-    std::for_each(first + static_cast<std::ptrdiff_t>(kept->leg), next, [](Waypoint& not_reached) {
-      not_reached.particle = nobody;
-    });
+    const auto bends = std::ranges::equal_range(waypoints, p, {}, &Waypoint::particle);
+    for (Waypoint& bend : std::ranges::drop_view(bends, static_cast<std::ptrdiff_t>(kept->leg)))
+      bend.part = never;
     const auto& [position, reflected] = kept->at_end;
     particles.x[p] = position.x, particles.y[p] = position.y, particles.z[p] = position.z;
     particles.vx[p] = reflected.x, particles.vy[p] = reflected.y, particles.vz[p] = reflected.z;
   };
   for (std::size_t p = 0; p < particles.count; p += lanes::width) {
-    const bool bend = next != waypoints.end() && next->particle < p + lanes::width;
-    const lanes::L may = bend ? ~lanes::L{} : may_cross(scene, start, particles, p);
+    const auto next = std::ranges::lower_bound(waypoints, p, {}, &Waypoint::particle);
+    const bool bends = next != waypoints.end() && next->particle < p + lanes::width;
+    const lanes::L may = bends ? ~lanes::L{} : may_cross(scene, start, particles, p);
     if (!lanes::any(may)) continue;
     for (int i = 0; i < lanes::width; ++i)
       if (may[i] != 0) look_at(p + static_cast<std::size_t>(i));
   }
-  std::erase_if(waypoints, [](const Waypoint& bend) { return bend.particle == nobody; });
+  std::erase_if(waypoints, [](const Waypoint& bend) { return bend.part == never; });
   return moved;
 }
 

@@ -30,8 +30,8 @@ struct Object {
   /// If given, look-ups ask this, and `field` is what it was made from or its outline(). All
   /// objects of a scene have one or none has.
   const CompressedField* compressed = nullptr;
-  /// If given, of the surface that a two-sided field was built from: with it, impacts let nobody
-  /// through where two sheets meet, which the field alone does.
+  /// If given, of the surface that the field was built from. With it, impacts let nobody through
+  /// where two sheets of a two-sided field meet, which the field alone does.
   const Bvh* triangles = nullptr;
 };
 

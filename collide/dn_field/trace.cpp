@@ -221,11 +221,12 @@ void trace_vector(const Scene& scene,
   D rest = all(1.0);
   L flies = can_fly;
   const auto keep_waypoints = [&](L which) {
+    if (!scratch.keeps_waypoints) return;
     for (std::size_t i = 0; i < from.size(); ++i)
       if (which[i] != 0)
         scratch.waypoints.push_back({from[i].particle, 1 - rest[i], Vec3{x.x[i], x.y[i], x.z[i]}});
   };
-  if (scratch.keeps_waypoints) keep_waypoints(flies);
+  keep_waypoints(flies);
   for (int bounce = 0; bounce < max_bounces; ++bounce) {
     const Contact contact = first_contact(scene, x, way, rest, flies);
     flies = flies & (contact.at < never);
@@ -254,7 +255,7 @@ void trace_vector(const Scene& scene,
       take_along(scene, contact, flies, 1.0 - rest, x, start - u, end);
       rest = only(~flies, rest);
     }
-    if (scratch.keeps_waypoints) keep_waypoints(flies);
+    keep_waypoints(flies);
   }
   x = fma(rest, way, x);
   const D work = dot(all(c.acceleration), x - x0 - way0);

@@ -142,10 +142,10 @@ TEST_CASE("who dips under two walls in a corner has passed neither", "[particles
   // Object 0 is met by its upper side, object 1 by its lower one.
   const tess::dn::Surface plate = tess::dn::make_box({1, 1, 0.01});
   const tess::dn::Field field = tess::dn::build_exact(plate, grid_around(bounds(plate), 20, 0.3));
-  const tess::dn::Object object{&field, {}};
   const tess::dn::Bvh triangles(plate);
+  const tess::dn::Object object{&field, {}, nullptr, &triangles};
   const auto after = [&](Mark mark, std::uint16_t number, double from, double to) {
-    return mark_after(mark, {number, object, &triangles, 1}, {0.1, 0.2, from}, {0.1, 0.2, to});
+    return mark_after(mark, {number, object, 1}, {0.1, 0.2, from}, {0.1, 0.2, to});
   };
   const Mark in_floor = after({}, 0, 0.02, 0), in_both = after(in_floor, 1, -0.02, 0);
   CHECK(in_floor.what == Mark::inside);
