@@ -50,6 +50,7 @@ void BroadcastLog::on_call(NumberedCall&& call) {
     pe_.completion().sent(call.epoch);
     send_to_collection<&call_arrives>(collection_, child, call);
   }
+  pe_.flush();  // other processes do not wait for the local elements
   early_.emplace(call.number, std::move(call));
   while (!early_.empty() && early_.begin()->first == applied_ + 1) {
     copies_.push_back(std::move(early_.begin()->second));

@@ -84,7 +84,7 @@ class Machine {
   /// How many PEs this memory holds: those of the process, or all simulated ones.
   [[nodiscard]] virtual std::int32_t n_pes_here() const { return pes_per_process_; }
 
-  /// How many fruitless looks at its queue make a PE tell that it has run dry.
+  /// How many fruitless looks at its queue make a PE report that it has run dry.
   [[nodiscard]] virtual unsigned patience() const { return 64; }
 
   /// True if even a message of a PE to itself has to go through post(): the simulated machine
@@ -120,6 +120,8 @@ class Machine {
 
   /// True if now() is a virtual clock.
   [[nodiscard]] virtual bool virtual_time() const { return false; }
+  /// What the PE has to charge() for each message that it ran; 0 where time passes by itself.
+  [[nodiscard]] virtual Time message_cost() const { return Time(0); }
   /// Advances the virtual clock of a PE that runs; nothing where time is real.
   virtual void charge(PeId /*pe*/, Time /*work*/) {}
 

@@ -11,9 +11,12 @@ namespace {
 
 constexpr std::size_t flush_bytes = 32U << 10U;
 constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
-constexpr unsigned steps_between_flushes = 4;
-/// A step of so few messages shows that no company will come soon for what it sent.
-constexpr std::size_t hand_to_mouth = 2;
+/// The longest that a packed message waits for others to the same process.
+constexpr double flush_seconds = 5e-6;
+/// After a step of so few messages no others are likely to follow soon: what was packed leaves.
+constexpr std::size_t few_messages = 2;
+/// A PE that never runs dry reports its epochs after so many messages.
+constexpr std::size_t messages_between_reports = 1024;
 
 /// What stands before each message in a packed buffer.
 struct PackedHeader {
@@ -42,6 +45,8 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       pool_(pool),
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
+      message_cost_(machine.message_cost()),
+      flush_ticks_(static_cast<std::uint64_t>(flush_seconds / seconds_per_tick())),
       completion_(*this),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
       packed_(static_cast<std::size_t>(machine.n_processes())) {}
@@ -79,7 +84,10 @@ void Pe::pack(PeId to, Envelope* message) {
   std::memcpy(out.data() + begin, &header, sizeof header);
   statistics_.bytes_sent += out.size() - begin;
   discard(message);
-  holds_packed_ = true;
+  if (!holds_packed_) {
+    holds_packed_ = true;
+    packed_since_ = read_ticks();
+  }
   if (out.size() >= flush_bytes || intercepts_) {
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
     out.clear();
@@ -87,7 +95,6 @@ void Pe::pack(PeId to, Envelope* message) {
 }
 
 bool Pe::flush() {
-  steps_since_flush_ = 0;
   if (!holds_packed_) return false;
   holds_packed_ = false;
   for (std::size_t process = 0; process < packed_.size(); ++process) {
@@ -186,20 +193,27 @@ std::size_t Pe::step(std::size_t most) {
   if (meter_) [[unlikely]]
     meter_->step_begins();
   if (trace_) [[unlikely]] {
-    for (; n < most && !ready_.empty(); ++n) run_traced(static_cast<Envelope*>(ready_.pop()));
+    for (; n < most && !ready_.empty(); ++n) {
+      run_traced(static_cast<Envelope*>(ready_.pop()));
+      flush_if_due();
+    }
   } else {
-    for (; n < most && !ready_.empty(); ++n) run(static_cast<Envelope*>(ready_.pop()));
+    for (; n < most && !ready_.empty(); ++n) {
+      run(static_cast<Envelope*>(ready_.pop()));
+      flush_if_due();
+    }
   }
-  if (meter_) [[unlikely]]
-    meter_->step_ends();
   statistics_.messages += n;
   idle_calls_ = 0;
-  if (++steps_since_flush_ >= steps_between_flushes) {
-    flush();
-    completion_.tell_epochs();
-  } else if (n <= hand_to_mouth && holds_packed_) {
-    flush();
+  messages_since_report_ += n;
+  if (messages_since_report_ >= messages_between_reports) {
+    messages_since_report_ = 0;
+    completion_.report_epochs();
   }
+  if (n <= few_messages) flush();
+  if (message_cost_.count() != 0) machine_.charge(id_, message_cost_ * n);
+  if (meter_) [[unlikely]]
+    meter_->step_ends();
   return n;
 }
 
@@ -207,11 +221,12 @@ bool Pe::idle() {
   const RunsOn here(*this);
   if (meter_) [[unlikely]]
     meter_->idle();
-  bool busy = completion_.tell_epochs();
-  // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
+  messages_since_report_ = 0;
+  bool busy = completion_.report_epochs();
+  // Not at the first gap: a PE that is idle between two messages of a ping-pong would report each
   // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
   if (completion_.run_changed()) {
-    busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+    busy = ++idle_calls_ < patience_ || completion_.report_run() || busy;
   } else {
     pool_.flush();
   }

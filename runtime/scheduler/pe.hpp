@@ -5,6 +5,7 @@
 
 #include "runtime/base/mix.hpp"
 #include "runtime/base/pool.hpp"
+#include "runtime/base/ticks.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/meter.hpp"
@@ -132,7 +133,8 @@ class Pe {
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
-  /// Sends all that was held back to be packed together. True if there was any.
+  /// Sends all that was held back to be packed together. True if there was any. Called after a few
+  /// microseconds, when the PE idles, and before it starts local work on which other PEs wait.
   bool flush();
   void drop_all();
 
@@ -203,6 +205,9 @@ class Pe {
  private:
   void route(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
+  void flush_if_due() {
+    if (holds_packed_ && read_ticks() - packed_since_ > flush_ticks_) flush();
+  }
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -215,6 +220,8 @@ class Pe {
   Pool& pool_;
   const bool intercepts_;
   const unsigned patience_;
+  const Time message_cost_;
+  const std::uint64_t flush_ticks_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
@@ -233,8 +240,9 @@ class Pe {
   std::unique_ptr<Trace> trace_;
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
-  unsigned steps_since_flush_ = 0;
+  std::size_t messages_since_report_ = 0;
   bool holds_packed_ = false;
+  std::uint64_t packed_since_ = 0;  // in ticks
   std::vector<Buffer> packed_;  // one a process
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
