@@ -11,6 +11,7 @@
 #pragma once
 
 #include "runtime/base/link.hpp"
+#include "runtime/base/parcel.hpp"
 #include "runtime/ids.hpp"
 
 #include <chrono>
@@ -43,6 +44,9 @@ class Program {
   virtual void start(PeId pe) = 0;
   /// Takes a list of messages, first to run first, that others posted to this PE.
   virtual void accept(PeId pe, Link* first) = 0;
+  /// Takes several messages that another PE of the process posted together, and the parcel; called
+  /// only if the program posts parcels.
+  virtual void accept_parcel(PeId /*pe*/, Parcel* /*parcel*/) {}
   /// Runs up to `most` messages that are ready; returns how many it ran.
   virtual std::size_t step(PeId pe, std::size_t most) = 0;
   /// Nothing is ready: flush what was held back for company. True if that made or sent anything.
@@ -94,6 +98,11 @@ class Machine {
   /// Hands a message to a PE of this process; takes ownership of the link. `bytes` is its size for
   /// the cost model. Any PE thread of this process may call it.
   virtual void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) = 0;
+
+  /// True if post_parcel() is worth while; otherwise messages are posted one by one.
+  [[nodiscard]] virtual bool takes_parcels() const { return false; }
+  /// Hands several messages to a PE of this process; takes ownership.
+  virtual void post_parcel(PeId /*to*/, Parcel* /*parcel*/) {}
 
   /// Sends bytes to another process; never to this one. Any PE thread may call it; it does not
   /// block. What it leaves of `bytes` is for clear() alone; it may keep its memory, to be filled

@@ -2,17 +2,23 @@
 
 #include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
+#include <algorithm>
 #include <new>
+#include <utility>
 
 namespace tess {
 namespace {
 
 constexpr std::size_t flush_bytes = 32U << 10U;
 constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
-/// The longest that a packed message waits for others to the same process.
-constexpr double flush_seconds = 5e-6;
+/// The longest that a message waits for others to the same PE of this process, or to another process.
+constexpr double parcel_seconds = 1e-6;
+constexpr double packed_seconds = 4e-6;
+/// Messages between two looks at the clock, while something is held back and messages are short.
+constexpr std::uint32_t most_between_looks = 8;
 /// After a step of so few messages no others are likely to follow soon: what was packed leaves.
 constexpr std::size_t few_messages = 2;
 /// A PE that never runs dry reports its epochs after so many messages.
@@ -46,10 +52,14 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
       message_cost_(machine.message_cost()),
-      flush_ticks_(static_cast<std::uint64_t>(flush_seconds / seconds_per_tick())),
+      first_here_(machine.process_of(id).value * machine.pes_per_process()),
+      n_here_(machine.pes_per_process()),
+      parcel_ticks_(static_cast<std::uint64_t>(parcel_seconds / seconds_per_tick())),
+      packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),
       completion_(*this),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      packed_(static_cast<std::size_t>(machine.n_processes())) {}
+      packed_(static_cast<std::size_t>(machine.n_processes())),
+      parcels_(machine.takes_parcels() ? static_cast<std::size_t>(n_here_) : 0) {}
 
 Pe::~Pe() = default;
 
@@ -57,13 +67,55 @@ void Pe::route(PeId to, Envelope* message) {
   message->target = to;
   if (to == id_ && !intercepts_) {
     ready_.push(message);
-  } else if (machine_.same_process(id_, to)) {
+  } else if (static_cast<std::uint32_t>(to.value - first_here_) <
+             static_cast<std::uint32_t>(n_here_)) {
     ++statistics_.sent_remote;
-    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+    hand_over(to, message);
   } else {
     ++statistics_.sent_remote;
     pack(to, message);
   }
+}
+
+void Pe::hand_over(PeId to, Envelope* message) {
+  if (parcels_.empty()) {
+    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+    return;
+  }
+  Parcel*& parcel = parcels_[static_cast<std::size_t>(to.value - first_here_)];
+  if (parcel == nullptr) parcel = new (allocate_block(*this, sizeof(Parcel))) Parcel;
+  if (parcel->n == 0) opened_.push_back(to.value - first_here_);
+  parcel->messages[parcel->n++] = message;
+  if (parcel->n == Parcel::capacity) post(parcel, to);
+  hold();
+}
+
+void Pe::post(Parcel*& parcel, PeId to) {
+  if (parcel->n == 1) {  // by itself; the parcel stays for the next
+    auto* const message = static_cast<Envelope*>(parcel->messages[0]);
+    parcel->n = 0;
+    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+  } else {
+    machine_.post_parcel(to, std::exchange(parcel, nullptr));
+  }
+}
+
+void Pe::accept(Parcel* parcel) {
+  for (std::uint32_t i = 0; i < parcel->n; ++i) ready_.push(parcel->messages[i]);
+  Pool::release(parcel, &pool_);
+}
+
+void Pe::look_at_clock() {
+  const std::uint64_t held = read_ticks() - held_since_;
+  if (held > packed_ticks_) {
+    flush();
+    return;
+  }
+  if (held > parcel_ticks_) {
+    flush_parcels();
+    holds_ = holds_packed_;
+  }
+  until_look_ = look_every_ = std::min(2 * look_every_, most_between_looks);
 }
 
 void Pe::pack(PeId to, Envelope* message) {
@@ -84,19 +136,27 @@ void Pe::pack(PeId to, Envelope* message) {
   std::memcpy(out.data() + begin, &header, sizeof header);
   statistics_.bytes_sent += out.size() - begin;
   discard(message);
-  if (!holds_packed_) {
-    holds_packed_ = true;
-    packed_since_ = read_ticks();
-  }
+  holds_packed_ = true;
+  hold();
   if (out.size() >= flush_bytes || intercepts_) {
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
     out.clear();
   }
 }
 
+void Pe::flush_parcels() {
+  for (const std::int32_t at : opened_) {
+    Parcel*& parcel = parcels_[static_cast<std::size_t>(at)];
+    if (parcel != nullptr && parcel->n != 0) post(parcel, PeId{first_here_ + at});
+  }
+  opened_.clear();
+}
+
 bool Pe::flush() {
-  if (!holds_packed_) return false;
-  holds_packed_ = false;
+  if (!holds_) return false;
+  holds_ = false;
+  flush_parcels();
+  if (!std::exchange(holds_packed_, false)) return true;
   for (std::size_t process = 0; process < packed_.size(); ++process) {
     if (packed_[process].empty()) continue;
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(packed_[process]));
@@ -129,7 +189,7 @@ void Pe::receive(std::span<const std::byte> bytes) {
     if (header.target == id_) {
       ready_.push(message);
     } else {
-      machine_.post(id_, header.target, message, header.n_bytes, action.traffic);
+      hand_over(header.target, message);
     }
   }
 }
@@ -239,6 +299,11 @@ void Pe::drop_all() {
     for (Envelope* message : messages) discard(message);
   }
   early_.clear();
+  for (Parcel*& parcel : parcels_) {
+    if (parcel == nullptr) continue;
+    for (std::uint32_t i = 0; i < parcel->n; ++i) discard(static_cast<Envelope*>(parcel->messages[i]));
+    Pool::release(std::exchange(parcel, nullptr), &pool_);
+  }
   dropping_ = true;
   end_all(suspended_);
 }

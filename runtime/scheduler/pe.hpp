@@ -129,7 +129,13 @@ class Pe {
 
   // Called by the machine through the runtime.
 
-  void accept(Link* first) { ready_.append(first); }
+  void accept(Link* first) {
+    for (Link* next = nullptr; first != nullptr; first = next) {
+      next = first->next;
+      ready_.push(first);
+    }
+  }
+  void accept(Parcel* parcel);
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
@@ -204,10 +210,23 @@ class Pe {
 
  private:
   void route(PeId to, Envelope* message);
+  /// To a PE of this process, not this one.
+  void hand_over(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
-  void flush_if_due() {
-    if (holds_packed_ && read_ticks() - packed_since_ > flush_ticks_) flush();
+  void post(Parcel*& parcel, PeId to);
+  void flush_parcels();
+  /// Something is held back from now on, if nothing was.
+  void hold() {
+    if (holds_) return;
+    holds_ = true;
+    held_since_ = read_ticks();
+    until_look_ = look_every_ = 1;
   }
+  /// After each message: what was held back for too long leaves.
+  void flush_if_due() {
+    if (holds_ && --until_look_ == 0) look_at_clock();
+  }
+  void look_at_clock();
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -221,7 +240,8 @@ class Pe {
   const bool intercepts_;
   const unsigned patience_;
   const Time message_cost_;
-  const std::uint64_t flush_ticks_;
+  const std::int32_t first_here_, n_here_;  // the PEs of this process
+  const std::uint64_t parcel_ticks_, packed_ticks_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
@@ -241,9 +261,14 @@ class Pe {
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
-  bool holds_packed_ = false;
-  std::uint64_t packed_since_ = 0;  // in ticks
-  std::vector<Buffer> packed_;  // one a process
+
+  // What is held back to leave together: packed messages by process, pointers by PE of this process.
+  bool holds_ = false, holds_packed_ = false;
+  std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
+  std::uint64_t held_since_ = 0;                   // in ticks
+  std::vector<Buffer> packed_;
+  std::vector<Parcel*> parcels_;       // empty where the machine takes none
+  std::vector<std::int32_t> opened_;   // those of parcels_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
   std::uint64_t n_collections_made_ = 0;
