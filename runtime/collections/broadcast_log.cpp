@@ -81,6 +81,22 @@ void BroadcastLog::settle() {
       collection_, collection_.root(), Settled{pe_.id(), settled_});
 }
 
+void BroadcastLog::end() {
+  while (settled_ < applied_) {
+    ++settled_;
+    copies_[settled_ - first_kept_].drop(pe_);
+  }
+  for (const auto& [number, call] : early_) call.drop(pe_);
+  copies_.clear();
+  early_.clear();
+  in_flight_.clear();
+}
+
+std::uint64_t NumberedCall::drop(Pe& pe) const {
+  pe.completion().processed(epoch);
+  return number == 0 ? 1 : 0;
+}
+
 std::vector<NumberedCall> BroadcastLog::missed(std::uint64_t seen) const {
   std::vector<NumberedCall> calls;
   for (std::uint64_t number = seen + 1; number <= applied_; ++number)

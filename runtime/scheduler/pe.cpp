@@ -327,8 +327,36 @@ void Pe::add(CollectionId id, std::unique_ptr<Collection> collection) {
   for (Envelope* message : messages) send_here(message);
 }
 
-void Pe::keep_early(CollectionId id, Envelope* message) {
+void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&)) {
+  if (ended_.contains(id)) {
+    const std::uint64_t n_lost = drop(*this, *message);
+    if (ended_.counts(id)) statistics_.dead_letters += n_lost;
+    discard(message);
+    return;
+  }
   early_[id].push_back(message);
+}
+
+std::unique_ptr<Collection> Pe::take_out(CollectionId id, LateMessages late) {
+  const auto at = collections_.find(id);
+  std::unique_ptr<Collection> collection = std::move(at->second);
+  collections_.erase(at);
+  last_id_ = CollectionId{~std::uint64_t{0}};
+  ended_.add(id, late);
+  return collection;
+}
+
+void Pe::keep_ending(std::unique_ptr<Collection> collection, EpochId epoch) {
+  ending_.push_back({std::move(collection), epoch});
+}
+
+Pe::Ending Pe::take_ending(CollectionId id) {
+  const auto at = std::find_if(ending_.begin(), ending_.end(), [id](const Ending& one) {
+    return one.collection->id() == id;
+  });
+  Ending taken = std::move(*at);
+  ending_.erase(at);
+  return taken;
 }
 
 CollectionId Pe::new_collection_id() {
@@ -363,6 +391,11 @@ std::vector<std::string> Pe::census() const {
              one.waits_for()));
   }
   for (const auto& [id, collection] : collections_) collection->describe_waiting(lines);
+  for (const Ending& one : ending_)
+    lines.push_back(text(one.collection->name(),
+                         " on ",
+                         id_,
+                         " was destroyed, but coroutines of its elements wait"));
   for (const auto& [id, messages] : early_)
     lines.push_back(
         text(messages.size(), " messages on ", id_, " wait for ", id, ", which was never created"));

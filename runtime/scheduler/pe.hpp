@@ -8,6 +8,7 @@
 #include "runtime/base/ticks.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
@@ -122,8 +123,19 @@ class Pe {
   }
   /// Enters a collection; messages that came before it are sent on.
   void add(CollectionId id, std::unique_ptr<Collection> collection);
-  /// Keeps a message whose collection is not known here yet.
-  void keep_early(CollectionId id, Envelope* message);
+  /// Keeps a message whose collection is not known here yet. One whose collection has ended here is
+  /// dropped: `drop` settles its accounts and returns how many user messages are lost with it.
+  void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
+  [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
+  /// Takes a collection out of the table: it ends here, and messages to it are dropped from now on.
+  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id, LateMessages late);
+  /// Keeps a collection that was taken out until the coroutines of its elements are done.
+  void keep_ending(std::unique_ptr<Collection> collection, EpochId epoch);
+  struct Ending {
+    std::unique_ptr<Collection> collection;
+    EpochId epoch{};  ///< waits for it
+  };
+  [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id();
   [[nodiscard]] std::vector<Collection*> collections() const;
 
@@ -275,6 +287,8 @@ class Pe {
   boost::unordered_flat_map<CollectionId, std::unique_ptr<Collection>, std::hash<CollectionId>>
       collections_;
   boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
+  EndedCollections ended_;
+  std::vector<Ending> ending_;
 };
 
 namespace detail {
