@@ -166,9 +166,12 @@ class Collection {
 class ElementScope {
  public:
   ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch)
-      : pe_(pe), element_(element), before_(pe.context()), meter_(pe.meter()) {
+      : pe_(pe),
+        element_(element),
+        context_{&element, action, epoch},
+        before_(pe.enter(&context_)),
+        meter_(pe.meter()) {
     ++element.n_suspended_;
-    pe.context() = Context{&element, action, epoch};
     if (meter_ != nullptr) [[unlikely]]
       outer_ = meter_->enter({load_of(element), action});
   }
@@ -176,7 +179,7 @@ class ElementScope {
   ElementScope& operator=(const ElementScope&) = delete;
   /// Ends the scope; the element may be gone afterwards.
   ~ElementScope() noexcept(false) {
-    pe_.context() = before_;
+    pe_.enter(before_);
     if (meter_ != nullptr) [[unlikely]]
       meter_->leave(outer_);
     if (--element_.n_suspended_ == 0) {
@@ -194,7 +197,8 @@ class ElementScope {
   }
   Pe& pe_;
   Element& element_;
-  Context before_;
+  Context context_;  // in force by its address: copies of what was just written would stall
+  Context* const before_;
   Meter* const meter_;
   Meter::Scope outer_;
 };

@@ -18,7 +18,7 @@ void contribute_as(const Key& /*key*/,
                    Collection& collection,
                    Op /*op*/,
                    T value,
-                   Callback<T> target) {
+                   Callback<T>&& target) {
   using Merged = MergedPartial<T, Op>;
   if (Partial* open = collection.open_sum(element, Merged::its_kind()); open != nullptr) {
     static_cast<Merged*>(open)->add(value);
@@ -35,7 +35,7 @@ void contribute_as(const Key& key,
                    Collection& collection,
                    InOrder<Op> /*op*/,
                    T value,
-                   Callback<T> target) {
+                   Callback<T>&& target) {
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));
   collection.contribute(

@@ -200,7 +200,7 @@ void Pe::run(Envelope* message) {
     discard(message);
     return;
   }
-  context_ = Context{nullptr, message->action, message->epoch};
+  of_message_ = Context{nullptr, message->action, message->epoch};
   try {
     message->action->run(*this, message);
     if (kept_exception_) [[unlikely]]
@@ -214,7 +214,7 @@ void Pe::run(Envelope* message) {
   } catch (...) {
     exception("an exception that is no std::exception", 1);
   }
-  context_ = Context{};
+  of_message_ = Context{};
   if (counted) completion_.hop_processed();
 }
 
@@ -380,7 +380,8 @@ PeId Pe::whim() {
 
 std::vector<std::string> Pe::census() const {
   std::vector<std::string> lines;
-  for (const Suspended& one : suspended_) {
+  for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
+    const Suspended& one = *at;
     lines.push_back(
         text(one.element != nullptr ? element_text(*one.element) : text("the main program"),
              " on ",

@@ -22,6 +22,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -62,7 +63,9 @@ class Pe {
   [[nodiscard]] Runtime& runtime() { return runtime_; }
   [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
-  [[nodiscard]] Context& context() { return context_; }
+  [[nodiscard]] Context& context() { return *context_; }
+  /// Another context is in force from now on; returns the one before. It outlives its time in force.
+  Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
@@ -79,7 +82,7 @@ class Pe {
   template <class M>
   M* stamp(M* message) {
     message->source = id_;
-    message->epoch = context_.epoch;
+    message->epoch = context_->epoch;
     if (trace_) [[unlikely]]
       message->trace = trace_->sent(meter_->now());
     return message;
@@ -263,7 +266,8 @@ class Pe {
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;
   ReadyQueue ready_;
-  Context context_;
+  Context of_message_;  // of the message that runs
+  Context* context_ = &of_message_;
   Completion completion_;
   SuspendedList suspended_;
   PeStatistics statistics_;
