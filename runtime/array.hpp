@@ -33,17 +33,16 @@ class Array final : public ArrayOf<typename C::Index> {
   ~Array() override { this->destroy_all(); }
 
   [[nodiscard]] PeId home(const Index& index) const override {
-    const auto n_pes = static_cast<std::uint64_t>(this->pe_.n_pes());
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
       return C::place(index, this->pe_.n_pes());
     } else {
       if constexpr (Coordinates<Index>) {
         if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
-          return PeId{static_cast<std::int32_t>(static_cast<std::uint64_t>(rank) * n_pes /
-                                                this->range().size())};
+          return this->block_map().home(rank);
       }
       // The high bits: the low ones choose the slot in hash tables, which would cluster.
-      return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) % n_pes)};
+      return PeId{static_cast<std::int32_t>(
+          (IndexHash<Index>()(index) >> 32U) % static_cast<std::uint64_t>(this->pe_.n_pes()))};
     }
   }
 
