@@ -257,6 +257,16 @@ class GroupProxy {
 
 namespace detail {
 
+/// Messages to an ended group of G are dead letters, unless the class says otherwise.
+template <class G>
+constexpr LateMessages late_messages_of() {
+  if constexpr (requires { G::late_messages; }) {
+    return G::late_messages;
+  } else {
+    return LateMessages::counted;
+  }
+}
+
 template <class G, class... Args>
 struct CreateGroup {
   CollectionId id;
@@ -283,7 +293,9 @@ template <class G, class... Args>
 GroupProxy<G> create_group(Args&&... args) {
   Pe& pe = current_pe();
   using Create = detail::CreateGroup<G, std::decay_t<Args>...>;
-  Create message{pe.new_collection_id(), pe.context().epoch, {std::forward<Args>(args)...}};
+  Create message{pe.new_collection_id(detail::late_messages_of<G>()),
+                 pe.context().epoch,
+                 {std::forward<Args>(args)...}};
   constexpr auto handler = &detail::create_group_arrives<G, std::decay_t<Args>...>;
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
     pe.completion().sent(message.epoch);

@@ -330,19 +330,20 @@ void Pe::add(CollectionId id, std::unique_ptr<Collection> collection) {
 void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&)) {
   if (ended_.contains(id)) {
     const std::uint64_t n_lost = drop(*this, *message);
-    if (ended_.counts(id)) statistics_.dead_letters += n_lost;
+    if (CollectionNumbers::late_messages(id) == LateMessages::counted)
+      statistics_.dead_letters += n_lost;
     discard(message);
     return;
   }
   early_[id].push_back(message);
 }
 
-std::unique_ptr<Collection> Pe::take_out(CollectionId id, LateMessages late) {
+std::unique_ptr<Collection> Pe::take_out(CollectionId id) {
   const auto at = collections_.find(id);
   std::unique_ptr<Collection> collection = std::move(at->second);
   collections_.erase(at);
   last_id_ = CollectionId{~std::uint64_t{0}};
-  ended_.add(id, late);
+  ended_.add(id);
   return collection;
 }
 
@@ -357,10 +358,6 @@ Pe::Ending Pe::take_ending(CollectionId id) {
   Ending taken = std::move(*at);
   ending_.erase(at);
   return taken;
-}
-
-CollectionId Pe::new_collection_id() {
-  return CollectionId{(++n_collections_made_ << 24U) | static_cast<std::uint64_t>(id_.value)};
 }
 
 std::vector<Collection*> Pe::collections() const {

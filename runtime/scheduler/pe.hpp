@@ -131,7 +131,7 @@ class Pe {
   void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
   [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
   /// Takes a collection out of the table: it ends here, and messages to it are dropped from now on.
-  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id, LateMessages late);
+  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id);
   /// Keeps a collection that was taken out until the coroutines of its elements are done.
   void keep_ending(std::unique_ptr<Collection> collection, EpochId epoch);
   struct Ending {
@@ -139,7 +139,9 @@ class Pe {
     EpochId epoch{};  ///< waits for it
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
-  [[nodiscard]] CollectionId new_collection_id();
+  [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted) {
+    return collection_numbers_.next(id_, late);
+  }
   [[nodiscard]] std::vector<Collection*> collections() const;
 
   // Called by the machine through the runtime.
@@ -278,16 +280,17 @@ class Pe {
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
 
-  // What is held back to leave together: packed messages by process, pointers by PE of this process.
+  // What is held back to leave together: packed messages by process, pointers by PE of this
+  // process.
   bool holds_ = false, holds_packed_ = false;
   std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
   std::uint64_t held_since_ = 0;                   // in ticks
   std::vector<Buffer> packed_;
-  std::vector<Parcel*> parcels_;       // empty where the machine takes none
-  std::vector<std::int32_t> opened_;   // those of parcels_ that hold something
+  std::vector<Parcel*> parcels_;      // empty where the machine takes none
+  std::vector<std::int32_t> opened_;  // those of parcels_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
-  std::uint64_t n_collections_made_ = 0;
+  CollectionNumbers collection_numbers_;
   boost::unordered_flat_map<CollectionId, std::unique_ptr<Collection>, std::hash<CollectionId>>
       collections_;
   boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;

@@ -98,9 +98,8 @@ void Balancer::detach() {
 
 void Balancer::end_if_over() {
   if (!array_ended_ || running_ || coordinator_ == nullptr) return;
-  end_collection(group().id(), LateMessages::ignored);
-  if (plan_.distributed != DistributedStrategy::none)
-    end_collection(plan_.exchange.id(), LateMessages::ignored);
+  group().destroy();
+  if (plan_.distributed != DistributedStrategy::none) plan_.exchange.destroy();
 }
 
 void Balancer::attached_everywhere(std::int64_t n_under_way) {

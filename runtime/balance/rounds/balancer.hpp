@@ -27,6 +27,8 @@ namespace tess::balance {
 
 class Balancer final : public Group<Balancer>, private ElementWatcher {
  public:
+  static constexpr LateMessages late_messages = LateMessages::ignored;
+
   /// What every member needs of the options.
   struct Plan {
     CollectionId array{};

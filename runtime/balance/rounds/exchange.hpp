@@ -38,6 +38,8 @@ enum class DistributedStrategy : std::uint8_t { none, diffusion, gossip };
 
 class Exchange final : public Group<Exchange> {
  public:
+  static constexpr LateMessages late_messages = LateMessages::ignored;
+
   /// This PE's elements, as it has reported them; before run().
   void hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes);
 
