@@ -135,6 +135,7 @@ class Array final : public ArrayOf<typename C::Index> {
       C& chare = static_cast<C&>(element);
       auto* letter = Awakening<C>::make(this->pe_, this->id(), chare.index_);
       letter->epoch = chare.balance_->sync.epoch;  // counted there since at_sync()
+      letter->led_by = chare.balance_->sync.led_by;
       this->post(letter);
     } else {
       Base::resume(element);
@@ -248,7 +249,9 @@ class ElementProxy {
     post<F>(Demand::home, std::forward<Args>(args)...);
   }
 
-  /// Creates the element on this PE with these constructor arguments; misuse if there is one.
+  /// Creates the element on this PE with these constructor arguments; misuse if there is one. It
+  /// meets the broadcasts that come after its birth and joins the reductions that they lead to: see
+  /// Chare::contribute().
   template <class... Args>
   void insert(Args&&... args) const {
     construct(current_pe().id(), Demand::insert, std::forward<Args>(args)...);

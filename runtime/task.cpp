@@ -26,7 +26,7 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
     task.resume();
     return;
   }
-  const ElementScope scope(pe, *context.element, context.action, context.epoch);
+  const ElementScope scope(pe, *context.element, context.action, context.epoch, context.led_by);
   account.release();
   task.resume();
 }

@@ -20,6 +20,12 @@ constexpr std::array known{
              &broadcasts},
     Scenario{
         "rounds", "broadcast and reduction are exact while elements move, come and go", &rounds},
+    Scenario{"newborns",
+             "an element born after a result was awaited takes part in later rounds only",
+             &newborns},
+    Scenario{"refinement",
+             "elements that are born in the middle of a step are never one ahead or behind",
+             &refinement},
     Scenario{"tour", "messages find an element that visits every PE", &tour},
     Scenario{"epochs", "an epoch ends after all that it caused, and it ends", &epochs},
     Scenario{

@@ -15,6 +15,8 @@ void message_first(Trial& trial);     // create.cpp
 void lives(Trial& trial);             // lives.cpp
 void broadcasts(Trial& trial);        // broadcasts.cpp
 void rounds(Trial& trial);            // rounds.cpp
+void newborns(Trial& trial);          // newborns.cpp
+void refinement(Trial& trial);        // newborns.cpp
 void tour(Trial& trial);              // tour.cpp
 void epochs(Trial& trial);            // epochs.cpp
 void epoch_migrations(Trial& trial);  // epoch_migrations.cpp

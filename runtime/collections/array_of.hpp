@@ -267,7 +267,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, Letter* letter) {
                "; insert_if_absent() allows for that");
     discard(letter);
   } else {
-    const ElementScope scope(pe_, element, letter->action, epoch);
+    const ElementScope scope(pe_, element, letter->action, epoch, letter->led_by);
     try {
       action.invoke(element, *letter);
     } catch (...) {

@@ -73,10 +73,30 @@ class Collection {
   void contribute(Element& element, std::unique_ptr<Partial> value);
   /// Where it can add its value without making a Partial; null if there is no such place. If there
   /// is, it adds and calls contributed().
-  [[nodiscard]] Partial* open_sum(const Element& element, const PartialKind& kind) {
+  [[nodiscard]] Partial* open_sum(Element& element, const PartialKind& kind) {
+    settle_join(element);
     return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
   }
-  void contributed(Element& element) { reductions_.added(element.state_.next_reduction++); }
+  void contributed(Element& element) {
+    reductions_.added(element.state_.next_reduction++, cause_of(element));
+  }
+
+  /// From here on the element stays with the number of its next reduction.
+  void settle_join(Element& element) {
+    if (element.state_.born_after == 0) return;
+    element.state_.born_after = 0;
+    --n_newborn_;
+  }
+  /// It has become known which reductions broadcasts led to: elements that were born after these
+  /// broadcasts join later.
+  void postpone_newborns();
+
+  /// The broadcast of a collection that led to what runs; 0 if none did.
+  [[nodiscard]] static std::uint32_t led_by(const Context& context, CollectionId collection) {
+    return context.element != nullptr && context.element->collection_->id_ == collection
+               ? context.led_by
+               : 0;
+  }
 
   // The balancer's side.
 
@@ -147,6 +167,11 @@ class Collection {
   [[nodiscard]] static bool known(const Element& element) {
     return element.balance_ && element.balance_->sync.known;
   }
+  void postpone(Element& element);
+  [[nodiscard]] Cause cause_of(const Element& element) const {
+    const Context& context = pe_.context();
+    return {element.state_.seen_broadcast, context.element == &element ? context.led_by : 0};
+  }
 
   const CollectionId id_;
   const std::string name_;
@@ -155,6 +180,7 @@ class Collection {
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
   std::size_t n_local_ = 0;
+  std::size_t n_newborn_ = 0;  // local elements that have not contributed since their birth
   unsigned applying_ = 0;
   bool ended_ = false;
   BroadcastLog broadcasts_;
@@ -165,10 +191,11 @@ class Collection {
 /// before the scope does.
 class ElementScope {
  public:
-  ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch)
+  ElementScope(
+      Pe& pe, Element& element, const Action* action, EpochId epoch, std::uint32_t led_by = 0)
       : pe_(pe),
         element_(element),
-        context_{&element, action, epoch},
+        context_{&element, action, epoch, led_by},
         before_(pe.enter(&context_)),
         meter_(pe.meter()) {
     ++element.n_suspended_;

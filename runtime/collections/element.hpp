@@ -32,6 +32,7 @@ struct Version {
 struct ElementState {
   Version version{};
   std::uint32_t next_reduction = 0;
+  std::uint32_t born_after = 0;  // the last broadcast before its birth; 0 once it has contributed
   std::uint64_t seen_broadcast = 0;
 };
 

@@ -31,11 +31,13 @@ class Collection;
 class Element;
 class Runtime;
 
-/// What a PE is doing: whose code runs, on which epoch's account.
+/// What a PE is doing: whose code runs, on which epoch's account, and which broadcast of the
+/// element's collection led to it (0: none).
 struct Context {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
+  std::uint32_t led_by = 0;
 };
 
 /// What happened on a PE since the start; printed by --stats.
