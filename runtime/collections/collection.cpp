@@ -27,8 +27,11 @@ void Collection::list(Element& element) {
   elements_.push_back(&element);
   ++n_local_;
   reductions_.enter(element.state_.next_reduction);
-  if (watcher_ != nullptr) [[unlikely]]
+  if (watcher_ != nullptr) [[unlikely]] {
     watcher_->entered(element);
+  } else if (element.balance_) [[unlikely]] {
+    element.balance_->load.since = LoadRecord::Since::somewhere;  // nothing is measured here yet
+  }
 }
 
 void Collection::unlist(Element& element) {
