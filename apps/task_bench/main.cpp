@@ -22,7 +22,11 @@ int start(tess::Setup& setup, int argc, char** argv) {
   // On all processes: a fault has to meet them all.
   plot::require_writable("--json", settings->json);
   plot::require_writable("--csv", settings->csv);
-  if (!settings->plot.empty()) (void)plot::data_path(settings->plot);
+  if (!settings->plot.empty() && plot::data_path(settings->plot) == settings->csv)
+    tess::fail(tess::ErrorCode::bad_argument,
+               "--csv ",
+               settings->csv,
+               ": the data of --plot goes there; choose another name");
   plot::require_writable("--plot", settings->plot);
   if (settings->explain && setup.machine->process() == tess::ProcessId{0})
     tess::print_text(explain(*settings));
