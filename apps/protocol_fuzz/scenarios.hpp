@@ -30,6 +30,7 @@ void groups(Trial& trial);            // groups.cpp
 void balance_rounds(Trial& trial);    // balance.cpp
 void balance_barrier(Trial& trial);   // balance_barrier.cpp
 void balance_rotate(Trial& trial);    // balance.cpp
+void balance_first_round(Trial& trial);  // balance.cpp
 void balance_periodic(Trial& trial);  // balance.cpp
 void balance_epochs(Trial& trial);    // balance_epochs.cpp
 

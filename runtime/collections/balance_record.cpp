@@ -37,7 +37,7 @@ void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
      sync.epoch,
      sync.led_by,
      size_bytes);
-  ar(meter.seconds(load.ticks), entries, traffic);
+  ar(meter.seconds(load.ticks), load.since, entries, traffic);
 }
 
 void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
@@ -50,6 +50,7 @@ void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
      sync.led_by,
      size_bytes);
   load.ticks = meter.ticks(ar.take<double>());
+  ar(load.since);
   for (const PackedEntry& entry : ar.take<std::vector<PackedEntry>>())
     load.entries.push_back({&static_cast<const Action&>(Registry::at(entry.action)),
                             meter.ticks(entry.seconds),

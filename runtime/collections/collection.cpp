@@ -31,8 +31,11 @@ void Collection::list(Element& element) {
     ++n_newborn_;
     postpone(element);
   }
-  if (watcher_ != nullptr) [[unlikely]]
+  if (watcher_ != nullptr) [[unlikely]] {
     watcher_->entered(element);
+  } else if (element.balance_) [[unlikely]] {
+    element.balance_->load.since = LoadRecord::Since::somewhere;  // nothing is measured here yet
+  }
 }
 
 void Collection::unlist(Element& element) {

@@ -113,6 +113,10 @@ class Collection {
   [[nodiscard]] static bool never_moved(const Element& element) {
     return element.state_.version.epoch <= 1;
   }
+  /// Whether nothing of it but its constructor has run, here or elsewhere.
+  [[nodiscard]] static bool never_ran(const Element& element) {
+    return never_moved(element) && !element.has_run_;
+  }
   /// Migrations from this PE less those to it, of elements that no barrier knows: summed over PEs,
   /// how many are under way.
   [[nodiscard]] std::int64_t n_away() const { return n_away_; }
@@ -199,6 +203,7 @@ class ElementScope {
         before_(pe.enter(&context_)),
         meter_(pe.meter()) {
     ++element.n_suspended_;
+    element.has_run_ = true;
     if (meter_ != nullptr) [[unlikely]]
       outer_ = meter_->enter({load_of(element), action});
   }

@@ -54,6 +54,10 @@ TEST_CASE("no element passes the balance barrier before all have reached it",
 TEST_CASE("rotate puts elements where it says, 40 rounds", "[runtime][protocol][balance]") {
   run_seeds("balance_rotate");
 }
+TEST_CASE("a load that is shown as known is that of a whole phase, from the first round on",
+          "[runtime][protocol][balance]") {
+  run_seeds("balance_first_round");
+}
 TEST_CASE("periodic balance rounds lose no message", "[runtime][protocol][balance]") {
   run_seeds("balance_periodic");
 }
