@@ -238,14 +238,12 @@ class Pe {
   void hold() {
     if (holds_) return;
     holds_ = true;
-    held_since_ = read_ticks();
+    held_since_ = last_look_ = read_ticks();
     until_look_ = look_every_ = 1;
   }
-  /// After each message: what was held back for too long leaves.
-  void flush_if_due() {
-    if (holds_ && --until_look_ == 0) look_at_clock();
-  }
-  void look_at_clock();
+  void look_at_clock(const Action& action);
+  void run_slow(Envelope* message, const Action& action);
+  void run_one(Envelope* message);
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -286,7 +284,7 @@ class Pe {
   // process.
   bool holds_ = false, holds_packed_ = false;
   std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
-  std::uint64_t held_since_ = 0;                   // in ticks
+  std::uint64_t held_since_ = 0, last_look_ = 0;   // in ticks
   std::vector<Buffer> packed_;
   std::vector<Parcel*> parcels_;      // empty where the machine takes none
   std::vector<std::int32_t> opened_;  // those of parcels_ that hold something

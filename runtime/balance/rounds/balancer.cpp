@@ -98,7 +98,6 @@ void Balancer::array_ends() {
 }
 
 void Balancer::group_ends() {
-  if (array_ != nullptr) array_->remove_watcher();
   detach();
 }
 
@@ -106,6 +105,7 @@ void Balancer::detach() {
   current_pe().start_meter().remove_alarms(this);
   measured_.detach();
   barrier_.detach();
+  if (array_ != nullptr) array_->remove_watcher();
   array_ = nullptr;
 }
 
