@@ -1,8 +1,13 @@
 // What a thread that finds nothing to do does next: spin, then yield, then sleep. Each stage lasts
 // a given time since the last work; where threads outnumber cores the spinning stage is left out,
 // since a spinning thread keeps from its core the one it waits for.
+//
+// Where another program runs on its core, a thread that spins or yields loses the core for
+// milliseconds each time, whereas one that sleeps gets it back as soon as it is woken. A gap in the
+// waiting thread's time shows such a program: for a while the thread then sleeps at once.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <sched.h>
 
@@ -27,17 +32,24 @@ class Backoff {
  public:
   explicit Backoff(Patience patience) noexcept : patience_(patience) {}
 
-  void reset() noexcept { n_pauses_ = 0; }
+  /// Something was found.
+  void reset() noexcept {
+    if (n_pauses_ >= 16 || (n_pauses_ > 0 && stage_ == Stage::yield)) look(Clock::now());
+    n_pauses_ = 0;
+  }
 
   /// Spins or yields once; true, without any pause, when it is time to sleep.
   [[nodiscard]] bool pause() noexcept {
     if (n_pauses_ == 0) {
-      stage_ = patience_.spin.count() > 0 ? Stage::spin : Stage::yield;
-      idle_since_ = Clock::now();
+      idle_since_ = last_look_ = Clock::now();
+      stage_ = idle_since_ < crowded_until_       ? Stage::sleep
+               : patience_.spin.count() > 0       ? Stage::spin
+                                                  : Stage::yield;
     } else if (n_pauses_ % 16 == 0 || stage_ != Stage::spin) {
-      const auto idle = Clock::now() - idle_since_;
+      const auto now = Clock::now();
+      const auto idle = now - idle_since_;
       if (idle > patience_.spin) stage_ = Stage::yield;
-      if (idle > patience_.spin + patience_.yield) stage_ = Stage::sleep;
+      if (look(now) || idle > patience_.spin + patience_.yield) stage_ = Stage::sleep;
     }
     ++n_pauses_;
     switch (stage_) {
@@ -58,11 +70,28 @@ class Backoff {
  private:
   using Clock = std::chrono::steady_clock;
   enum class Stage { spin, yield, sleep };
+  /// Without the core for so long: other PEs of ours yield sooner, a scheduler's slice is longer.
+  static constexpr std::chrono::microseconds gap{400};
+  static constexpr std::chrono::milliseconds first_crowded{5}, longest_crowded{320};
+
+  /// True if the core is shared with another program, as the time since the last look shows.
+  bool look(Clock::time_point now) noexcept {
+    if (stage_ != Stage::sleep && now - last_look_ > gap) {
+      // The longer, the sooner it was so again.
+      const bool again = now - crowded_until_ < 4 * crowded_for_;
+      crowded_for_ = again ? std::min(2 * crowded_for_, longest_crowded) : first_crowded;
+      crowded_until_ = now + crowded_for_;
+    }
+    last_look_ = now;
+    return now < crowded_until_;
+  }
 
   Patience patience_;
   Stage stage_ = Stage::spin;
   unsigned n_pauses_ = 0;
-  Clock::time_point idle_since_;
+  Clock::time_point idle_since_, last_look_;
+  Clock::time_point crowded_until_{};
+  std::chrono::milliseconds crowded_for_ = first_crowded;
 };
 
 }  // namespace tess
