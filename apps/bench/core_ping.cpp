@@ -16,11 +16,11 @@ double CorePing::play(std::size_t side, std::int64_t n_round_trips) {
   const std::int64_t n_warm = 1 + n_round_trips / 10;
   std::vector<std::byte>& mine = written_[side];
   const std::vector<std::byte>& others = written_[1 - side];
-  const std::uint64_t began = turn_.load(std::memory_order_acquire) & ~std::uint64_t{1};
+  if (side == 1) other_plays_.store(true, std::memory_order_release);
   Clock::time_point from = Clock::now();
   for (std::int64_t i = -n_warm; i < n_round_trips; ++i) {
     if (i == 0) from = Clock::now();
-    const std::uint64_t turn = began + 2 * static_cast<std::uint64_t>(i + n_warm) + side;
+    const std::uint64_t turn = 2 * static_cast<std::uint64_t>(i + n_warm) + side;
     unsigned n_spins = 0;
     // Partner: the store below, by the other side.
     while (turn_.load(std::memory_order_acquire) != turn)

@@ -19,7 +19,6 @@ class Cell : public tess::Chare<Cell, tess::Index3> {
   void count(tess::Callback<std::int64_t> total) {
     contribute(tess::sum, std::int64_t{weight_}, std::move(total));
   }
-  void end() { destroy(); }
 
  private:
   std::int32_t weight_ = 0;
@@ -120,7 +119,7 @@ tess::Task measure_creation(const Bench& bench, CreationVariant& variant, Sample
     cells.broadcast<&Cell::count>(total.callback());
     const std::int64_t weight = co_await total;
     TESS_CHECK(weight == 2 * run.n, "cells were touched ", weight, " times, not ", 2 * run.n);
-    const auto end = [&] { cells.broadcast<&Cell::end>(); };
+    const auto end = [&] { cells.destroy(); };
     co_await tess::epoch(end);
 
     // Memory that is freed stays with the process: only the first time does it grow by what is

@@ -82,6 +82,10 @@ class CorePlayer : public tess::Group<CorePlayer> {
   void play(std::uint64_t address, std::int64_t n_round_trips) {
     auto* ping = reinterpret_cast<CorePing*>(address);  // NOLINT
     const std::size_t side = pe().value == 0 ? 0 : 1;
+    if (side == 0 && !ping->other_plays()) {
+      group()[pe()].send<&CorePlayer::play>(address, n_round_trips);
+      return;
+    }
     const double nanoseconds = ping->play(side, n_round_trips);
     if (side == 0) done_(nanoseconds);
   }
