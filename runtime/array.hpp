@@ -34,7 +34,6 @@ class Array final : public ArrayOf<typename C::Index> {
   ~Array() override { this->destroy_all(); }
 
   [[nodiscard]] PeId home(const Index& index) const override {
-    const auto n_pes = static_cast<std::uint64_t>(this->pe_.n_pes());
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
       const PeId at = C::place(index, this->pe_.n_pes());
       check_exists(this->pe_, at);
@@ -42,11 +41,11 @@ class Array final : public ArrayOf<typename C::Index> {
     } else {
       if constexpr (Coordinates<Index>) {
         if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
-          return PeId{static_cast<std::int32_t>(static_cast<std::uint64_t>(rank) * n_pes /
-                                                this->range().size())};
+          return this->block_map().home(rank);
       }
       // The high bits: the low ones choose the slot in hash tables, which would cluster.
-      return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) % n_pes)};
+      return PeId{static_cast<std::int32_t>(
+          (IndexHash<Index>()(index) >> 32U) % static_cast<std::uint64_t>(this->pe_.n_pes()))};
     }
   }
 
@@ -145,6 +144,7 @@ class Array final : public ArrayOf<typename C::Index> {
       C& chare = static_cast<C&>(element);
       auto* letter = Awakening<C>::make(this->pe_, this->id(), chare.index_);
       letter->epoch = chare.balance_->sync.epoch;  // counted there since at_sync()
+      letter->led_by = chare.balance_->sync.led_by;
       this->post(letter);
     } else {
       Base::resume(element);
@@ -258,7 +258,9 @@ class ElementProxy {
     post<F>(Demand::home, std::forward<Args>(args)...);
   }
 
-  /// Creates the element on this PE with these constructor arguments; misuse if there is one.
+  /// Creates the element on this PE with these constructor arguments; misuse if there is one. It
+  /// meets the broadcasts that come after its birth and joins the reductions that they lead to: see
+  /// Chare::contribute().
   template <class... Args>
   void insert(Args&&... args) const {
     construct(current_pe().id(), Demand::insert, std::forward<Args>(args)...);

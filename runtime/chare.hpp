@@ -59,15 +59,25 @@ class Chare : public IndexedElement<IndexType> {
     }
   }
 
-  /// The number of the reduction that the next contribution belongs to. An element that is born
-  /// joins at the first that its PE has not reported yet: while others are at number r that is r or
-  /// r + 1.
-  [[nodiscard]] std::uint32_t next_reduction() const { return this->state_.next_reduction; }
+  /// The number of the reduction that the next contribution belongs to. A newborn element that has
+  /// asked stays with that number; not for use in a constructor.
+  [[nodiscard]] std::uint32_t next_reduction() {
+    this->collection_->settle_join(*this);
+    return this->state_.next_reduction;
+  }
 
   /// Gives this element's value to the next reduction of the array; every element gives one. The
   /// whole goes to `target`. in_order(op) combines in the order of indices. A constructor's
   /// contribution is to the first reduction that the element is in; an element that is made again
   /// where it has migrated does not repeat it.
+  ///
+  /// An element that is born meets the broadcasts that reach its PE after its birth, and joins at
+  /// the first reduction that its PE has not reported and that no broadcast before its birth led
+  /// to. So one that is born after a result was awaited takes part in later rounds only; one that
+  /// is born in the middle of a round takes part in it if it meets its broadcast. A broadcast leads
+  /// to the contributions of its entry method, and of the coroutines and messages between elements
+  /// of the array that follow from it. Where rounds overlap (a broadcast is started before the
+  /// result of the last one is known), insert elements while none is under way.
   template <class Op, class T>
   void contribute(Op op, T value, Callback<T> target) {
     if (this->collection_ == nullptr) [[unlikely]] {

@@ -76,9 +76,10 @@ class ArrayOf : public Collection {
   using Letter = ElementMessage<Index>;
 
   ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
-      : Collection(pe, id, std::move(name)), range_(range), table_(range) {}
+      : Collection(pe, id, std::move(name)), range_(range), block_map_(range, pe.n_pes()), table_(range) {}
 
   [[nodiscard]] const Range& range() const { return range_; }
+  [[nodiscard]] const BlockMap& block_map() const { return block_map_; }
   [[nodiscard]] virtual PeId home(const Index& index) const = 0;
 
   [[nodiscard]] Indexed* find(const Index& index) {
@@ -259,6 +260,7 @@ class ArrayOf : public Collection {
   void on_buried(const Buried& buried);
 
   const Range range_;
+  const BlockMap block_map_;
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
   std::size_t n_hints_ = 0;             // learnt since they were last forgotten
@@ -279,7 +281,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, Letter* letter) {
                "; insert_if_absent() allows for that");
     discard(letter);
   } else {
-    const ElementScope scope(pe_, element, letter->action, epoch);
+    const ElementScope scope(pe_, element, letter->action, epoch, letter->led_by);
     try {
       action.invoke(element, *letter);
     } catch (...) {

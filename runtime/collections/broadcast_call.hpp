@@ -36,19 +36,20 @@ class BroadcastCall {
   virtual void pack(Writer& ar) const = 0;
 };
 
-/// A broadcast on its way: its number (0 before the root gave it one) and the epoch that pays for
-/// it.
+/// A broadcast on its way: its number (0 before the root gave it one), the epoch that pays for it,
+/// and how many reductions of the collection were complete when it got its number.
 struct NumberedCall {
   std::uint64_t number = 0;
   EpochId epoch{};
   std::shared_ptr<const BroadcastCall> call;
+  std::uint32_t n_complete = 0;
 
   /// Its collection has ended: nobody is called. Returns whether the whole broadcast is lost.
   std::uint64_t drop(Pe& pe) const;
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, epoch);
+    ar(number, epoch, n_complete);
     if constexpr (Ar::is_reading) {
       read(ar, static_cast<const BroadcastKind&>(Registry::at(ar.template take<std::uint32_t>())));
     } else {

@@ -55,6 +55,7 @@ struct TypedLetter : ElementMessage<typename C::Index> {
     letter->collection = collection;
     letter->index = index;
     letter->asker = pe.id();
+    if (pe.context().led_by != 0) letter->led_by = Collection::led_by(pe.context(), collection);
 #ifdef TESS_CHECKS_ALL
     const std::string difference = arguments_difference(letter->arguments);
     TESS_CHECK(difference.empty(), difference);

@@ -27,7 +27,7 @@ void contribute_as(const Key& /*key*/,
                    Collection& collection,
                    Op /*op*/,
                    T value,
-                   Callback<T> target) {
+                   Callback<T>&& target) {
   using Merged = MergedPartial<T, Op>;
   if (Partial* open = collection.open_sum(element, Merged::its_kind()); open != nullptr) {
     static_cast<Merged*>(open)->add(value);
@@ -45,7 +45,7 @@ void contribute_as(const Key& key,
                    Collection& collection,
                    InOrder<Op> /*op*/,
                    T value,
-                   Callback<T> target) {
+                   Callback<T>&& target) {
   check_target(element, target);
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));

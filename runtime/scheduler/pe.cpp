@@ -107,17 +107,32 @@ void Pe::accept(Parcel* parcel) {
   Pool::release(parcel, &pool_);
 }
 
-void Pe::look_at_clock() {
-  const std::uint64_t held = read_ticks() - held_since_;
-  if (held > packed_ticks_) {
-    flush();
-    return;
+/// Runs a message that may take long: what was sent before it leaves first.
+void Pe::run_slow(Envelope* message, const Action& action) {
+  flush();
+  const std::uint64_t begin = read_ticks();
+  run_one(message);
+  const bool quick = read_ticks() - begin < parcel_ticks_;
+  action.set_pace(quick ? Action::Pace::quick : Action::Pace::slow);
+}
+
+/// After a message of this action, while something is held back.
+void Pe::look_at_clock(const Action& action) {
+  const std::uint64_t now = read_ticks();
+  if (now - last_look_ > parcel_ticks_) {
+    if (look_every_ == 1) action.set_pace(Action::Pace::slow);
+    look_every_ = 1;
+  } else {
+    look_every_ = std::min(2 * look_every_, most_between_looks);
   }
-  if (held > parcel_ticks_) {
+  until_look_ = look_every_;
+  last_look_ = now;
+  if (now - held_since_ > packed_ticks_) {
+    flush();
+  } else if (now - held_since_ > parcel_ticks_) {
     flush_parcels();
     holds_ = holds_packed_;
   }
-  until_look_ = look_every_ = std::min(2 * look_every_, most_between_looks);
 }
 
 void Pe::pack(PeId to, Envelope* message) {
@@ -198,7 +213,7 @@ void Pe::run(Envelope* message) {
     discard(message);
     return;
   }
-  context_ = Context{nullptr, message->action, message->epoch};
+  of_message_ = Context{nullptr, message->action, message->epoch};
   try {
     message->action->run(*this, message);
     if (kept_exception_) [[unlikely]]
@@ -212,8 +227,16 @@ void Pe::run(Envelope* message) {
   } catch (...) {
     exception("an exception that is no std::exception", 1);
   }
-  context_ = Context{};
+  of_message_ = Context{};
   if (counted) completion_.hop_processed();
+}
+
+void Pe::run_one(Envelope* message) {
+  if (trace_) [[unlikely]] {
+    run_traced(message);
+  } else {
+    run(message);
+  }
 }
 
 void Pe::run_traced(Envelope* message) {
@@ -254,16 +277,15 @@ std::size_t Pe::step(std::size_t most) {
   std::size_t n = 0;
   if (meter_) [[unlikely]]
     meter_->step_begins();
-  if (trace_) [[unlikely]] {
-    for (; n < most && !ready_.empty(); ++n) {
-      run_traced(static_cast<Envelope*>(ready_.pop()));
-      flush_if_due();
+  for (; n < most && !ready_.empty(); ++n) {
+    auto* const message = static_cast<Envelope*>(ready_.pop());
+    const Action& action = *message->action;
+    if (holds_ && !action.quick()) [[unlikely]] {
+      run_slow(message, action);
+    } else {
+      run_one(message);
     }
-  } else {
-    for (; n < most && !ready_.empty(); ++n) {
-      run(static_cast<Envelope*>(ready_.pop()));
-      flush_if_due();
-    }
+    if (holds_ && --until_look_ == 0) look_at_clock(action);
   }
   statistics_.messages += n;
   idle_calls_ = 0;
@@ -380,7 +402,8 @@ PeId Pe::whim() {
 
 std::vector<std::string> Pe::census() const {
   std::vector<std::string> lines;
-  for (const Suspended& one : suspended_) {
+  for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
+    const Suspended& one = *at;
     lines.push_back(
         text(one.element != nullptr ? element_text(*one.element) : text("the main program"),
              " on ",

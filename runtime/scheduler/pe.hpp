@@ -23,6 +23,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -31,11 +32,13 @@ class Collection;
 class Element;
 class Runtime;
 
-/// What a PE is doing: whose code runs, on which epoch's account.
+/// What a PE is doing: whose code runs, on which epoch's account, and which broadcast of the
+/// element's collection led to it (0: none).
 struct Context {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
+  std::uint32_t led_by = 0;
 };
 
 /// What happened on a PE since the start; printed by --stats.
@@ -63,7 +66,9 @@ class Pe {
   [[nodiscard]] Runtime& runtime() { return runtime_; }
   [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
-  [[nodiscard]] Context& context() { return context_; }
+  [[nodiscard]] Context& context() { return *context_; }
+  /// Another context is in force from now on; returns the one before. It outlives its time in force.
+  Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
@@ -80,7 +85,7 @@ class Pe {
   template <class M>
   M* stamp(M* message) {
     message->source = id_;
-    message->epoch = context_.epoch;
+    message->epoch = context_->epoch;
     if (trace_) [[unlikely]]
       message->trace = trace_->sent(meter_->now());
     return message;
@@ -236,14 +241,12 @@ class Pe {
   void hold() {
     if (holds_) return;
     holds_ = true;
-    held_since_ = read_ticks();
+    held_since_ = last_look_ = read_ticks();
     until_look_ = look_every_ = 1;
   }
-  /// After each message: what was held back for too long leaves.
-  void flush_if_due() {
-    if (holds_ && --until_look_ == 0) look_at_clock();
-  }
-  void look_at_clock();
+  void look_at_clock(const Action& action);
+  void run_slow(Envelope* message, const Action& action);
+  void run_one(Envelope* message);
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -268,7 +271,8 @@ class Pe {
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;
   ReadyQueue ready_;
-  Context context_;
+  Context of_message_;  // of the message that runs
+  Context* context_ = &of_message_;
   Completion completion_;
   SuspendedList suspended_;
   PeStatistics statistics_;
@@ -283,7 +287,7 @@ class Pe {
   // process.
   bool holds_ = false, holds_packed_ = false;
   std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
-  std::uint64_t held_since_ = 0;                   // in ticks
+  std::uint64_t held_since_ = 0, last_look_ = 0;   // in ticks
   std::vector<Buffer> packed_;
   std::vector<Parcel*> parcels_;      // empty where the machine takes none
   std::vector<std::int32_t> opened_;  // those of parcels_ that hold something

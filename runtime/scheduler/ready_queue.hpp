@@ -38,7 +38,7 @@ class ReadyQueue {
 
  private:
   static constexpr std::size_t first_capacity = 256;
-  static constexpr std::size_t distance = 3;  // of the prefetch
+  static constexpr std::size_t distance = 6;  // of the prefetch
 
   void grow() {
     const std::size_t n = tail_ - head_;
