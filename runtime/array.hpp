@@ -13,6 +13,7 @@
 #include "runtime/collections/call.hpp"
 #include "runtime/collections/moving.hpp"
 #include "runtime/collections/routing.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {
@@ -34,7 +35,9 @@ class Array final : public ArrayOf<typename C::Index> {
 
   [[nodiscard]] PeId home(const Index& index) const override {
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
-      return C::place(index, this->pe_.n_pes());
+      const PeId at = C::place(index, this->pe_.n_pes());
+      check_exists(this->pe_, at);
+      return at;
     } else {
       if constexpr (Coordinates<Index>) {
         if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
@@ -58,11 +61,13 @@ class Array final : public ArrayOf<typename C::Index> {
         first = (rank * size + n_pes - 1) / n_pes;
         last = ((rank + 1) * size + n_pes - 1) / n_pes;
       }
-      for (std::int64_t rank = first; rank < last; ++rank) {
-        const auto index = index_at<Index>(this->range(), rank);
-        if (home(index) != this->pe_.id()) continue;
-        this->bear(index, Version{1, 1}, [&args...] { return new C(args...); });
-      }
+      this->bear_initial([&] {
+        for (std::int64_t rank = first; rank < last; ++rank) {
+          const auto index = index_at<Index>(this->range(), rank);
+          if (home(index) != this->pe_.id()) continue;
+          this->bear(index, Version{1, 1}, [&args...] { return make_chare<C>(args...); });
+        }
+      });
     }
   }
 
@@ -73,7 +78,11 @@ class Array final : public ArrayOf<typename C::Index> {
         const auto index = ar.template take<Index>();
         {
           const Pe::Birth birth(this->pe_, &index, this);
-          arrival.element = new C();
+          arrival.element = make_chare<C>();
+          // What its constructor asks for, it had done when it was born.
+          this->drop_after_birth();
+          arrival.element->migrate_to_ = PeId{-1};
+          arrival.element->doomed_ = false;
         }
         ar(arrival.element->state_);
         if (ar.template take<bool>()) {
@@ -81,13 +90,13 @@ class Array final : public ArrayOf<typename C::Index> {
           arrival.element->balance_->unpack(ar, this->pe_.start_meter());
         }
         [[maybe_unused]] const auto sent = std::span(arrival.state).last(ar.remaining());
-        arrival.element->serialize(ar);
-        TESS_CHECK(ar.remaining() == 0,
-                   this->name(),
-                   index_text(index),
-                   ": serialize() read ",
-                   ar.remaining(),
-                   " bytes less than it wrote");
+        read_all(
+            ar,
+            [&] { return this->name() + index_text(index); },
+            [&arrival](Reader& state) {
+              arrival.element->serialize(state);
+              return true;
+            });
 #ifdef TESS_CHECKS_ALL
         const std::string difference = difference_from_bytes(sent, *arrival.element);
         TESS_CHECK(difference.empty(), index_text(index), " of ", difference);
@@ -163,7 +172,7 @@ class Array final : public ArrayOf<typename C::Index> {
  protected:
   Indexed* construct_default() override {
     if constexpr (std::is_default_constructible_v<C>) {
-      return new C();
+      return make_chare<C>();
     } else {
       TESS_CHECK(
           false, this->name(), " has no default constructor: it cannot be created on demand");
@@ -270,7 +279,10 @@ class ElementProxy {
   /// Ends the element.
   void destroy() const { system<Destruction<C>>(); }
   /// Moves the element to a PE.
-  void migrate_to(PeId pe) const { system<Relocation<C>>(pe); }
+  void migrate_to(PeId pe) const {
+    check_exists(current_pe(), pe);
+    system<Relocation<C>>(pe);
+  }
 
   /// A target for results: entry method F of this element.
   template <auto F>
@@ -317,6 +329,7 @@ class ElementProxy {
     static_assert(std::is_constructible_v<C, std::decay_t<Args>...>,
                   "the chare has no constructor that takes these arguments");
     Pe& pe = current_pe();
+    check_exists(pe, where);
     auto* letter = Construction<C, std::decay_t<Args>...>::make(
         pe, collection_, index_, std::forward<Args>(args)...);
     letter->demand = demand;

@@ -14,6 +14,7 @@ void create_at_once(Trial& trial);    // create.cpp
 void message_first(Trial& trial);     // create.cpp
 void lives(Trial& trial);             // lives.cpp
 void broadcasts(Trial& trial);        // broadcasts.cpp
+void constructors(Trial& trial);      // constructors.cpp
 void rounds(Trial& trial);            // rounds.cpp
 void newborns(Trial& trial);          // newborns.cpp
 void refinement(Trial& trial);        // newborns.cpp

@@ -128,6 +128,9 @@ class ArrayOf : public Collection {
 
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;
+  [[nodiscard]] std::string birth_text(const void* index) const override {
+    return name() + index_text(*static_cast<const Index*>(index));
+  }
 
   // Messages between the parts of this array.
   struct Request {
@@ -190,7 +193,17 @@ class ArrayOf : public Collection {
     table_.at(index).set_here(*element);
     list(*element);
     if (element->migrate_to_.value >= 0 || element->doomed_) [[unlikely]]
-      settle(*element);  // its constructor asked for it
+      after_birth([this, element] { settle(*element); });  // its constructor asked for it
+    if (has_after_birth() && !makes_initial_) [[unlikely]]
+      run_after_birth();
+  }
+  /// Makes the first elements, which are all born at once.
+  template <class Make>
+  void bear_initial(const Make& make_all) {
+    makes_initial_ = true;
+    make_all();
+    makes_initial_ = false;
+    run_after_birth();
   }
 
   /// Takes in an element that comes from another PE.
@@ -248,10 +261,11 @@ class ArrayOf : public Collection {
 
   const Range range_;
   const BlockMap block_map_;
+  bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
-  std::size_t n_hints_ = 0;              // learnt since they were last forgotten
-  Letters pending_, waiting_, graves_;   // what is parked, by the reason (Parked)
-  ByIndex<std::uint32_t> n_deaths_;      // of the indices with a grave
+  std::size_t n_hints_ = 0;             // learnt since they were last forgotten
+  Letters pending_, waiting_, graves_;  // what is parked, by the reason (Parked)
+  ByIndex<std::uint32_t> n_deaths_;     // of the indices with a grave
 };
 
 template <class Index>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/ids.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
@@ -50,12 +51,16 @@ struct NumberedCall {
   void serialize(Ar& ar) {
     ar(number, epoch, n_complete);
     if constexpr (Ar::is_reading) {
-      call = static_cast<const BroadcastKind&>(Registry::at(ar.template take<std::uint32_t>()))
-                 .unpack(ar);
+      read(ar, static_cast<const BroadcastKind&>(Registry::at(ar.template take<std::uint32_t>())));
     } else {
       ar(call->kind().id());
-      call->pack(ar);
+      pack_framed(ar, [this](Writer& arguments) { call->pack(arguments); });
     }
+  }
+
+ private:
+  void read(Reader& ar, const BroadcastKind& kind) {
+    call = unpack_framed(ar, kind.name(), kind.unpack);
   }
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
+#include "runtime/collections/make_chare.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/round_trip.hpp"
 #include "runtime/scheduler/block.hpp"
@@ -126,7 +127,7 @@ struct Construction final : TypedLetter<Construction<C, Args...>, C, std::tuple<
   using Base::Base;
 
   static Element* construct(ElementMessage<Index>& message) {
-    return std::apply([](auto&... argument) { return new C(std::move(argument)...); },
+    return std::apply([](auto&... argument) { return make_chare<C>(std::move(argument)...); },
                       static_cast<Construction&>(message).arguments);
   }
   static inline const ElementAction<Index> entry =

@@ -8,6 +8,14 @@ std::string element_text(const Element& element) {
   return element.collection_->name() + element.collection_->index_text_of(element);
 }
 
+void Element::after_birth(const char* what, std::function<void()> call) {
+  Collection* collection = current_pe().birth_collection();
+  TESS_CHECK(collection != nullptr,
+             what,
+             " belongs into an entry method or the constructor; serialize() is neither");
+  collection->after_birth(std::move(call));
+}
+
 Collection::Collection(Pe& pe, CollectionId id, std::string name)
     : pe_(pe),
       id_(id),
@@ -60,6 +68,11 @@ void Collection::born(Element& element) {
   element.state_.born_after = static_cast<std::uint32_t>(applied);
   element.state_.next_reduction = reductions_.joins_at(element.state_.born_after);
   reductions_.born(element.state_.next_reduction);
+}
+
+void Collection::run_after_birth() {
+  const auto calls = std::exchange(after_birth_, {});
+  for (const auto& call : calls) call();
 }
 
 void Collection::postpone(Element& element) {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -141,6 +142,12 @@ class Collection {
   /// it waits.
   virtual void settle(Element& element) = 0;
 
+  /// A constructor of an element asks for something that needs the element to be listed: `call`
+  /// runs once it is. Of the elements that an array is created with: once all of this PE are.
+  void after_birth(std::function<void()> call) { after_birth_.push_back(std::move(call)); }
+  /// "Block[3,4]" of the index that Pe::birth() names.
+  [[nodiscard]] virtual std::string birth_text(const void* index) const = 0;
+
   /// Ends it on this PE: what it holds is dropped, and its elements are destroyed but for those
   /// that have a coroutine that waits (they follow one by one, and free_later() the last). It is in
   /// the PE's table no more.
@@ -162,6 +169,11 @@ class Collection {
   void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
   /// No epoch waits any more for an element that waits at its balancer's barrier: it ends.
   void end_wait(Element& element);
+  /// Runs what constructors have asked for.
+  void run_after_birth();
+  [[nodiscard]] bool has_after_birth() const { return !after_birth_.empty(); }
+  /// An element was made to be read from bytes: what its constructor asks for it has done before.
+  void drop_after_birth() { after_birth_.clear(); }
   /// Registers a new element as born here and now.
   void born(Element& element);
 
@@ -180,6 +192,7 @@ class Collection {
   const CollectionId id_;
   const std::string name_;
   std::vector<Element*> elements_;
+  std::vector<std::function<void()>> after_birth_;
   std::int64_t n_away_ = 0;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;

@@ -11,6 +11,15 @@
 
 namespace tess {
 
+template <class T>
+void check_target(const Element& element, const Callback<T>& target) {
+  TESS_CHECK(static_cast<bool>(target),
+             element_text(element),
+             " contributes, but its Callback<",
+             name_of_type<T>,
+             "> for the result is empty");
+}
+
 /// Merges as it goes; the sum that the elements before it have begun takes the value in place.
 template <class Key, class Op, class T>
 void contribute_as(const Key& /*key*/,
@@ -24,6 +33,7 @@ void contribute_as(const Key& /*key*/,
     static_cast<Merged*>(open)->add(value);
     collection.contributed(element);
   } else {
+    check_target(element, target);
     collection.contribute(element, std::make_unique<Merged>(std::move(value), std::move(target)));
   }
 }
@@ -36,6 +46,7 @@ void contribute_as(const Key& key,
                    InOrder<Op> /*op*/,
                    T value,
                    Callback<T>&& target) {
+  check_target(element, target);
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));
   collection.contribute(

@@ -7,6 +7,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -44,6 +45,10 @@ class Element {
  protected:
   Element() = default;
   ~Element() = default;
+
+  /// Runs `call` once the element that is constructed now is known to its collection. `what` needs
+  /// that.
+  static void after_birth(const char* what, std::function<void()> call);
 
  private:
   friend class Collection;

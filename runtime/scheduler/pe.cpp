@@ -2,6 +2,7 @@
 
 #include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::size_t flush_bytes = 32U << 10U;
 constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
-/// The longest that a message waits for others to the same PE of this process, or to another process.
+/// The longest that a message waits for others to the same PE of this process, or to another
+/// process.
 constexpr double parcel_seconds = 1e-6;
 constexpr double packed_seconds = 4e-6;
 /// Messages between two looks at the clock, while something is held back and messages are short.
@@ -187,14 +189,10 @@ void Pe::receive(std::span<const std::byte> bytes) {
     const auto header = read.take<PackedHeader>();
     Reader body(read.view(header.n_bytes));
     const auto& action = static_cast<const Action&>(Registry::at(header.action));
-    Envelope* message = action.unpack(*this, body);
-    TESS_CHECK(body.remaining() == 0,
-               plain_name(action.name()),
-               ": the arguments read back leave ",
-               body.remaining(),
-               " of ",
-               header.n_bytes,
-               " bytes; does serialize() read what it writes?");
+    Envelope* message = read_all(
+        body,
+        [&action] { return plain_name(action.name()); },
+        [this, &action](Reader& arguments) { return action.unpack(*this, arguments); });
     message->action = &action;
     message->epoch = header.epoch;
     message->source = header.source;
@@ -254,6 +252,10 @@ void Pe::run_traced(Envelope* message) {
 
 void Pe::note_place() {
   if (place_.empty()) place_ = runtime_.describe(*this);
+}
+
+void Pe::note_constructor(const std::string& name) {
+  if (place_.empty()) place_ = runtime_.describe(*this) + " " + name;
 }
 
 void Pe::exception(const char* what, int exit_code) {
@@ -323,7 +325,8 @@ void Pe::drop_all() {
   early_.clear();
   for (Parcel*& parcel : parcels_) {
     if (parcel == nullptr) continue;
-    for (std::uint32_t i = 0; i < parcel->n; ++i) discard(static_cast<Envelope*>(parcel->messages[i]));
+    for (std::uint32_t i = 0; i < parcel->n; ++i)
+      discard(static_cast<Envelope*>(parcel->messages[i]));
     Pool::release(std::exchange(parcel, nullptr), &pool_);
   }
   dropping_ = true;

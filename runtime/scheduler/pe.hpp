@@ -6,6 +6,7 @@
 #include "runtime/base/mix.hpp"
 #include "runtime/base/pool.hpp"
 #include "runtime/base/ticks.hpp"
+#include "runtime/check.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
@@ -199,6 +200,8 @@ class Pe {
   }
   /// An exception leaves the code of an element: the report is to say where that was.
   void note_place();
+  /// The same for a constructor, by its name.
+  void note_constructor(const std::string& name);
 
   /// The index (and array) of the element that is constructed right now; null between.
   [[nodiscard]] const void* birth() const { return birth_index_; }
@@ -309,6 +312,16 @@ inline thread_local Pe* the_current_pe = nullptr;
 
 /// The PE that this thread runs right now. Misuse outside of a PE ends the job.
 [[nodiscard]] Pe& current_pe();
+
+/// There must be a PE of that number in the run.
+inline void check_exists(const Pe& pe, PeId id) {
+  TESS_CHECK(id.value >= 0 && id.value < pe.n_pes(),
+             "there is no ",
+             id,
+             ": the run has ",
+             pe.n_pes(),
+             pe.n_pes() == 1 ? " PE" : " PEs");
+}
 
 /// Makes a PE current for a scope.
 class RunsOn {

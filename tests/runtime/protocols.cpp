@@ -111,6 +111,10 @@ TEST_CASE("messages to the dead are counted", "[runtime][protocol]") {
 TEST_CASE("arrays that end in mid use leave nothing behind", "[runtime][protocol]") {
   run_seeds("destroyed");
 }
+TEST_CASE("a constructor contributes to the first reduction of its element",
+          "[runtime][protocol]") {
+  run_seeds("constructors");
+}
 TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
   run_seeds("groups");
 }
@@ -130,6 +134,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "flood_exit",
                            "mailboxes",
                            "destroyed",
+                           "constructors",
                            "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
