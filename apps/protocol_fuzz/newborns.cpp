@@ -73,8 +73,11 @@ struct JoinShares {
   }
 };
 
+class Governor;
+
 struct Order {
   std::int32_t round = 0;
+  GroupProxy<Governor> governors;
   std::vector<Callback<Share>> targets;  // by part; empty: all elements are told the result
 };
 struct Wake {
@@ -98,7 +101,7 @@ class Cell : public Chare<Cell, Name> {
   /// A result that is also the next step's order.
   void stepped(const Share& share) {
     if (index() == 0) judge_(Share(share));
-    if (share.first_round + 1 < nursery->n_rounds) (void)step(Order{share.first_round + 1, {}});
+    if (share.first_round + 1 < nursery->n_rounds) (void)step(Order{share.first_round + 1, {}, {}});
   }
   /// A broadcast that asks for nothing.
   void remark(int /*round*/) {}
@@ -118,9 +121,10 @@ class Cell : public Chare<Cell, Name> {
 
  private:
   /// How a contribution comes about.
-  enum class Way : std::uint8_t { at_once, coroutine, own_message, by_another };
+  enum class Way : std::uint8_t { at_once, coroutine, own_message, by_another, by_governor };
 
   void give_all(const Order& order);
+  void pass_to_governor(Order order);
   void move(Random& random) {
     if (random.chance(nursery->move_chance)) migrate_to(draw_pe(random));
   }
@@ -177,7 +181,9 @@ Task Cell::step(Order order) {
   if (inserts_first)
     for (const Name child : children_) insert_cell(array(), child, round);
   const std::vector<Name> later = inserts_first ? std::vector<Name>() : children_;
-  Way way = nursery->has_ways ? static_cast<Way>(random.below(4)) : Way::at_once;
+  // By a governor's message only where the first element's own says what led to the round.
+  const bool may_ask = index() != 0 && !order.targets.empty();
+  Way way = nursery->has_ways ? static_cast<Way>(random.below(may_ask ? 5 : 4)) : Way::at_once;
   if (fate == Nursery::Fate::gives_and_ends) {
     way = Way::at_once;
     destroy();
@@ -198,6 +204,9 @@ Task Cell::step(Order order) {
       break;
     case Way::by_another:
       array()[0].send<&Cell::pass_on>(std::move(order), index());
+      break;
+    case Way::by_governor:
+      pass_to_governor(std::move(order));
       break;
   }
   for (const Name child : later) insert_cell(array(), child, round);
@@ -225,6 +234,14 @@ class Governor : public Group<Governor> {
     int round = 0;
   };
   void insert(ArrayProxy<Cell> cells, Birth birth) { insert_cell(cells, birth.name, birth.round); }
+  struct Passed {
+    Order order;
+    Name to = 0;
+  };
+  /// Has an element give by a message of another collection.
+  void pass_on(ArrayProxy<Cell> cells, Passed passed) {
+    cells[passed.to].send<&Cell::give_later>(std::move(passed.order));
+  }
   /// Results of steps that drive themselves; one may overtake another.
   void hear(Share share) {
     const int round = share.first_round;
@@ -255,6 +272,13 @@ class Governor : public Group<Governor> {
   std::map<int, Share> heard_;
   int n_judged_ = 0;
 };
+
+void Cell::pass_to_governor(Order order) {
+  const GroupProxy<Governor> governors = order.governors;
+  Random random = nursery->draws(order.round, index(), 6);
+  governors[draw_pe(random)].send<&Governor::pass_on>(array(),
+                                                      Governor::Passed{std::move(order), index()});
+}
 
 void Governor::populate(const ArrayProxy<Cell>& cells, int round, Random& random) {
   for (std::uint64_t n = random.below(3); n > 0; --n) {
@@ -354,7 +378,7 @@ void Governor::judge(int round, int part, const Share& share) {
 Task Governor::play(ArrayProxy<Cell> cells, int round) {
   Random random = nursery->draws(round, 0, 5);
   std::array<Future<Share>, 3> futures;
-  Order order{round, {}};
+  Order order{round, group(), {}};
   for (int part = 0; part < nursery->n_parts; ++part)
     order.targets.push_back(futures[static_cast<std::size_t>(part)].callback());
   const auto begin = [&] {
@@ -431,7 +455,7 @@ void run_nursery(Trial& trial, const Nursery& here) {
     });
     co_await epoch([&] {
       if (nursery->self_driven) {
-        cells.broadcast<&Cell::step>(Order{0, {}});
+        cells.broadcast<&Cell::step>(Order{0, {}, {}});
       } else {
         governors[seat].send<&Governor::run>(cells);
       }
