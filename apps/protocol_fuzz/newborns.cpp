@@ -1,22 +1,66 @@
 // Elements that are born while rounds of broadcast and reduction go on, most of them with no epoch
 // around. An element that is born after a result was awaited meets only later broadcasts and
 // contributes only to later reductions; where elements refine in the middle of a step, parent and
-// child meet in one step or the next, but never one ahead or behind. The oracle: the members of
-// each result are the elements that gave to it, all of the same round; an element that is born
-// takes part in every round from its first one on.
+// child meet in one step or in the next, but never one ahead or behind.
+//
+// The oracle is one member of a group, the governor. It knows nothing but the results and what is
+// drawn from the seed, so that the scenarios run on several processes, too: an element is in every
+// result from the first round that it met to its end, and in none twice; what was born in an epoch
+// is in the very next result; at the end all are there.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <set>
 
 namespace tess::fuzz {
 namespace {
 
-/// What one element gives to a reduction of a round, and what the whole of it is.
+using Name = std::uint64_t;  // of an element; the first is 0
+
+/// What the seed says; the same on all processes.
+struct Nursery {
+  Trial& trial;
+  std::uint64_t seed = 0;
+  int n_rounds = 0;
+  int n_parts = 1;  // reductions of a round
+  bool in_epochs = false, self_driven = false, has_ways = false;
+  double birth_chance = 0, death_chance = 0, move_chance = 0, remark_chance = 0;
+
+  [[nodiscard]] Random draws(int round, Name name, int what) const {
+    return Random(mix(seed ^ mix(name * 1000003 + static_cast<std::uint64_t>(round * 16 + what))));
+  }
+  [[nodiscard]] Name child_of(Name parent, int round, int k) const {
+    return mix(seed ^ mix(parent + static_cast<std::uint64_t>(round * 16 + k + 1))) | 1U;
+  }
+  enum class Fate : std::uint8_t { lives, gives_and_ends, ends };
+  [[nodiscard]] Fate fate(int round, Name name, bool may_end) const {
+    Random random = draws(round, name, 1);
+    if (name == 0 || !may_end || !random.chance(death_chance)) return Fate::lives;
+    return random.chance(0.5) ? Fate::gives_and_ends : Fate::ends;
+  }
+};
+const Nursery* nursery = nullptr;
+
+PeId draw_pe(Random& random) {
+  return PeId{
+      static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
+}
+
+/// What one element gives to a round.
+struct Entry {
+  Name name = 0;
+  std::int32_t first_round = 0;  // that it met
+  std::int32_t floor = 0;        // the round before which it was inserted
+  bool may_end = false;          // in the next round
+  std::vector<Name> children;    // inserted in this round
+};
+/// To a reduction of a round, and the whole of it.
 struct Share {
   std::int32_t first_round = 0, last_round = 0;
   std::int32_t first_part = 0, last_part = 0;
-  std::vector<std::int32_t> members;
+  std::vector<Entry> entries;
 };
 struct JoinShares {
   Share operator()(Share a, const Share& b) const {
@@ -24,109 +68,23 @@ struct JoinShares {
     a.last_round = std::max(a.last_round, b.last_round);
     a.first_part = std::min(a.first_part, b.first_part);
     a.last_part = std::max(a.last_part, b.last_part);
-    a.members.insert(a.members.end(), b.members.begin(), b.members.end());
+    a.entries.insert(a.entries.end(), b.entries.begin(), b.entries.end());
     return a;
   }
 };
 
-/// How a contribution comes about.
-enum class Way : std::uint8_t { at_once, coroutine, own_message, by_another };
-
-struct Nursery {
-  Trial& trial;
-  std::uint64_t seed = 0;
-  int n_rounds = 0;
-  int n_parts = 1;  // reductions of a round
-  int most_born = 0;
-  bool in_epochs = false, self_driven = false, has_ways = false;
-  double birth_chance = 0, death_chance = 0, move_chance = 0, remark_chance = 0;
-  std::mutex mutex{};
-  int n_born = 0;                                   // indices 0 … n_born − 1
-  std::set<int> alive{};                            // born and not told to end
-  std::set<int> took_part{};                        // met a round, and not told to end
-  std::vector<std::vector<std::set<int>>> given{};  // by round and part
-  int n_results = 0;
-
-  [[nodiscard]] Random draws(int round, int index, int what) const {
-    return Random(mix(seed ^ mix(static_cast<std::uint64_t>(round * 1000003 + index * 7 + what))));
-  }
-  /// The index of an element to be born; −1: there are enough.
-  int next_born() {
-    const std::lock_guard lock(mutex);
-    if (n_born >= most_born) return -1;
-    alive.insert(n_born);
-    return n_born++;
-  }
-  /// False if it has been told to end before.
-  bool ends(int index) {
-    const std::lock_guard lock(mutex);
-    took_part.erase(index);
-    return alive.erase(index) == 1;
-  }
-  void meets(int index) {
-    const std::lock_guard lock(mutex);
-    if (alive.contains(index)) took_part.insert(index);
-  }
-  void give(int round, int part, int index) {
-    const std::lock_guard lock(mutex);
-    auto& givers = given[static_cast<std::size_t>(round)][static_cast<std::size_t>(part)];
-    trial.expect(givers.insert(index).second, "element ", index, " gives twice to ", round);
-  }
-  /// A whole result, against who gave to it and who had to.
-  void judge(int round, int part, const Share& share, const std::set<int>& due) {
-    const std::lock_guard lock(mutex);
-    ++n_results;
-    const auto& givers = given[static_cast<std::size_t>(round)][static_cast<std::size_t>(part)];
-    std::vector<int> members = share.members;
-    std::sort(members.begin(), members.end());
-    trial.expect(members == std::vector<int>(givers.begin(), givers.end()),
-                 "round ",
-                 round,
-                 " part ",
-                 part,
-                 ": ",
-                 members.size(),
-                 " members, ",
-                 givers.size(),
-                 " gave");
-    trial.expect(share.first_round == round && share.last_round == round &&
-                     share.first_part == part && share.last_part == part,
-                 "round ",
-                 round,
-                 " part ",
-                 part,
-                 " has contributions of rounds ",
-                 share.first_round,
-                 " … ",
-                 share.last_round,
-                 ", parts ",
-                 share.first_part,
-                 " … ",
-                 share.last_part);
-    for (const int index : due)
-      trial.expect(givers.contains(index) || !alive.contains(index),
-                   "round ",
-                   round,
-                   " is complete without element ",
-                   index);
-  }
-};
-Nursery* nursery = nullptr;
-
-PeId draw_pe(Random& random) {
-  return PeId{
-      static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
-}
+class Governor;
 
 struct Order {
   std::int32_t round = 0;
-  std::vector<Callback<Share>> targets;  // by part; empty: the whole array is told
+  GroupProxy<Governor> governors;
+  std::vector<Callback<Share>> targets;  // by part; empty: all elements are told the result
 };
 struct Wake {
   std::int32_t key = 0;
 };
 
-class Cell : public Chare<Cell, Index1> {
+class Cell : public Chare<Cell, Name> {
  public:
   Cell() = default;
   explicit Cell(int floor) : born_(true), floor_(floor) {}
@@ -136,91 +94,103 @@ class Cell : public Chare<Cell, Index1> {
     born_ = true;
     floor_ = std::max(floor_, floor);
   }
+  /// Where the first element has results judged that are orders, too.
+  void report_to(Callback<Share> judge) { judge_ = std::move(judge); }
 
   Task step(Order order);
   /// A result that is also the next step's order.
   void stepped(const Share& share) {
-    if (index().x == 0) nursery->judge(share.first_round, 0, share, {});
-    if (share.first_round + 1 < nursery->n_rounds) (void)step(Order{share.first_round + 1, {}});
+    if (index() == 0) judge_(Share(share));
+    if (share.first_round + 1 < nursery->n_rounds) (void)step(Order{share.first_round + 1, {}, {}});
   }
   /// A broadcast that asks for nothing.
   void remark(int /*round*/) {}
   void wake(Wake wake) { waits_.put(wake); }
   void give_later(Order order) { give_all(order); }
   /// Has another element give, by a message.
-  void pass_on(Order order, int to) { array()[{to}].send<&Cell::give_later>(std::move(order)); }
+  void pass_on(Order order, Name to) { array()[to].send<&Cell::give_later>(std::move(order)); }
   /// A reduction without a broadcast.
   void say_here(Callback<Share> target) {
-    const int me = index().x;
-    contribute(JoinShares{}, Share{-1, -1, 0, 0, {me}}, std::move(target));
+    contribute(JoinShares{}, Share{0, 0, 0, 0, {Entry{index(), 0, 0, false, {}}}}, target);
   }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(born_, floor_, last_round_, waits_);
+    ar(born_, may_end_, floor_, first_round_, last_round_, children_, judge_, waits_);
   }
 
  private:
+  /// How a contribution comes about.
+  enum class Way : std::uint8_t { at_once, coroutine, own_message, by_another, by_governor };
+
   void give_all(const Order& order);
-  void bear(Random& random, int floor);
+  void pass_to_governor(Order order);
   void move(Random& random) {
     if (random.chance(nursery->move_chance)) migrate_to(draw_pe(random));
   }
 
-  bool born_ = false;
+  bool born_ = false, may_end_ = false;
   int floor_ = 0;
-  int last_round_ = -1;
+  int first_round_ = -1, last_round_ = -1;
+  std::vector<Name> children_;
+  Callback<Share> judge_;
   Mailbox<&Wake::key> waits_;
 };
 
 /// Has an element be born, in one of the ways there are.
-void insert_cell(const ArrayProxy<Cell>& cells, Random& random, int floor) {
-  const int index = nursery->next_born();
-  if (index < 0) return;
+void insert_cell(const ArrayProxy<Cell>& cells, Name name, int floor) {
+  Random random = nursery->draws(floor, name, 2);
   switch (random.below(5)) {
     case 0:
-      cells[{index}].insert(floor);
+      cells[name].insert(floor);
       break;
     case 1:
     case 2:
-      cells[{index}].insert_on(draw_pe(random), floor);
+      cells[name].insert_on(draw_pe(random), floor);
       break;
     case 3:
-      cells[{index}].send_or_create_here<&Cell::born>(floor);
+      cells[name].send_or_create_here<&Cell::born>(floor);
       break;
     default:
-      cells[{index}].send_or_create_home<&Cell::born>(floor);
+      cells[name].send_or_create_home<&Cell::born>(floor);
   }
 }
 
 Task Cell::step(Order order) {
-  const int me = index().x, round = order.round;
+  const int round = order.round;
   nursery->trial.expect(last_round_ < 0 || last_round_ + 1 == round,
                         "element ",
-                        me,
+                        index(),
                         " meets round ",
                         round,
                         " after ",
                         last_round_);
-  nursery->trial.expect(round >= floor_,
-                        "element ",
-                        me,
-                        " meets round ",
-                        round,
-                        ", whose result was awaited before it was born in round ",
-                        floor_);
+  if (first_round_ < 0) first_round_ = round;
+  const auto fate = nursery->fate(round, index(), may_end_);
   last_round_ = round;
-  if (born_) nursery->meets(me);
-  Random random = nursery->draws(round, me, 0);
-  if (random.chance(nursery->birth_chance)) insert_cell(array(), random, round);
-  const bool dies = me != 0 && born_ && random.chance(nursery->death_chance) && nursery->ends(me);
-  if (dies) {
+  if (fate == Nursery::Fate::ends) {
     destroy();
-    if (random.chance(0.5)) co_return;
+    co_return;
+  }
+  children_.clear();
+  Random random = nursery->draws(round, index(), 3);
+  for (int k = 0; k < 2; ++k)
+    if (round + 1 < nursery->n_rounds && random.chance(nursery->birth_chance))
+      children_.push_back(nursery->child_of(index(), round, k));
+  const bool inserts_first = random.chance(0.5);
+  if (inserts_first)
+    for (const Name child : children_) insert_cell(array(), child, round);
+  const std::vector<Name> later = inserts_first ? std::vector<Name>() : children_;
+  // By a governor's message only where the first element's own says what led to the round.
+  const bool may_ask = index() != 0 && !order.targets.empty();
+  Way way = nursery->has_ways ? static_cast<Way>(random.below(may_ask ? 5 : 4)) : Way::at_once;
+  if (fate == Nursery::Fate::gives_and_ends) {
+    way = Way::at_once;
+    destroy();
   } else {
     move(random);
   }
-  switch (nursery->has_ways && !dies ? static_cast<Way>(random.below(4)) : Way::at_once) {
+  switch (way) {
     case Way::at_once:
       give_all(order);
       break;
@@ -233,167 +203,289 @@ Task Cell::step(Order order) {
       array()[index()].send<&Cell::give_later>(std::move(order));
       break;
     case Way::by_another:
-      array()[{0}].send<&Cell::pass_on>(std::move(order), me);
+      array()[0].send<&Cell::pass_on>(std::move(order), index());
+      break;
+    case Way::by_governor:
+      pass_to_governor(std::move(order));
       break;
   }
-  if (!dies && random.chance(nursery->birth_chance)) insert_cell(array(), random, round);
+  for (const Name child : later) insert_cell(array(), child, round);
 }
 
 void Cell::give_all(const Order& order) {
-  const int me = index().x;
-  for (int part = 0; part < nursery->n_parts; ++part) {
-    nursery->give(order.round, part, me);
+  may_end_ = born_;
+  const Entry entry{index(), first_round_, floor_, may_end_, children_};
+  for (int part = 0; part < nursery->n_parts; ++part)
     contribute(JoinShares{},
-               Share{order.round, order.round, part, part, {me}},
+               Share{order.round, order.round, part, part, {entry}},
                order.targets.empty() ? array().target<&Cell::stepped>()
                                      : order.targets[static_cast<std::size_t>(part)]);
-  }
-  Random random = nursery->draws(order.round, me, 1);
+  Random random = nursery->draws(order.round, index(), 4);
   move(random);
 }
 
-/// Drives the rounds from the PE it is on, and inserts from there or from another.
+/// One member drives the rounds, has elements inserted from its PE and from others, and judges the
+/// results.
 class Governor : public Group<Governor> {
  public:
+  Governor() { known_[0].due = true; }
   struct Birth {
+    Name name = 0;
     int round = 0;
-    std::uint64_t seed = 0;
   };
-  void insert(ArrayProxy<Cell> cells, Birth birth) {
-    Random random(birth.seed);
-    insert_cell(cells, random, birth.round);
+  void insert(ArrayProxy<Cell> cells, Birth birth) { insert_cell(cells, birth.name, birth.round); }
+  struct Passed {
+    Order order;
+    Name to = 0;
+  };
+  /// Has an element give by a message of another collection.
+  void pass_on(ArrayProxy<Cell> cells, Passed passed) {
+    cells[passed.to].send<&Cell::give_later>(std::move(passed.order));
+  }
+  /// Results of steps that drive themselves; one may overtake another.
+  void hear(Share share) {
+    const int round = share.first_round;
+    heard_.emplace(round, std::move(share));
+    for (auto at = heard_.begin(); at != heard_.end() && at->first == n_judged_;
+         at = heard_.erase(at))
+      judge(at->first, 0, at->second);
   }
   Task run(ArrayProxy<Cell> cells);
+  /// After the rounds, when nothing is under way: a last round, in which all are there.
+  Task finish(ArrayProxy<Cell> cells);
 
  private:
   void populate(const ArrayProxy<Cell>& cells, int round, Random& random);
   void depopulate(const ArrayProxy<Cell>& cells, Random& random);
+  Task play(ArrayProxy<Cell> cells, int round);
+  Task call_by_name(ArrayProxy<Cell> cells, int round);
+  void judge(int round, int part, const Share& share);
+  void judge_new(int round, const Entry& entry);
+
+  struct Known {
+    int first_round = -1;  // −1: in no result yet
+    bool may_end = false;
+    bool told_to_end = false;
+    bool due = false;  // in the next result
+  };
+  std::map<Name, Known> known_;  // born, and not ended
+  std::map<int, Share> heard_;
+  int n_judged_ = 0;
 };
+
+void Cell::pass_to_governor(Order order) {
+  const GroupProxy<Governor> governors = order.governors;
+  Random random = nursery->draws(order.round, index(), 6);
+  governors[draw_pe(random)].send<&Governor::pass_on>(array(),
+                                                      Governor::Passed{std::move(order), index()});
+}
 
 void Governor::populate(const ArrayProxy<Cell>& cells, int round, Random& random) {
   for (std::uint64_t n = random.below(3); n > 0; --n) {
+    const Name name = nursery->child_of(random(), round, 2);
+    known_[name].due = nursery->in_epochs;
     if (random.chance(0.5)) {
-      insert_cell(cells, random, round);
+      insert_cell(cells, name, round);
     } else {
-      group()[draw_pe(random)].send<&Governor::insert>(cells, Birth{round, random()});
+      group()[draw_pe(random)].send<&Governor::insert>(cells, Birth{name, round});
     }
   }
 }
 
 void Governor::depopulate(const ArrayProxy<Cell>& cells, Random& random) {
   if (!random.chance(nursery->death_chance)) return;
-  int index = 0;
-  {
-    // Its first message may be under way yet: what has taken part in a round is there to end.
-    const std::lock_guard lock(nursery->mutex);
-    for (const int one : nursery->took_part)
-      if (one != 0 && random.chance(0.3)) index = one;
+  for (auto& [name, known] : known_) {
+    // Not before its first message: that would create it again.
+    if (name == 0 || !known.may_end || known.told_to_end) continue;
+    if (!random.chance(0.3)) continue;
+    known.told_to_end = true;
+    cells[name].destroy();
+    return;
   }
-  if (index != 0 && nursery->ends(index)) cells[{index}].destroy();
+}
+
+void Governor::judge_new(int round, const Entry& entry) {
+  Trial& trial = nursery->trial;
+  trial.expect(entry.first_round == round,
+               "element ",
+               entry.name,
+               " met round ",
+               entry.first_round,
+               " first and is in no result before ",
+               round);
+  trial.expect(entry.floor <= round,
+               "element ",
+               entry.name,
+               " meets round ",
+               round,
+               ", whose result was awaited before it was born in ",
+               entry.floor);
+}
+
+void Governor::judge(int round, int part, const Share& share) {
+  Trial& trial = nursery->trial;
+  trial.expect(share.first_round == round && share.last_round == round &&
+                   share.first_part == part && share.last_part == part,
+               "round ",
+               round,
+               " part ",
+               part,
+               " has contributions of rounds ",
+               share.first_round,
+               " … ",
+               share.last_round,
+               ", parts ",
+               share.first_part,
+               " … ",
+               share.last_part);
+  std::set<Name> members;
+  for (const Entry& entry : share.entries) {
+    trial.expect(members.insert(entry.name).second, entry.name, " gives twice to ", round);
+    const auto at = known_.find(entry.name);
+    if (at == known_.end() || at->second.first_round < 0) judge_new(round, entry);
+  }
+  for (const auto& [name, known] : known_) {
+    const bool ends = nursery->fate(round, name, known.may_end) == Nursery::Fate::ends;
+    const bool expected = (known.first_round >= 0 || known.due) && !ends && !known.told_to_end;
+    trial.expect(!expected || members.contains(name),
+                 "round ",
+                 round,
+                 " part ",
+                 part,
+                 " is complete without element ",
+                 name,
+                 ", which met round ",
+                 known.first_round,
+                 " first");
+    trial.expect(!ends || !members.contains(name), name, " gives after its end in ", round);
+  }
+  if (part + 1 < nursery->n_parts) return;
+  ++n_judged_;
+  std::erase_if(known_, [&](const auto& one) {
+    return nursery->fate(round, one.first, one.second.may_end) != Nursery::Fate::lives ||
+           (one.second.told_to_end && !members.contains(one.first));
+  });
+  for (const Entry& entry : share.entries) {
+    for (const Name child : entry.children) known_[child].due |= nursery->in_epochs;
+    const bool is_known = known_.contains(entry.name);
+    if (!is_known && entry.first_round != round) continue;  // it has ended
+    Known& known = known_[entry.name];
+    known.first_round = entry.first_round;
+    known.may_end = entry.may_end;
+  }
+}
+
+Task Governor::play(ArrayProxy<Cell> cells, int round) {
+  Random random = nursery->draws(round, 0, 5);
+  std::array<Future<Share>, 3> futures;
+  Order order{round, group(), {}};
+  for (int part = 0; part < nursery->n_parts; ++part)
+    order.targets.push_back(futures[static_cast<std::size_t>(part)].callback());
+  const auto begin = [&] {
+    if (random.chance(nursery->remark_chance)) cells.broadcast<&Cell::remark>(round);
+    cells.broadcast<&Cell::step>(order);
+    if (random.chance(nursery->remark_chance)) cells.broadcast<&Cell::remark>(round);
+  };
+  if (nursery->in_epochs) {
+    co_await epoch(begin);
+  } else {
+    begin();
+  }
+  for (int part = 0; part < nursery->n_parts; ++part) {
+    Future<Share>& whole = futures[static_cast<std::size_t>(part)];
+    const Share share = co_await whole;
+    judge(round, part, share);
+  }
+}
+
+/// Between rounds in epochs nothing is under way: a reduction by messages is of exactly those who
+/// are alive.
+Task Governor::call_by_name(ArrayProxy<Cell> cells, int round) {
+  std::set<Name> alive;
+  for (const auto& [name, known] : known_)
+    if (!known.told_to_end) alive.insert(name);
+  Future<Share> here;
+  for (const Name name : alive) cells[name].send<&Cell::say_here>(here.callback());
+  const Share share = co_await here;
+  std::set<Name> members;
+  for (const Entry& entry : share.entries) members.insert(entry.name);
+  nursery->trial.expect(members == alive && share.entries.size() == alive.size(),
+                        "after round ",
+                        round,
+                        ": ",
+                        share.entries.size(),
+                        " of ",
+                        alive.size(),
+                        " elements in a reduction by messages");
 }
 
 Task Governor::run(ArrayProxy<Cell> cells) {
   Random random(mix(nursery->seed + 1));
   for (int round = 0; round < nursery->n_rounds; ++round) {
-    if (nursery->in_epochs) {
-      co_await epoch([&] { populate(cells, round, random); });
-    } else {
+    const auto change = [&] {
       populate(cells, round, random);
-    }
-    depopulate(cells, random);
-    std::set<int> due;
-    {
-      const std::lock_guard lock(nursery->mutex);
-      due = nursery->in_epochs ? nursery->alive : nursery->took_part;
-    }
-    std::array<Future<Share>, 3> futures;
-    Order order{round, {}};
-    for (int part = 0; part < nursery->n_parts; ++part)
-      order.targets.push_back(futures[static_cast<std::size_t>(part)].callback());
-    if (random.chance(nursery->remark_chance)) cells.broadcast<&Cell::remark>(round);
-    const auto begin = [&] {
-      cells.broadcast<&Cell::step>(order);
-      if (random.chance(nursery->remark_chance)) cells.broadcast<&Cell::remark>(round);
+      depopulate(cells, random);
     };
     if (nursery->in_epochs) {
-      co_await epoch(begin);
+      co_await epoch(change);
+      if (random.chance(0.3)) co_await call_by_name(cells, round - 1);
     } else {
-      begin();
+      change();
     }
-    for (int part = 0; part < nursery->n_parts; ++part) {
-      Future<Share>& whole = futures[static_cast<std::size_t>(part)];
-      const Share share = co_await whole;
-      nursery->judge(round, part, share, due);
-    }
-    if (!nursery->in_epochs || !random.chance(0.3)) continue;
-    // Nothing is under way: a reduction by messages is of exactly those who are alive, and of those
-    // who are born now.
-    co_await epoch([&] { populate(cells, round + 1, random); });
-    Future<Share> here;
-    std::set<int> alive;
-    {
-      const std::lock_guard lock(nursery->mutex);
-      alive = nursery->alive;
-    }
-    for (const int index : alive) cells[{index}].send<&Cell::say_here>(here.callback());
-    Share share = co_await here;
-    std::sort(share.members.begin(), share.members.end());
-    nursery->trial.expect(share.members == std::vector<int>(alive.begin(), alive.end()),
-                          "after round ",
-                          round,
-                          ": ",
-                          share.members.size(),
-                          " of ",
-                          alive.size(),
-                          " elements in a reduction by messages");
+    co_await play(cells, round);
   }
 }
 
-void run_nursery(Trial& trial, Nursery& here) {
+Task Governor::finish(ArrayProxy<Cell> cells) {
+  for (auto& [name, known] : known_) known.due = true;
+  const int round = nursery->n_rounds;
+  co_await play(cells, round);
+  nursery->trial.expect(n_judged_ == round + 1, n_judged_, " results of ", round + 1);
+}
+
+void run_nursery(Trial& trial, const Nursery& here) {
   nursery = &here;
-  here.given.resize(static_cast<std::size_t>(here.n_rounds),
-                    std::vector<std::set<int>>(static_cast<std::size_t>(here.n_parts)));
   const PeId seat{trial.draw(0, trial.n_pes() - 1)};
-  const Ending ending = trial.run([&]() -> Task {
+  const Ending ending = trial.run([seat]() -> Task {
     const auto cells = tess::create<Cell>(sparse);
     const auto governors = create_group<Governor>();
-    co_await epoch([&] { cells[{nursery->next_born()}].insert(0); });
-    if (nursery->self_driven) {
-      cells.broadcast<&Cell::step>(Order{0, {}});
-    } else {
-      governors[seat].send<&Governor::run>(cells);
-    }
+    co_await epoch([&] {
+      cells[0].insert(0);
+      cells[0].send<&Cell::report_to>(governors[seat].target<&Governor::hear>());
+    });
+    co_await epoch([&] {
+      if (nursery->self_driven) {
+        cells.broadcast<&Cell::step>(Order{0, {}, {}});
+      } else {
+        governors[seat].send<&Governor::run>(cells);
+      }
+    });
+    co_await epoch([&] { governors[seat].send<&Governor::finish>(cells); });
   });
   trial.expect(ending.exit_code == 0, "exit code ", ending.exit_code, "; ", ending.report);
-  // An element that is destroyed in the middle of a step may leave messages to itself.
+  // An element that is told to end in the middle of a step may leave messages to itself.
   trial.expect(ending.report.empty() ||
                    (here.death_chance > 0 && ending.report.find("destroyed") != std::string::npos),
                "report: ",
                ending.report);
-  trial.expect(here.n_results == here.n_rounds * here.n_parts,
-               here.n_results,
-               " results of ",
-               here.n_rounds * here.n_parts);
 }
 
 }  // namespace
 
 void newborns(Trial& trial) {
   Nursery here{trial, trial.random()(), trial.draw(4, 20)};
-  here.most_born = 60;
   here.in_epochs = trial.draw(0, 1) == 1;
   if (trial.draw(0, 1) == 0) trial.forbid_forced_migration();
   run_nursery(trial, here);
 }
 
 void refinement(Trial& trial) {
-  Nursery here{trial, trial.random()(), trial.draw(4, 20)};
-  here.most_born = 40;
+  Nursery here{trial, trial.random()(), trial.draw(4, 16)};
   here.self_driven = trial.draw(0, 3) == 0;
-  here.in_epochs = !here.self_driven && trial.draw(0, 3) == 0;
+  here.in_epochs = !here.self_driven && trial.draw(0, 2) == 0;
   here.has_ways = trial.draw(0, 2) != 0;
   here.n_parts = here.self_driven ? 1 : trial.draw(1, 3);
-  here.birth_chance = trial.random().unit() * 0.4;
+  here.birth_chance = trial.random().unit() * 0.12;
   here.death_chance = trial.draw(0, 1) * trial.random().unit() * 0.2;
   here.move_chance = trial.draw(0, 1) * 0.3;
   here.remark_chance = trial.draw(0, 1) * 0.5;

@@ -39,6 +39,7 @@ struct Scenario {
   std::string_view name;
   std::string_view claim;
   void (*run)(Trial&);
+  bool in_jobs = false;  ///< its oracle needs no memory that processes share
 };
 
 [[nodiscard]] std::span<const Scenario> scenarios();

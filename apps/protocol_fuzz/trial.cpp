@@ -1,5 +1,6 @@
 #include "apps/protocol_fuzz/trial.hpp"
 
+#include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 
@@ -16,13 +17,27 @@ std::int32_t pes_of_seed(std::uint64_t seed) {
   return choices[mix(seed ^ 0x70657300U) % choices.size()];
 }
 
-Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine)
-    : seed_(seed), n_pes_(n_pes), machine_(machine), random_(mix(seed + 1)) {}
+std::unique_ptr<Machine> make_job_machine(std::int32_t pes_per_process) {
+  int argc = 0;
+  char** argv = nullptr;
+  return make_mpi_machine(
+      argc, argv, MpiOptions{.pes_per_process = pes_per_process, .pinning = Pinning::none});
+}
+
+Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_processes)
+    : seed_(seed),
+      n_pes_(n_pes),
+      pes_of_process_(n_pes / n_processes),
+      machine_(machine),
+      random_(mix(seed + 1)) {}
 
 Ending Trial::run_message(std::function<void()> main) {
   Ending ending;
   Setup setup;
-  if (machine_ == On::threads) {
+  if (machine_ == On::job) {
+    setup.machine = make_job_machine(pes_of_process_);
+    setup.options.seed = seed_;
+  } else if (machine_ == On::threads) {
     setup.machine = make_threads_machine(n_pes_);
     setup.options.seed = seed_;
   } else {

@@ -2,13 +2,16 @@
 // draws its size and shape from the trial's random numbers, runs a program or several, and states
 // what must hold; the first few statements that did not are kept as text.
 //
-// The chares of a scenario and its oracle share the memory of one process: an oracle is guarded by
-// a mutex, so that the same scenario runs on the machine of threads.
+// The chares of most scenarios and their oracle share the memory of one process: an oracle is
+// guarded by a mutex, so that the same scenario runs on the machine of threads. On several
+// processes (a job) each draws the same from the seed, and states what it sees: there a scenario
+// runs whose oracle travels in its messages.
 #pragma once
 
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -23,9 +26,10 @@ struct Ending {
 
 class Trial {
  public:
-  enum class On { simulated, threads };
+  enum class On { simulated, threads, job };
 
-  Trial(std::uint64_t seed, std::int32_t n_pes, On machine);
+  /// `n_pes`: of the whole job, a multiple of n_processes.
+  Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_processes = 1);
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
@@ -67,6 +71,7 @@ class Trial {
 
   const std::uint64_t seed_;
   const std::int32_t n_pes_;
+  const std::int32_t pes_of_process_;
   const On machine_;
   Random random_;
   std::uint64_t n_runs_ = 0;
@@ -74,6 +79,10 @@ class Trial {
   std::mutex mutex_;
   std::vector<std::string> failures_;
 };
+
+/// The processes that mpirun started, with so many PEs each; MPI is initialised by the first of
+/// these and finalised by its end.
+[[nodiscard]] std::unique_ptr<Machine> make_job_machine(std::int32_t pes_per_process);
 
 /// The number of PEs that a seed stands for where none is given: 1, 2, 3, 4, 7 or 8.
 [[nodiscard]] std::int32_t pes_of_seed(std::uint64_t seed);

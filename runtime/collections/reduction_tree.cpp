@@ -63,13 +63,27 @@ void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
   }
 }
 
-void ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
-  if (led_by == 0 || !led_to_.learn(led_by, number)) return;
+bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
+  if (led_by == 0 || !led_to_.learn(led_by, number)) return false;
   collection_.postpone_newborns();
+  return true;
+}
+
+void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cause) {
+  into.cause.met = std::max(into.cause.met, cause.met);
+  if (cause.led_by - 1 >= into.cause.led_by - 1) return;  // 0, which is none, comes last
+  into.cause.led_by = cause.led_by;
+  (void)learn(number, cause.led_by);
   // A PE below that was asked before may hold an element that waits for this.
-  const auto at = gathering_.find(number);
-  const bool asked = at != gathering_.end() ? at->second.asked : number < next_report_;
-  if (asked) ask_children(number, Cause{0, led_by});
+  if (into.asked) ask_children(number, into.cause);
+}
+
+void ReductionTree::take(std::uint32_t number, const Cause& cause) {
+  if (number >= next_report_) {
+    take(number, gathering_[number], cause);
+  } else if (learn(number, cause.led_by)) {
+    ask_children(number, cause);
+  }
 }
 
 void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {
@@ -137,11 +151,7 @@ void ReductionTree::leave(std::uint32_t next) {
 
 void ReductionTree::added(std::uint32_t number, const Cause& cause) {
   Gathering& gathering = *current_;
-  gathering.cause.met = std::max(gathering.cause.met, cause.met);
-  if (cause.led_by - 1 < gathering.cause.led_by - 1) [[unlikely]] {
-    gathering.cause.led_by = cause.led_by;
-    learn(number, cause.led_by);
-  }
+  take(number, gathering, cause);
   const EpochId epoch = gathering.shares.front().epoch;
   pe_.completion().sent(epoch);
   ++gathering.shares.front().n;
@@ -173,11 +183,10 @@ void ReductionTree::contribute(std::uint32_t number,
   gathering.known = true;
   ++gathering.n;
   merge(gathering, std::move(value));
-  merge(gathering, cause);
   merge(gathering, EpochShare{epoch, 1});
   current_ = &gathering;
   current_number_ = number;
-  learn(number, cause.led_by);
+  take(number, gathering, cause);
   advance();
 }
 
@@ -248,7 +257,8 @@ void ReductionTree::on_report(Report&& report) {
       merge(whole.sum, report.shares);
     }
     if (report.joins != 0) whole_[report.joins].sum.change += 1;
-    learn(report.number, report.cause.led_by);
+    take(report.number, report.cause);
+    advance();
     complete_if_whole();
     return;
   }
@@ -258,19 +268,14 @@ void ReductionTree::on_report(Report&& report) {
   gathering.n += report.n;
   gathering.change += report.change;
   merge(gathering, std::move(report.value.held));
-  merge(gathering, report.cause);
   merge(gathering, report.shares);
-  learn(report.number, report.cause.led_by);
+  take(report.number, gathering, report.cause);
   advance();
 }
 
 void ReductionTree::on_begin(const Begin& begin) {
-  if (begin.number >= next_report_) {
-    Gathering& gathering = gathering_[begin.number];
-    gathering.known = true;
-    merge(gathering, begin.cause);
-  }
-  learn(begin.number, begin.cause.led_by);
+  if (begin.number >= next_report_) gathering_[begin.number].known = true;
+  take(begin.number, begin.cause);
   advance();
 }
 

@@ -159,11 +159,6 @@ class ReductionTree {
   };
 
   static void merge(Gathering& into, std::unique_ptr<Partial> value);
-  static void merge(Gathering& into, const Cause& cause) {
-    into.cause.met = std::max(into.cause.met, cause.met);
-    // The least but for 0, which is none.
-    into.cause.led_by = std::min(into.cause.led_by - 1, cause.led_by - 1) + 1;
-  }
   static void merge(Gathering& into, const EpochShare& share);
   static void merge(Gathering& into, const std::vector<EpochShare>& shares) {
     for (const EpochShare& share : shares) merge(into, share);
@@ -175,7 +170,11 @@ class ReductionTree {
   void send(PeId to, Report&& report);
   void send_late_change(std::uint32_t number, std::uint32_t joins);
   void ask_children(std::uint32_t number, const Cause& cause);
-  void learn(std::uint32_t number, std::uint32_t led_by);
+  /// A broadcast led to a contribution to `number`. False if that says nothing new.
+  bool learn(std::uint32_t number, std::uint32_t led_by);
+  /// A contribution to `number` follows from this.
+  void take(std::uint32_t number, Gathering& into, const Cause& cause);
+  void take(std::uint32_t number, const Cause& cause);
 
   Pe& pe_;
   Collection& collection_;
