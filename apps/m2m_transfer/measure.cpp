@@ -15,13 +15,11 @@ void take(const Outcome& outcome, Problem& problem) {
   std::vector<double> status(problem.target.n_points());
   for (std::size_t i = 0; i < outcome.points.size(); ++i) {
     const auto vertex = static_cast<std::size_t>(outcome.points[i]);
-    ++problem.report.counts[static_cast<std::size_t>(outcome.status[i])];
     status[vertex] = static_cast<double>(outcome.status[i]);
     for (std::size_t f = 0; f < n_fields; ++f)
       problem.target_fields[f].values[vertex] = outcome.values[i * n_fields + f];
   }
   problem.target_fields.push_back({"status", 1, std::move(status)});
-  problem.report.n_candidates = outcome.n_candidates;
 }
 
 void judge(Problem& problem) {
@@ -64,15 +62,17 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   options.policy = problem.policy;
   options.on_phase = [&progress](const char* name) { progress.phase(name); };
   for (std::int32_t round = 0; round < problem.repeat; ++round) {
-    TransferTimes times;
-    co_await transfer(source, target, options, &times);
+    TransferSummary summary;
+    co_await transfer(source, target, options, &summary);
     PhaseSeconds& best = report.seconds;
-    if (round == 0 || times.broad + times.narrow + times.report < best.transfer()) {
-      best.broad = times.broad;
-      best.narrow = times.narrow;
-      best.report = times.report;
+    if (round == 0 || summary.broad + summary.narrow + summary.report < best.transfer()) {
+      best.broad = summary.broad;
+      best.narrow = summary.narrow;
+      best.report = summary.report;
     }
     if (round != 0) continue;
+    report.counts = summary.tally.counts;
+    report.n_candidates = summary.tally.n_candidates;
     gauge.broadcast<&Gauge::read>(after.callback());
     report.footprint.bytes_sent = (co_await after).bytes_sent - sent_before.bytes_sent;
   }

@@ -45,7 +45,8 @@ DistributedMesh scatter(const TetMesh& mesh,
   for (std::int32_t k = 0; k < n_parts; ++k) {
     MeshPart& part = parts[static_cast<std::size_t>(k)];
     std::vector<double> rows = rows_of(part, fields, out.n_components);
-    out.workers[{k}].send<&Worker::load>(std::move(part), std::move(rows));
+    out.workers[{k}].send<&Worker::load>(
+        PartLoad{std::move(part), out.n_components, std::move(rows)});
   }
   return out;
 }
