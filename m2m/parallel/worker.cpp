@@ -147,8 +147,7 @@ void Worker::answer(Query query) {
   for (const Found& f : found) {
     const PointPair& pair = query.pairs[static_cast<std::size_t>(f.pair)];
     const auto point = static_cast<std::size_t>(pair.point);
-    const Candidate claim{
-        f.location.violation, part_.tet_ids[static_cast<std::size_t>(pair.tet)], f.location.status};
+    const Candidate claim = claim_of(f.location, part_.tet_ids[static_cast<std::size_t>(pair.tet)]);
     if (!better(claim, best[point])) continue;
     best[point] = claim;
     winner[point] = &f;

@@ -5,6 +5,7 @@
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
+#include "tests/m2m/non_conforming.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -129,17 +130,19 @@ TEST_CASE("a transfer through chares gives the bits of the serial one on every s
 
 TEST_CASE("a mesh transferred onto itself through chares returns its values bit for bit",
           "[m2m][parallel]") {
-  const TetMesh mesh = read_mesh("kuhn:5@0.1");
-  Case c = make_case(mesh, mesh, Keep{});
-  check_on_all_machines(c, 20);
-  Result got;
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
-  for (std::size_t f = 0; f < 2; ++f) {
-    const bool same_values = got.values[f] == c.source_fields[f].values;
-    REQUIRE(same_values);
+  for (const TetMesh& mesh : {read_mesh("kuhn:5@0.1"), test::non_conforming_mesh()}) {
+    INFO(mesh.name);
+    Case c = make_case(mesh, mesh, Keep{});
+    check_on_all_machines(c, 20);
+    Result got;
+    Setup setup{make_threads_machine(2), {}};
+    REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
+    for (std::size_t f = 0; f < 2; ++f) {
+      const bool same_values = got.values[f] == c.source_fields[f].values;
+      REQUIRE(same_values);
+    }
+    for (const Status status : got.status) REQUIRE(status == Status::boundary);
   }
-  for (const Status status : got.status) REQUIRE(status == Status::boundary);
 }
 
 TEST_CASE("offsets and scales lose no vertex through chares", "[m2m][parallel]") {

@@ -4,6 +4,7 @@
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/search/serial_transfer.hpp"
 #include "runtime/error.hpp"
+#include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
@@ -148,8 +149,10 @@ TEST_CASE(
     double least = INFINITY;
     for (std::size_t t = 0; t < source.n_tets(); ++t) {
       const auto found = locate(target.points[v], corners_of(source.points, source.tets[t]));
-      if (!found || found->violation >= least) continue;
-      least = found->violation;
+      if (!found) continue;
+      const double rank = found->place == Place::corner ? -1 : found->violation;
+      if (rank >= least) continue;
+      least = rank;
       first = static_cast<GlobalId>(t);
     }
     if (first != moved.report.tet[v])
@@ -238,6 +241,21 @@ TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do no harm", "[
   CHECK(outside(moved) == 0);
   CHECK(moved.norms.linf < 1e-12);
   CHECK(outside(move_formula(source, source, "linear")) == 0);
+}
+
+TEST_CASE("a non-conforming mesh onto itself is exact: the corner that coincides gives the value",
+          "[m2m][transfer]") {
+  const TetMesh mesh = tess::test::non_conforming_mesh();
+  std::vector<Field> from{{"f", 1, {}}};
+  const auto scramble = [](double x) { return std::fmod(x * 7919.0, 1.0); };
+  for (const Point& p : mesh.points)
+    from[0].values.push_back(scramble(p[0]) + scramble(3 * p[1]) + scramble(5 * p[2]));
+  std::vector<Field> to{{"f", 1, std::vector<double>(mesh.n_points())}};
+  const SerialReport report = transfer_serial(mesh, from, mesh, to, Keep{});
+  for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+    if (to[0].values[v] != from[0].values[v]) FAIL("vertex " << v << " has another value");
+    if (report.status[v] != Status::boundary) FAIL("vertex " << v << " is no corner");
+  }
 }
 
 TEST_CASE("points outside are counted and get what the policy says", "[m2m][transfer]") {
