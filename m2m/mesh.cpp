@@ -27,12 +27,74 @@ double signed_volume(const TetMesh& mesh, std::size_t tet) {
          6.0;
 }
 
+std::string skipped_text(const TetMesh& mesh) {
+  std::string out;
+  for (const Skipped& skipped : mesh.skipped) {
+    if (!out.empty()) out += ", ";
+    out += std::to_string(skipped.n_elements) + " " + skipped.type;
+  }
+  return out;
+}
+
+namespace {
+
+void validate_groups(const TetMesh& mesh) {
+  std::size_t n_in_blocks = 0;
+  for (const Block& block : mesh.blocks) n_in_blocks += block.n_tets;
+  if (!mesh.blocks.empty() && n_in_blocks != mesh.n_tets())
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": its blocks have ",
+         n_in_blocks,
+         " of ",
+         mesh.n_tets(),
+         " tetrahedra; give all, or no blocks");
+  for (const SideSet& set : mesh.side_sets) {
+    for (const Side& side : set.entries) {
+      if (side.tet < 0 || side.tet >= static_cast<GlobalId>(mesh.n_tets()) || side.side < 1 ||
+          side.side > 4)
+        fail(ErrorCode::bad_mesh,
+             mesh.name,
+             ": side set ",
+             set.id,
+             " names side ",
+             side.side,
+             " of tetrahedron ",
+             side.tet,
+             " (counted from 0) of ",
+             mesh.n_tets(),
+             "; write the mesh again");
+    }
+  }
+  for (const NodeSet& set : mesh.node_sets) {
+    for (const VertexId v : set.entries) {
+      if (v < 0 || static_cast<std::size_t>(v) >= mesh.n_points())
+        fail(ErrorCode::bad_mesh,
+             mesh.name,
+             ": node set ",
+             set.id,
+             " names vertex ",
+             v,
+             " (counted from 0) of ",
+             mesh.n_points(),
+             "; write the mesh again");
+    }
+  }
+}
+
+}  // namespace
+
 MeshCensus validate(const TetMesh& mesh) {
   const std::size_t n = mesh.n_points();
   if (mesh.tets.empty()) {
-    fail(
-        ErrorCode::bad_mesh, mesh.name, ": has no tetrahedra; give a volume mesh of TET4 elements");
+    const std::string others = skipped_text(mesh);
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": has no tetrahedra",
+         others.empty() ? "" : " (but " + others + ")",
+         "; give a volume mesh of TET4 elements");
   }
+  validate_groups(mesh);
   if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
     fail(ErrorCode::bad_mesh,
          mesh.name,

@@ -14,6 +14,7 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   nlohmann::ordered_json pair;
   pair["source"] = r.source;
   pair["target"] = r.target;
+  pair["skipped"] = {{"source", r.source_skipped}, {"target", r.target_skipped}};
   pair["targets"] = r.targets;
   pair["inside"] = r.counts[0];
   pair["boundary"] = r.counts[1];
@@ -64,6 +65,8 @@ std::string table(const TransferReport& r) {
   line("machine", r.machine);
   line("chares", fmt::format("{} a mesh, voxels of {:.4g}", r.chares, r.voxel));
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
+  if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
+  if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
   line("found",
        fmt::format("{} inside, {} boundary, {} snapped, {} outside",
                    r.counts[0],

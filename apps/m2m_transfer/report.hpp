@@ -26,6 +26,7 @@ struct FieldError {
 
 struct TransferReport {
   std::string source, target, policy, machine;
+  std::string source_skipped, target_skipped;  ///< elements that are no volumes: "120 TRI3"
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
   double source_edge = 0;  ///< of a cube that holds six of its tetrahedra: 1/N for kuhn:N
