@@ -39,6 +39,13 @@ struct Collider {
 
   /// Hands objects of a client on this PE to the local Manager.
   void submit(std::vector<Item> items) const { managers.local().submit(std::move(items)); }
+
+  /// Ends the collider, between two collisions: its voxels (with their balancer) and Managers are
+  /// freed on all PEs. The epoch that runs waits for that.
+  void destroy() const {
+    voxels.destroy();
+    managers.destroy();
+  }
 };
 
 /// Makes the (empty) array of voxels and the Managers. Throws Error for a voxel size that is not

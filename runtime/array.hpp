@@ -106,6 +106,31 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
 
+  /// An element arrives after the end of the array: it ends, too.
+  static void drop(Pe& pe, Arrival<C>& arrival) {
+    BalanceRecord unpacked;
+    const BalanceRecord* record = nullptr;
+    if (arrival.element != nullptr) {
+      record = arrival.element->balance_.get();
+    } else {
+      Reader ar(arrival.state);
+      (void)ar.template take<Index>();
+      (void)ar.template take<ElementState>();
+      if (ar.template take<bool>()) {
+        unpacked.unpack(ar, pe.start_meter());
+        record = &unpacked;
+      }
+    }
+    if (record != nullptr && record->sync.phase == SyncPhase::waits)
+      pe.completion().processed(record->sync.epoch);
+    pe.completion().processed(arrival.epoch);
+    if (arrival.element == nullptr) return;
+    // The part of the array that it left may be freed: its destructor may ask for array() still.
+    Array gone(pe, arrival.collection, Range{});
+    arrival.element->collection_ = &gone;
+    delete std::exchange(arrival.element, nullptr);
+  }
+
   void resume(Element& element) override {
     if constexpr (ResumesFromSync<C>) {
       C& chare = static_cast<C&>(element);
@@ -179,6 +204,12 @@ void Arrival<C>::pack(Envelope& envelope, Writer& ar) {
   auto& arrival = static_cast<Arrival&>(envelope);
   if (arrival.element != nullptr) arrival.pack_state();
   ar(arrival.collection, arrival.from, arrival.state);
+}
+
+template <class C>
+std::uint64_t Arrival<C>::drop(Pe& pe, Envelope& envelope) {
+  Array<C>::drop(pe, static_cast<Arrival&>(envelope));
+  return 0;
 }
 
 template <class C>
@@ -344,6 +375,13 @@ class ArrayProxy {
     start_broadcast(id_, std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
   }
 
+  /// Ends the array: on every PE its elements are destroyed and all that it holds is freed, its
+  /// balancer included. Messages, broadcasts, contributions and elements that are still under way
+  /// to it are dropped where they arrive; messages and broadcasts count as dead letters. An element
+  /// whose coroutine waits gets no more messages, and ends once the coroutine is done. The epoch
+  /// that runs waits until all PEs have freed the array. The second end of an array does nothing.
+  void destroy() const { end_collection(id_); }
+
   /// A target for results: entry method F of all elements.
   template <auto F>
   [[nodiscard]] auto target() const {
@@ -355,9 +393,10 @@ class ArrayProxy {
   [[nodiscard]] Array<C>& here() const {
     Collection* collection = current_pe().find(id_);
     TESS_CHECK(collection != nullptr,
-               "the array of this proxy is not known on ",
-               current_pe().id(),
-               " yet");
+               "the array of this proxy ",
+               current_pe().ended(id_) ? "was destroyed" : "is not known yet",
+               " on ",
+               current_pe().id());
     return *static_cast<Array<C>*>(collection);
   }
 

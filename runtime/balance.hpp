@@ -8,7 +8,8 @@
 //     periodic    no barrier: a round whenever `period` has passed, beside the elements' work
 //
 // Elements that exist where balancing starts are waited for from the first round on; later ones
-// from their first at_sync() on. An element that ends is no longer waited for.
+// from their first at_sync() on. An element that ends is no longer waited for. The balancer ends
+// with its array.
 //
 // A program whose phases are epochs has a barrier already: between two of them it awaits
 // balancer.round(), and no element calls at_sync(). That is the way for arrays whose elements come
@@ -22,7 +23,8 @@
 
 namespace tess {
 
-/// The balancer of an array. A value that can be copied; history() on the PE that started it.
+/// The balancer of an array. A value that can be copied; history() on the PE that started it. After
+/// the end of the array neither history() nor round() may be called.
 class BalancerProxy {
  public:
   BalancerProxy() = default;

@@ -1,10 +1,11 @@
-// Groups: one member on each PE, for the whole life of the run. class Manager : public
+// Groups: one member on each PE, until destroy() or the end of the run. class Manager : public
 // tess::Group<Manager> { … }; Messages go to the member on a PE; the member on this PE is an
 // ordinary object to its neighbours: proxy.local().
 #pragma once
 
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/collections/contribution.hpp"
+#include "runtime/collections/ending.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
@@ -55,7 +56,17 @@ class GroupOf final : public Collection {
   }
 
   [[nodiscard]] G& member() { return *member_; }
+  void end() override {
+    if constexpr (requires { member_->group_ends(); }) member_->group_ends();
+    Collection::end();
+    if (!member_->doomed_) end_member();
+  }
   void settle(Element& element) override {
+    if (ended()) {
+      end_member();
+      free_later(*this);
+      return;
+    }
     TESS_CHECK(element.migrate_to_.value < 0 && !element.doomed_,
                "members of ",
                name(),
@@ -67,6 +78,11 @@ class GroupOf final : public Collection {
   }
 
  private:
+  void end_member() {
+    unlist(*member_);
+    member_.reset();
+  }
+
   std::unique_ptr<G> member_;
 };
 
@@ -84,7 +100,7 @@ struct GroupCall final : Envelope {
     auto* call = static_cast<GroupCall*>(envelope);
     Collection* collection = pe.find(call->collection);
     if (collection == nullptr) {
-      pe.keep_early(call->collection, envelope);
+      pe.keep_early(call->collection, envelope, &drop);
       return;
     }
     G& member = static_cast<GroupOf<G>*>(collection)->member();
@@ -102,6 +118,10 @@ struct GroupCall final : Envelope {
       destroy(envelope);
     }
     pe.completion().processed(epoch);
+  }
+  static std::uint64_t drop(Pe& pe, Envelope& envelope) {
+    pe.completion().processed(envelope.epoch);
+    return 1;
   }
   static void destroy(Envelope* envelope) {
     auto* call = static_cast<GroupCall*>(envelope);
@@ -194,7 +214,7 @@ class GroupProxy {
   [[nodiscard]] CollectionId id() const { return id_; }
   [[nodiscard]] MemberProxy<G> operator[](PeId pe) const { return MemberProxy<G>(id_, pe); }
 
-  /// The member on this PE, or null where the group is not known yet.
+  /// The member on this PE, or null where the group is not known yet or was destroyed.
   [[nodiscard]] G* local_or_null() const {
     Collection* collection = current_pe().find(id_);
     return collection == nullptr ? nullptr : &static_cast<GroupOf<G>*>(collection)->member();
@@ -202,7 +222,11 @@ class GroupProxy {
   /// The member on this PE.
   [[nodiscard]] G& local() const {
     G* member = local_or_null();
-    TESS_CHECK(member != nullptr, "this group is not known on ", current_pe().id(), " yet");
+    TESS_CHECK(member != nullptr,
+               "this group ",
+               current_pe().ended(id_) ? "was destroyed" : "is not known yet",
+               " on ",
+               current_pe().id());
     return *member;
   }
 
@@ -214,6 +238,13 @@ class GroupProxy {
     start_broadcast(id_,
                     std::make_shared<CallOfMembers<G, F>>(Arguments(std::forward<Args>(args)...)));
   }
+
+  /// Ends the group: on every PE its member is destroyed and all that it holds is freed. What is
+  /// still under way to it is dropped where it arrives; messages and broadcasts count as dead
+  /// letters. A member whose coroutine waits gets no more messages, and ends once the coroutine is
+  /// done. The epoch that runs waits until all PEs have freed the group. The second end of a group
+  /// does nothing.
+  void destroy() const { end_collection(id_); }
 
   template <class Ar>
   void serialize(Ar& ar) {

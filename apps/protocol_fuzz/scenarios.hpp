@@ -23,6 +23,7 @@ void mailboxes(Trial& trial);         // mailboxes.cpp
 void deadlocks(Trial& trial);         // ends.cpp
 void exceptions(Trial& trial);        // ends.cpp
 void dead_letters(Trial& trial);      // ends.cpp
+void destroyed(Trial& trial);         // destroyed.cpp
 void groups(Trial& trial);            // groups.cpp
 void balance_rounds(Trial& trial);    // balance.cpp
 void balance_barrier(Trial& trial);   // balance_barrier.cpp

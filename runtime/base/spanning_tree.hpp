@@ -5,6 +5,8 @@
 
 #include "runtime/ids.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace tess {
@@ -20,15 +22,25 @@ class SpanningTree {
 
   [[nodiscard]] std::vector<PeId> children() const {
     std::vector<PeId> out;
-    for (std::int64_t k = 1; k <= fan_out; ++k) {
-      const std::int64_t child = std::int64_t{rank_} * fan_out + k;
-      if (child < n_pes_) out.push_back(at(child));
-    }
+    for (std::int32_t slot = 0; slot < n_children(); ++slot) out.push_back(child(slot));
     return out;
   }
 
- private:
+  /// The children have the slots 0 … n_children() − 1.
+  [[nodiscard]] std::int32_t n_children() const {
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(n_pes_ - first_child(), 0, std::int64_t{fan_out}));
+  }
+  [[nodiscard]] PeId child(std::int32_t slot) const { return at(first_child() + slot); }
+  /// The slot of a PE that is a child.
+  [[nodiscard]] std::int32_t slot_of(PeId child) const {
+    return static_cast<std::int32_t>((child.value - root_ + n_pes_) % n_pes_ - first_child());
+  }
+
   static constexpr std::int32_t fan_out = 4;
+
+ private:
+  [[nodiscard]] std::int64_t first_child() const { return std::int64_t{rank_} * fan_out + 1; }
   [[nodiscard]] PeId at(std::int64_t rank) const {
     return PeId{static_cast<std::int32_t>((rank + root_) % n_pes_)};
   }

@@ -108,6 +108,7 @@ class ArrayOf : public Collection {
   }
 
   void describe_waiting(std::vector<std::string>& lines) const override;
+  void end() override;
 
   // Messages between the parts of this array.
   struct Request {
@@ -206,6 +207,7 @@ class ArrayOf : public Collection {
   void depart(Indexed& element, PeId to);
   void bury(Indexed& element);
   void dead_letter(Letter* letter);
+  void end_element(Indexed& element);
   void reroute(std::vector<Letter*>&& letters) {
     for (Letter* letter : letters) arrive_later(letter);
   }

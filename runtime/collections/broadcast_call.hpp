@@ -12,6 +12,7 @@ namespace tess {
 
 class BroadcastCall;
 class Element;
+class Pe;
 struct Action;
 
 struct BroadcastKind : Registered {
@@ -40,6 +41,9 @@ struct NumberedCall {
   std::uint64_t number = 0;
   EpochId epoch{};
   std::shared_ptr<const BroadcastCall> call;
+
+  /// Its collection has ended: nobody is called. Returns whether the whole broadcast is lost.
+  std::uint64_t drop(Pe& pe) const;
 
   template <class Ar>
   void serialize(Ar& ar) {

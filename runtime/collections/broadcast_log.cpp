@@ -50,6 +50,7 @@ void BroadcastLog::on_call(NumberedCall&& call) {
     pe_.completion().sent(call.epoch);
     send_to_collection<&call_arrives>(collection_, child, call);
   }
+  pe_.flush();  // other processes do not wait for the local elements
   early_.emplace(call.number, std::move(call));
   while (!early_.empty() && early_.begin()->first == applied_ + 1) {
     copies_.push_back(std::move(early_.begin()->second));
@@ -78,6 +79,22 @@ void BroadcastLog::settle() {
   told_ = settled_;
   send_to_collection<&settled_arrives>(
       collection_, collection_.root(), Settled{pe_.id(), settled_});
+}
+
+void BroadcastLog::end() {
+  while (settled_ < applied_) {
+    ++settled_;
+    copies_[settled_ - first_kept_].drop(pe_);
+  }
+  for (const auto& [number, call] : early_) call.drop(pe_);
+  copies_.clear();
+  early_.clear();
+  in_flight_.clear();
+}
+
+std::uint64_t NumberedCall::drop(Pe& pe) const {
+  pe.completion().processed(epoch);
+  return number == 0 ? 1 : 0;
 }
 
 std::vector<NumberedCall> BroadcastLog::missed(std::uint64_t seen) const {

@@ -36,6 +36,9 @@ class BroadcastLog {
   void left(std::uint64_t seen) { ++in_flight_[seen]; }
   void landed(std::uint64_t seen);
 
+  /// The collection ends: what is kept here is dropped.
+  void end();
+
   /// The calls that an element that has met `seen` still has to meet here, oldest first.
   [[nodiscard]] std::vector<NumberedCall> missed(std::uint64_t seen) const;
 

@@ -64,10 +64,14 @@ struct TypedLetter : ElementMessage<typename C::Index> {
     auto* letter = static_cast<Derived*>(envelope);
     Collection* collection = pe.find(letter->collection);
     if (collection == nullptr) [[unlikely]] {
-      pe.keep_early(letter->collection, envelope);
+      pe.keep_early(letter->collection, envelope, &drop);
       return;
     }
     static_cast<Array<C>*>(collection)->arrive(letter);
+  }
+  static std::uint64_t drop(Pe& pe, Envelope& envelope) {
+    pe.completion().processed(envelope.epoch);
+    return static_cast<const ElementAction<Index>&>(*envelope.action).n_dead_letters();
   }
   static void destroy(Envelope* envelope) {
     auto* letter = static_cast<Derived*>(envelope);
@@ -89,8 +93,9 @@ struct TypedLetter : ElementMessage<typename C::Index> {
  protected:
   static ElementAction<Index> make_action(
       typename ElementAction<Index>::Invoke invoke,
-      typename ElementAction<Index>::Construct construct = nullptr) {
-    return {name_of_type<Derived>, &run, &destroy, &pack, &unpack, invoke, construct};
+      typename ElementAction<Index>::Construct construct = nullptr,
+      Traffic traffic = Traffic::user) {
+    return {name_of_type<Derived>, &run, &destroy, &pack, &unpack, invoke, construct, traffic};
   }
 };
 
@@ -163,7 +168,8 @@ struct Awakening final : TypedLetter<Awakening<C>, C, std::tuple<>> {
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
     if (Collection::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
   }
-  static inline const ElementAction<Index> entry = Base::make_action(&Awakening::invoke);
+  static inline const ElementAction<Index> entry =
+      Base::make_action(&Awakening::invoke, nullptr, Traffic::control);
 };
 
 /// An element on its way. Within a process the object itself travels (but with CHECKS=all); between
@@ -179,7 +185,7 @@ struct Arrival final : Envelope {
     auto* arrival = static_cast<Arrival*>(envelope);
     Collection* collection = pe.find(arrival->collection);
     if (collection == nullptr) {
-      pe.keep_early(arrival->collection, envelope);
+      pe.keep_early(arrival->collection, envelope, &drop);
       return;
     }
     static_cast<Array<C>*>(collection)->take_in(*arrival);
@@ -190,6 +196,8 @@ struct Arrival final : Envelope {
     delete arrival->element;
     delete arrival;
   }
+  /// The array has ended: the element ends with the message, and no epoch waits for it.
+  static std::uint64_t drop(Pe& pe, Envelope& envelope);
   /// Leaves the bytes of the element in place of the object.
   void pack_state();
   static void pack(Envelope& envelope, Writer& ar);

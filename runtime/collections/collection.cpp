@@ -121,7 +121,27 @@ bool Collection::awake(Element& element) {
   return std::exchange(sync.phase, SyncPhase::runs) == SyncPhase::resumes;
 }
 
+void Collection::end() {
+  ended_ = true;
+  if (watcher_ != nullptr) watcher_->collection_ends();
+  watcher_ = nullptr;
+  for (Element* element : elements_) {
+    if (element->n_suspended_ != 0) element->doomed_ = true;
+    end_wait(*element);
+  }
+  broadcasts_.end();
+  reductions_.end();
+  if (second_tree_ != nullptr) second_tree_->end();
+}
+
+void Collection::end_wait(Element& element) {
+  if (!element.balance_ || element.balance_->sync.phase != SyncPhase::waits) return;
+  element.balance_->sync.phase = SyncPhase::runs;
+  pe_.completion().processed(element.balance_->sync.epoch);
+}
+
 void Collection::at_sync(Element& element) {
+  if (ended_) return;  // nothing resumes it: it ends once its coroutine is done
   SyncState& sync = make_record(element).sync;
   TESS_CHECK(sync.phase == SyncPhase::runs,
              element_text(element),

@@ -36,6 +36,8 @@ class ElementWatcher {
   /// It ends; called after left().
   virtual void died(Element& element) = 0;
   virtual void at_sync(Element& element) = 0;
+  /// The collection ends on this PE; its elements are still listed, and it tells no more of them.
+  virtual void collection_ends() = 0;
 };
 
 class Collection {
@@ -81,6 +83,7 @@ class Collection {
   /// Who is told of elements that come and go here; null: nobody.
   [[nodiscard]] ElementWatcher* watcher() const { return watcher_; }
   void set_watcher(ElementWatcher& watcher) { watcher_ = &watcher; }
+  void remove_watcher() { watcher_ = nullptr; }
   /// What is kept of an element for its balancer; null while nobody asked for it.
   [[nodiscard]] static BalanceRecord* record_of(const Element& element) {
     return element.balance_.get();
@@ -114,6 +117,12 @@ class Collection {
   /// it waits.
   virtual void settle(Element& element) = 0;
 
+  /// Ends it on this PE: what it holds is dropped, and its elements are destroyed but for those
+  /// that have a coroutine that waits (they follow one by one, and free_later() the last). It is in
+  /// the PE's table no more.
+  virtual void end();
+  [[nodiscard]] bool ended() const { return ended_; }
+
   /// True if elements can be packed and made again elsewhere.
   [[nodiscard]] virtual bool migratable() const = 0;
   [[nodiscard]] virtual std::string index_text_of(const Element& element) const = 0;
@@ -127,6 +136,8 @@ class Collection {
   void unlist(Element& element);
   void count_departure(const Element& element) { n_away_ += known(element) ? 0 : 1; }
   void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
+  /// No epoch waits any more for an element that waits at its balancer's barrier: it ends.
+  void end_wait(Element& element);
   /// Registers a new element as born here and now.
   void born(Element& element);
 
@@ -145,6 +156,7 @@ class Collection {
   ReductionTree* second_tree_ = nullptr;
   std::size_t n_local_ = 0;
   unsigned applying_ = 0;
+  bool ended_ = false;
   BroadcastLog broadcasts_;
   ReductionTree reductions_;
 };

@@ -36,12 +36,21 @@ struct CollectionAction {
     auto* message = static_cast<Held*>(envelope);
     Collection* collection = pe.find(message->payload.collection);
     if (collection == nullptr) {
-      pe.keep_early(message->payload.collection, envelope);
+      pe.keep_early(message->payload.collection, envelope, &drop);
       return;
     }
     Payload payload = std::move(message->payload.payload);
     Held::destroy(envelope);
     Handler(static_cast<typename Of::Collection&>(*collection), std::move(payload));
+  }
+  /// The collection has ended: a payload that stands on an epoch's account says so.
+  static std::uint64_t drop(Pe& pe, Envelope& envelope) {
+    const Payload& payload = static_cast<Held&>(envelope).payload.payload;
+    if constexpr (requires { payload.drop(pe); }) {
+      return payload.drop(pe);
+    } else {
+      return 0;
+    }
   }
   static inline const Action action{
       naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};

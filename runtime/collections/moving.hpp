@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
+#include "runtime/collections/ending.hpp"
 
 namespace tess {
 
@@ -81,12 +82,44 @@ void ArrayOf<Index>::on_known(const Known& known) {
 }
 
 template <class Index>
+void ArrayOf<Index>::end() {
+  Collection::end();
+  const auto drop = [this](const auto& letters) {
+    for (Letter* letter : letters) dead_letter(letter);
+  };
+  for (const auto& [index, pending] : pending_) drop(pending.letters);
+  for (const auto& [index, grave] : graves_) drop(grave.letters);
+  for (const auto& [index, letters] : registry_.waiting()) drop(letters);
+  pending_.clear();
+  graves_.clear();
+  registry_.clear_waiting();
+  std::vector<Indexed*> ready;
+  for (const auto& [index, element] : here_)
+    if (element->n_suspended_ == 0) ready.push_back(element);
+  for (Indexed* element : ready) end_element(*element);
+}
+
+/// Ends an element of an array that has ended.
+template <class Index>
+void ArrayOf<Index>::end_element(Indexed& element) {
+  unlist(element);
+  here_.erase(element.index_);
+  destroy(element);
+}
+
+template <class Index>
 void ArrayOf<Index>::bury(Indexed& element) {
+  if (ended()) {
+    end_element(element);
+    if (n_local() == 0) free_later(*this);
+    return;
+  }
   const Index index = element.index_;
   const Version version = element.state_.version;
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
   here_.erase(index);
+  end_wait(element);
   if (watcher() != nullptr) [[unlikely]]
     watcher()->died(element);
   destroy(element);

@@ -17,7 +17,25 @@ void begin_arrives(Collection& collection, ReductionTree::Begin&& m) {
   collection.tree(track).on_begin(m);
 }
 
+void drop_shares(Pe& pe, const std::vector<EpochShare>& shares) {
+  for (const EpochShare& share : shares)
+    for (std::uint64_t k = 0; k < share.n; ++k) pe.completion().processed(share.epoch);
+}
+
 }  // namespace
+
+std::uint64_t ReductionTree::Report::drop(Pe& pe) const {
+  drop_shares(pe, shares);
+  return 0;
+}
+
+void ReductionTree::end() {
+  for (const auto& [number, gathering] : gathering_) drop_shares(pe_, gathering.shares);
+  for (const auto& [number, whole] : whole_) drop_shares(pe_, whole.sum.shares);
+  gathering_.clear();
+  whole_.clear();
+  current_ = nullptr;
+}
 
 ReductionTree::ReductionTree(
     Pe& pe, Collection& collection, Track track, PeId root, TreeWords words)

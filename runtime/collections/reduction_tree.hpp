@@ -83,6 +83,9 @@ class ReductionTree {
   /// Looks whether something can be reported; called after elements came or went.
   void advance();
 
+  /// The collection ends: contributions that are gathered here are dropped.
+  void end();
+
   struct Report {
     std::uint32_t number = 0;
     std::uint64_t n = 0;
@@ -94,6 +97,7 @@ class ReductionTree {
     void serialize(Ar& ar) {
       ar(number, n, change, late, value, shares);
     }
+    std::uint64_t drop(Pe& pe) const;  // the collection has ended
   };
   struct Begin {
     std::uint32_t number = 0;

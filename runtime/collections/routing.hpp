@@ -107,7 +107,8 @@ void ArrayOf<Index>::at_home(Letter* letter) {
 template <class Index>
 void ArrayOf<Index>::dead_letter(Letter* letter) {
   const EpochId epoch = letter->epoch;
-  ++pe_.statistics().dead_letters;
+  pe_.statistics().dead_letters +=
+      static_cast<const ElementAction<Index>&>(*letter->action).n_dead_letters();
   discard(letter);
   pe_.completion().processed(epoch);
 }

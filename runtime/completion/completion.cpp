@@ -1,6 +1,5 @@
 #include "runtime/completion/completion.hpp"
 
-#include "runtime/base/spanning_tree.hpp"
 #include "runtime/check.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/pe_action.hpp"
@@ -9,8 +8,11 @@ namespace tess {
 namespace {
 
 // Control messages of epoch 0 are not counted as hops: they would keep alive what they measure.
-void telling_arrives(Pe& pe, Completion::Telling&& m) {
-  pe.completion().on_telling(m);
+void report_arrives(Pe& pe, Completion::Report&& m) {
+  pe.completion().on_report(m);
+}
+void answer_arrives(Pe& pe, Completion::Answer&& m) {
+  pe.completion().on_answer(m);
 }
 void wave_arrives(Pe& pe, Completion::Wave&& m) {
   pe.completion().on_wave(m);
@@ -38,27 +40,31 @@ void send_control(Pe& pe, PeId to, const Payload& payload) {
 
 }  // namespace
 
-bool Tellings::take(PeId from, const Counters& counters) {
-  Counters& known = by_pe_[from];
-  if (counters.sent < known.sent || counters.processed < known.processed) return false;
-  sum_.sent += counters.sent - known.sent;
-  sum_.processed += counters.processed - known.processed;
-  known = counters;
-  return true;
-}
-
 Completion::Completion(Pe& pe) : pe_(pe) {
   if (pe.id().value == 0) coordinated_[EpochId{}].closed = true;
 }
 
-void Completion::find_local(EpochId epoch) {
-  Local& local = local_[epoch];
-  if (!local.listed) {
-    local.listed = true;
-    changed_.push_back(epoch);
-  }
+SpanningTree Completion::tree_of(EpochId epoch) const {
+  return {pe_.id(), coordinator_of(epoch), pe_.n_pes()};
+}
+
+Tally* Completion::find(EpochId epoch) {
+  if (epoch.value == 0) return &run_;
+  const auto at = tallies_.find(epoch);
+  return at == tallies_.end() ? nullptr : &at->second;
+}
+
+void Completion::list(EpochId epoch, Tally& tally) {
+  if (epoch.value == 0 || tally.listed) return;
+  tally.listed = true;
+  changed_.push_back(epoch);
+}
+
+void Completion::find_own(EpochId epoch) {
+  Tally& tally = tallies_[epoch];
+  list(epoch, tally);
   last_epoch_ = epoch;
-  last_ = &local.now;
+  last_ = &tally.own;
 }
 
 EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
@@ -71,71 +77,91 @@ EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
 }
 
 void Completion::close(EpochId epoch) {
-  Coordinated& of = coordinated_.at(epoch);
-  of.closed = true;
-  find_local(epoch);  // an empty body is told of, too
+  coordinated_.at(epoch).closed = true;
+  find_own(epoch);
+  // What was checked before does not count; the check of an empty body is due, too.
+  tallies_.at(epoch).reported = Counters{~std::uint64_t{0}, ~std::uint64_t{0}};
 }
 
-bool Completion::tell_epochs() {
+bool Completion::report_epochs() {
   if (changed_.empty()) return false;
   std::vector<EpochId> changed;
   changed.swap(changed_);
+  bool any = false;
   for (const EpochId epoch : changed) {
-    const auto at = local_.find(epoch);
-    if (at == local_.end()) continue;
+    const auto at = tallies_.find(epoch);
+    if (at == tallies_.end()) continue;
     at->second.listed = false;
-    forget_last();  // each time: telling one epoch may have counted for the next of this list
-    const Counters now = at->second.now;
-    tell(epoch, coordinator_of(epoch), now);
+    forget_last();  // each time: reporting one epoch may have counted for the next of this list
+    any = report(epoch, at->second) || any;
   }
-  return true;
+  return any;
 }
 
-bool Completion::tell_run() {
-  if (!run_changed()) return false;
-  run_told_ = run_ + run_below_.sum();
-  const PeId root = coordinator_of(EpochId{});
-  tell(EpochId{},
-       pe_.id() == root ? root : SpanningTree(pe_.id(), root, pe_.n_pes()).parent(),
-       run_told_);
-  return true;
+bool Completion::is_over(EpochId epoch) const {
+  return coordinator_of(epoch) == pe_.id() && !coordinated_.contains(epoch);
 }
 
-void Completion::tell(EpochId epoch, PeId whom, const Counters& counters) {
-  const Telling telling{epoch, pe_.id(), counters};
-  if (whom == pe_.id()) {
-    on_telling(telling);
+bool Completion::report(EpochId epoch, Tally& tally) {
+  if (is_over(epoch)) {
+    end(epoch);
+    return true;
+  }
+  const SpanningTree tree = tree_of(epoch);
+  bool any = tally.owed != 0;
+  for (std::int32_t slot = 0; tally.owed != 0; ++slot, tally.owed >>= 1U)
+    if ((tally.owed & 1U) != 0) send_control<&answer_arrives>(pe_, tree.child(slot), Answer{epoch});
+  const Counters sum = tally.sum();
+  if (sum == tally.reported || tally.unanswered) return any;
+  tally.reported = sum;
+  if (coordinator_of(epoch) == pe_.id()) {
+    check(epoch, sum);
   } else {
-    send_control<&telling_arrives>(pe_, whom, telling);
+    tally.unanswered = true;
+    send_control<&report_arrives>(pe_, tree.parent(), Report{epoch, pe_.id(), sum});
   }
+  return true;
 }
 
-void Completion::on_telling(const Telling& telling) {
-  if (pe_.id() != coordinator_of(telling.epoch)) {  // on its way up the tree
-    run_below_.take(telling.from, telling.counters);
+void Completion::on_report(const Report& report) {
+  if (is_over(report.epoch)) {  // the runtime's own work may still be counted there
+    send_system<&end_arrives>(pe_, report.from, End{report.epoch});
     return;
   }
-  const auto at = coordinated_.find(telling.epoch);
-  if (at == coordinated_.end()) return;  // told twice, done meanwhile
-  if (at->second.told.take(telling.from, telling.counters)) check(telling.epoch, at->second);
+  if (report.epoch.value != 0) forget_last();
+  Tally& tally = report.epoch.value == 0 ? run_ : tallies_[report.epoch];
+  const std::int32_t slot = tree_of(report.epoch).slot_of(report.from);
+  tally.below.at(static_cast<std::size_t>(slot)) = report.counters;
+  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(slot));
+  tally.heard |= bit;
+  tally.owed |= bit;
+  list(report.epoch, tally);
 }
 
-void Completion::check(EpochId epoch, Coordinated& of) {
-  if (!of.closed || of.told.sum().sent != of.told.sum().processed) return;
+void Completion::on_answer(const Answer& answer) {
+  Tally* tally = find(answer.epoch);
+  if (tally == nullptr) return;  // the end of the epoch overtook it
+  tally->unanswered = false;
+  list(answer.epoch, *tally);
+}
+
+void Completion::check(EpochId epoch, Counters sum) {
+  Coordinated& of = coordinated_.at(epoch);
+  if (!of.closed || sum.sent != sum.processed) return;
   if (of.wave_runs) {
     of.again = true;
     return;
   }
   of.wave_runs = true;
   of.again = false;
-  of.processed_before_wave = of.told.sum().processed;
+  of.processed_before_wave = sum.processed;
   on_wave(Wave{epoch, pe_.id(), ++of.wave});
 }
 
 Counters Completion::reading(EpochId epoch) const {
-  if (epoch.value == 0) return run_;
-  const auto at = local_.find(epoch);
-  return at == local_.end() ? Counters{} : at->second.now;
+  if (epoch.value == 0) return run_.own;
+  const auto at = tallies_.find(epoch);
+  return at == tallies_.end() ? Counters{} : at->second.own;
 }
 
 void Completion::on_wave(const Wave& wave) {
@@ -161,8 +187,7 @@ void Completion::on_echo(const Echo& message) {
              " while wave ",
              relay.wave.number,
              " runs");
-  relay.sum.sent += message.sum.sent;
-  relay.sum.processed += message.sum.processed;
+  relay.sum = relay.sum + message.sum;
   if (--relay.waiting != 0) return;
   Relay complete = relay;
   relays_.erase(message.epoch);
@@ -179,41 +204,50 @@ void Completion::echo(Relay& relay) {
   Coordinated& of = coordinated_.at(epoch);
   of.wave_runs = false;
   if (relay.sum.sent != of.processed_before_wave) {
-    if (of.again) check(epoch, of);
+    if (of.again) check(epoch, find(epoch)->sum());
     return;
   }
   if (epoch.value == 0) {
     pe_.quiescent();
     return;
   }
-  for (const auto& [pe, counters] : of.told.by_pe()) {
-    if (pe != pe_.id()) send_system<&end_arrives>(pe_, pe, End{epoch});
-  }
+  end(epoch);
   const EpochId parent = of.parent;
   const auto on_done = std::move(of.on_done);
-  forget_last();
-  local_.erase(epoch);
   coordinated_.erase(epoch);
   on_done();
   processed(parent);
 }
 
-void Completion::on_end(const End& end) {
+/// Frees the epoch's tally here and on all PEs below that have one.
+void Completion::end(EpochId epoch) {
+  const auto at = tallies_.find(epoch);
+  if (at == tallies_.end()) return;
+  const SpanningTree tree = tree_of(epoch);
+  for (std::int32_t slot = 0; slot < tree.n_children(); ++slot)
+    if ((at->second.heard >> static_cast<unsigned>(slot) & 1U) != 0)
+      send_system<&end_arrives>(pe_, tree.child(slot), End{epoch});
   forget_last();
-  local_.erase(end.epoch);
+  tallies_.erase(epoch);
+}
+
+void Completion::on_end(const End& end_of) {
+  end(end_of.epoch);
 }
 
 void Completion::describe_open(std::vector<std::string>& lines) const {
   for (const auto& [epoch, of] : coordinated_) {
     if (epoch.value == 0) continue;
+    const auto at = tallies_.find(epoch);
+    const Counters sum = at == tallies_.end() ? Counters{} : at->second.sum();
     lines.push_back(text("epoch ",
                          epoch.value >> 24U,
                          " opened on ",
                          pe_.id(),
                          ": ",
-                         of.told.sum().sent,
+                         sum.sent,
                          " messages sent, ",
-                         of.told.sum().processed,
+                         sum.processed,
                          " done"));
   }
 }

@@ -1,39 +1,45 @@
-// When is it all done? One mechanism answers for every scoped epoch and for the whole run (epoch
-// 0).
+// When is it all done? One mechanism answers for every scoped epoch and for the whole run (epoch 0).
 //
-// Each PE counts, for each epoch, the messages it sent and those it processed (cumulative, 64
-// bits). A message that waits anywhere (in a queue, a send buffer, for an absent element, in a
-// suspended coroutine) is sent and not yet processed. The epoch's coordinator, the PE that opened
-// it, knows a reading of each PE that it was told of:
+// Each PE counts, for each epoch, the messages it sent and those it processed (cumulative, 64 bits).
+// A message that waits anywhere (in a queue, a send buffer, for an absent element, in a suspended
+// coroutine) is sent and not yet processed. The epoch's coordinator is the PE that opened it.
 //
-//   1. a PE that runs dry tells the coordinator its counters, if they changed since the last time;
-//      those of the run go up the tree of all PEs, added up on the way, for all PEs tell of them;
-//   2. when the sums of the tellings agree, sent = processed, the coordinator sends a wave over the
-//      tree of all PEs, which adds up fresh readings;
-//   3. if the wave's sum of *sent* equals the *processed* told before the wave began, nothing can
-//      be under way: both counters only grow, so
-//          processed(told) ≤ processed(now) ≤ sent(now) ≤ sent(wave)
-//      are all equal (Mattern's four-counter argument; a telling is a reading of an earlier,
+//   1. A PE that runs dry reports to its parent in the coordinator's tree the counters of itself and
+//      of all PEs below it. It reports again only after the parent has answered, and the parent
+//      answers when it runs dry itself. So a busy PE is seldom disturbed, and an epoch costs a PE a
+//      few messages per round trip, however fine the work is.
+//   2. When the coordinator's sums agree, sent = processed, it sends a wave over the tree of all
+//      PEs, which adds up fresh readings.
+//   3. If the wave's sum of *sent* equals the *processed* reported before the wave began, nothing
+//      can be under way: both counters only grow, so
+//          processed(reported) ≤ processed(now) ≤ sent(now) ≤ sent(wave)
+//      are all equal (Mattern's four-counter argument; a report is a reading of an earlier,
 //      staggered wave).
 //
-// Epoch 0 counts every hop of every message but its own control messages; so while any epoch's
-// control message is under way the run is not over. Its end is quiescence; what then still waits
+//          coordinator      ▲ report (own + below)     │ wave      ▲ echo
+//           /        \      │ ▼ answer                 ▼           │
+//
+// Epoch 0 counts every hop of every message except its own control messages: while any epoch's
+// control message is under way the run is not over. Its end is quiescence; what still waits then
 // will wait for ever (census.hpp).
 #pragma once
 
+#include "runtime/base/spanning_tree.hpp"
 #include "runtime/ids.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace tess {
 
 class Pe;
 
-/// Messages sent and processed on one PE on account of one epoch.
+/// Messages sent and processed on account of one epoch.
 struct Counters {
   std::uint64_t sent = 0;
   std::uint64_t processed = 0;
@@ -43,17 +49,21 @@ struct Counters {
   }
 };
 
-/// The last reading that each of some PEs told, and their sum.
-class Tellings {
- public:
-  /// False if it was overtaken by a later one: counters only grow, so the larger is the later.
-  bool take(PeId from, const Counters& counters);
-  [[nodiscard]] const Counters& sum() const { return sum_; }
-  [[nodiscard]] const auto& by_pe() const { return by_pe_; }
+/// One PE's part in one epoch: its own counters and the last report of each child in the tree.
+struct Tally {
+  Counters own;
+  std::array<Counters, SpanningTree::fan_out> below{};  // by slot of the child
+  Counters reported;        // sum() at the last report; at the coordinator, at the last check
+  std::uint8_t heard = 0;   // a bit per child that has reported
+  std::uint8_t owed = 0;    // a bit per child whose report has no answer yet
+  bool unanswered = false;  // the report of this PE has no answer yet
+  bool listed = false;      // in Completion::changed_
 
- private:
-  boost::unordered_flat_map<PeId, Counters, std::hash<PeId>> by_pe_;
-  Counters sum_;
+  [[nodiscard]] Counters sum() const {
+    Counters all = own;
+    for (const Counters& child : below) all = all + child;
+    return all;
+  }
 };
 
 /// One PE's part in the completion of all epochs.
@@ -62,15 +72,15 @@ class Completion {
   explicit Completion(Pe& pe);
 
   /// Epoch 0: every hop of every message. Inline, on the path of each message.
-  void hop_sent() { ++run_.sent; }
-  void hop_processed() { ++run_.processed; }
+  void hop_sent() { ++run_.own.sent; }
+  void hop_processed() { ++run_.own.processed; }
 
   /// Another epoch: a message of a user, once at its sending and once when all it does is done.
   void sent(EpochId epoch) {
-    if (epoch.value != 0) ++local(epoch).sent;
+    if (epoch.value != 0) ++own(epoch).sent;
   }
   void processed(EpochId epoch) {
-    if (epoch.value != 0) ++local(epoch).processed;
+    if (epoch.value != 0) ++own(epoch).processed;
   }
 
   /// Opens an epoch that this PE coordinates; `on_done` runs on this PE once all is done. What is
@@ -78,21 +88,25 @@ class Completion {
   EpochId open(EpochId parent, std::function<void()> on_done);
   void close(EpochId epoch);
 
-  /// Tells the coordinators of scoped epochs what changed. True if anything was told.
-  bool tell_epochs();
-  /// True if the PE above in the tree has not been told all of the run.
-  [[nodiscard]] bool run_changed() const { return run_ + run_below_.sum() != run_told_; }
-  /// Tells it. True if anything was told.
-  bool tell_run();
+  /// Reports what changed of the scoped epochs, and answers reports. True if anything was sent or
+  /// done.
+  bool report_epochs();
+  /// True if there is something of the run (epoch 0) to report or to answer.
+  [[nodiscard]] bool run_changed() const { return run_.owed != 0 || run_.sum() != run_.reported; }
+  /// Reports and answers for the run. True if anything was sent or done.
+  bool report_run() { return report(EpochId{}, run_); }
 
   /// One line for each epoch that this PE opened and that is not done.
   void describe_open(std::vector<std::string>& lines) const;
 
   // Control messages.
-  struct Telling {
+  struct Report {
     EpochId epoch;
     PeId from;
     Counters counters;
+  };
+  struct Answer {
+    EpochId epoch;
   };
   struct Wave {
     EpochId epoch;
@@ -107,18 +121,14 @@ class Completion {
   struct End {
     EpochId epoch;
   };
-  void on_telling(const Telling& telling);
+  void on_report(const Report& report);
+  void on_answer(const Answer& answer);
   void on_wave(const Wave& wave);
   void on_echo(const Echo& echo);
   void on_end(const End& end);
 
  private:
-  struct Local {
-    Counters now;
-    bool listed = false;
-  };
   struct Coordinated {
-    Tellings told;
     std::uint64_t wave = 0;
     std::uint64_t processed_before_wave = 0;
     bool wave_runs = false, again = false, closed = false;
@@ -133,24 +143,30 @@ class Completion {
 
   /// The counters of an epoch, to be changed now. The last one is at hand: runs of messages are of
   /// one epoch.
-  [[nodiscard]] Counters& local(EpochId epoch) {
+  [[nodiscard]] Counters& own(EpochId epoch) {
     if (epoch != last_epoch_) [[unlikely]]
-      find_local(epoch);
+      find_own(epoch);
     return *last_;
   }
-  void find_local(EpochId epoch);
+  void find_own(EpochId epoch);
   void forget_last() { last_epoch_ = EpochId{}; }
-  void tell(EpochId epoch, PeId whom, const Counters& counters);
-  void check(EpochId epoch, Coordinated& of);
+  [[nodiscard]] Tally* find(EpochId epoch);
+  void list(EpochId epoch, Tally& tally);
+  [[nodiscard]] SpanningTree tree_of(EpochId epoch) const;
+  /// On the coordinator: the epoch has ended.
+  [[nodiscard]] bool is_over(EpochId epoch) const;
+  /// True if anything was sent or done. The tally may be gone afterwards.
+  bool report(EpochId epoch, Tally& tally);
+  void check(EpochId epoch, Counters sum);
   void echo(Relay& relay);
+  void end(EpochId epoch);
   [[nodiscard]] Counters reading(EpochId epoch) const;
 
   Pe& pe_;
-  Counters run_, run_told_;
-  Tellings run_below_;  // of the PEs below this one in the tree; PE 0 coordinates, and has none
-  boost::unordered_flat_map<EpochId, Local, std::hash<EpochId>> local_;
-  std::vector<EpochId> changed_;
-  EpochId last_epoch_{};  // 0: none. It is listed in changed_, and local_ has not changed since.
+  Tally run_;  // of epoch 0
+  boost::unordered_flat_map<EpochId, Tally, std::hash<EpochId>> tallies_;  // of the others
+  std::vector<EpochId> changed_;  // something to report or to answer
+  EpochId last_epoch_{};  // 0: none. It is listed, and tallies_ has not changed since.
   Counters* last_ = nullptr;
   boost::unordered_flat_map<EpochId, Coordinated, std::hash<EpochId>> coordinated_;
   boost::unordered_flat_map<EpochId, Relay, std::hash<EpochId>> relays_;

@@ -39,8 +39,13 @@ struct ElementAction : Action {
   /// Makes the element from the constructor's arguments; for insert demands alone.
   using Construct = Element* (*)(ElementMessage<Index>&);
 
-  ElementAction(std::string_view name, Run r, Destroy d, Pack p, Unpack u, Invoke i, Construct c)
-      : Action(name, r, d, p, u, Traffic::user), invoke(i), construct(c) {}
+  /// Traffic::user, or control for a message that the user did not send: it is no dead letter.
+  ElementAction(
+      std::string_view name, Run r, Destroy d, Pack p, Unpack u, Invoke i, Construct c, Traffic t)
+      : Action(name, r, d, p, u, t), invoke(i), construct(c) {}
+
+  /// How many dead letters a message of this kind is that does not meet its element.
+  [[nodiscard]] std::uint64_t n_dead_letters() const { return traffic == Traffic::user ? 1 : 0; }
 
   Invoke invoke;
   Construct construct;

@@ -52,6 +52,7 @@ class HomeRegistry {
     return messages;
   }
   [[nodiscard]] const auto& waiting() const { return waiting_; }
+  void clear_waiting() { waiting_.clear(); }
 
  private:
   boost::unordered_flat_map<Index, HomeRecord, IndexHash<Index>> records_;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "runtime/base/link.hpp"
+#include "runtime/base/parcel.hpp"
 #include "runtime/ids.hpp"
 
 #include <chrono>
@@ -43,6 +44,9 @@ class Program {
   virtual void start(PeId pe) = 0;
   /// Takes a list of messages, first to run first, that others posted to this PE.
   virtual void accept(PeId pe, Link* first) = 0;
+  /// Takes several messages that another PE of the process posted together, and the parcel; called
+  /// only if the program posts parcels.
+  virtual void accept_parcel(PeId /*pe*/, Parcel* /*parcel*/) {}
   /// Runs up to `most` messages that are ready; returns how many it ran.
   virtual std::size_t step(PeId pe, std::size_t most) = 0;
   /// Nothing is ready: flush what was held back for company. True if that made or sent anything.
@@ -84,7 +88,7 @@ class Machine {
   /// How many PEs this memory holds: those of the process, or all simulated ones.
   [[nodiscard]] virtual std::int32_t n_pes_here() const { return pes_per_process_; }
 
-  /// How many fruitless looks at its queue make a PE tell that it has run dry.
+  /// How many fruitless looks at its queue make a PE report that it has run dry.
   [[nodiscard]] virtual unsigned patience() const { return 64; }
 
   /// True if even a message of a PE to itself has to go through post(): the simulated machine
@@ -94,6 +98,11 @@ class Machine {
   /// Hands a message to a PE of this process; takes ownership of the link. `bytes` is its size for
   /// the cost model. Any PE thread of this process may call it.
   virtual void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) = 0;
+
+  /// True if post_parcel() is worth while; otherwise messages are posted one by one.
+  [[nodiscard]] virtual bool takes_parcels() const { return false; }
+  /// Hands several messages to a PE of this process; takes ownership.
+  virtual void post_parcel(PeId /*to*/, Parcel* /*parcel*/) {}
 
   /// Sends bytes to another process; never to this one. Any PE thread may call it; it does not
   /// block. What it leaves of `bytes` is for clear() alone; it may keep its memory, to be filled
@@ -120,6 +129,8 @@ class Machine {
 
   /// True if now() is a virtual clock.
   [[nodiscard]] virtual bool virtual_time() const { return false; }
+  /// What the PE has to charge() for each message that it ran; 0 where time passes by itself.
+  [[nodiscard]] virtual Time message_cost() const { return Time(0); }
   /// Advances the virtual clock of a PE that runs; nothing where time is real.
   virtual void charge(PeId /*pe*/, Time /*work*/) {}
 

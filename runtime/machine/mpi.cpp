@@ -43,6 +43,8 @@ class MpiMachine final : public Machine, private Network {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_->post(to, message);
   }
+  [[nodiscard]] bool takes_parcels() const override { return pes_per_process_ > 1; }
+  void post_parcel(PeId to, Parcel* parcel) override { team_->post(to, parcel); }
   void send(PeId, ProcessId to, Buffer&& bytes) override { transport_->send(to, bytes); }
   void run(Program& program) override {
     team_->run(program, topology_);

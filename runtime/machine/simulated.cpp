@@ -80,6 +80,7 @@ class SimulatedMachine final : public Machine {
                 (running_ == pe.value ? elapsed() : 0));
   }
   [[nodiscard]] bool virtual_time() const override { return true; }
+  [[nodiscard]] Time message_cost() const override { return options_.cost.value_or(Time(0)); }
   void charge(PeId pe, Time work) override {
     clocks_[static_cast<std::size_t>(pe.value)].now += work.count();
   }
@@ -170,7 +171,7 @@ void SimulatedMachine::run(Program& program) {
       running_ = event.pe;
       if (!options_.cost) step_began_ = thread_cpu_time();
       const std::size_t ran = program.step(pe, 1);
-      const std::int64_t cost = options_.cost ? options_.cost->count() : elapsed();
+      const std::int64_t cost = options_.cost ? 0 : elapsed();  // the program charges a fixed cost
       running_ = -1;
       if (ran != 0) {
         clock.now += cost;

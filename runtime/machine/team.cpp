@@ -83,11 +83,7 @@ void Team::drive(Program& program, PeId pe, Seat& seat) noexcept {
   Stride stride;
   // relaxed: nothing is handed over through the flag; the barrier below orders what matters.
   while (!stopping_.load(std::memory_order_relaxed)) {
-    bool worked = false;
-    if (Link* const first = seat.inbox.take_all()) {
-      program.accept(pe, first);
-      worked = true;
-    }
+    bool worked = take_in(program, pe, seat);
     if (program.step(pe, stride.most()) > 0) worked = true;
     if (network_ != nullptr && (!worked || stride.due()) && network_->progress(program, pe))
       worked = true;
@@ -96,11 +92,25 @@ void Team::drive(Program& program, PeId pe, Seat& seat) noexcept {
       continue;
     }
     if (rest.pause())
-      seat.parker.park(rest.sleep(), [&] { return !seat.inbox.empty() || stopping_.load(); });
+      seat.parker.park(rest.sleep(), [&] { return !seat.empty() || stopping_.load(); });
   }
   wait_for_all();
-  if (Link* const first = seat.inbox.take_all()) program.accept(pe, first);
+  take_in(program, pe, seat);
   program.finish(pe);
+}
+
+bool Team::take_in(Program& program, PeId pe, Seat& seat) noexcept {
+  bool any = false;
+  for (Link* link = seat.parcels.take_all(); link != nullptr; any = true) {
+    Link* const next = link->next;
+    program.accept_parcel(pe, static_cast<Parcel*>(link));
+    link = next;
+  }
+  if (Link* const first = seat.inbox.take_all()) {
+    program.accept(pe, first);
+    any = true;
+  }
+  return any;
 }
 
 void Team::wait_for_all() noexcept {

@@ -2,7 +2,7 @@
 // and how they end together. The threads machine is a team; the mpi machine is a team and a
 // network.
 //
-//     take inbox → accept → step → network (when idle, or when due) → idle → rest
+//     take_in → accept → step → network (when idle, or when due) → idle → rest
 //
 // Invariant: between the first PE's return from its loop and the last one's no inbox is read, and
 // after the last one's no PE posts; so each PE can take what remains and finish alone.
@@ -44,6 +44,10 @@ class Team {
     Seat& seat = seats_[static_cast<std::size_t>(to.value - first_.value)];
     if (seat.inbox.push(message)) seat.parker.wake();
   }
+  void post(PeId to, Parcel* parcel) noexcept {
+    Seat& seat = seats_[static_cast<std::size_t>(to.value - first_.value)];
+    if (seat.parcels.push(parcel)) seat.parker.wake();
+  }
 
   /// Drives all PEs until stop(): the first on this thread, each other one on a thread of its own.
   void run(Program& program, const Topology& topology);
@@ -53,11 +57,16 @@ class Team {
 
  private:
   struct alignas(64) Seat {
-    MpscQueue inbox;
-    alignas(64) Parker parker;  // apart from the inbox: each producer reads it, few write it
+    MpscQueue inbox;  // single messages; in one line with the parcels, for both are looked at
+    MpscQueue parcels;
+    alignas(64) Parker parker;  // apart from the queues: each producer reads it, few write it
+
+    [[nodiscard]] bool empty() const noexcept { return inbox.empty() && parcels.empty(); }
   };
 
   void drive(Program& program, PeId pe, Seat& seat) noexcept;
+  /// Hands all that was posted to the program. False if there was nothing.
+  static bool take_in(Program& program, PeId pe, Seat& seat) noexcept;
   void wait_for_all() noexcept;
 
   PeId first_;

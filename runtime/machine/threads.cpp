@@ -21,6 +21,8 @@ class ThreadsMachine final : public Machine {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_.post(to, message);
   }
+  [[nodiscard]] bool takes_parcels() const override { return pes_per_process_ > 1; }
+  void post_parcel(PeId to, Parcel* parcel) override { team_.post(to, parcel); }
   void send(PeId from, ProcessId to, Buffer&&) override {
     TESS_CHECK(false, from, " sends bytes to ", to, ", but there is one process");
   }

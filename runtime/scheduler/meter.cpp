@@ -82,9 +82,13 @@ void Meter::end_quantum(std::uint64_t at) {
     if (entry.action == longest_.action) entry.ticks -= std::min(back, entry.ticks);
 }
 
-void Meter::add_alarm(std::uint64_t period, std::function<void()> ring) {
-  alarms_.push_back({period, now() + period, std::move(ring)});
+void Meter::add_alarm(std::uint64_t period, const void* owner, std::function<void()> ring) {
+  alarms_.push_back({period, now() + period, owner, std::move(ring)});
   alarm_at_ = std::min(alarm_at_, alarms_.back().at);
+}
+
+void Meter::remove_alarms(const void* owner) {
+  std::erase_if(alarms_, [owner](const Alarm& alarm) { return alarm.owner == owner; });
 }
 
 void Meter::ring(std::uint64_t at) {

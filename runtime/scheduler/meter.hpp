@@ -83,7 +83,9 @@ class Meter {
 
   /// From now on `ring` is called after a scope with a record that ends `period` ticks or more
   /// after its last call. (What a ring causes has no record: it does not ring again.)
-  void add_alarm(std::uint64_t period, std::function<void()> ring);
+  /// The owner removes it before it ends.
+  void add_alarm(std::uint64_t period, const void* owner, std::function<void()> ring);
+  void remove_alarms(const void* owner);
 
  private:
   /// Time since the last change of scope goes to the scope that runs; returns now.
@@ -114,6 +116,7 @@ class Meter {
   struct Alarm {
     std::uint64_t period = 0;
     std::uint64_t at = 0;
+    const void* owner = nullptr;
     std::function<void()> ring;
   };
   std::vector<Alarm> alarms_;

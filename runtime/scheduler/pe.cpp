@@ -2,18 +2,27 @@
 
 #include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
+#include <algorithm>
 #include <new>
+#include <utility>
 
 namespace tess {
 namespace {
 
 constexpr std::size_t flush_bytes = 32U << 10U;
 constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
-constexpr unsigned steps_between_flushes = 4;
-/// A step of so few messages shows that no company will come soon for what it sent.
-constexpr std::size_t hand_to_mouth = 2;
+/// The longest that a message waits for others to the same PE of this process, or to another process.
+constexpr double parcel_seconds = 1e-6;
+constexpr double packed_seconds = 4e-6;
+/// Messages between two looks at the clock, while something is held back and messages are short.
+constexpr std::uint32_t most_between_looks = 8;
+/// After a step of so few messages no others are likely to follow soon: what was packed leaves.
+constexpr std::size_t few_messages = 2;
+/// A PE that never runs dry reports its epochs after so many messages.
+constexpr std::size_t messages_between_reports = 1024;
 
 /// What stands before each message in a packed buffer.
 struct PackedHeader {
@@ -42,9 +51,15 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       pool_(pool),
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
+      message_cost_(machine.message_cost()),
+      first_here_(machine.process_of(id).value * machine.pes_per_process()),
+      n_here_(machine.pes_per_process()),
+      parcel_ticks_(static_cast<std::uint64_t>(parcel_seconds / seconds_per_tick())),
+      packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),
       completion_(*this),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      packed_(static_cast<std::size_t>(machine.n_processes())) {}
+      packed_(static_cast<std::size_t>(machine.n_processes())),
+      parcels_(machine.takes_parcels() ? static_cast<std::size_t>(n_here_) : 0) {}
 
 Pe::~Pe() = default;
 
@@ -52,13 +67,55 @@ void Pe::route(PeId to, Envelope* message) {
   message->target = to;
   if (to == id_ && !intercepts_) {
     ready_.push(message);
-  } else if (machine_.same_process(id_, to)) {
+  } else if (static_cast<std::uint32_t>(to.value - first_here_) <
+             static_cast<std::uint32_t>(n_here_)) {
     ++statistics_.sent_remote;
-    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+    hand_over(to, message);
   } else {
     ++statistics_.sent_remote;
     pack(to, message);
   }
+}
+
+void Pe::hand_over(PeId to, Envelope* message) {
+  if (parcels_.empty()) {
+    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+    return;
+  }
+  Parcel*& parcel = parcels_[static_cast<std::size_t>(to.value - first_here_)];
+  if (parcel == nullptr) parcel = new (allocate_block(*this, sizeof(Parcel))) Parcel;
+  if (parcel->n == 0) opened_.push_back(to.value - first_here_);
+  parcel->messages[parcel->n++] = message;
+  if (parcel->n == Parcel::capacity) post(parcel, to);
+  hold();
+}
+
+void Pe::post(Parcel*& parcel, PeId to) {
+  if (parcel->n == 1) {  // by itself; the parcel stays for the next
+    auto* const message = static_cast<Envelope*>(parcel->messages[0]);
+    parcel->n = 0;
+    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+  } else {
+    machine_.post_parcel(to, std::exchange(parcel, nullptr));
+  }
+}
+
+void Pe::accept(Parcel* parcel) {
+  for (std::uint32_t i = 0; i < parcel->n; ++i) ready_.push(parcel->messages[i]);
+  Pool::release(parcel, &pool_);
+}
+
+void Pe::look_at_clock() {
+  const std::uint64_t held = read_ticks() - held_since_;
+  if (held > packed_ticks_) {
+    flush();
+    return;
+  }
+  if (held > parcel_ticks_) {
+    flush_parcels();
+    holds_ = holds_packed_;
+  }
+  until_look_ = look_every_ = std::min(2 * look_every_, most_between_looks);
 }
 
 void Pe::pack(PeId to, Envelope* message) {
@@ -80,16 +137,26 @@ void Pe::pack(PeId to, Envelope* message) {
   statistics_.bytes_sent += out.size() - begin;
   discard(message);
   holds_packed_ = true;
+  hold();
   if (out.size() >= flush_bytes || intercepts_) {
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
     out.clear();
   }
 }
 
+void Pe::flush_parcels() {
+  for (const std::int32_t at : opened_) {
+    Parcel*& parcel = parcels_[static_cast<std::size_t>(at)];
+    if (parcel != nullptr && parcel->n != 0) post(parcel, PeId{first_here_ + at});
+  }
+  opened_.clear();
+}
+
 bool Pe::flush() {
-  steps_since_flush_ = 0;
-  if (!holds_packed_) return false;
-  holds_packed_ = false;
+  if (!holds_) return false;
+  holds_ = false;
+  flush_parcels();
+  if (!std::exchange(holds_packed_, false)) return true;
   for (std::size_t process = 0; process < packed_.size(); ++process) {
     if (packed_[process].empty()) continue;
     machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(packed_[process]));
@@ -122,7 +189,7 @@ void Pe::receive(std::span<const std::byte> bytes) {
     if (header.target == id_) {
       ready_.push(message);
     } else {
-      machine_.post(id_, header.target, message, header.n_bytes, action.traffic);
+      hand_over(header.target, message);
     }
   }
 }
@@ -186,20 +253,27 @@ std::size_t Pe::step(std::size_t most) {
   if (meter_) [[unlikely]]
     meter_->step_begins();
   if (trace_) [[unlikely]] {
-    for (; n < most && !ready_.empty(); ++n) run_traced(static_cast<Envelope*>(ready_.pop()));
+    for (; n < most && !ready_.empty(); ++n) {
+      run_traced(static_cast<Envelope*>(ready_.pop()));
+      flush_if_due();
+    }
   } else {
-    for (; n < most && !ready_.empty(); ++n) run(static_cast<Envelope*>(ready_.pop()));
+    for (; n < most && !ready_.empty(); ++n) {
+      run(static_cast<Envelope*>(ready_.pop()));
+      flush_if_due();
+    }
   }
-  if (meter_) [[unlikely]]
-    meter_->step_ends();
   statistics_.messages += n;
   idle_calls_ = 0;
-  if (++steps_since_flush_ >= steps_between_flushes) {
-    flush();
-    completion_.tell_epochs();
-  } else if (n <= hand_to_mouth && holds_packed_) {
-    flush();
+  messages_since_report_ += n;
+  if (messages_since_report_ >= messages_between_reports) {
+    messages_since_report_ = 0;
+    completion_.report_epochs();
   }
+  if (n <= few_messages) flush();
+  if (message_cost_.count() != 0) machine_.charge(id_, message_cost_ * n);
+  if (meter_) [[unlikely]]
+    meter_->step_ends();
   return n;
 }
 
@@ -207,11 +281,12 @@ bool Pe::idle() {
   const RunsOn here(*this);
   if (meter_) [[unlikely]]
     meter_->idle();
-  bool busy = completion_.tell_epochs();
-  // Not at the first gap: a PE that is idle between two messages of a ping-pong would tell each
+  messages_since_report_ = 0;
+  bool busy = completion_.report_epochs();
+  // Not at the first gap: a PE that is idle between two messages of a ping-pong would report each
   // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
   if (completion_.run_changed()) {
-    busy = ++idle_calls_ < patience_ || completion_.tell_run() || busy;
+    busy = ++idle_calls_ < patience_ || completion_.report_run() || busy;
   } else {
     pool_.flush();
   }
@@ -224,6 +299,11 @@ void Pe::drop_all() {
     for (Envelope* message : messages) discard(message);
   }
   early_.clear();
+  for (Parcel*& parcel : parcels_) {
+    if (parcel == nullptr) continue;
+    for (std::uint32_t i = 0; i < parcel->n; ++i) discard(static_cast<Envelope*>(parcel->messages[i]));
+    Pool::release(std::exchange(parcel, nullptr), &pool_);
+  }
   dropping_ = true;
   end_all(suspended_);
 }
@@ -247,8 +327,36 @@ void Pe::add(CollectionId id, std::unique_ptr<Collection> collection) {
   for (Envelope* message : messages) send_here(message);
 }
 
-void Pe::keep_early(CollectionId id, Envelope* message) {
+void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&)) {
+  if (ended_.contains(id)) {
+    const std::uint64_t n_lost = drop(*this, *message);
+    if (ended_.counts(id)) statistics_.dead_letters += n_lost;
+    discard(message);
+    return;
+  }
   early_[id].push_back(message);
+}
+
+std::unique_ptr<Collection> Pe::take_out(CollectionId id, LateMessages late) {
+  const auto at = collections_.find(id);
+  std::unique_ptr<Collection> collection = std::move(at->second);
+  collections_.erase(at);
+  last_id_ = CollectionId{~std::uint64_t{0}};
+  ended_.add(id, late);
+  return collection;
+}
+
+void Pe::keep_ending(std::unique_ptr<Collection> collection, EpochId epoch) {
+  ending_.push_back({std::move(collection), epoch});
+}
+
+Pe::Ending Pe::take_ending(CollectionId id) {
+  const auto at = std::find_if(ending_.begin(), ending_.end(), [id](const Ending& one) {
+    return one.collection->id() == id;
+  });
+  Ending taken = std::move(*at);
+  ending_.erase(at);
+  return taken;
 }
 
 CollectionId Pe::new_collection_id() {
@@ -283,6 +391,11 @@ std::vector<std::string> Pe::census() const {
              one.waits_for()));
   }
   for (const auto& [id, collection] : collections_) collection->describe_waiting(lines);
+  for (const Ending& one : ending_)
+    lines.push_back(text(one.collection->name(),
+                         " on ",
+                         id_,
+                         " was destroyed, but coroutines of its elements wait"));
   for (const auto& [id, messages] : early_)
     lines.push_back(
         text(messages.size(), " messages on ", id_, " wait for ", id, ", which was never created"));

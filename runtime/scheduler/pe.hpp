@@ -5,8 +5,10 @@
 
 #include "runtime/base/mix.hpp"
 #include "runtime/base/pool.hpp"
+#include "runtime/base/ticks.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
@@ -121,18 +123,36 @@ class Pe {
   }
   /// Enters a collection; messages that came before it are sent on.
   void add(CollectionId id, std::unique_ptr<Collection> collection);
-  /// Keeps a message whose collection is not known here yet.
-  void keep_early(CollectionId id, Envelope* message);
+  /// Keeps a message whose collection is not known here yet. One whose collection has ended here is
+  /// dropped: `drop` settles its accounts and returns how many user messages are lost with it.
+  void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
+  [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
+  /// Takes a collection out of the table: it ends here, and messages to it are dropped from now on.
+  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id, LateMessages late);
+  /// Keeps a collection that was taken out until the coroutines of its elements are done.
+  void keep_ending(std::unique_ptr<Collection> collection, EpochId epoch);
+  struct Ending {
+    std::unique_ptr<Collection> collection;
+    EpochId epoch{};  ///< waits for it
+  };
+  [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id();
   [[nodiscard]] std::vector<Collection*> collections() const;
 
   // Called by the machine through the runtime.
 
-  void accept(Link* first) { ready_.append(first); }
+  void accept(Link* first) {
+    for (Link* next = nullptr; first != nullptr; first = next) {
+      next = first->next;
+      ready_.push(first);
+    }
+  }
+  void accept(Parcel* parcel);
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
-  /// Sends all that was held back to be packed together. True if there was any.
+  /// Sends all that was held back to be packed together. True if there was any. Called after a few
+  /// microseconds, when the PE idles, and before it starts local work on which other PEs wait.
   bool flush();
   void drop_all();
 
@@ -202,7 +222,23 @@ class Pe {
 
  private:
   void route(PeId to, Envelope* message);
+  /// To a PE of this process, not this one.
+  void hand_over(PeId to, Envelope* message);
   void pack(PeId to, Envelope* message);
+  void post(Parcel*& parcel, PeId to);
+  void flush_parcels();
+  /// Something is held back from now on, if nothing was.
+  void hold() {
+    if (holds_) return;
+    holds_ = true;
+    held_since_ = read_ticks();
+    until_look_ = look_every_ = 1;
+  }
+  /// After each message: what was held back for too long leaves.
+  void flush_if_due() {
+    if (holds_ && --until_look_ == 0) look_at_clock();
+  }
+  void look_at_clock();
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -215,6 +251,9 @@ class Pe {
   Pool& pool_;
   const bool intercepts_;
   const unsigned patience_;
+  const Time message_cost_;
+  const std::int32_t first_here_, n_here_;  // the PEs of this process
+  const std::uint64_t parcel_ticks_, packed_ticks_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
@@ -233,15 +272,23 @@ class Pe {
   std::unique_ptr<Trace> trace_;
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
-  unsigned steps_since_flush_ = 0;
-  bool holds_packed_ = false;
-  std::vector<Buffer> packed_;  // one a process
+  std::size_t messages_since_report_ = 0;
+
+  // What is held back to leave together: packed messages by process, pointers by PE of this process.
+  bool holds_ = false, holds_packed_ = false;
+  std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
+  std::uint64_t held_since_ = 0;                   // in ticks
+  std::vector<Buffer> packed_;
+  std::vector<Parcel*> parcels_;       // empty where the machine takes none
+  std::vector<std::int32_t> opened_;   // those of parcels_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
   std::uint64_t n_collections_made_ = 0;
   boost::unordered_flat_map<CollectionId, std::unique_ptr<Collection>, std::hash<CollectionId>>
       collections_;
   boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
+  EndedCollections ended_;
+  std::vector<Ending> ending_;
 };
 
 namespace detail {

@@ -1,43 +1,58 @@
-// The messages a PE may run, first in first out. Intrusive, so that it never allocates; one
-// thread's alone.
+// The messages that a PE may run, first in first out: a ring of pointers that grows. The messages
+// themselves are touched only when their turn is near; then they are fetched into the cache ahead of
+// it. One thread only.
 #pragma once
 
 #include "runtime/base/link.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 
 namespace tess {
 
 class ReadyQueue {
  public:
-  [[nodiscard]] bool empty() const { return first_ == nullptr; }
-
-  void push(Link* link) {
-    link->next = nullptr;
-    *last_ = link;
-    last_ = &link->next;
-  }
-
-  /// Appends a whole list.
-  void append(Link* first) {
-    *last_ = first;
-    while (*last_ != nullptr) last_ = &(*last_)->next;
-  }
-
-  /// The oldest; the queue must not be empty.
-  Link* pop() {
-    Link* link = first_;
-    first_ = link->next;
-    if (first_ == nullptr) last_ = &first_;
-    return link;
-  }
-
-  ReadyQueue() = default;
+  ReadyQueue() : ring_(std::make_unique_for_overwrite<Link*[]>(first_capacity)) {}
   ReadyQueue(const ReadyQueue&) = delete;
   ReadyQueue& operator=(const ReadyQueue&) = delete;
   ~ReadyQueue() = default;
 
+  [[nodiscard]] bool empty() const { return head_ == tail_; }
+
+  void push(Link* link) {
+    if (tail_ - head_ > mask_) [[unlikely]]
+      grow();
+    ring_[tail_++ & mask_] = link;
+  }
+
+  /// The oldest; the queue must not be empty.
+  Link* pop() {
+    if (head_ + distance < tail_) {
+      const char* soon = reinterpret_cast<const char*>(ring_[(head_ + distance) & mask_]);
+      __builtin_prefetch(soon, 1);
+      __builtin_prefetch(soon + 64, 1);
+    }
+    return ring_[head_++ & mask_];
+  }
+
  private:
-  Link* first_ = nullptr;
-  Link** last_ = &first_;
+  static constexpr std::size_t first_capacity = 256;
+  static constexpr std::size_t distance = 3;  // of the prefetch
+
+  void grow() {
+    const std::size_t n = tail_ - head_;
+    auto larger = std::make_unique_for_overwrite<Link*[]>(2 * (mask_ + 1));
+    for (std::size_t i = 0; i < n; ++i) larger[i] = ring_[(head_ + i) & mask_];
+    ring_ = std::move(larger);
+    mask_ = 2 * mask_ + 1;
+    head_ = 0;
+    tail_ = n;
+  }
+
+  std::unique_ptr<Link*[]> ring_;
+  std::size_t mask_ = first_capacity - 1;
+  std::size_t head_ = 0, tail_ = 0;  // of all time; the place is the number modulo the capacity
 };
 
 }  // namespace tess

@@ -58,6 +58,7 @@ class Runtime final : public Program {
   // Program.
   void start(PeId pe) override;
   void accept(PeId id, Link* first) override { pe(id).accept(first); }
+  void accept_parcel(PeId id, Parcel* parcel) override { pe(id).accept(parcel); }
   std::size_t step(PeId id, std::size_t most) override { return pe(id).step(most); }
   bool idle(PeId id) override { return pe(id).idle(); }
   void receive(PeId id, std::span<const std::byte> bytes) override { pe(id).receive(bytes); }

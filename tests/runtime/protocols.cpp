@@ -88,6 +88,9 @@ TEST_CASE("an exception names the element, the entry method and the PE", "[runti
 TEST_CASE("messages to the dead are counted", "[runtime][protocol]") {
   run_seeds("dead_letters");
 }
+TEST_CASE("arrays that end in mid use leave nothing behind", "[runtime][protocol]") {
+  run_seeds("destroyed");
+}
 TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
   run_seeds("groups");
 }
@@ -104,6 +107,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "epoch_migrations",
                            "flood_exit",
                            "mailboxes",
+                           "destroyed",
                            "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {

@@ -133,11 +133,15 @@ TEST_CASE("the ready queue gives messages in their order", "[runtime]") {
   std::array<tess::Link, 4> links;
   CHECK(queue.empty());
   queue.push(&links[0]);
-  links[1].next = &links[2];
-  queue.append(&links[1]);
-  queue.push(&links[3]);
-  for (tess::Link& link : links) CHECK(queue.pop() == &link);
-  CHECK(queue.empty());
+  // Over several turns of the ring and growths of it, in order.
+  std::size_t n_pushed = 1, n_popped = 0;
+  for (std::size_t turn = 0; turn < 100; ++turn) {
+    for (std::size_t i = 0; i < 17 + turn; ++i) queue.push(&links[n_pushed++ % links.size()]);
+    for (std::size_t i = 0; i < 15 + turn; ++i)
+      REQUIRE(queue.pop() == &links[n_popped++ % links.size()]);
+  }
+  while (!queue.empty()) REQUIRE(queue.pop() == &links[n_popped++ % links.size()]);
+  CHECK(n_popped == n_pushed);
 }
 
 namespace {

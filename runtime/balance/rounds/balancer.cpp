@@ -11,9 +11,18 @@ namespace {
 struct Attach {
   CollectionId balancer{};
   CollectionId array{};
+
+  /// The array has ended, or the exchange has: then the balancer ends, too.
+  [[nodiscard]] std::uint64_t drop(Pe& /*pe*/) const {
+    if (Balancer* member = GroupProxy<Balancer>(balancer).local_or_null(); member != nullptr)
+      member->array_ends();
+    return 0;
+  }
 };
 void attach_arrives(Collection& array, Attach&& m) {
-  GroupProxy<Balancer>(m.balancer).local().attach(array);
+  // The balancer may have ended: the array's end is on its way to this PE then.
+  if (Balancer* member = GroupProxy<Balancer>(m.balancer).local_or_null(); member != nullptr)
+    member->attach(array);
 }
 void exchange_known(Collection& exchange, Attach&& m) {
   Pe& pe = exchange.pe();
@@ -60,9 +69,38 @@ void Balancer::attach(Collection& array) {
   }
   Meter& meter = current_pe().start_meter();
   if (plan_.when == BalanceWhen::periodic)
-    meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), [this] { alarm(); });
+    meter.add_alarm(
+        meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), this, [this] { alarm(); });
   contribute(
       sum, array.n_away(), group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+}
+
+void Balancer::array_ends() {
+  if (array_ == nullptr)  // for those that wait until all have attached
+    contribute(
+        sum, std::int64_t{0}, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+  detach();
+  array_ended_ = true;
+  end_if_over();
+}
+
+void Balancer::group_ends() {
+  if (array_ != nullptr) array_->remove_watcher();
+  detach();
+}
+
+void Balancer::detach() {
+  current_pe().start_meter().remove_alarms(this);
+  measured_.detach();
+  barrier_.detach();
+  array_ = nullptr;
+}
+
+void Balancer::end_if_over() {
+  if (!array_ended_ || running_ || coordinator_ == nullptr) return;
+  end_collection(group().id(), LateMessages::ignored);
+  if (plan_.distributed != DistributedStrategy::none)
+    end_collection(plan_.exchange.id(), LateMessages::ignored);
 }
 
 void Balancer::attached_everywhere(std::int64_t n_under_way) {
@@ -128,12 +166,14 @@ void Balancer::pass(Element& element) {
 
 Task Balancer::reached(std::uint64_t /*n_elements*/) {
   const std::uint32_t barrier = barriers_++;
+  if (array_ended_) co_return;
   co_await phase_ends();
   group().broadcast<&Balancer::resume>(barrier);
 }
 
 Task Balancer::phase_ends() {
   TESS_CHECK(coordinator_ != nullptr, "rounds are asked for on ", plan_.coordinator, " alone");
+  TESS_CHECK(!array_ended_, "a round of an array that was destroyed");
   TESS_CHECK(!running_, "a round while another runs: await that one first");
   running_ = true;
   if (!attached_) {
@@ -155,18 +195,20 @@ Task Balancer::phase_ends() {
   }
   phase_began_ = current_pe().now();
   running_ = false;
+  end_if_over();
 }
 
 Task Balancer::due(std::uint64_t seen) {
   // Several PEs ring, each in its own time; one round answers them all.
   const Time period(plan_.period_ns);
-  if (!ready_ || running_ || seen < n_rounds_ ||
+  if (!ready_ || running_ || array_ended_ || seen < n_rounds_ ||
       current_pe().now() - phase_began_ < period * 9 / 10)
     co_return;
   running_ = true;
   co_await round();
   phase_began_ = current_pe().now();
   running_ = false;
+  end_if_over();
 }
 
 Task Balancer::round() {
@@ -275,6 +317,7 @@ void Balancer::sum_outcome(Callback<Outcome> target) {
 
 void Balancer::alarm() {
   // A PE without elements leaves it to others; an array that has ended has no more rounds.
+  if (array_ == nullptr) return;
   const auto& here = array_->elements();
   if (std::none_of(here.begin(), here.end(), [](const Element* e) { return e != nullptr; })) return;
   group()[plan_.coordinator].send<&Balancer::due>(n_rounds_seen_);

@@ -7,6 +7,9 @@
 //         move     ->  elements migrate                  (an epoch: it ends when all have arrived)
 //         resume   ->  every element goes on
 //
+// The balancer ends with its array: as soon as the array has ended on the coordinator, after the
+// round that runs then, if any.
+//
 // A distributed strategy (diffusion, gossip) has neither collect nor decide: the PEs exchange items
 // among themselves (Exchange), then each fetches what it was given.
 #pragma once
@@ -52,6 +55,10 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
     coordinator_ = std::move(coordinator);
   }
   [[nodiscard]] const std::vector<Round>& history() const;
+  /// The group ends; the array may not have ended here yet.
+  void group_ends();
+  /// The array has ended on this PE, maybe before attach().
+  void array_ends();
   /// On the coordinator: a phase is over, without a barrier of the elements.
   Task phase_ends();
 
@@ -76,6 +83,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void left(Element& element) override;
   void died(Element& element) override;
   void at_sync(Element& element) override;
+  void collection_ends() override { array_ends(); }
 
   Task round();
   Task central_round();
@@ -84,6 +92,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void pass(Element& element);
   void begin_if_ready();
   void alarm();
+  void detach();
+  void end_if_over();
 
   const Plan plan_;
   Barrier barrier_;
@@ -102,6 +112,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Callback<std::uint64_t> when_attached_;  // a round that waits for it
   bool ready_ = false;                     // all members of round 0 are found
   bool running_ = false;
+  bool array_ended_ = false;  // on this PE: the balancer ends after the round that runs
   Time phase_began_{0};
 };
 

@@ -73,7 +73,6 @@ void Barrier::left(Element& element) {
 
 void Barrier::died(Element& element) {
   const SyncState& sync = sync_of(element);
-  if (sync.phase == SyncPhase::waits) pe_.completion().processed(sync.epoch);
   if (!sync.member) return;
   tree_.died(sync.next);
   tree_.advance();
@@ -107,6 +106,7 @@ void Barrier::contribute(SyncState& sync) {
 
 void Barrier::resume(std::uint32_t round) {
   n_resumed_ = std::max(n_resumed_, round + 1);
+  if (array_ == nullptr) return;
   for (Element* element : array_->elements()) {
     if (element == nullptr) continue;
     const SyncState& sync = sync_of(*element);
@@ -122,6 +122,7 @@ void Barrier::wake(Element& element) {
 std::string Barrier::missing_before(std::uint32_t round) const {
   std::string out;
   std::size_t n = 0;
+  if (array_ == nullptr) return out;
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
     const SyncState& sync = Collection::record_of(*element)->sync;

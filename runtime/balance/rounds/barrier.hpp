@@ -25,6 +25,8 @@ class Barrier {
 
   /// Balancing starts here: all elements present are members from round 0 on.
   void attach(Collection& array);
+  /// Lets go of the array: nobody is waited for or resumed any more.
+  void detach() { array_ = nullptr; }
   /// All members of round 0 have been found, on all PEs.
   void begin();
 

@@ -17,6 +17,13 @@ void Measured::attach(Collection& array) {
     if (element != nullptr) entered(*element);
 }
 
+void Measured::detach() {
+  if (array_ == nullptr) return;
+  for (Element* element : array_->elements())
+    if (element != nullptr) left(*element);
+  array_ = nullptr;
+}
+
 void Measured::entered(Element& element) {
   BalanceRecord& record = Collection::make_record(element);
   record.load.of_pe = &in_elements_;
@@ -75,21 +82,23 @@ PeReport Measured::report(std::uint64_t round) {
   for (Element* element : reported_)
     if (element != nullptr) Collection::record_of(*element)->position = BalanceRecord::nowhere;
   reported_.clear();
+  if (array_ == nullptr) return report;
   for (Element* element : array_->elements())
     if (element != nullptr) add(*element, round, report);
   return report;
 }
 
 PhaseSums Measured::sums(double speed) const {
-  double seconds = 0;
+  double seconds = busy_outside();
+  if (array_ == nullptr) return {seconds, seconds * speed, speed};
   for (const Element* element : array_->elements())
     if (element != nullptr) seconds += meter_.seconds(Collection::record_of(*element)->load.ticks);
-  seconds += busy_outside();
   return {seconds, seconds * speed, speed};
 }
 
 void Measured::clear() {
   begin_phase();
+  if (array_ == nullptr) return;
   for (Element* element : array_->elements())
     if (element != nullptr) Collection::record_of(*element)->load.clear();
 }

@@ -12,6 +12,8 @@ class Measured {
   explicit Measured(Pe& pe) : pe_(pe), meter_(pe.start_meter()), busy_before_(meter_.busy()) {}
 
   void attach(Collection& array);
+  /// Lets go of the array and its elements; what is reported from now on is the PE without them.
+  void detach();
 
   void entered(Element& element);
   void left(Element& element);

@@ -1,0 +1,343 @@
+// Arrays that are made, used and destroyed while everything goes on in them: messages, demands,
+// migrations, broadcasts, reductions, coroutines, balance rounds. The oracle: each message is
+// delivered once or counted as a dead letter, none after the end; every element is destroyed; every
+// epoch is done; each PE forgets the array, its balancer included.
+#include "apps/protocol_fuzz/scenarios.hpp"
+#include "runtime/balance.hpp"
+
+#include <map>
+#include <set>
+
+namespace tess::fuzz {
+namespace {
+
+struct Ledger {
+  Trial& trial;
+  double end_chance = 0;  // a message destroys its array
+  int n_indices = 1;
+  std::mutex mutex{};
+  std::vector<int> delivered{};          // by token
+  int n_broadcasts = 0;                  // one that is lost counts as a dead letter
+  std::map<CollectionId, int> alive{};   // elements by array
+  std::map<CollectionId, int> n_made{};  // inserted elements by array
+  std::map<CollectionId, bool> over{};   // nothing more may be delivered
+  std::set<CollectionId> periodic{};     // balanced so: its elements must not call at_sync()
+  std::map<PeId, std::size_t> n_collections{};
+
+  int token() {
+    const std::lock_guard lock(mutex);
+    delivered.push_back(0);
+    return static_cast<int>(delivered.size()) - 1;
+  }
+  void deliver(CollectionId array, int token) {
+    const std::lock_guard lock(mutex);
+    trial.expect(!over[array], "a message is delivered after the end of its array");
+    ++delivered[static_cast<std::size_t>(token)];
+  }
+  int n_alive() {
+    const std::lock_guard lock(mutex);
+    int n = 0;
+    for (const auto& [array, alive_there] : alive) n += alive_there;
+    return n;
+  }
+  /// Each PE knows no collection but the clerks.
+  bool all_forgotten() {
+    const std::lock_guard lock(mutex);
+    for (const auto& [pe, n] : n_collections)
+      if (n != 1) return false;
+    return true;
+  }
+};
+Ledger* ledger = nullptr;
+
+class Clerk;
+
+/// A message that goes on and on.
+struct Errand {
+  GroupProxy<Clerk> clerks;
+  int token = 0;
+  int n_hops = 0;
+};
+
+class Mayfly : public Chare<Mayfly, Index1> {
+ public:
+  Mayfly() { count(1); }
+  explicit Mayfly(Errand errand) : Mayfly() { ledger->deliver(array().id(), errand.token); }
+  Mayfly(const Mayfly&) = delete;
+  Mayfly& operator=(const Mayfly&) = delete;
+  ~Mayfly() override {
+    count(-1);
+    canary_ = 0;
+  }
+
+  void run(Errand errand);
+  Task wait(Errand errand);
+  void meet(GroupProxy<Clerk> clerks);
+  void sync() {
+    {
+      const std::lock_guard lock(ledger->mutex);
+      if (ledger->periodic.contains(array().id())) return;
+    }
+    if (!waits_) at_sync();
+    waits_ = true;
+  }
+  void resume_from_sync() { waits_ = false; }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(canary_, waits_);
+  }
+
+ private:
+  void count(int n) const {
+    const std::lock_guard lock(ledger->mutex);
+    ledger->alive[array().id()] += n;
+  }
+
+  int canary_ = 4711;
+  bool waits_ = false;
+};
+
+/// On each PE: what is done to the arrays from outside.
+class Clerk : public Group<Clerk> {
+ public:
+  void flood(ArrayProxy<Mayfly> flies, Errand errand);
+  void end(ArrayProxy<Mayfly> flies, int n_hops) {
+    if (n_hops == 0) {
+      flies.destroy();
+    } else {
+      const PeId next{(pe().value + 1) % current_pe().n_pes()};
+      group()[next].send<&Clerk::end>(flies, n_hops - 1);
+    }
+  }
+  void pass(int n_hops) {
+    const PeId next{(pe().value * 3 + 1) % current_pe().n_pes()};
+    if (n_hops != 0) group()[next].send<&Clerk::pass>(n_hops - 1);
+  }
+  void add(int /*sum*/) {}
+  void check_end(CollectionId array) {
+    ledger->trial.expect(current_pe().ended(array) && current_pe().find(array) == nullptr,
+                         "the epoch of the end is done, but ",
+                         pe(),
+                         " still has the array");
+  }
+  void count_collections() {
+    const std::lock_guard lock(ledger->mutex);
+    ledger->n_collections[pe()] = current_pe().collections().size();
+  }
+};
+
+void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random) {
+  errand.token = ledger->token();
+  const int n = ledger->n_indices;
+  const auto fly = flies[{static_cast<int>(random.below(static_cast<std::uint64_t>(n)))}];
+  switch (random.below(8)) {
+    case 0:
+      fly.send_or_create_here<&Mayfly::run>(errand);
+      break;
+    case 1:
+      fly.send_or_create_home<&Mayfly::run>(errand);
+      break;
+    case 2: {
+      int made = 0;
+      {
+        const std::lock_guard lock(ledger->mutex);
+        made = ledger->n_made[flies.id()]++;
+      }
+      const PeId where{static_cast<std::int32_t>(
+          random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
+      flies[{1000 + made}].insert_on(where, errand);
+      break;
+    }
+    case 3:
+      fly.send<&Mayfly::wait>(errand);
+      break;
+    default:
+      fly.send<&Mayfly::run>(errand);
+  }
+}
+
+void start_meeting(const ArrayProxy<Mayfly>& flies, GroupProxy<Clerk> clerks) {
+  {
+    const std::lock_guard lock(ledger->mutex);
+    ++ledger->n_broadcasts;
+  }
+  flies.broadcast<&Mayfly::meet>(clerks);
+}
+
+void Mayfly::run(Errand errand) {
+  ledger->deliver(array().id(), errand.token);
+  Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(ledger->trial.seed())));
+  if (random.chance(ledger->end_chance)) array().destroy();
+  if (random.chance(0.3))
+    migrate_to(PeId{
+        static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
+  if (random.chance(0.05)) destroy();
+  if (random.chance(0.05)) start_meeting(array(), errand.clerks);
+  if (random.chance(0.2)) sync();
+  if (errand.n_hops == 0) return;
+  --errand.n_hops;
+  send_errand(array(), errand, random);
+  if (random.chance(0.1)) send_errand(array(), errand, random);
+}
+
+Task Mayfly::wait(Errand errand) {
+  const CollectionId array_id = array().id();
+  ledger->deliver(array_id, errand.token);
+  const PeId other{(errand.token * 7 + 1) % current_pe().n_pes()};
+  co_await epoch([&] { errand.clerks[other].send<&Clerk::pass>(errand.token % 5); });
+  ledger->trial.expect(canary_ == 4711, "a coroutine goes on in an element that was destroyed");
+  if (errand.token % 3 == 0) meet(errand.clerks);
+  if (errand.token % 4 == 0) sync();
+  if (errand.token % 5 == 0) start_meeting(array(), errand.clerks);
+  if (errand.n_hops == 0) co_return;
+  --errand.n_hops;
+  Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(ledger->trial.seed())));
+  send_errand(array(), errand, random);
+}
+
+void Mayfly::meet(GroupProxy<Clerk> clerks) {
+  contribute(sum, 1, clerks[PeId{0}].target<&Clerk::add>());
+}
+
+void Clerk::flood(ArrayProxy<Mayfly> flies, Errand errand) {
+  Random random(mix(static_cast<std::uint64_t>(errand.token * 64 + pe().value)));
+  const auto n = random.below(8);
+  for (std::uint64_t i = 0; i < n; ++i) send_errand(flies, errand, random);
+  if (random.chance(0.5)) start_meeting(flies, group());
+}
+
+/// True if it has a balancer.
+bool balance(const ArrayProxy<Mayfly>& flies, Random& random) {
+  BalanceOptions options;
+  options.lines = RoundLines::none;
+  switch (random.below(6)) {
+    case 0:
+      options.strategy = "rotate";
+      break;
+    case 1:
+      options.strategy = "none";
+      break;
+    case 2:
+      options.strategy = "greedy";
+      options.when = BalanceWhen::periodic;
+      options.period = std::chrono::microseconds(2);
+      break;
+    case 3:
+      options.strategy = "diffusion";
+      options.when = BalanceWhen::periodic;
+      options.period = std::chrono::microseconds(2);
+      break;
+    default:
+      return false;
+  }
+  if (options.when == BalanceWhen::periodic) {
+    const std::lock_guard lock(ledger->mutex);
+    ledger->periodic.insert(flies.id());
+  }
+  start_balancing(flies, options);
+  return true;
+}
+
+Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
+  Random random(seed);
+  const PeId other{
+      static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
+  const Errand errand{
+      clerks, static_cast<int>(random.below(1000)), static_cast<int>(random.below(12))};
+  ArrayProxy<Mayfly> flies;
+  bool is_balanced = false;
+  const auto make = [&] {
+    flies = tess::create<Mayfly>(random.chance(0.7) ? range(ledger->n_indices) : sparse);
+    is_balanced = balance(flies, random);
+  };
+  const auto flood = [&] { clerks.broadcast<&Clerk::flood>(flies, errand); };
+  const auto end = [&] { flies.destroy(); };
+  const auto end_elsewhere = [&] { clerks[other].send<&Clerk::end>(flies, errand.token % 4); };
+  const auto how = random.below(4);
+  switch (how) {
+    case 0:  // all in one epoch: nothing is left when it is done
+      co_await epoch([&] {
+        make();
+        flood();
+        end_elsewhere();
+      });
+      break;
+    case 1:  // twice
+      make();
+      co_await epoch([&] {
+        flood();
+        end_elsewhere();
+        end();
+      });
+      break;
+    case 2:  // unused
+      co_await epoch([&] {
+        make();
+        end();
+      });
+      break;
+    default:  // in mid flood
+      make();
+      flood();
+      co_await epoch(end);
+      clerks.broadcast<&Clerk::check_end>(flies.id());
+      co_return;
+  }
+  clerks.broadcast<&Clerk::check_end>(flies.id());
+  const std::lock_guard lock(ledger->mutex);
+  ledger->over[flies.id()] = true;
+  // What a balancer moves is on no epoch of the user's: it may arrive, and end, later.
+  ledger->trial.expect(is_balanced || ledger->alive[flies.id()] == 0,
+                       ledger->alive[flies.id()],
+                       " elements outlive their array, way ",
+                       how);
+}
+
+Task all_lives(GroupProxy<Clerk> clerks, int n_lives, std::uint64_t seed) {
+  for (int life = 0; life < n_lives; ++life)
+    co_await live_and_end(clerks, mix(seed + static_cast<unsigned>(life)));
+}
+
+Task live_and_end_often(int n_lives, std::uint64_t seed) {
+  const auto clerks = create_group<Clerk>();
+  co_await epoch([&] { const Task lives = all_lives(clerks, n_lives, seed); });
+  constexpr int most_looks = 5000;
+  int n_looks = 0;
+  do {
+    co_await epoch([&] { clerks.broadcast<&Clerk::count_collections>(); });
+  } while (!(ledger->n_alive() == 0 && ledger->all_forgotten()) && n_looks++ < most_looks);
+  ledger->trial.expect(ledger->n_alive() == 0, ledger->n_alive(), " elements are left");
+  ledger->trial.expect(ledger->all_forgotten(), "a PE still knows a collection that has ended");
+  co_await epoch([&] { clerks.destroy(); });
+  clerks.destroy();
+}
+
+}  // namespace
+
+void destroyed(Trial& trial) {
+  Ledger here{trial};
+  here.n_indices = trial.draw(1, 20);
+  here.end_chance = trial.draw(0, 2) * 0.01;
+  ledger = &here;
+  const int n_lives = trial.draw(1, 6);
+  const std::uint64_t seed = trial.random()();
+  const Ending ending = trial.run([&]() -> Task { return live_and_end_often(n_lives, seed); });
+  trial.expect(ending.exit_code == 0, "exit code ", ending.exit_code, ": ", ending.report);
+  int n_lost = 0, n_dead = 0;
+  for (const int delivered : here.delivered) {
+    trial.expect(delivered <= 1, "a message was delivered ", delivered, " times");
+    n_lost += delivered == 0 ? 1 : 0;
+  }
+  if (const std::size_t at = ending.report.find("tessera: "); at != std::string::npos)
+    n_dead = std::atoi(ending.report.c_str() + at + 9);
+  trial.expect(n_dead >= n_lost && n_dead <= n_lost + here.n_broadcasts,
+               n_lost,
+               " messages were lost, ",
+               n_dead,
+               " counted, of ",
+               here.n_broadcasts,
+               " broadcasts");
+}
+
+}  // namespace tess::fuzz

@@ -1,0 +1,56 @@
+#include "runtime/collections/ending.hpp"
+
+#include "runtime/collections/collection_action.hpp"
+#include "runtime/scheduler/pe_action.hpp"
+
+namespace tess {
+namespace {
+
+struct End {
+  EpochId epoch{};
+  LateMessages late{};
+
+  std::uint64_t drop(Pe& pe) const {
+    pe.completion().processed(epoch);
+    return 0;
+  }
+};
+struct Free {
+  CollectionId id{};
+};
+
+void ending_arrives(Collection& collection, End&& m) {
+  Pe& pe = collection.pe();
+  std::unique_ptr<Collection> ending = pe.take_out(collection.id(), m.late);
+  collection.end();
+  if (collection.n_local() != 0) {
+    pe.keep_ending(std::move(ending), m.epoch);
+    return;
+  }
+  ending.reset();
+  pe.completion().processed(m.epoch);
+}
+
+void freeing_arrives(Pe& pe, Free&& m) {
+  const Pe::Ending ending = pe.take_ending(m.id);
+  ending.collection->reductions().end();  // the last coroutines may have contributed
+  pe.completion().processed(ending.epoch);
+}
+
+}  // namespace
+
+void end_collection(CollectionId id, LateMessages late) {
+  Pe& pe = current_pe();
+  const End end{pe.context().epoch, late};
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
+    pe.completion().sent(end.epoch);
+    send_to_collection<&ending_arrives>(pe, id, PeId{to}, end);
+  }
+}
+
+void free_later(Collection& collection) {
+  Pe& pe = collection.pe();
+  send_system<&freeing_arrives>(pe, pe.id(), Free{collection.id()});
+}
+
+}  // namespace tess
