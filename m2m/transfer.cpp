@@ -33,6 +33,7 @@ Task transfer(DistributedMesh source,
   // Named: g++ 12 destroys an aggregate that is written inside a co_await expression twice.
   const Report to_target{report_to_target(target.workers, setup.id), target_model};
   co_await collide(setup.collider, to_target);
+  setup.collider.destroy();
   const Time broad = pe.now();
   enter("narrow");
   co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(setup.id); });

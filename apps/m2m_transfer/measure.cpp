@@ -36,10 +36,6 @@ void judge(Problem& problem) {
       problem.target.points[static_cast<std::size_t>(report.fields.front().norms.worst)];
 }
 
-void end(const DistributedMesh& mesh) {
-  for (std::int32_t k = 0; k < mesh.n_parts; ++k) mesh.workers[{k}].destroy();
-}
-
 }  // namespace
 
 Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress) {
@@ -86,8 +82,8 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   report.footprint.peak_memory_bytes = peak.peak_memory_bytes;
   report.footprint.greatest_peak_memory_bytes = peak.greatest_peak_memory_bytes;
   co_await epoch([&] {
-    end(source);
-    end(target);
+    source.destroy();
+    target.destroy();
   });
 }
 
