@@ -80,8 +80,11 @@ struct MeshCensus {
 };
 
 /// Throws Error (bad_mesh), naming the mesh, the element and the remedy, on no tetrahedra, a
-/// coordinate that is not finite, or an index out of range (also of a block or set). Flat and
-/// inverted tetrahedra pass and are counted.
+/// coordinate that is not finite, an index out of range (also of a block or set), or coordinates
+/// that cannot be computed with: where more than a tenth of the tetrahedra are shorter than 64 ulps
+/// of their coordinates (so close to the tolerance of 4 ulps with which points snap, their shape is
+/// rounding), shorter than 1e-80 (volumes leave the range of double), or where none has a volume.
+/// Single flat, tiny or inverted tetrahedra pass; flat and inverted ones are counted.
 MeshCensus validate(const TetMesh& mesh);
 
 /// "120 TRI3, 8 BAR2"; empty where nothing was skipped.
