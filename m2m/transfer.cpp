@@ -21,7 +21,7 @@ Task transfer(DistributedMesh source,
   };
   enter("broad");
   const Time start = pe.now();
-  TransferSetup setup{{}, {}, source.workers, target.workers, source.n_parts};
+  TransferSetup setup{{}, {}, source.workers, target.workers};
   co_await epoch([&] {
     setup.collider = make_collider({options.voxel_origin, options.voxel_size, {}});
     setup.id = TransferId{setup.collider.voxels.id().value};  // one collider, one transfer
@@ -39,7 +39,8 @@ Task transfer(DistributedMesh source,
   co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(setup.id); });
   const Time narrow = pe.now();
   enter("report");
-  const Settlement settlement{setup.id, options.policy};
+  Settlement settlement{setup.id, options.policy, {}};
+  if (std::holds_alternative<Nearest>(options.policy)) settlement.source_boxes = source.boxes;
   co_await epoch([&] { target.workers.broadcast<&Worker::settle>(settlement); });
   co_await epoch([&] { target.workers.broadcast<&Worker::share>(setup.id); });
   Future<Tally> tally;

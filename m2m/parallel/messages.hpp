@@ -30,7 +30,6 @@ struct TransferSetup {
   Collider collider;
   ArrayProxy<Worker> source;
   ArrayProxy<Worker> target;
-  std::int32_t n_source_parts = 0;
 };
 
 /// The part of a mesh that a Worker carries, with its values.
@@ -57,16 +56,18 @@ struct Answer {
   std::vector<double> values;  ///< rows.size() × n_components, row-major
 };
 
-/// The nearest source vertices of some points: asked of all source Workers.
+/// Which vertices are nearest to some points: asked of one source Worker.
 struct NearestQuery {
   TransferId transfer{};
   Index1 from;
   std::vector<std::int32_t> rows;
   std::vector<Point> points;
+  std::vector<double> squared_reaches;  ///< of each point: what is farther does not matter
 };
+/// The nearest vertices of one source Worker; vertex -1 where none is within reach.
 struct NearestAnswer {
   TransferId transfer{};
-  std::vector<std::int32_t> rows;
+  std::vector<std::int32_t> rows;  ///< those of the query
   std::vector<double> squared_distances;
   std::vector<GlobalId> vertices;
   std::vector<double> values;  ///< rows.size() × n_components, row-major
@@ -76,6 +77,7 @@ struct NearestAnswer {
 struct Settlement {
   TransferId transfer{};
   OutsidePolicy policy;
+  std::vector<Aabb> source_boxes;  ///< of the source's parts, where the policy is Nearest
 };
 
 /// New values of vertices that another Worker owns.

@@ -1,7 +1,5 @@
 #include "m2m/parallel/worker.hpp"
 
-#include "m2m/search/nearest_vertex.hpp"
-
 #include <algorithm>
 
 namespace tess::m2m {
@@ -184,36 +182,60 @@ void Worker::receive_answer(const Answer& answer) {
 void Worker::settle(const Settlement& settlement) {
   Incoming& to = incoming(settlement.transfer);
   if (std::holds_alternative<Keep>(settlement.policy)) return;
-  const auto* given = std::get_if<UseValue>(&settlement.policy);
-  const std::vector<double> given_row(n_components_, given != nullptr ? given->value : 0);
-  NearestQuery query{settlement.transfer, index(), {}, {}};
-  for (std::int32_t v = 0; v < static_cast<std::int32_t>(part_.n_owned); ++v) {
-    if (to.claims[static_cast<std::size_t>(v)].status != Status::outside) continue;
-    if (given != nullptr) {
-      put(to, v, given_row.data());
-    } else {
-      query.rows.push_back(v);
-      query.points.push_back(part_.points[static_cast<std::size_t>(v)]);
-    }
+  std::vector<std::int32_t> outside;
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(part_.n_owned); ++v)
+    if (to.claims[static_cast<std::size_t>(v)].status == Status::outside) outside.push_back(v);
+  if (outside.empty()) return;
+  if (const auto* given = std::get_if<UseValue>(&settlement.policy)) {
+    const std::vector<double> given_row(n_components_, given->value);
+    for (const std::int32_t v : outside) put(to, v, given_row.data());
+    return;
   }
-  if (query.rows.empty()) return;
+  Aabb box = box_of(part_.points[static_cast<std::size_t>(outside.front())]);
+  for (const std::int32_t v : outside)
+    box = merged(box, box_of(part_.points[static_cast<std::size_t>(v)]));
+  to.nearest_parts = NearestParts(settlement.source_boxes, box);
   to.nearest.resize(to.claims.size());
-  for (std::int32_t k = 0; k < to.setup.n_source_parts; ++k)
-    to.setup.source[{k}].send<&Worker::answer_nearest>(query);
+  ask_nearest(to, outside);
+}
+
+void Worker::ask_nearest(Incoming& to, std::span<const std::int32_t> rows) {
+  std::map<std::int32_t, NearestQuery> queries;  // by part
+  for (const std::int32_t v : rows) {
+    NearestClaim& mine = to.nearest[static_cast<std::size_t>(v)];
+    const Point& point = part_.points[static_cast<std::size_t>(v)];
+    const NearestParts::Part next = to.nearest_parts.next(point, mine.asked);
+    if (next == NearestParts::none || next.squared_distance > mine.squared_distance) continue;
+    mine.asked = next;
+    NearestQuery& query = queries[next.number];
+    query.rows.push_back(v);
+    query.points.push_back(point);
+    query.squared_reaches.push_back(mine.squared_distance);
+  }
+  for (auto& [part, query] : queries) {
+    query.transfer = to.setup.id;
+    query.from = index();
+    to.setup.source[{part}].send<&Worker::answer_nearest>(std::move(query));
+  }
 }
 
 void Worker::answer_nearest(NearestQuery query) {
-  if (part_.points.empty()) return;
   Outgoing& from = outgoing(query.transfer);
   std::vector<double>& values = from.values ? *from.values : values_;
-  const NearestVertex nearest(part_.points);
+  if (!nearest_)
+    nearest_.emplace(std::span(part_.points).first(static_cast<std::size_t>(part_.n_owned)));
   NearestAnswer answer{query.transfer, std::move(query.rows), {}, {}, {}};
-  for (const Point& point : query.points) {
-    const NearestVertex::Answer found = nearest.find(point);
+  answer.squared_distances.reserve(answer.rows.size());
+  answer.vertices.reserve(answer.rows.size());
+  answer.values.resize(answer.rows.size() * n_components_);
+  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+    const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
     answer.squared_distances.push_back(found.squared_distance);
-    answer.vertices.push_back(part_.point_ids[static_cast<std::size_t>(found.vertex)]);
-    const double* of_vertex = row(values, found.vertex);
-    answer.values.insert(answer.values.end(), of_vertex, of_vertex + n_components_);
+    answer.vertices.push_back(
+        found.vertex < 0 ? -1 : part_.point_ids[static_cast<std::size_t>(found.vertex)]);
+    if (found.vertex >= 0)
+      std::copy_n(
+          row(values, found.vertex), n_components_, answer.values.data() + i * n_components_);
   }
   from.setup.target[query.from].send<&Worker::receive_nearest>(std::move(answer));
 }
@@ -223,12 +245,15 @@ void Worker::receive_nearest(const NearestAnswer& answer) {
   for (std::size_t i = 0; i < answer.rows.size(); ++i) {
     NearestClaim& mine = to.nearest[static_cast<std::size_t>(answer.rows[i])];
     const double d = answer.squared_distances[i];
-    if (d > mine.squared_distance ||
-        (d == mine.squared_distance && answer.vertices[i] >= mine.vertex))
+    const GlobalId vertex = answer.vertices[i];
+    if (vertex < 0 || d > mine.squared_distance ||
+        (d == mine.squared_distance && vertex >= mine.vertex))
       continue;
-    mine = {d, answer.vertices[i]};
+    mine.squared_distance = d;
+    mine.vertex = vertex;
     put(to, answer.rows[i], answer.values.data() + i * n_components_);
   }
+  ask_nearest(to, answer.rows);
 }
 
 void Worker::share(TransferId transfer) {

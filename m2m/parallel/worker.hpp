@@ -16,11 +16,14 @@
 #pragma once
 
 #include "m2m/parallel/messages.hpp"
+#include "m2m/search/nearest_parts.hpp"
+#include "m2m/search/nearest_vertex.hpp"
 
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tess::m2m {
@@ -64,10 +67,11 @@ class Worker : public Chare<Worker, Index1> {
     TransferSetup setup;
     std::optional<std::vector<double>> values{};  // those of its begin, once the part's changed
   };
-  /// The nearest vertex known so far of a point outside.
+  /// The nearest vertex known so far of a point outside, and the part asked last.
   struct NearestClaim {
     double squared_distance = std::numeric_limits<double>::infinity();
     GlobalId vertex = std::numeric_limits<GlobalId>::max();
+    NearestParts::Part asked{};
   };
   /// A transfer that writes to this part.
   struct Incoming {
@@ -75,9 +79,10 @@ class Worker : public Chare<Worker, Index1> {
     std::vector<Hits> hits{};
     std::uint64_t n_candidates = 0;
     std::vector<Candidate> claims{};      // the best so far of each owned point
-    std::vector<NearestClaim> nearest{};  // of each owned point, where asked
-    std::vector<double> values{};         // new rows of all points, where they are new
-    std::vector<std::uint8_t> is_new{};   // of each point
+    std::vector<NearestClaim> nearest{};  // of each owned point, where one is outside
+    NearestParts nearest_parts{};
+    std::vector<double> values{};        // new rows of all points, where they are new
+    std::vector<std::uint8_t> is_new{};  // of each point
   };
 
   [[nodiscard]] Outgoing& outgoing(TransferId transfer);
@@ -85,6 +90,8 @@ class Worker : public Chare<Worker, Index1> {
   [[nodiscard]] double* row(std::vector<double>& values, std::int32_t point) const {
     return values.data() + static_cast<std::size_t>(point) * n_components_;
   }
+  /// Asks for each of these points the next part that may hold a nearer vertex, if there is one.
+  void ask_nearest(Incoming& to, std::span<const std::int32_t> rows);
   /// Sets the new row of a point.
   void put(Incoming& to, std::int32_t point, const double* values) const;
 
@@ -94,6 +101,8 @@ class Worker : public Chare<Worker, Index1> {
   std::vector<Status> status_;  // of each owned point
   std::map<TransferId, Outgoing> outgoing_;
   std::map<TransferId, Incoming> incoming_;
+  std::optional<NearestVertex> nearest_;  // of owned points; made when first asked for, again after
+                                          // a migration
 };
 
 /// Hits of a collision go to the Workers of a target, under a transfer's id.

@@ -29,25 +29,12 @@ printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 n
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n0\n$EndElements\n' >"$scratch/none.msh"
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n' >"$scratch/short.msh"
 
-# Boxes that cannot be computed with: box NAME SCALE SHIFT, 6 times 3 cubed tetrahedra.
-box() {
-  awk -v scale="$2" -v shift="$3" 'BEGIN {
-    n = 3; m = n + 1; printf "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", m^3
-    for (z = 0; z < m; ++z) for (y = 0; y < m; ++y) for (x = 0; x < m; ++x)
-      printf "%d %.17g %.17g %.17g\n", ++v, x / n * scale + shift, y / n * scale + shift, z / n * scale + shift
-    printf "$EndNodes\n$Elements\n%d\n", 6 * n^3
-    split("0 1 3 7 0 1 5 7 0 2 3 7 0 2 6 7 0 4 5 7 0 4 6 7", corner, " ")
-    for (z = 0; z < n; ++z) for (y = 0; y < n; ++y) for (x = 0; x < n; ++x) for (t = 0; t < 6; ++t) {
-      printf "%d 4 0", ++e
-      for (k = 1; k <= 4; ++k) { c = corner[4 * t + k]; printf " %d", 1 + x + c % 2 + m * (y + int(c / 2) % 2 + m * (z + int(c / 4))) }
-      printf "\n"
-    }
-    print "$EndElements" }' >"$scratch/$1"
-}
-box box.msh 1 0
-box far.msh 1 1e15
-box tiny.msh 1e-150 0
-box point.msh 1e-322 0
+# Boxes that cannot be computed with.
+source "$(dirname "$0")/box_mesh.sh"
+box "$scratch/box.msh" 1 0
+box "$scratch/far.msh" 1 1e15
+box "$scratch/tiny.msh" 1e-150 0
+box "$scratch/point.msh" 1e-322 0
 "$bin/m2m_transfer" "$scratch/box.msh" kuhn:4 >"$scratch/out" || { echo "FAILED: box.msh is a mesh"; failed=1; }
 refuses "far.msh: .* shift the mesh" "${transfer[@]}" "$scratch/far.msh" kuhn:2
 refuses "far.msh: .* shift the mesh" "${transfer[@]}" kuhn:2 "$scratch/far.msh"

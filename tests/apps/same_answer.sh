@@ -47,6 +47,18 @@ same "${mpirun[@]}" -n 2 "${transfer[@]}" --pes 2
 same "${transfer[@]}" --sim pes=16
 for seed in 1 2 3; do same "${transfer[@]}" --sim pes=5,seed=$seed; done
 
+# Most vertices of the target outside, many of them as near to several vertices of the source.
+source "$(dirname "$0")/box_mesh.sh"
+box "$scratch/wide.msh" 3 -1 12
+transfer=("$bin/m2m_transfer" kuhn:8 "$scratch/wide.msh" --field 'x+10*y+100*z' --policy nearest)
+"${transfer[@]}" --pes 1 --chares 1 --json "$scratch/first.json" >/dev/null || exit 1
+want=$(hash_of "$scratch/first.json")
+echo "mostly outside: $want"
+for chares in 2 7 64 256; do same "${transfer[@]}" --pes 2 --chares $chares; done
+same "${transfer[@]}" --pes 2 --voxel 0.03
+same "${mpirun[@]}" -n 2 "${transfer[@]}" --pes 2
+for seed in 4 5 6; do same "${transfer[@]}" --sim pes=5,seed=$seed; done
+
 # A thousand transfers: the same answer, and no more memory than ten take.
 same "${transfer[@]}" --pes 2 --repeat 3
 memory_of() { grep -o '"peak_memory_bytes": [0-9]*' "$1" | grep -o '[0-9]*$'; }

@@ -128,6 +128,16 @@ TEST_CASE("a transfer through chares gives the bits of the serial one on every s
   }
 }
 
+TEST_CASE("nearest vertices through chares are those of the serial search, also where several tie",
+          "[m2m][parallel]") {
+  // Beside the source and beyond it: all vertices outside, or half; lattices, so that many tie.
+  for (const auto& [scale, offset] : {std::pair{1.0, 1.25}, std::pair{2.0, -0.5}}) {
+    INFO("scale " << scale << ", offset " << offset);
+    Case c = make_case(read_mesh("kuhn:6"), moved(read_mesh("kuhn:8"), scale, offset), Nearest{});
+    check_on_all_machines(c, 40);
+  }
+}
+
 TEST_CASE("a mesh transferred onto itself through chares returns its values bit for bit",
           "[m2m][parallel]") {
   for (const TetMesh& mesh : {read_mesh("kuhn:5@0.1"), test::non_conforming_mesh()}) {

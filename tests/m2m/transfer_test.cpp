@@ -1,7 +1,6 @@
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/io/kuhn.hpp"
 #include "m2m/io/read_mesh.hpp"
-#include "m2m/search/nearest_vertex.hpp"
 #include "m2m/search/serial_transfer.hpp"
 #include "runtime/error.hpp"
 #include "tests/m2m/non_conforming.hpp"
@@ -281,23 +280,6 @@ TEST_CASE("points outside are counted and get what the policy says", "[m2m][tran
   for (const char* text : {"", "value:", "value:x", "value:nan", "value:1 ", "drop"}) {
     CHECK_THAT(message_of([&] { (void)parse_policy(text); }),
                Catch::Contains("expected keep, nearest or value:NUMBER"));
-  }
-}
-
-TEST_CASE("the nearest vertex is that of brute force, also far away", "[m2m][search]") {
-  const TetMesh mesh = kuhn_mesh({6, 0.2});
-  const NearestVertex nearest(mesh.points);
-  TetMesh queries = moved_by(kuhn_mesh({5, 0.2}), 3, -1);
-  queries.points.push_back({1e9, 3, -1e9});
-  for (const Point& p : queries.points) {
-    NearestVertex::Answer best{-1, INFINITY};
-    for (std::size_t v = 0; v < mesh.n_points(); ++v) {
-      const Point& q = mesh.points[v];
-      const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-      const double squared = x * x + y * y + z * z;
-      if (squared < best.squared_distance) best = {static_cast<std::int32_t>(v), squared};
-    }
-    CHECK(nearest.find(p).vertex == best.vertex);
   }
 }
 
