@@ -25,10 +25,16 @@ void take(const Outcome& outcome, Problem& problem) {
 void judge(Problem& problem) {
   TransferReport& report = problem.report;
   std::uint64_t hash = result_hash({});
+  const Field& status = problem.target_fields.back();
+  std::vector<bool> found(status.values.size());
+  for (std::size_t v = 0; v < found.size(); ++v)
+    found[v] = status.values[v] != static_cast<double>(Status::outside);
   for (std::size_t f = 0; f < problem.truth.size(); ++f) {
     const Field& truth = problem.truth[f];
     const std::vector<double>& values = problem.target_fields[f].values;
-    report.fields.push_back({truth.name, error_norms(problem.target, values, truth.values)});
+    report.fields.push_back({truth.name,
+                             error_norms(problem.target, values, truth.values),
+                             error_norms(problem.target, values, truth.values, found)});
     hash = result_hash(values, hash);
   }
   report.result_hash = hash;

@@ -21,7 +21,8 @@ struct PhaseSeconds {
 /// One field's distance from the truth.
 struct FieldError {
   std::string name;
-  ErrorNorms norms;
+  ErrorNorms norms;  ///< over all vertices of the target
+  ErrorNorms found;  ///< over those that are not outside
 };
 
 struct TransferReport {
@@ -41,7 +42,7 @@ struct TransferReport {
 };
 
 [[nodiscard]] std::string table(const TransferReport& report);
-/// {"pairs": [{…}]}
+/// {"definitions": {…}, "pairs": [{…}]}
 [[nodiscard]] std::string json(const std::vector<TransferReport>& reports);
 
 }  // namespace tess::m2m
