@@ -62,12 +62,13 @@ refuses SOURCE "${transfer[@]}"
 
 # A study: nothing in its folder.
 refuses "missing/result.json: cannot be written: its folder" "$bin/m2m_transfer" kuhn:2 kuhn:3 --json "$scratch/missing/result.json"
+refuses "--picture $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --picture "$scratch"
 refuses "--out $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --out "$scratch"
 study=("$bin/m2m_transfer" --json "$scratch/result.json")
 refuses kuhn:x "${study[@]}" kuhn:2,x --study "$scratch/result.exo"
 refuses missing.msh "${study[@]}" "kuhn:2,4" "$scratch/missing.msh" --study "$scratch/result.exo"
 refuses empty.exo "${study[@]}" kuhn:2,4 kuhn:3 --study "$scratch/empty.exo"
-refuses "is for one transfer" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
+refuses "are for one transfer" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
 
 # A job of several processes says it once, and all of them end with 2. (mpirun reports the exit code
 # of the first process that failed; --quiet: without its own words.)

@@ -131,6 +131,7 @@ TEST_CASE("norms over found vertices leave out what the policy gave", "[apps][tr
   options.request.fields = {"linear"};
   options.policies = {"value:1000"};
   options.json = scratch.path("report.json");
+  options.picture = scratch.path("cut.svg");
   Setup setup{make_threads_machine(2), {}};
   REQUIRE(drive(setup, options) == 0);
   const auto pair = nlohmann::json::parse(slurp(options.json))["pairs"][0];
@@ -140,4 +141,16 @@ TEST_CASE("norms over found vertices leave out what the policy gave", "[apps][tr
   CHECK(pair["fields"][0]["found"]["l2"].get<double>() < 1e-12);
   CHECK(pair["linf"].get<double>() > 900);
   CHECK(pair["fields"][0]["l2"].get<double>() > 100);
+  // The picture is the plane across the first of the two short sides, from both ends of the
+  // colours.
+  const std::string svg = slurp(options.picture);
+  const auto elements = test::read_xml(svg);
+  const auto count = [&](const std::string& name) {
+    return std::count_if(elements.begin(), elements.end(), [&](const test::XmlElement& e) {
+      return e.name == name;
+    });
+  };
+  CHECK(count("text") == 6);
+  CHECK(count("path") >= 4);
+  CHECK_THAT(svg, Catch::Contains(">linear, z = 0.3<") && Catch::Contains(">1000<"));
 }
