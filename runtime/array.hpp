@@ -13,6 +13,7 @@
 #include "runtime/collections/call.hpp"
 #include "runtime/collections/moving.hpp"
 #include "runtime/collections/routing.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {
@@ -33,17 +34,18 @@ class Array final : public ArrayOf<typename C::Index> {
   ~Array() override { this->destroy_all(); }
 
   [[nodiscard]] PeId home(const Index& index) const override {
-    const auto n_pes = static_cast<std::uint64_t>(this->pe_.n_pes());
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
-      return C::place(index, this->pe_.n_pes());
+      const PeId at = C::place(index, this->pe_.n_pes());
+      check_exists(this->pe_, at);
+      return at;
     } else {
       if constexpr (Coordinates<Index>) {
         if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
-          return PeId{static_cast<std::int32_t>(static_cast<std::uint64_t>(rank) * n_pes /
-                                                this->range().size())};
+          return this->block_map().home(rank);
       }
       // The high bits: the low ones choose the slot in hash tables, which would cluster.
-      return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) % n_pes)};
+      return PeId{static_cast<std::int32_t>(
+          (IndexHash<Index>()(index) >> 32U) % static_cast<std::uint64_t>(this->pe_.n_pes()))};
     }
   }
 
@@ -59,11 +61,13 @@ class Array final : public ArrayOf<typename C::Index> {
         first = (rank * size + n_pes - 1) / n_pes;
         last = ((rank + 1) * size + n_pes - 1) / n_pes;
       }
-      for (std::int64_t rank = first; rank < last; ++rank) {
-        const auto index = index_at<Index>(this->range(), rank);
-        if (home(index) != this->pe_.id()) continue;
-        this->bear(index, Version{1, 1}, [&args...] { return new C(args...); });
-      }
+      this->bear_initial([&] {
+        for (std::int64_t rank = first; rank < last; ++rank) {
+          const auto index = index_at<Index>(this->range(), rank);
+          if (home(index) != this->pe_.id()) continue;
+          this->bear(index, Version{1, 1}, [&args...] { return make_chare<C>(args...); });
+        }
+      });
     }
   }
 
@@ -74,7 +78,11 @@ class Array final : public ArrayOf<typename C::Index> {
         const auto index = ar.template take<Index>();
         {
           const Pe::Birth birth(this->pe_, &index, this);
-          arrival.element = new C();
+          arrival.element = make_chare<C>();
+          // What its constructor asks for, it had done when it was born.
+          this->drop_after_birth();
+          arrival.element->migrate_to_ = PeId{-1};
+          arrival.element->doomed_ = false;
         }
         ar(arrival.element->state_);
         if (ar.template take<bool>()) {
@@ -82,13 +90,13 @@ class Array final : public ArrayOf<typename C::Index> {
           arrival.element->balance_->unpack(ar, this->pe_.start_meter());
         }
         [[maybe_unused]] const auto sent = std::span(arrival.state).last(ar.remaining());
-        arrival.element->serialize(ar);
-        TESS_CHECK(ar.remaining() == 0,
-                   this->name(),
-                   index_text(index),
-                   ": serialize() read ",
-                   ar.remaining(),
-                   " bytes less than it wrote");
+        read_all(
+            ar,
+            [&] { return this->name() + index_text(index); },
+            [&arrival](Reader& state) {
+              arrival.element->serialize(state);
+              return true;
+            });
 #ifdef TESS_CHECKS_ALL
         const std::string difference = difference_from_bytes(sent, *arrival.element);
         TESS_CHECK(difference.empty(), index_text(index), " of ", difference);
@@ -136,6 +144,7 @@ class Array final : public ArrayOf<typename C::Index> {
       C& chare = static_cast<C&>(element);
       auto* letter = Awakening<C>::make(this->pe_, this->id(), chare.index_);
       letter->epoch = chare.balance_->sync.epoch;  // counted there since at_sync()
+      letter->led_by = chare.balance_->sync.led_by;
       this->post(letter);
     } else {
       Base::resume(element);
@@ -163,7 +172,7 @@ class Array final : public ArrayOf<typename C::Index> {
  protected:
   Indexed* construct_default() override {
     if constexpr (std::is_default_constructible_v<C>) {
-      return new C();
+      return make_chare<C>();
     } else {
       TESS_CHECK(
           false, this->name(), " has no default constructor: it cannot be created on demand");
@@ -249,7 +258,9 @@ class ElementProxy {
     post<F>(Demand::home, std::forward<Args>(args)...);
   }
 
-  /// Creates the element on this PE with these constructor arguments; misuse if there is one.
+  /// Creates the element on this PE with these constructor arguments; misuse if there is one. It
+  /// meets the broadcasts that come after its birth and joins the reductions that they lead to: see
+  /// Chare::contribute().
   template <class... Args>
   void insert(Args&&... args) const {
     construct(current_pe().id(), Demand::insert, std::forward<Args>(args)...);
@@ -268,7 +279,10 @@ class ElementProxy {
   /// Ends the element.
   void destroy() const { system<Destruction<C>>(); }
   /// Moves the element to a PE.
-  void migrate_to(PeId pe) const { system<Relocation<C>>(pe); }
+  void migrate_to(PeId pe) const {
+    check_exists(current_pe(), pe);
+    system<Relocation<C>>(pe);
+  }
 
   /// A target for results: entry method F of this element.
   template <auto F>
@@ -315,6 +329,7 @@ class ElementProxy {
     static_assert(std::is_constructible_v<C, std::decay_t<Args>...>,
                   "the chare has no constructor that takes these arguments");
     Pe& pe = current_pe();
+    check_exists(pe, where);
     auto* letter = Construction<C, std::decay_t<Args>...>::make(
         pe, collection_, index_, std::forward<Args>(args)...);
     letter->demand = demand;

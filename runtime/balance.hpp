@@ -11,6 +11,12 @@
 // from their first at_sync() on. An element that ends is no longer waited for. The balancer ends
 // with its array.
 //
+// A load is known once a whole phase of the element was measured. That is so from the first round
+// on for arrays that are created, balanced and only then called. An element that ran before it was
+// measured has an unknown load until the next phase: it counts as the mean of the others and is not
+// moved; a round without known loads moves nothing. A program that starts balancing later awaits
+// balancer.begin_phase() before it goes on.
+//
 // A program whose phases are epochs has a barrier already: between two of them it awaits
 // balancer.round(), and no element calls at_sync(). That is the way for arrays whose elements come
 // and go: at a barrier of theirs an element may be too new for the phase that ends, and would wait
@@ -34,6 +40,11 @@ class BalancerProxy {
   [[nodiscard]] const std::vector<balance::Round>& history() const {
     return group_.local().history();
   }
+
+  /// Awaited while no element of the array has work: its first phase begins here. For arrays that
+  /// have run before balancing starts, whose loads would not be known in the first round. On the PE
+  /// that called start_balancing() only.
+  [[nodiscard]] Task begin_phase() const { return group_.local().begin_phase(); }
 
   /// Awaited between two phases, while no element of the array has work: a round (automatic: where
   /// it is worth it); all that it moves has arrived. On the PE that called start_balancing() alone.

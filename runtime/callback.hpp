@@ -2,6 +2,7 @@
 // group's member on a PE. A value that can be stored and sent; it is called once or many times.
 #pragma once
 
+#include "runtime/check.hpp"
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
@@ -74,7 +75,11 @@ class Callback {
   [[nodiscard]] explicit operator bool() const { return kind_ != nullptr; }
   [[nodiscard]] std::span<const std::byte> where() const { return where_.view(); }
 
-  void operator()(T value) const { kind_->call(*this, std::move(value)); }
+  /// An empty one is misuse.
+  void operator()(T value) const {
+    TESS_CHECK(kind_ != nullptr, "an empty Callback<", name_of_type<T>, "> is called");
+    kind_->call(*this, std::move(value));
+  }
 
   template <class Ar>
   void serialize(Ar& ar) {

@@ -38,11 +38,7 @@ class Chare : public IndexedElement<IndexType> {
   /// Moves this element to a PE once what runs of it, and what waits, is done. The epoch that runs
   /// waits for the move, unless a coroutine puts it off: that may be the one that awaits the epoch.
   void migrate_to(PeId pe) {
-    TESS_CHECK(pe.value >= 0 && pe.value < current_pe().n_pes(),
-               "there is no ",
-               pe,
-               ": the run has ",
-               current_pe().n_pes());
+    check_exists(current_pe(), pe);
     this->migrate_to_ = pe;
   }
 
@@ -56,18 +52,41 @@ class Chare : public IndexedElement<IndexType> {
   void at_sync() {
     static_assert(ResumesFromSync<Derived>,
                   "a chare that calls at_sync() has a member function resume_from_sync()");
-    this->collection_->at_sync(*this);
+    if (this->collection_ == nullptr) [[unlikely]] {
+      Element::after_birth("at_sync()", [this] { at_sync(); });
+    } else {
+      this->collection_->at_sync(*this);
+    }
   }
 
-  /// The number of the reduction that the next contribution belongs to. An element that is born
-  /// joins at the first that its PE has not reported yet: while others are at number r that is r or
-  /// r + 1.
-  [[nodiscard]] std::uint32_t next_reduction() const { return this->state_.next_reduction; }
+  /// The number of the reduction that the next contribution belongs to. A newborn element that has
+  /// asked stays with that number; not for use in a constructor.
+  [[nodiscard]] std::uint32_t next_reduction() {
+    this->collection_->settle_join(*this);
+    return this->state_.next_reduction;
+  }
 
   /// Gives this element's value to the next reduction of the array; every element gives one. The
-  /// whole goes to `target`. in_order(op) combines in the order of indices.
+  /// whole goes to `target`. in_order(op) combines in the order of indices. A constructor's
+  /// contribution is to the first reduction that the element is in; an element that is made again
+  /// where it has migrated does not repeat it.
+  ///
+  /// An element that is born meets the broadcasts that reach its PE after its birth, and joins at
+  /// the first reduction that its PE has not reported and that no broadcast before its birth led
+  /// to. So one that is born after a result was awaited takes part in later rounds only; one that
+  /// is born in the middle of a round takes part in it if it meets its broadcast. A broadcast leads
+  /// to the contributions of its entry method, and of the coroutines and messages between elements
+  /// of the array that follow from it. Where rounds overlap (a broadcast is started before the
+  /// result of the last one is known), insert elements while none is under way.
   template <class Op, class T>
   void contribute(Op op, T value, Callback<T> target) {
+    if (this->collection_ == nullptr) [[unlikely]] {
+      const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
+      Element::after_birth("contribute()", [this, op, held] {
+        contribute(op, std::move(held->first), std::move(held->second));
+      });
+      return;
+    }
     contribute_as(index(), *this, *this->collection_, op, std::move(value), std::move(target));
   }
 };

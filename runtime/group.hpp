@@ -6,6 +6,7 @@
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/collections/contribution.hpp"
 #include "runtime/collections/ending.hpp"
+#include "runtime/collections/make_chare.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
@@ -29,6 +30,13 @@ class Group : public Element {
   /// in_order(op) combines in the order of PEs.
   template <class Op, class T>
   void contribute(Op op, T value, Callback<T> target) {
+    if (this->collection_ == nullptr) [[unlikely]] {
+      const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
+      Element::after_birth("contribute()", [this, op, held] {
+        contribute(op, std::move(held->first), std::move(held->second));
+      });
+      return;
+    }
     contribute_as(pe_, *this, *this->collection_, op, std::move(value), std::move(target));
   }
 
@@ -49,10 +57,11 @@ class GroupOf final : public Collection {
       : Collection(pe, id, plain_name(name_of_type<G>)) {
     {
       const Pe::Birth birth(pe, this, this);
-      member_ = std::make_unique<G>(args...);
+      member_.reset(make_chare<G>(args...));
     }
     born(*member_);
     list(*member_);
+    run_after_birth();
   }
 
   [[nodiscard]] G& member() { return *member_; }
@@ -73,6 +82,9 @@ class GroupOf final : public Collection {
                " neither migrate nor end");
   }
   [[nodiscard]] bool migratable() const override { return false; }
+  [[nodiscard]] std::string birth_text(const void* /*index*/) const override {
+    return text(name(), "[", pe_.id(), "]");
+  }
   [[nodiscard]] std::string index_text_of(const Element& /*element*/) const override {
     return text("[", pe_.id(), "]");
   }
@@ -175,6 +187,7 @@ class MemberProxy {
   void send(Args&&... args) const {
     static_assert(check_entry<G, F, Args...>());
     Pe& pe = current_pe();
+    check_exists(pe, pe_);
     using Held = GroupCall<G, F>;
     auto* call = new (allocate_block(pe, sizeof(Held))) Held(std::forward<Args>(args)...);
     call->action = &Held::entry;
@@ -257,6 +270,16 @@ class GroupProxy {
 
 namespace detail {
 
+/// Messages to an ended group of G are dead letters, unless the class says otherwise.
+template <class G>
+constexpr LateMessages late_messages_of() {
+  if constexpr (requires { G::late_messages; }) {
+    return G::late_messages;
+  } else {
+    return LateMessages::counted;
+  }
+}
+
 template <class G, class... Args>
 struct CreateGroup {
   CollectionId id;
@@ -283,7 +306,9 @@ template <class G, class... Args>
 GroupProxy<G> create_group(Args&&... args) {
   Pe& pe = current_pe();
   using Create = detail::CreateGroup<G, std::decay_t<Args>...>;
-  Create message{pe.new_collection_id(), pe.context().epoch, {std::forward<Args>(args)...}};
+  Create message{pe.new_collection_id(detail::late_messages_of<G>()),
+                 pe.context().epoch,
+                 {std::forward<Args>(args)...}};
   constexpr auto handler = &detail::create_group_arrives<G, std::decay_t<Args>...>;
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
     pe.completion().sent(message.epoch);

@@ -5,6 +5,7 @@
 
 #include "runtime/base/mix.hpp"
 #include "runtime/base/text.hpp"
+#include "runtime/ids.hpp"
 #include "runtime/serialize.hpp"
 
 #include <array>
@@ -101,6 +102,29 @@ struct Range {
     for (const std::int32_t e : extent) n *= static_cast<std::uint64_t>(e);
     return n;
   }
+};
+
+/// The homes of a dense range: ranks in equal blocks over the PEs. The division is by a multiple of
+/// the inverse where that is exact.
+class BlockMap {
+ public:
+  BlockMap(const Range& range, std::int32_t n_pes)
+      : size_(range.size()), n_pes_(static_cast<std::uint64_t>(n_pes)) {
+    constexpr std::uint64_t most = std::uint64_t{1} << 32U;
+    if (size_ > 1 && size_ < most / n_pes_) inverse_ = ~std::uint64_t{0} / size_ + 1;
+  }
+  [[nodiscard]] PeId home(std::int64_t rank) const {
+    __extension__ using Wide = unsigned __int128;
+    const std::uint64_t scaled = static_cast<std::uint64_t>(rank) * n_pes_;
+    const std::uint64_t pe = inverse_ != 0
+                                 ? static_cast<std::uint64_t>(Wide{scaled} * inverse_ >> 64U)
+                                 : scaled / size_;
+    return PeId{static_cast<std::int32_t>(pe)};
+  }
+
+ private:
+  std::uint64_t size_, n_pes_;
+  std::uint64_t inverse_ = 0;  // of the size, times 2^64, rounded up
 };
 
 /// A dense range of one to six axes. Negative extents are an Error.

@@ -9,7 +9,7 @@
 #include "runtime/serialize.hpp"
 #include "runtime/task.hpp"
 
-#include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -44,17 +44,16 @@ class Mailbox {
       resume_later(take->task_);
       return;
     }
-    kept_[key].push_back(std::move(value));
+    kept_.emplace(key, std::move(value));
   }
 
   class Take {
    public:
     [[nodiscard]] bool await_ready() {
-      const auto at = box_.kept_.find(key_);
-      if (at == box_.kept_.end()) return false;
-      value_ = std::move(at->second.front());
-      at->second.pop_front();
-      if (at->second.empty()) box_.kept_.erase(at);
+      const auto at = box_.kept_.lower_bound(key_);  // the first of those that are equal
+      if (at == box_.kept_.end() || box_.kept_.key_comp()(key_, at->first)) return false;
+      value_ = std::move(at->second);
+      box_.kept_.erase(at);
       return true;
     }
     void await_suspend(Task::Handle task) {
@@ -77,11 +76,7 @@ class Mailbox {
   /// Awaited, gives the next message of that key.
   [[nodiscard]] Take take(Key key) { return Take(*this, std::move(key)); }
 
-  [[nodiscard]] std::size_t size() const {
-    std::size_t n = 0;
-    for (const auto& [key, values] : kept_) n += values.size();
-    return n;
-  }
+  [[nodiscard]] std::size_t size() const { return kept_.size(); }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -89,7 +84,8 @@ class Mailbox {
   }
 
  private:
-  std::map<Key, std::deque<Value>> kept_;
+  // Equal keys stay in the order in which they were put.
+  std::multimap<Key, Value, std::less<>, PoolAllocator<std::pair<const Key, Value>>> kept_;
   std::vector<Take*> waiting_;
 };
 

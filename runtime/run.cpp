@@ -171,6 +171,7 @@ bool charge(std::chrono::nanoseconds work) {
 }
 
 void exit(int code) {
+  TESS_CHECK(code >= 0 && code <= 255, "exit(", code, "): an exit code is a number of 0 … 255");
   Pe& pe = current_pe();
   pe.runtime().exit(pe, code);
 }

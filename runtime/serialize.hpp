@@ -133,6 +133,10 @@ class Writer {
     out_.insert(out_.end(), first, first + n);
   }
   [[nodiscard]] std::size_t position() const { return out_.size(); }
+  /// Writes over eight bytes that were written at that position.
+  void patch(std::size_t position, std::uint64_t value) {
+    std::memcpy(out_.data() + position, &value, sizeof value);
+  }
 
  private:
   template <class T>

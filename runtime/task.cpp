@@ -26,7 +26,7 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
     task.resume();
     return;
   }
-  const ElementScope scope(pe, *context.element, context.action, context.epoch);
+  const ElementScope scope(pe, *context.element, context.action, context.epoch, context.led_by);
   account.release();
   task.resume();
 }
@@ -63,19 +63,19 @@ void TaskAccount::unpin(Element& element) {
 void suspend(Task::Handle task, std::function<std::string()> waits_for) {
   TaskAccount& account = task.promise().account;
   account.hold();
-  account.entry = account.pe->suspended().insert(account.pe->suspended().end(),
-                                                 Suspended{account.context.element,
-                                                           account.context.action,
-                                                           account.context.epoch,
-                                                           std::move(waits_for),
-                                                           task.address()});
+  account.entry = {account.context.element,
+                   account.context.action,
+                   account.context.epoch,
+                   std::move(waits_for),
+                   task.address()};
+  account.pe->suspended().insert(account.entry);
 }
 
 void end_all(SuspendedList& list) {
   // Those that no Task holds: with a frame end the tasks that it holds.
   std::vector<Task::Handle> roots;
-  for (const Suspended& one : list) {
-    const auto task = Task::Handle::from_address(one.frame);
+  for (const Suspended* one = list.first(); one != nullptr; one = one->after) {
+    const auto task = Task::Handle::from_address(one->frame);
     if (task.promise().detached) roots.push_back(task);
   }
   list.clear();

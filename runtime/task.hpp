@@ -4,7 +4,7 @@
 // (and the function given to run()) are coroutines.
 #pragma once
 
-#include "runtime/scheduler/pe.hpp"
+#include "runtime/scheduler/block.hpp"
 
 #include <coroutine>
 #include <exception>
@@ -19,7 +19,7 @@ struct TaskAccount {
   Pe* pe = nullptr;
   Context context;
   bool held = false;  // it waits: the element and the epoch are held
-  SuspendedList::iterator entry;
+  Suspended entry;
 
   void hold();
   void release();
@@ -32,6 +32,10 @@ struct TaskAccount {
 class [[nodiscard]] Task {
  public:
   struct promise_type {
+    /// Frames come from the pool of the PE.
+    static void* operator new(std::size_t n_bytes) { return allocate_block(current_pe(), n_bytes); }
+    static void operator delete(void* frame, std::size_t n_bytes) { release_block(frame, n_bytes); }
+
     TaskAccount account;
     std::coroutine_handle<promise_type> parent;
     std::exception_ptr error;

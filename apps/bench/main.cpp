@@ -1,39 +1,84 @@
-// The runtime's cost, figure by figure, beside what Charm++ reaches: CSV on standard output. Each
-// measurement checks what it did before it prints.
+// The runtime's cost, row by row, each beside the limit that the machine sets where one is known:
+// CSV on standard output. The shapes are those in which other runtimes were timed; their figures
+// stand in apps/bench/results/.
 //
-//     bench --pes 1;  bench --pes 2;  mpirun -n 2 bench --pes 1;  mpirun -n 2 bench_mpi_raw
-#include "apps/bench/measures.hpp"
+//     bench --pes 1;  bench --pes 2;  mpirun -n 2 bench --pes 1;  bench message one_way --pes 2
+#include "apps/bench/shapes/shapes.hpp"
 #include "apps/command_line.hpp"
-#include "runtime/runtime.hpp"
+#include "apps/plot/write_file.hpp"
+
+#include <algorithm>
+#include <fmt/core.h>
 
 namespace bench {
-
-Reach reach() {
-  tess::Pe& pe = tess::current_pe();
-  if (pe.n_pes() == 1) return Reach::one_pe;
-  return pe.machine().same_process(tess::PeId{0}, tess::PeId{pe.n_pes() - 1}) ? Reach::one_process
-                                                                              : Reach::processes;
-}
-
 namespace {
 
-[[nodiscard]] std::string text_before(const std::string& text, const char* end) {
-  return text.substr(0, text.find(end));
+const std::vector<Shape>& all_shapes() {
+  static const std::vector<Shape> all{message_shape(),
+                                      creation_shape(),
+                                      collectives_shape(),
+                                      migration_shape(),
+                                      one_way_shape(),
+                                      work_shape(),
+                                      balance_shape(),
+                                      balance_round_shape(),
+                                      measuring_shape()};
+  return all;
 }
 
-const std::vector<std::string> all_measures{
-    "ping_pong", "send_cost", "creation", "collectives", "migration", "balance"};
+std::string needed(Needs needs) {
+  switch (needs) {
+    case Needs::two_pes:
+      return "two PEs: give --pes 2";
+    case Needs::two_cores:
+      return "two PEs in one process: give --pes 2, without mpirun";
+    case Needs::two_processes:
+      return "two processes: start it by mpirun -n 2";
+    default:
+      return "nothing";
+  }
+}
 
-tess::Task measure(const Report& report, std::vector<std::string> names, Options options) {
-  report.header();
-  const bool alone = reach() == Reach::one_pe;
-  for (const std::string& name : names) {
-    if (name == "ping_pong" && !alone) co_await ping_pong(report, options);
-    if (name == "send_cost") co_await send_cost(report, options);
-    if (name == "creation") co_await creation(report, options);
-    if (name == "collectives") co_await collectives(report, options);
-    if (name == "migration" && !alone) co_await migration(report, options);
-    if (name == "balance") co_await balance(report, options);
+/// Throws Error for a name that is neither a shape's nor a row's, or that this machine cannot show.
+void require_known(const Bench& bench, const std::string& name) {
+  for (const Shape& shape : all_shapes()) {
+    const bool whole = shape.name == name;
+    for (const RowText& row : shape.rows) {
+      if (!whole && row.name != name) continue;
+      if (bench.has(row.needs)) return;
+      if (!whole || &row == &shape.rows.back())
+        tess::fail(tess::ErrorCode::bad_argument, name, " needs ", needed(row.needs));
+    }
+  }
+  tess::fail(tess::ErrorCode::bad_argument, "no shape and no row is named ", name, " (see --list)");
+}
+
+/// The rows that are asked for and can be measured here.
+std::vector<std::string> chosen(const Bench& bench, const std::vector<std::string>& names) {
+  for (const std::string& name : names) require_known(bench, name);
+  const auto named = [&names](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::vector<std::string> rows;
+  for (const Shape& shape : all_shapes())
+    for (const RowText& row : shape.rows)
+      if (bench.has(row.needs) && (names.empty() || named(shape.name) || named(row.name)))
+        rows.push_back(row.name);
+  return rows;
+}
+
+[[nodiscard]] bool any_wanted(const Bench& bench, const Shape& shape) {
+  return std::any_of(shape.rows.begin(), shape.rows.end(), [&bench](const RowText& row) {
+    return bench.wants(row.name);
+  });
+}
+
+void list(const Bench& bench) {
+  for (const Shape& shape : all_shapes()) {
+    if (!any_wanted(bench, shape)) continue;
+    tess::print(fmt::format("{}: {}\n", shape.name, shape.meaning));
+    for (const RowText& row : shape.rows)
+      if (bench.wants(row.name)) tess::print(fmt::format("  {:<26} {}\n", row.name, row.meaning));
   }
 }
 
@@ -41,17 +86,36 @@ tess::Task measure(const Report& report, std::vector<std::string> names, Options
 }  // namespace bench
 
 int main(int argc, char** argv) {
+  const std::vector<char*> command_line(argv, argv + argc);
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     bench::Options options;
-    std::vector<std::string> names = bench::all_measures;
-    apps::CommandLine line("The cost of messages, creation, collectives and migration.");
-    line.option("measures", names, "which (all by default; some need two PEs)")
-        .one_of(bench::all_measures);
-    line.option("--repeat", options.repeat, "how often each is measured").between(1, 1000);
-    line.option("--elements", options.elements, "of send_cost's array").between(1, 10'000'000);
+    bool lists = false;
+    apps::CommandLine line("What the runtime costs, beside what the machine allows.");
+    line.option("names", options.names, "shapes or rows (all by default)");
+    const apps::Option repeat =
+        line.option("--repeat", options.repeat, "samples of each figure, after one that warms up")
+            .between(1, 1000);
+    line.flag("--list", lists, "names and meanings of what can be measured on this machine");
+    line.flag("--quick", options.quick, "small sizes: to try out, not to measure");
+    line.option("--json", options.json, "a file for the rows as JSON");
     if (!line.parse(argc, argv)) return 0;
-    const std::string machine = setup.machine->describe();
-    const bench::Report report(bench::text_before(bench::text_before(machine, ";"), " on "));
-    return tess::run(setup, [&] { return bench::measure(report, names, options); });
+    if (options.quick && !repeat.is_given()) options.repeat = 1;
+    plot::require_writable("--json", options.json);
+
+    bench::Bench bench(options, command_line, *setup.machine);
+    bench.choose(bench::chosen(bench, options.names));
+    const bool speaks = setup.machine->process().value == 0;
+    if (lists) {
+      if (speaks) bench::list(bench);
+      return 0;
+    }
+    if (speaks) tess::print(bench::csv_header());
+    for (const bench::Shape& shape : bench::all_shapes()) {
+      if (!bench::any_wanted(bench, shape)) continue;
+      if (const int code = shape.run(bench); code != 0) return code;
+    }
+    if (speaks && !options.json.empty())
+      plot::write_file(options.json, bench::json_text(bench.rows(), bench.origin()));
+    return 0;
   });
 }

@@ -1,46 +1,51 @@
-// What MPI alone takes for 8 bytes one way between two processes: the floor under ping_pong. The
-// one program outside the mpi machine that calls MPI, to have nothing of ours in the figure.
+#include "apps/bench/mpi_raw.hpp"
+
 #include <mpi.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <cstdio>
+#include <vector>
 
-int main(int argc, char** argv) {
-  MPI_Init(&argc, &argv);
+namespace bench {
+namespace {
+
+void send(std::vector<std::byte>& bytes, int to) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Isend(
+      bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD, &request);
+  MPI_Wait(&request, MPI_STATUS_IGNORE);
+}
+
+void receive(std::vector<std::byte>& bytes, int from) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Irecv(
+      bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, from, 0, MPI_COMM_WORLD, &request);
+  MPI_Wait(&request, MPI_STATUS_IGNORE);
+}
+
+}  // namespace
+
+double raw_mpi_one_way(std::size_t n_bytes, std::int64_t n_round_trips) {
   int rank = 0, n = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &n);
-  if (n != 2) {
-    if (rank == 0)
-      std::fprintf(stderr, "bench_mpi_raw: error: %d processes: start it by mpirun -n 2\n", n);
-    MPI_Finalize();
-    return 2;
-  }
-  constexpr std::int64_t rounds = 100'000;
-  std::array<double, 5> samples{};
-  bool right = true;
-  for (double& sample : samples) {
-    std::int64_t ball = 0;
-    const double begin = MPI_Wtime();
-    for (std::int64_t i = 0; i < rounds; ++i) {
-      if (rank == 0) MPI_Send(&ball, 1, MPI_INT64_T, 1, 0, MPI_COMM_WORLD);
-      MPI_Recv(&ball, 1, MPI_INT64_T, 1 - rank, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      ++ball;
-      if (rank == 1) MPI_Send(&ball, 1, MPI_INT64_T, 0, 0, MPI_COMM_WORLD);
+  std::vector<std::byte> ball(n_bytes);  // what came is sent back, as elements do
+  const std::int64_t n_warm = 1 + n_round_trips / 10;
+  double from = 0, to = 0;
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank == 0) {
+    for (std::int64_t i = -n_warm; i < n_round_trips; ++i) {
+      if (i == 0) from = MPI_Wtime();
+      send(ball, n - 1);
+      receive(ball, n - 1);
     }
-    sample = (MPI_Wtime() - begin) * 1e9 / (2.0 * rounds);
-    right = right && ball == 2 * rounds - (rank == 1 ? 1 : 0);
+    to = MPI_Wtime();
+  } else if (rank == n - 1) {
+    for (std::int64_t i = -n_warm; i < n_round_trips; ++i) {
+      receive(ball, 0);
+      send(ball, 0);
+    }
   }
-  std::sort(samples.begin(), samples.end());
-  const double median = samples[samples.size() / 2];
-  if (rank == 0 && right)
-    std::printf(
-        "raw MPI one way 8 bytes between processes,%.1f,ns,%.1f,%.2f,,,mpi: 2 processes,,\n",
-        median,
-        samples.front(),
-        (samples.back() - samples.front()) / median);
-  MPI_Finalize();
-  return right ? 0 : 1;
+  MPI_Barrier(MPI_COMM_WORLD);
+  return (to - from) * 1e9 / (2.0 * static_cast<double>(n_round_trips));
 }
+
+}  // namespace bench

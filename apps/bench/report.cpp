@@ -5,9 +5,18 @@
 #include "runtime/scheduler/pe.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/core.h>
 
 namespace bench {
+namespace {
+
+/// Four digits, without an exponent where the number is large.
+std::string shown(double value) {
+  return std::abs(value) < 1000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+
+}  // namespace
 
 Stopwatch::Stopwatch() : begin_(tess::current_pe().now()) {}
 double Stopwatch::nanoseconds() const {
@@ -25,32 +34,74 @@ double Samples::least() const {
 }
 double Samples::spread() const {
   const auto [least, greatest] = std::minmax_element(values_.begin(), values_.end());
-  return (*greatest - *least) / median();
+  return median() == 0 ? 0 : (*greatest - *least) / std::abs(median());
 }
 
-Report::Report(const std::string& machine) : machine_(machine) {}
+Row make_row(std::string_view name, const Samples& samples, std::string_view unit, double limit) {
+  return {std::string(name),
+          samples.median(),
+          std::string(unit),
+          samples.least(),
+          samples.spread(),
+          limit};
+}
+
+std::string csv_header() {
+  return "name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit\n";
+}
+
+std::string csv_line(const Row& row, const Origin& origin) {
+  const std::string limit =
+      row.limit == 0 ? "," : fmt::format("{},{:.3f}", shown(row.limit), row.median / row.limit);
+  return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n",
+                     row.name,
+                     shown(row.median),
+                     row.unit,
+                     shown(row.least),
+                     row.spread,
+                     limit,
+                     origin.pes,
+                     origin.ranks,
+                     origin.machine,
+                     build_preset,
+                     build_commit);
+}
+
+std::string json_text(const std::vector<Row>& rows, const Origin& origin) {
+  std::string out = "{\"rows\": [";
+  for (const Row& row : rows) {
+    const std::string limit = row.limit == 0 ? "\"limit\": null, \"ratio\": null"
+                                             : fmt::format("\"limit\": {:.6g}, \"ratio\": {:.4f}",
+                                                           row.limit,
+                                                           row.median / row.limit);
+    out += fmt::format(
+        "{}\n  {{\"name\": \"{}\", \"median\": {:.6g}, \"unit\": \"{}\", \"least\": {:.6g}, "
+        "\"spread\": {:.4f}, {}, \"pes\": {}, \"ranks\": {}, \"machine\": \"{}\", \"preset\": "
+        "\"{}\", \"commit\": \"{}\"}}",
+        &row == rows.data() ? "" : ",",
+        row.name,
+        row.median,
+        row.unit,
+        row.least,
+        row.spread,
+        limit,
+        origin.pes,
+        origin.ranks,
+        origin.machine,
+        build_preset,
+        build_commit);
+  }
+  return out + "\n]}\n";
+}
 
 void Report::header() const {
-  tess::print("name,median,unit,least,spread,reference,ratio,machine,preset,commit\n");
+  tess::print(csv_header());
 }
-
 void Report::row(std::string_view name,
                  const Samples& samples,
                  std::string_view unit,
-                 double reference) const {
-  const double value = samples.median();
-  const std::string against =
-      reference == 0 ? "," : fmt::format("{},{:.3f}", reference, value / reference);
-  tess::print(fmt::format("{},{:.1f},{},{:.1f},{:.2f},{},{},{},{}\n",
-                          name,
-                          value,
-                          unit,
-                          samples.least(),
-                          samples.spread(),
-                          against,
-                          machine_,
-                          build_preset,
-                          build_commit));
+                 double limit) const {
+  tess::print(csv_line(make_row(name, samples, unit, limit), origin_));
 }
 
 }  // namespace bench

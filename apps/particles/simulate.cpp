@@ -104,7 +104,10 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
 
   tess::BalancerProxy balancer;
   const auto begin_balancing = [&] { balancer = tess::start_balancing(blocks, *options.balance); };
-  if (options.balance) co_await tess::epoch(begin_balancing);
+  if (options.balance) {
+    co_await tess::epoch(begin_balancing);
+    co_await balancer.begin_phase();
+  }
   const bool rounds_between =
       options.balance && options.balance->when != tess::BalanceWhen::periodic;
 

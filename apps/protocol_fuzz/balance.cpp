@@ -114,13 +114,13 @@ class Rotor : public Chare<Rotor, Index1> {
   static inline int n_rounds = 0;
   static inline std::atomic<int> n_done{0};
 
-  void begin() {
-    first_ = current_pe().id().value;
-    at_sync();
-  }
+  void begin() { at_sync(); }
   void resume_from_sync() {
+    // In the first round those stay that ran before they were measured.
+    if (round_ == 0) first_ = current_pe().id().value - 1;
     ++round_;
-    const int expected = (first_ + round_) % current_pe().n_pes();
+    const int n_pes = current_pe().n_pes();
+    const int expected = (first_ + round_ + n_pes) % n_pes;
     trial->expect(current_pe().id().value == expected,
                   element_text(*this),
                   " is on ",
@@ -142,6 +142,79 @@ class Rotor : public Chare<Rotor, Index1> {
 
  private:
   int first_ = 0, round_ = 0;
+};
+
+/// Does a phase's work in a few messages to itself, of a cost that its index gives.
+class Toiler : public Chare<Toiler, Index1> {
+ public:
+  static inline int n_parts = 0, n_phases = 0;
+
+  static std::int64_t nanoseconds_of_part(std::int32_t x) { return 20'000 * (1 + x % 4); }
+
+  void part(int done) {
+    charge(std::chrono::nanoseconds(nanoseconds_of_part(index().x)));
+    if (done + 1 < n_parts) {
+      array()[index()].send<&Toiler::part>(done + 1);
+    } else {
+      at_sync();
+    }
+  }
+  void resume_from_sync() {
+    if (++phase_ < n_phases) part(0);
+  }
+  [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(phase_);
+  }
+
+ private:
+  int phase_ = 0;
+};
+
+/// Holds every load that a strategy is shown as known against the work of the phase, and each move
+/// against whether its load was known.
+class LoadsShown {
+ public:
+  LoadsShown(Trial& trial, std::string strategy, bool exactly)
+      : trial_(trial),
+        name_(std::move(strategy)),
+        run_(balance::make_strategy(name_, 1)),
+        exactly_(exactly) {}
+
+  balance::Assignment operator()(const balance::Snapshot& s) {
+    const balance::Assignment to = run_(s);
+    for (std::size_t i = 0; i < s.elements.size(); ++i) {
+      if (!s.elements.knows_load(i)) {
+        trial_.expect(to[i] == s.elements.pe[i], name_, " moves an element of unknown load");
+        continue;
+      }
+      const auto x = static_cast<std::int32_t>(x_of_.at(s.elements.key[i].element));
+      const double phase = 1e-9 * static_cast<double>(Toiler::nanoseconds_of_part(x)) *
+                           static_cast<double>(Toiler::n_parts);
+      const double load = s.elements.load[i];
+      trial_.expect(load >= 0.99 * phase && (!exactly_ || load <= 1.1 * phase),
+                    "round ",
+                    n_rounds_,
+                    ": the load of Toiler[",
+                    x,
+                    "] is shown as ",
+                    load,
+                    " s, it did ",
+                    phase);
+    }
+    ++n_rounds_;
+    return to;
+  }
+  void know(std::int32_t x) { x_of_[IndexHash<Index1>()(Index1{x})] = x; }
+
+ private:
+  Trial& trial_;
+  std::string name_;
+  balance::Strategy run_;
+  bool exactly_;
+  int n_rounds_ = 0;
+  std::map<std::uint64_t, std::int32_t> x_of_;
 };
 
 /// Sends itself around a ring of elements, while periodic rounds move them.
@@ -216,6 +289,27 @@ void balance_rotate(Trial& trial) {
     rotors.broadcast<&Rotor::begin>();
   });
   trial.expect(Rotor::n_done == n, Rotor::n_done.load(), " of ", n, " elements met all rounds");
+}
+
+void balance_first_round(Trial& trial) {
+  const int n = trial.draw(1, 40);
+  Toiler::n_parts = trial.draw(1, 3);
+  Toiler::n_phases = trial.draw(1, 3);
+  // What is on its way while loads are collected is not shown, and brings two phases to the next.
+  const bool moves = trial.draw(0, 1) == 0;
+  if (!moves) trial.forbid_forced_migration();
+  const bool by_broadcast = trial.draw(0, 1) == 0;
+  LoadsShown shown(trial, drawn_strategy(trial.random()), !moves);
+  for (std::int32_t x = 0; x < n; ++x) shown.know(x);
+  trial.run_clean([&] {
+    const auto toilers = create<Toiler>(range(n));
+    start_balancing(toilers, {}, [&](const balance::Snapshot& s) { return shown(s); });
+    if (by_broadcast) {
+      toilers.broadcast<&Toiler::part>(0);
+    } else {
+      for (std::int32_t x = 0; x < n; ++x) toilers[{x}].send<&Toiler::part>(0);
+    }
+  });
 }
 
 void balance_periodic(Trial& trial) {

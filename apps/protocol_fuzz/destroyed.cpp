@@ -11,7 +11,7 @@
 namespace tess::fuzz {
 namespace {
 
-struct Ledger {
+struct Remains {
   Trial& trial;
   double end_chance = 0;  // a message destroys its array
   int n_indices = 1;
@@ -48,7 +48,7 @@ struct Ledger {
     return true;
   }
 };
-Ledger* ledger = nullptr;
+Remains* remains = nullptr;
 
 class Clerk;
 
@@ -62,7 +62,7 @@ struct Errand {
 class Mayfly : public Chare<Mayfly, Index1> {
  public:
   Mayfly() { count(1); }
-  explicit Mayfly(Errand errand) : Mayfly() { ledger->deliver(array().id(), errand.token); }
+  explicit Mayfly(Errand errand) : Mayfly() { remains->deliver(array().id(), errand.token); }
   Mayfly(const Mayfly&) = delete;
   Mayfly& operator=(const Mayfly&) = delete;
   ~Mayfly() override {
@@ -75,8 +75,8 @@ class Mayfly : public Chare<Mayfly, Index1> {
   void meet(GroupProxy<Clerk> clerks);
   void sync() {
     {
-      const std::lock_guard lock(ledger->mutex);
-      if (ledger->periodic.contains(array().id())) return;
+      const std::lock_guard lock(remains->mutex);
+      if (remains->periodic.contains(array().id())) return;
     }
     if (!waits_) at_sync();
     waits_ = true;
@@ -90,8 +90,8 @@ class Mayfly : public Chare<Mayfly, Index1> {
 
  private:
   void count(int n) const {
-    const std::lock_guard lock(ledger->mutex);
-    ledger->alive[array().id()] += n;
+    const std::lock_guard lock(remains->mutex);
+    remains->alive[array().id()] += n;
   }
 
   int canary_ = 4711;
@@ -116,20 +116,20 @@ class Clerk : public Group<Clerk> {
   }
   void add(int /*sum*/) {}
   void check_end(CollectionId array) {
-    ledger->trial.expect(current_pe().ended(array) && current_pe().find(array) == nullptr,
-                         "the epoch of the end is done, but ",
-                         pe(),
-                         " still has the array");
+    remains->trial.expect(current_pe().ended(array) && current_pe().find(array) == nullptr,
+                          "the epoch of the end is done, but ",
+                          pe(),
+                          " still has the array");
   }
   void count_collections() {
-    const std::lock_guard lock(ledger->mutex);
-    ledger->n_collections[pe()] = current_pe().collections().size();
+    const std::lock_guard lock(remains->mutex);
+    remains->n_collections[pe()] = current_pe().collections().size();
   }
 };
 
 void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random) {
-  errand.token = ledger->token();
-  const int n = ledger->n_indices;
+  errand.token = remains->token();
+  const int n = remains->n_indices;
   const auto fly = flies[{static_cast<int>(random.below(static_cast<std::uint64_t>(n)))}];
   switch (random.below(8)) {
     case 0:
@@ -141,8 +141,8 @@ void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random)
     case 2: {
       int made = 0;
       {
-        const std::lock_guard lock(ledger->mutex);
-        made = ledger->n_made[flies.id()]++;
+        const std::lock_guard lock(remains->mutex);
+        made = remains->n_made[flies.id()]++;
       }
       const PeId where{static_cast<std::int32_t>(
           random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
@@ -159,16 +159,16 @@ void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random)
 
 void start_meeting(const ArrayProxy<Mayfly>& flies, GroupProxy<Clerk> clerks) {
   {
-    const std::lock_guard lock(ledger->mutex);
-    ++ledger->n_broadcasts;
+    const std::lock_guard lock(remains->mutex);
+    ++remains->n_broadcasts;
   }
   flies.broadcast<&Mayfly::meet>(clerks);
 }
 
 void Mayfly::run(Errand errand) {
-  ledger->deliver(array().id(), errand.token);
-  Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(ledger->trial.seed())));
-  if (random.chance(ledger->end_chance)) array().destroy();
+  remains->deliver(array().id(), errand.token);
+  Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(remains->trial.seed())));
+  if (random.chance(remains->end_chance)) array().destroy();
   if (random.chance(0.3))
     migrate_to(PeId{
         static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
@@ -183,16 +183,16 @@ void Mayfly::run(Errand errand) {
 
 Task Mayfly::wait(Errand errand) {
   const CollectionId array_id = array().id();
-  ledger->deliver(array_id, errand.token);
+  remains->deliver(array_id, errand.token);
   const PeId other{(errand.token * 7 + 1) % current_pe().n_pes()};
   co_await epoch([&] { errand.clerks[other].send<&Clerk::pass>(errand.token % 5); });
-  ledger->trial.expect(canary_ == 4711, "a coroutine goes on in an element that was destroyed");
+  remains->trial.expect(canary_ == 4711, "a coroutine goes on in an element that was destroyed");
   if (errand.token % 3 == 0) meet(errand.clerks);
   if (errand.token % 4 == 0) sync();
   if (errand.token % 5 == 0) start_meeting(array(), errand.clerks);
   if (errand.n_hops == 0) co_return;
   --errand.n_hops;
-  Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(ledger->trial.seed())));
+  Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(remains->trial.seed())));
   send_errand(array(), errand, random);
 }
 
@@ -232,8 +232,8 @@ bool balance(const ArrayProxy<Mayfly>& flies, Random& random) {
       return false;
   }
   if (options.when == BalanceWhen::periodic) {
-    const std::lock_guard lock(ledger->mutex);
-    ledger->periodic.insert(flies.id());
+    const std::lock_guard lock(remains->mutex);
+    remains->periodic.insert(flies.id());
   }
   start_balancing(flies, options);
   return true;
@@ -248,7 +248,7 @@ Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
   ArrayProxy<Mayfly> flies;
   bool is_balanced = false;
   const auto make = [&] {
-    flies = tess::create<Mayfly>(random.chance(0.7) ? range(ledger->n_indices) : sparse);
+    flies = tess::create<Mayfly>(random.chance(0.7) ? range(remains->n_indices) : sparse);
     is_balanced = balance(flies, random);
   };
   const auto flood = [&] { clerks.broadcast<&Clerk::flood>(flies, errand); };
@@ -285,13 +285,13 @@ Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
       co_return;
   }
   clerks.broadcast<&Clerk::check_end>(flies.id());
-  const std::lock_guard lock(ledger->mutex);
-  ledger->over[flies.id()] = true;
+  const std::lock_guard lock(remains->mutex);
+  remains->over[flies.id()] = true;
   // What a balancer moves is on no epoch of the user's: it may arrive, and end, later.
-  ledger->trial.expect(is_balanced || ledger->alive[flies.id()] == 0,
-                       ledger->alive[flies.id()],
-                       " elements outlive their array, way ",
-                       how);
+  remains->trial.expect(is_balanced || remains->alive[flies.id()] == 0,
+                        remains->alive[flies.id()],
+                        " elements outlive their array, way ",
+                        how);
 }
 
 Task all_lives(GroupProxy<Clerk> clerks, int n_lives, std::uint64_t seed) {
@@ -306,9 +306,9 @@ Task live_and_end_often(int n_lives, std::uint64_t seed) {
   int n_looks = 0;
   do {
     co_await epoch([&] { clerks.broadcast<&Clerk::count_collections>(); });
-  } while (!(ledger->n_alive() == 0 && ledger->all_forgotten()) && n_looks++ < most_looks);
-  ledger->trial.expect(ledger->n_alive() == 0, ledger->n_alive(), " elements are left");
-  ledger->trial.expect(ledger->all_forgotten(), "a PE still knows a collection that has ended");
+  } while (!(remains->n_alive() == 0 && remains->all_forgotten()) && n_looks++ < most_looks);
+  remains->trial.expect(remains->n_alive() == 0, remains->n_alive(), " elements are left");
+  remains->trial.expect(remains->all_forgotten(), "a PE still knows a collection that has ended");
   co_await epoch([&] { clerks.destroy(); });
   clerks.destroy();
 }
@@ -316,10 +316,10 @@ Task live_and_end_often(int n_lives, std::uint64_t seed) {
 }  // namespace
 
 void destroyed(Trial& trial) {
-  Ledger here{trial};
+  Remains here{trial};
   here.n_indices = trial.draw(1, 20);
   here.end_chance = trial.draw(0, 2) * 0.01;
-  ledger = &here;
+  remains = &here;
   const int n_lives = trial.draw(1, 6);
   const std::uint64_t seed = trial.random()();
   const Ending ending = trial.run([&]() -> Task { return live_and_end_often(n_lives, seed); });

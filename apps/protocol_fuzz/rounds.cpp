@@ -25,6 +25,8 @@ struct AddTallies {
   }
 };
 
+class Judge;
+
 struct Records {
   Trial& trial;
   std::uint64_t seed = 0;
@@ -35,6 +37,7 @@ struct Records {
   std::map<int, int> ended{};          // index -> round in which it ended
   int n_born = 0;
   int n_results = 0;
+  GroupProxy<Judge> judge{};
 
   void give(int round, int index) {
     const std::lock_guard lock(mutex);
@@ -53,10 +56,7 @@ struct Records {
 };
 Records* records = nullptr;
 
-class Judge;
-
 struct Birth {
-  GroupProxy<Judge> judge;
   int round = 0;
   int parent = 0;
 };
@@ -64,16 +64,17 @@ struct Birth {
 class Player : public Chare<Player, Index1> {
  public:
   Player() = default;
-  explicit Player(GroupProxy<Judge> judge) : judge_(judge), born_(true) {}
+  explicit Player(bool born) : born_(born) {}
 
   void play(int round);
-  /// Comes to life within a round: its parent contributes once it knows.
+  /// Comes to life within a round: its parent gives once it knows of it. The child itself gives
+  /// where it meets a round: this one or the next.
   void born(Birth birth);
   void give(int round);
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(judge_, born_, last_round_);
+    ar(born_, last_round_);
   }
 
  private:
@@ -83,8 +84,7 @@ class Player : public Chare<Player, Index1> {
         static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
   }
 
-  GroupProxy<Judge> judge_;
-  bool born_ = false;  // what was created on demand contributes once it was told to
+  bool born_ = false;  // what was created on demand does not end before its first message
   int last_round_ = -1;
 };
 
@@ -181,10 +181,9 @@ void Player::play(int round) {
                         " after ",
                         last_round_);
   last_round_ = round;
-  if (!born_) return;
   Random random = records->draws(round, index().x, 0);
-  if (index().x != 0 && random.chance(records->death_chance)) {
-    const bool gives = random.chance(0.5) && static_cast<int>(next_reduction()) <= round;
+  if (index().x != 0 && born_ && random.chance(records->death_chance)) {
+    const bool gives = random.chance(0.5);
     if (gives) give(round);
     {
       const std::lock_guard lock(records->mutex);
@@ -193,7 +192,6 @@ void Player::play(int round) {
     destroy();
     return;
   }
-  if (static_cast<int>(next_reduction()) > round) return;  // born in this round
   if (random.chance(records->birth_chance)) {
     bear(round);
     return;
@@ -213,7 +211,7 @@ void Player::bear(int round) {
     const std::lock_guard lock(records->mutex);
     child = records->n_first + records->n_born++;
   }
-  const Birth birth{judge_, round, index().x};
+  const Birth birth{round, index().x};
   if (records->draws(round, index().x, 1).chance(0.5)) {
     array()[{child}].send_or_create_here<&Player::born>(birth);
   } else {
@@ -222,9 +220,7 @@ void Player::bear(int round) {
 }
 
 void Player::born(Birth birth) {
-  judge_ = birth.judge;
   born_ = true;
-  if (static_cast<int>(next_reduction()) <= birth.round) give(birth.round);
   array()[{birth.parent}].send<&Player::give>(birth.round);
 }
 
@@ -238,7 +234,7 @@ void Player::give(int round) {
                         " in round ",
                         round);
   records->give(round, me);
-  const auto judge = judge_[PeId{0}];
+  const auto judge = records->judge[PeId{0}];
   const double value = records->value(round, me);
   switch (round % 6) {
     case 0:
@@ -278,9 +274,9 @@ void rounds(Trial& trial) {
   here.late_chance = trial.draw(0, 2) * 0.4;
   here.given.resize(static_cast<std::size_t>(here.n_rounds));
   trial.run_clean([&] {
-    const auto judge = create_group<Judge>();
-    const auto players = tess::create<Player>(range(here.n_first), judge);
-    judge[PeId{0}].send<&Judge::start>(players);
+    here.judge = create_group<Judge>();
+    const auto players = tess::create<Player>(range(here.n_first), true);
+    here.judge[PeId{0}].send<&Judge::start>(players);
   });
   trial.expect(here.n_results == here.n_rounds, here.n_results, " results of ", here.n_rounds);
 }

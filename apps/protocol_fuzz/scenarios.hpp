@@ -14,7 +14,10 @@ void create_at_once(Trial& trial);    // create.cpp
 void message_first(Trial& trial);     // create.cpp
 void lives(Trial& trial);             // lives.cpp
 void broadcasts(Trial& trial);        // broadcasts.cpp
+void constructors(Trial& trial);      // constructors.cpp
 void rounds(Trial& trial);            // rounds.cpp
+void newborns(Trial& trial);          // newborns.cpp
+void refinement(Trial& trial);        // newborns.cpp
 void tour(Trial& trial);              // tour.cpp
 void epochs(Trial& trial);            // epochs.cpp
 void epoch_migrations(Trial& trial);  // epoch_migrations.cpp
@@ -28,6 +31,7 @@ void groups(Trial& trial);            // groups.cpp
 void balance_rounds(Trial& trial);    // balance.cpp
 void balance_barrier(Trial& trial);   // balance_barrier.cpp
 void balance_rotate(Trial& trial);    // balance.cpp
+void balance_first_round(Trial& trial);  // balance.cpp
 void balance_periodic(Trial& trial);  // balance.cpp
 void balance_epochs(Trial& trial);    // balance_epochs.cpp
 

@@ -1,4 +1,5 @@
 #include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/unknown_loads.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -132,6 +133,7 @@ class Gathering {
       s_.pes.background.assign(n_pes, 0.0);
       s_.pes.memory_limit_bytes.assign(n_pes, 0);
     }
+    if (n_known_loads(s_) == s_.elements.size()) s_.elements.measured.clear();
     validate(s_);
     return std::move(s_);
   }
@@ -151,6 +153,7 @@ class Gathering {
     e.key.push_back(key_of(entity));
     e.pe.push_back(pe_at(node));
     e.load.push_back(time);
+    e.measured.push_back(1);
     e.migratable.push_back(entity["migratable"].truth());
     e.size_bytes.push_back(0);
     e.memory_bytes.push_back(0);
@@ -162,6 +165,7 @@ class Gathering {
     auto& e = s_.elements;
     if (user.has("size_bytes")) e.size_bytes.back() = user["size_bytes"].whole_amount();
     if (user.has("memory_bytes")) e.memory_bytes.back() = user["memory_bytes"].whole_amount();
+    if (user.has("measured")) e.measured.back() = user["measured"].whole_amount() != 0 ? 1 : 0;
     if (!user.has("position_x")) return;
     e.position.back() = {
         user["position_x"].number(), user["position_y"].number(), user["position_z"].number()};

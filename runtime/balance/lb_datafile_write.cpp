@@ -41,6 +41,7 @@ class Identities {
 
 json task(const Identities& identities, const Elements& e, std::size_t i) {
   json user = {{"size_bytes", e.size_bytes[i]}, {"memory_bytes", e.memory_bytes[i]}};
+  if (!e.knows_load(i)) user["measured"] = 0;
   if (!e.position.empty()) {
     user["position_x"] = e.position[i][0];
     user["position_y"] = e.position[i][1];

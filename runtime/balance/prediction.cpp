@@ -24,6 +24,7 @@ Predictor::Predictor(Prediction kind, std::size_t window, std::size_t forget_aft
 void Predictor::record(const Snapshot& measured) {
   ++n_phases_;
   for (std::size_t i = 0; i < measured.elements.size(); ++i) {
+    if (!measured.elements.knows_load(i)) continue;
     History& history = history_[measured.elements.key[i]];
     if (history.size() == window_) history.erase(history.begin());
     history.push_back({n_phases_, measured.elements.load[i]});
@@ -43,7 +44,9 @@ double Predictor::load(const ElementKey& key) const {
 Snapshot Predictor::predict(Snapshot s) const {
   for (std::size_t i = 0; i < s.elements.size(); ++i) {
     const auto found = history_.find(s.elements.key[i]);
-    if (found != history_.end()) s.elements.load[i] = next(found->second);
+    if (found == history_.end()) continue;
+    s.elements.load[i] = next(found->second);
+    if (!s.elements.measured.empty()) s.elements.measured[i] = 1;
   }
   return s;
 }

@@ -26,14 +26,14 @@ class Predictor {
   /// element after which its history goes, so that memory is bounded by what is alive.
   explicit Predictor(Prediction kind, std::size_t window = 5, std::size_t forget_after = 100);
 
-  /// The measured loads of one more phase.
+  /// The measured loads of one more phase; those that are not known are left out.
   void record(const Snapshot& measured);
 
   /// The load of the next phase; nothing is known of an element that no phase has had: 0.
   [[nodiscard]] double load(const ElementKey& key) const;
 
   /// The snapshot with predicted loads in place of measured ones; an element that no phase has had
-  /// keeps what stands there.
+  /// keeps what stands there. What has a history is of known load.
   [[nodiscard]] Snapshot predict(Snapshot snapshot) const;
 
   [[nodiscard]] std::size_t n_known() const { return history_.size(); }

@@ -21,16 +21,21 @@ struct Edge {
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// All arrays have one entry an element; `position` may be empty instead, where nobody gave any.
+/// All arrays have one entry an element; `position` may be empty instead, where nobody gave any,
+/// and `measured`, where all are.
 struct Elements {
   std::vector<ElementKey> key;
   std::vector<PeId> pe;
   std::vector<double> load;                     ///< seconds on a PE of speed 1
+  std::vector<std::uint8_t> measured;           ///< 0: `load` is not known, its entry says nothing
   std::vector<std::uint8_t> migratable;         ///< 0 stays where it is
   std::vector<std::uint64_t> size_bytes;        ///< packed: what a migration sends
   std::vector<std::uint64_t> memory_bytes;      ///< resident: what counts against a memory limit
   std::vector<std::array<double, 3>> position;  ///< for rcb and hilbert
   [[nodiscard]] std::size_t size() const { return key.size(); }
+  [[nodiscard]] bool knows_load(std::size_t i) const {
+    return measured.empty() || measured[i] != 0;
+  }
 };
 
 /// All arrays have one entry a PE.

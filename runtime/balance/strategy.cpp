@@ -11,6 +11,7 @@
 #include "runtime/balance/strategies/rcb.hpp"
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategies/simple.hpp"
+#include "runtime/balance/unknown_loads.hpp"
 #include "runtime/error.hpp"
 
 #include <fmt/format.h>
@@ -57,14 +58,19 @@ const std::vector<std::string>& strategy_names() {
 Strategy make_strategy(std::string_view name, std::uint64_t seed) {
   for (const Entry& entry : entries())
     if (entry.name == name)
-      return [run = entry.run, seed](const Snapshot& s) { return run(s, seed); };
+      return [run = entry.run, seed](const Snapshot& s) {
+        if (n_known_loads(s) == s.elements.size()) return run(s, seed);
+        return run(with_unknown_pinned(s), seed);
+      };
   fail(ErrorCode::bad_argument,
        fmt::format(
            "no balance strategy '{}'; choose one of {}", name, fmt::join(strategy_names(), ", ")));
 }
 
 Strategy make_strategy(Strategy users) {
-  return [users = std::move(users)](const Snapshot& s) { return honour(s, users(s)); };
+  return [users = std::move(users)](const Snapshot& s) {
+    return honour(with_unknown_pinned(s), users(s));
+  };
 }
 
 }  // namespace tess::balance

@@ -1,7 +1,8 @@
 // Strategies by name. A strategy is a pure function from a snapshot to an assignment: the same
 // snapshot and seed give the same answer. Elements that do not migrate stay; no move takes a PE
-// above its memory limit; an element that finds no room stays where it is. One file a strategy
-// stands in strategies/.
+// above its memory limit; an element that finds no room stays where it is, and so does one whose
+// load is not known: it counts as the mean of the others. One file a strategy stands in
+// strategies/.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"

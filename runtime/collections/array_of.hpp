@@ -3,18 +3,28 @@
 // is behind four virtual functions (Array).
 //
 // A message that does not meet its element here goes, in this order: to the pending creation here;
-// to the grave of an element whose death the home has not noted; after an element that left here;
-// after a cached hint; to the home. It carries the version it has been sent after, so each hop
-// follows newer knowledge than the last, and what knows more than the home waits there: no message
-// runs in circles, whatever overtakes what.
+// to the grave of an element whose death the home has not noted; after the element, if it left here
+// or this PE heard where it is; to the home. It carries the version it has been sent after, so each
+// hop follows newer knowledge than the last, and what knows more than the home waits there: no
+// message runs in circles, whatever overtakes what.
+//
+// At home an index is absent, live or dead:
+//     absent, dead(i)  -- grant -->     live(pe, incarnation i + 1)
+//     live             -- it left -->   moving(its next PE, version + 1)
+//     live, moving     -- landed -->    live(that PE and version), if newer
+//     live             -- died -->      dead(incarnation)
+// A grant makes the record live at once: the PE that asked keeps what reaches it until the grant
+// does, so of two PEs that ask at once exactly one creates, and nothing needs to wait for a
+// confirmation.
 #pragma once
 
 #include "runtime/check.hpp"
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/index.hpp"
 #include "runtime/location/element_message.hpp"
-#include "runtime/location/home_registry.hpp"
-#include "runtime/location/location_cache.hpp"
+#include "runtime/location/index_table.hpp"
+
+#include <boost/unordered/unordered_flat_map.hpp>
 
 #include <algorithm>
 
@@ -46,6 +56,12 @@ class IndexedElement : public Element {
   const Index index_;
 };
 
+/// Where an element is, or was.
+struct Place {
+  PeId pe{};
+  Version version{};
+};
+
 /// What becomes of a message to an element that was destroyed.
 enum class DeadLetters : std::uint8_t {
   report,    ///< it is counted, and the run's end reports how many there were
@@ -60,31 +76,34 @@ class ArrayOf : public Collection {
   using Letter = ElementMessage<Index>;
 
   ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
-      : Collection(pe, id, std::move(name)), range_(range) {}
+      : Collection(pe, id, std::move(name)), range_(range), block_map_(range, pe.n_pes()), table_(range) {}
 
   [[nodiscard]] const Range& range() const { return range_; }
+  [[nodiscard]] const BlockMap& block_map() const { return block_map_; }
   [[nodiscard]] virtual PeId home(const Index& index) const = 0;
 
-  [[nodiscard]] Indexed* find(const Index& index) const {
-    const auto at = here_.find(index);
-    return at == here_.end() ? nullptr : at->second;
+  [[nodiscard]] Indexed* find(const Index& index) {
+    const Record* record = table_.find(index);
+    return record == nullptr ? nullptr : record->element();
   }
 
   /// A user's message starts here.
   void post(Letter* letter) {
-    if (here_.contains(letter->index)) {
+    Record* record = table_.find(letter->index);
+    if (record != nullptr && record->state() == IndexState::here) [[likely]] {
       pe_.send_here(letter);
     } else {
-      route(letter);
+      route(letter, record);
     }
   }
 
   /// A message arrived: it runs if its element is here.
   void arrive(Letter* letter) {
-    if (Indexed* element = find(letter->index); element != nullptr) [[likely]] {
-      execute(*element, letter);
+    Record* record = table_.find(letter->index);
+    if (record != nullptr && record->state() == IndexState::here) [[likely]] {
+      execute(*record->element(), letter);
     } else {
-      route(letter);
+      route(letter, record);
     }
   }
 
@@ -109,6 +128,9 @@ class ArrayOf : public Collection {
 
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;
+  [[nodiscard]] std::string birth_text(const void* index) const override {
+    return name() + index_text(*static_cast<const Index*>(index));
+  }
 
   // Messages between the parts of this array.
   struct Request {
@@ -168,39 +190,52 @@ class ArrayOf : public Collection {
     }();
     element->state_.version = version;
     born(*element);
-    here_.emplace(index, element);
+    table_.at(index).set_here(*element);
     list(*element);
     if (element->migrate_to_.value >= 0 || element->doomed_) [[unlikely]]
-      settle(*element);  // its constructor asked for it
+      after_birth([this, element] { settle(*element); });  // its constructor asked for it
+    if (has_after_birth() && !makes_initial_) [[unlikely]]
+      run_after_birth();
+  }
+  /// Makes the first elements, which are all born at once.
+  template <class Make>
+  void bear_initial(const Make& make_all) {
+    makes_initial_ = true;
+    make_all();
+    makes_initial_ = false;
+    run_after_birth();
   }
 
   /// Takes in an element that comes from another PE.
   void land(Indexed* element, PeId from);
 
   void destroy_all() {
-    for (auto& [index, element] : here_) destroy(*element);
-    for (auto& [index, pending] : pending_)
-      for (Letter* letter : pending.letters) discard(letter);
-    for (auto& [index, grave] : graves_)
-      for (Letter* letter : grave.letters) discard(letter);
-    for (auto& [index, letters] : registry_.waiting())
-      for (Letter* letter : letters) discard(letter);
+    table_.for_each([this](const Index& /*index*/, const Record& record) {
+      if (record.element() != nullptr) destroy(*record.element());
+    });
+    for (Letters* letters : {&pending_, &waiting_, &graves_})
+      for (auto& [index, parked] : *letters)
+        for (Letter* letter : parked) discard(letter);
   }
 
  private:
-  struct Pending {
-    std::vector<Letter*> letters;
-  };
-  struct Grave {
-    std::uint32_t n_deaths = 0;
-    std::vector<Letter*> letters;
-  };
+  using Record = IndexRecord<Indexed>;
+  template <class Value>
+  using ByIndex = boost::unordered_flat_map<Index, Value, IndexHash<Index>>;
+  using Letters = ByIndex<std::vector<Letter*>>;
 
   static constexpr std::uint8_t most_hops = 6;
+  static constexpr std::size_t most_hints = 1U << 18U;
 
   void execute(Indexed& element, Letter* letter);
-  void route(Letter* letter);
-  void at_home(Letter* letter);
+  void route(Letter* letter, Record* record);
+  void at_home(Letter* letter, const Record* record);
+  [[nodiscard]] Letters& parked(Parked why) {
+    return why == Parked::pending ? pending_ : why == Parked::waiting ? waiting_ : graves_;
+  }
+  void park(Letter* letter, Parked why);
+  /// Takes out the messages that are parked; the caller routes them again.
+  [[nodiscard]] std::vector<Letter*> unpark(const Index& index, Parked why);
   void ask(Letter* letter);
   void grant(const Index& index, Version version);
   void forward(Letter* letter, const Place& place);
@@ -213,9 +248,8 @@ class ArrayOf : public Collection {
   }
   /// To this PE's queue, where it meets the element or is routed.
   void arrive_later(Letter* letter) { pe_.send_here(letter); }
-  void learn(const Index& index, const Place& place) {
-    if (place.pe != pe_.id() && !here_.contains(index)) cache_.learn(index, place);
-  }
+  /// A hint applies only if it is newer than what is known.
+  void learn(const Index& index, const Place& place);
 
   void on_request(const Request& request);
   void on_grant(const Grant& m) { grant(m.index, m.version); }
@@ -226,14 +260,12 @@ class ArrayOf : public Collection {
   void on_buried(const Buried& buried);
 
   const Range range_;
-  boost::unordered_flat_map<Index, Indexed*, IndexHash<Index>> here_;
-  boost::unordered_flat_map<Index, Pending, IndexHash<Index>> pending_;  // asked for, not answered
-  boost::unordered_flat_map<Index, Grave, IndexHash<Index>>
-      graves_;  // died here, not noted by the home
-  boost::unordered_flat_map<Index, Place, IndexHash<Index>>
-      departed_;  // left here, not noted by the home
-  LocationCache<Index> cache_;
-  HomeRegistry<Index> registry_;
+  const BlockMap block_map_;
+  bool makes_initial_ = false;
+  IndexTable<Index, Indexed> table_;
+  std::size_t n_hints_ = 0;             // learnt since they were last forgotten
+  Letters pending_, waiting_, graves_;  // what is parked, by the reason (Parked)
+  ByIndex<std::uint32_t> n_deaths_;     // of the indices with a grave
 };
 
 template <class Index>
@@ -249,7 +281,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, Letter* letter) {
                "; insert_if_absent() allows for that");
     discard(letter);
   } else {
-    const ElementScope scope(pe_, element, letter->action, epoch);
+    const ElementScope scope(pe_, element, letter->action, epoch, letter->led_by);
     try {
       action.invoke(element, *letter);
     } catch (...) {

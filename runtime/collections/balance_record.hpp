@@ -26,6 +26,7 @@ struct SyncState {
   std::uint32_t next = 0;       ///< a member: the round it reaches next
   std::uint32_t waits_for = 0;  ///< while it waits: the round that resumes it
   EpochId epoch{};              ///< on whose account it waits
+  std::uint32_t led_by = 0;     ///< the broadcast that led to its wait
 };
 
 struct BalanceRecord {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/ids.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
@@ -35,26 +36,31 @@ class BroadcastCall {
   virtual void pack(Writer& ar) const = 0;
 };
 
-/// A broadcast on its way: its number (0 before the root gave it one) and the epoch that pays for
-/// it.
+/// A broadcast on its way: its number (0 before the root gave it one), the epoch that pays for it,
+/// and how many reductions of the collection were complete when it got its number.
 struct NumberedCall {
   std::uint64_t number = 0;
   EpochId epoch{};
   std::shared_ptr<const BroadcastCall> call;
+  std::uint32_t n_complete = 0;
 
   /// Its collection has ended: nobody is called. Returns whether the whole broadcast is lost.
   std::uint64_t drop(Pe& pe) const;
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, epoch);
+    ar(number, epoch, n_complete);
     if constexpr (Ar::is_reading) {
-      call = static_cast<const BroadcastKind&>(Registry::at(ar.template take<std::uint32_t>()))
-                 .unpack(ar);
+      read(ar, static_cast<const BroadcastKind&>(Registry::at(ar.template take<std::uint32_t>())));
     } else {
       ar(call->kind().id());
-      call->pack(ar);
+      pack_framed(ar, [this](Writer& arguments) { call->pack(arguments); });
     }
+  }
+
+ private:
+  void read(Reader& ar, const BroadcastKind& kind) {
+    call = unpack_framed(ar, kind.name(), kind.unpack);
   }
 };
 

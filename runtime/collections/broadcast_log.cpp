@@ -42,6 +42,7 @@ void start_broadcast(CollectionId collection, std::shared_ptr<const BroadcastCal
 
 void BroadcastLog::on_start(NumberedCall&& call) {
   call.number = ++last_number_;
+  call.n_complete = collection_.reductions().n_complete();
   on_call(std::move(call));
 }
 
@@ -58,6 +59,7 @@ void BroadcastLog::on_call(NumberedCall&& call) {
     ++applied_;
     const NumberedCall current = copies_.back();
     collection_.apply(current);
+    collection_.reductions().applied(current.number, current.n_complete);
     settle();
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
+#include "runtime/collections/make_chare.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/round_trip.hpp"
 #include "runtime/scheduler/block.hpp"
@@ -54,6 +55,7 @@ struct TypedLetter : ElementMessage<typename C::Index> {
     letter->collection = collection;
     letter->index = index;
     letter->asker = pe.id();
+    if (pe.context().led_by != 0) letter->led_by = Collection::led_by(pe.context(), collection);
 #ifdef TESS_CHECKS_ALL
     const std::string difference = arguments_difference(letter->arguments);
     TESS_CHECK(difference.empty(), difference);
@@ -125,7 +127,7 @@ struct Construction final : TypedLetter<Construction<C, Args...>, C, std::tuple<
   using Base::Base;
 
   static Element* construct(ElementMessage<Index>& message) {
-    return std::apply([](auto&... argument) { return new C(std::move(argument)...); },
+    return std::apply([](auto&... argument) { return make_chare<C>(std::move(argument)...); },
                       static_cast<Construction&>(message).arguments);
   }
   static inline const ElementAction<Index> entry =

@@ -8,6 +8,14 @@ std::string element_text(const Element& element) {
   return element.collection_->name() + element.collection_->index_text_of(element);
 }
 
+void Element::after_birth(const char* what, std::function<void()> call) {
+  Collection* collection = current_pe().birth_collection();
+  TESS_CHECK(collection != nullptr,
+             what,
+             " belongs into an entry method or the constructor; serialize() is neither");
+  collection->after_birth(std::move(call));
+}
+
 Collection::Collection(Pe& pe, CollectionId id, std::string name)
     : pe_(pe),
       id_(id),
@@ -27,13 +35,22 @@ void Collection::list(Element& element) {
   elements_.push_back(&element);
   ++n_local_;
   reductions_.enter(element.state_.next_reduction);
-  if (watcher_ != nullptr) [[unlikely]]
+  if (element.state_.born_after != 0) [[unlikely]] {
+    ++n_newborn_;
+    postpone(element);
+  }
+  if (watcher_ != nullptr) [[unlikely]] {
     watcher_->entered(element);
+  } else if (element.balance_) [[unlikely]] {
+    element.balance_->load.since = LoadRecord::Since::somewhere;  // nothing is measured here yet
+  }
 }
 
 void Collection::unlist(Element& element) {
   --n_local_;
   reductions_.leave(element.state_.next_reduction);
+  if (element.state_.born_after != 0) [[unlikely]]
+    --n_newborn_;
   if (watcher_ != nullptr) [[unlikely]]
     watcher_->left(element);
   if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat one
@@ -46,14 +63,33 @@ void Collection::unlist(Element& element) {
 }
 
 void Collection::born(Element& element) {
-  element.state_.seen_broadcast = broadcasts_.applied();
-  element.state_.next_reduction = reductions_.joins_at();
+  const std::uint64_t applied = broadcasts_.applied();
+  element.state_.seen_broadcast = applied;
+  element.state_.born_after = static_cast<std::uint32_t>(applied);
+  element.state_.next_reduction = reductions_.joins_at(element.state_.born_after);
   reductions_.born(element.state_.next_reduction);
+}
+
+void Collection::run_after_birth() {
+  const auto calls = std::exchange(after_birth_, {});
+  for (const auto& call : calls) call();
+}
+
+void Collection::postpone(Element& element) {
+  ElementState& state = element.state_;
+  state.next_reduction = reductions_.postpone(state.next_reduction, state.born_after);
+}
+
+void Collection::postpone_newborns() {
+  if (n_newborn_ == 0) return;
+  for (Element* element : elements_)
+    if (element != nullptr && element->state_.born_after != 0) postpone(*element);
 }
 
 void Collection::call(Element& element, const NumberedCall& call) {
   element.state_.seen_broadcast = call.number;
-  const ElementScope scope(pe_, element, &call.call->action(), call.epoch);
+  const ElementScope scope(
+      pe_, element, &call.call->action(), call.epoch, static_cast<std::uint32_t>(call.number));
   try {
     call.call->invoke(element);
   } catch (...) {
@@ -86,7 +122,8 @@ void Collection::apply(const NumberedCall& call) {
 }
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
-  reductions_.contribute(element.state_.next_reduction++, std::move(value));
+  settle_join(element);
+  reductions_.contribute(element.state_.next_reduction++, std::move(value), cause_of(element));
 }
 
 std::string Collection::elements_before(std::uint32_t number) const {
@@ -148,6 +185,7 @@ void Collection::at_sync(Element& element) {
              " calls at_sync() again before it was resumed");
   sync.phase = SyncPhase::waits;
   sync.epoch = pe_.context().epoch;
+  sync.led_by = pe_.context().led_by;
   pe_.completion().sent(sync.epoch);
   if (watcher_ != nullptr) watcher_->at_sync(element);
 }

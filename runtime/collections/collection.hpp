@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,10 +74,30 @@ class Collection {
   void contribute(Element& element, std::unique_ptr<Partial> value);
   /// Where it can add its value without making a Partial; null if there is no such place. If there
   /// is, it adds and calls contributed().
-  [[nodiscard]] Partial* open_sum(const Element& element, const PartialKind& kind) {
+  [[nodiscard]] Partial* open_sum(Element& element, const PartialKind& kind) {
+    settle_join(element);
     return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
   }
-  void contributed(Element& element) { reductions_.added(element.state_.next_reduction++); }
+  void contributed(Element& element) {
+    reductions_.added(element.state_.next_reduction++, cause_of(element));
+  }
+
+  /// From here on the element stays with the number of its next reduction.
+  void settle_join(Element& element) {
+    if (element.state_.born_after == 0) return;
+    element.state_.born_after = 0;
+    --n_newborn_;
+  }
+  /// It has become known which reductions broadcasts led to: elements that were born after these
+  /// broadcasts join later.
+  void postpone_newborns();
+
+  /// The broadcast of a collection that led to what runs; 0 if none did.
+  [[nodiscard]] static std::uint32_t led_by(const Context& context, CollectionId collection) {
+    return context.element != nullptr && context.element->collection_->id_ == collection
+               ? context.led_by
+               : 0;
+  }
 
   // The balancer's side.
 
@@ -92,6 +113,10 @@ class Collection {
   /// Whether it has not migrated yet.
   [[nodiscard]] static bool never_moved(const Element& element) {
     return element.state_.version.epoch <= 1;
+  }
+  /// Whether nothing of it but its constructor has run, here or elsewhere.
+  [[nodiscard]] static bool never_ran(const Element& element) {
+    return never_moved(element) && !element.has_run_;
   }
   /// Migrations from this PE less those to it, of elements that no barrier knows: summed over PEs,
   /// how many are under way.
@@ -117,6 +142,12 @@ class Collection {
   /// it waits.
   virtual void settle(Element& element) = 0;
 
+  /// A constructor of an element asks for something that needs the element to be listed: `call`
+  /// runs once it is. Of the elements that an array is created with: once all of this PE are.
+  void after_birth(std::function<void()> call) { after_birth_.push_back(std::move(call)); }
+  /// "Block[3,4]" of the index that Pe::birth() names.
+  [[nodiscard]] virtual std::string birth_text(const void* index) const = 0;
+
   /// Ends it on this PE: what it holds is dropped, and its elements are destroyed but for those
   /// that have a coroutine that waits (they follow one by one, and free_later() the last). It is in
   /// the PE's table no more.
@@ -138,6 +169,11 @@ class Collection {
   void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
   /// No epoch waits any more for an element that waits at its balancer's barrier: it ends.
   void end_wait(Element& element);
+  /// Runs what constructors have asked for.
+  void run_after_birth();
+  [[nodiscard]] bool has_after_birth() const { return !after_birth_.empty(); }
+  /// An element was made to be read from bytes: what its constructor asks for it has done before.
+  void drop_after_birth() { after_birth_.clear(); }
   /// Registers a new element as born here and now.
   void born(Element& element);
 
@@ -147,14 +183,21 @@ class Collection {
   [[nodiscard]] static bool known(const Element& element) {
     return element.balance_ && element.balance_->sync.known;
   }
+  void postpone(Element& element);
+  [[nodiscard]] Cause cause_of(const Element& element) const {
+    const Context& context = pe_.context();
+    return {element.state_.seen_broadcast, context.element == &element ? context.led_by : 0};
+  }
 
   const CollectionId id_;
   const std::string name_;
   std::vector<Element*> elements_;
+  std::vector<std::function<void()>> after_birth_;
   std::int64_t n_away_ = 0;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
   std::size_t n_local_ = 0;
+  std::size_t n_newborn_ = 0;  // local elements that have not contributed since their birth
   unsigned applying_ = 0;
   bool ended_ = false;
   BroadcastLog broadcasts_;
@@ -165,10 +208,15 @@ class Collection {
 /// before the scope does.
 class ElementScope {
  public:
-  ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch)
-      : pe_(pe), element_(element), before_(pe.context()), meter_(pe.meter()) {
+  ElementScope(
+      Pe& pe, Element& element, const Action* action, EpochId epoch, std::uint32_t led_by = 0)
+      : pe_(pe),
+        element_(element),
+        context_{&element, action, epoch, led_by},
+        before_(pe.enter(&context_)),
+        meter_(pe.meter()) {
     ++element.n_suspended_;
-    pe.context() = Context{&element, action, epoch};
+    element.has_run_ = true;
     if (meter_ != nullptr) [[unlikely]]
       outer_ = meter_->enter({load_of(element), action});
   }
@@ -176,7 +224,7 @@ class ElementScope {
   ElementScope& operator=(const ElementScope&) = delete;
   /// Ends the scope; the element may be gone afterwards.
   ~ElementScope() noexcept(false) {
-    pe_.context() = before_;
+    pe_.enter(before_);
     if (meter_ != nullptr) [[unlikely]]
       meter_->leave(outer_);
     if (--element_.n_suspended_ == 0) {
@@ -194,7 +242,8 @@ class ElementScope {
   }
   Pe& pe_;
   Element& element_;
-  Context before_;
+  Context context_;  // in force by its address: copies of what was just written would stall
+  Context* const before_;
   Meter* const meter_;
   Meter::Scope outer_;
 };

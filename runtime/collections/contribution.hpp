@@ -11,6 +11,15 @@
 
 namespace tess {
 
+template <class T>
+void check_target(const Element& element, const Callback<T>& target) {
+  TESS_CHECK(static_cast<bool>(target),
+             element_text(element),
+             " contributes, but its Callback<",
+             name_of_type<T>,
+             "> for the result is empty");
+}
+
 /// Merges as it goes; the sum that the elements before it have begun takes the value in place.
 template <class Key, class Op, class T>
 void contribute_as(const Key& /*key*/,
@@ -18,12 +27,13 @@ void contribute_as(const Key& /*key*/,
                    Collection& collection,
                    Op /*op*/,
                    T value,
-                   Callback<T> target) {
+                   Callback<T>&& target) {
   using Merged = MergedPartial<T, Op>;
   if (Partial* open = collection.open_sum(element, Merged::its_kind()); open != nullptr) {
     static_cast<Merged*>(open)->add(value);
     collection.contributed(element);
   } else {
+    check_target(element, target);
     collection.contribute(element, std::make_unique<Merged>(std::move(value), std::move(target)));
   }
 }
@@ -35,7 +45,8 @@ void contribute_as(const Key& key,
                    Collection& collection,
                    InOrder<Op> /*op*/,
                    T value,
-                   Callback<T> target) {
+                   Callback<T>&& target) {
+  check_target(element, target);
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));
   collection.contribute(

@@ -7,6 +7,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -32,6 +33,7 @@ struct Version {
 struct ElementState {
   Version version{};
   std::uint32_t next_reduction = 0;
+  std::uint32_t born_after = 0;  // the last broadcast before its birth; 0 once it has contributed
   std::uint64_t seen_broadcast = 0;
 };
 
@@ -43,6 +45,10 @@ class Element {
  protected:
   Element() = default;
   ~Element() = default;
+
+  /// Runs `call` once the element that is constructed now is known to its collection. `what` needs
+  /// that.
+  static void after_birth(const char* what, std::function<void()> call);
 
  private:
   friend class Collection;
@@ -67,6 +73,7 @@ class Element {
   std::uint32_t n_suspended_ = 0;  // coroutines of this element that wait, and handlers that run
   PeId migrate_to_{-1};            // where it goes once nothing of it runs or waits
   bool doomed_ = false;            // destroyed once nothing of it runs or waits
+  bool has_run_ = false;           // code of it has run here, besides its constructor
 };
 
 /// "Block[3,4]".

@@ -8,7 +8,6 @@ namespace {
 
 struct End {
   EpochId epoch{};
-  LateMessages late{};
 
   std::uint64_t drop(Pe& pe) const {
     pe.completion().processed(epoch);
@@ -21,7 +20,7 @@ struct Free {
 
 void ending_arrives(Collection& collection, End&& m) {
   Pe& pe = collection.pe();
-  std::unique_ptr<Collection> ending = pe.take_out(collection.id(), m.late);
+  std::unique_ptr<Collection> ending = pe.take_out(collection.id());
   collection.end();
   if (collection.n_local() != 0) {
     pe.keep_ending(std::move(ending), m.epoch);
@@ -39,9 +38,9 @@ void freeing_arrives(Pe& pe, Free&& m) {
 
 }  // namespace
 
-void end_collection(CollectionId id, LateMessages late) {
+void end_collection(CollectionId id) {
   Pe& pe = current_pe();
-  const End end{pe.context().epoch, late};
+  const End end{pe.context().epoch};
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
     pe.completion().sent(end.epoch);
     send_to_collection<&ending_arrives>(pe, id, PeId{to}, end);

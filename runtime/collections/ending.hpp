@@ -8,14 +8,13 @@
 #pragma once
 
 #include "runtime/ids.hpp"
-#include "runtime/scheduler/ended_collections.hpp"
 
 namespace tess {
 
 class Collection;
 
 /// Ends a collection on all PEs. One that has ended already stays so.
-void end_collection(CollectionId id, LateMessages late = LateMessages::counted);
+void end_collection(CollectionId id);
 
 /// The last element of a collection that has ended is gone: it is freed once what runs is done.
 void free_later(Collection& collection);

@@ -11,11 +11,10 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
   const Index index = element.index_;
   unlist(element);
   count_departure(element);
-  here_.erase(index);
   const Version version{element.state_.version.incarnation, element.state_.version.epoch + 1};
   element.state_.version = version;
-  departed_[index] = Place{to, version};
-  if (home(index) == pe_.id()) registry_.at(index) = HomeRecord{to, version, false, false};
+  table_.at(index).set(
+      home(index) == pe_.id() ? IndexState::moving : IndexState::departed, to, version);
   broadcasts().left(element.state_.seen_broadcast);
   ++pe_.statistics().migrations;
   pe_.completion().sent(pe_.context().epoch);
@@ -29,9 +28,7 @@ void ArrayOf<Index>::land(Indexed* element, PeId from) {
   const EpochId epoch = pe_.context().epoch;
   const std::uint64_t seen = element->state_.seen_broadcast;
   const Version version = element->state_.version;
-  here_.emplace(index, element);
-  cache_.forget(index);
-  departed_.erase(index);
+  table_.at(index).set_here(*element);
   count_arrival(*element);
   list(*element);
   // It stays until it has met the broadcasts that it missed on its way: only then has it landed.
@@ -57,26 +54,25 @@ template <class Index>
 void ArrayOf<Index>::on_landed(const Landed& landed) {
   send_to_collection<&known_arrives, Traffic::location>(
       *this, landed.from, Known{landed.index, landed.place.version, landed.seen});
-  if (landed.place.pe == pe_.id()) {
-    registry_.erase(landed.index);
-  } else if (here_.contains(landed.index)) {
-    return;  // it has come home since
-  } else {
-    HomeRecord& record = registry_.at(landed.index);
-    const bool newer = record.dead ? landed.place.version.incarnation > record.version.incarnation
-                                   : landed.place.version >= record.version;
+  if (landed.place.pe != pe_.id()) {
+    Record& record = table_.at(landed.index);
+    if (record.state() == IndexState::here) return;  // it has come home since
+    const bool newer = record.state() == IndexState::dead
+                           ? landed.place.version.incarnation > record.version().incarnation
+                           : landed.place.version >= record.version();
     if (!newer) return;
-    record = HomeRecord{landed.place.pe, landed.place.version, true, false};
+    record.set(IndexState::live, landed.place.pe, landed.place.version);
   }
-  reroute(registry_.take_waiting(landed.index));
+  reroute(unpark(landed.index, Parked::waiting));
 }
 
 template <class Index>
 void ArrayOf<Index>::on_known(const Known& known) {
-  if (const auto at = departed_.find(known.index);
-      at != departed_.end() && at->second.version == known.version) {
-    learn(known.index, at->second);
-    departed_.erase(at);
+  if (Record* record = table_.find(known.index); record != nullptr &&
+                                                 record->state() == IndexState::departed &&
+                                                 record->version() == known.version) {
+    record->confirm();
+    ++n_hints_;
   }
   broadcasts().landed(known.seen);
 }
@@ -87,15 +83,15 @@ void ArrayOf<Index>::end() {
   const auto drop = [this](const auto& letters) {
     for (Letter* letter : letters) dead_letter(letter);
   };
-  for (const auto& [index, pending] : pending_) drop(pending.letters);
-  for (const auto& [index, grave] : graves_) drop(grave.letters);
-  for (const auto& [index, letters] : registry_.waiting()) drop(letters);
-  pending_.clear();
-  graves_.clear();
-  registry_.clear_waiting();
+  for (Letters* letters : {&pending_, &waiting_, &graves_}) {
+    for (const auto& [index, parked] : *letters) drop(parked);
+    letters->clear();
+  }
   std::vector<Indexed*> ready;
-  for (const auto& [index, element] : here_)
-    if (element->n_suspended_ == 0) ready.push_back(element);
+  table_.for_each([&ready](const Index& /*index*/, const Record& record) {
+    if (record.element() != nullptr && record.element()->n_suspended_ == 0)
+      ready.push_back(record.element());
+  });
   for (Indexed* element : ready) end_element(*element);
 }
 
@@ -103,7 +99,7 @@ void ArrayOf<Index>::end() {
 template <class Index>
 void ArrayOf<Index>::end_element(Indexed& element) {
   unlist(element);
-  here_.erase(element.index_);
+  table_.at(element.index_).set_unknown();
   destroy(element);
 }
 
@@ -118,7 +114,7 @@ void ArrayOf<Index>::bury(Indexed& element) {
   const Version version = element.state_.version;
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
-  here_.erase(index);
+  table_.at(index).set_unknown();
   end_wait(element);
   if (watcher() != nullptr) [[unlikely]]
     watcher()->died(element);
@@ -126,32 +122,32 @@ void ArrayOf<Index>::bury(Indexed& element) {
   reductions().died(next);
   reductions().advance();
   if (home(index) == pe_.id()) {
-    registry_.at(index) = HomeRecord{pe_.id(), version, true, true};
+    table_.at(index).set(IndexState::dead, pe_.id(), version);
     return;
   }
-  ++graves_[index].n_deaths;
+  ++n_deaths_[index];
+  table_.at(index).park(Parked::grave);
   send_to_collection<&died_arrives, Traffic::location>(
       *this, home(index), Died{index, version, pe_.id()});
 }
 
 template <class Index>
 void ArrayOf<Index>::on_died(const Died& died) {
-  if (!here_.contains(died.index)) {
-    HomeRecord& record = registry_.at(died.index);
-    if (record.version.incarnation <= died.version.incarnation)
-      record = HomeRecord{died.from, died.version, true, true};
-  }
+  if (Record& record = table_.at(died.index);
+      record.state() != IndexState::here &&
+      record.version().incarnation <= died.version.incarnation)
+    record.set(IndexState::dead, died.from, died.version);
   send_to_collection<&buried_arrives, Traffic::location>(*this, died.from, Buried{died.index});
-  reroute(registry_.take_waiting(died.index));
+  reroute(unpark(died.index, Parked::waiting));
 }
 
 template <class Index>
 void ArrayOf<Index>::on_buried(const Buried& buried) {
-  const auto at = graves_.find(buried.index);
-  if (--at->second.n_deaths != 0) return;
-  std::vector<Letter*> letters = std::move(at->second.letters);
-  graves_.erase(at);
-  reroute(std::move(letters));
+  const auto n_deaths = n_deaths_.find(buried.index);
+  if (--n_deaths->second != 0) return;
+  n_deaths_.erase(n_deaths);
+  reroute(unpark(buried.index, Parked::grave));
+  table_.tidy(buried.index);
 }
 
 }  // namespace tess

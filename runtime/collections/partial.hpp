@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/ids.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
@@ -46,14 +47,18 @@ struct PartialBox {
     if constexpr (Ar::is_reading) {
       held.reset();
       if (ar.template take<std::uint8_t>() != 0)
-        held = static_cast<const PartialKind&>(Registry::at(ar.template take<std::uint32_t>()))
-                   .unpack(ar);
+        read(ar, static_cast<const PartialKind&>(Registry::at(ar.template take<std::uint32_t>())));
     } else {
       ar(static_cast<std::uint8_t>(held ? 1 : 0));
       if (!held) return;
       ar(held->kind().id());
-      held->pack(ar);
+      pack_framed(ar, [this](Writer& value) { held->pack(value); });
     }
+  }
+
+ private:
+  void read(Reader& ar, const PartialKind& kind) {
+    held = unpack_framed(ar, kind.name(), kind.unpack);
   }
 };
 

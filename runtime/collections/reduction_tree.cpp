@@ -53,12 +53,23 @@ void ReductionTree::send(PeId to, Report&& report) {
   }
 }
 
-void ReductionTree::ask(PeId child, std::uint32_t number) {
-  if (track_ == Track::own) {
-    send_to_collection<&begin_arrives<Track::own>>(collection_, child, Begin{number});
-  } else {
-    send_to_collection<&begin_arrives<Track::second>>(collection_, child, Begin{number});
+void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
+  for (const PeId child : children_) {
+    if (track_ == Track::own) {
+      send_to_collection<&begin_arrives<Track::own>>(collection_, child, Begin{number, cause});
+    } else {
+      send_to_collection<&begin_arrives<Track::second>>(collection_, child, Begin{number, cause});
+    }
   }
+}
+
+void ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
+  if (led_by == 0 || !led_to_.learn(led_by, number)) return;
+  collection_.postpone_newborns();
+  // A PE below that was asked before may hold an element that waits for this.
+  const auto at = gathering_.find(number);
+  const bool asked = at != gathering_.end() ? at->second.asked : number < next_report_;
+  if (asked) ask_children(number, Cause{0, led_by});
 }
 
 void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {
@@ -90,11 +101,30 @@ void ReductionTree::died(std::uint32_t next) {
     changes_[next] -= 1;
     return;
   }
+  send_late_change(next, 0);
+}
+
+void ReductionTree::send_late_change(std::uint32_t number, std::uint32_t joins) {
   Report late;
-  late.number = next;
+  late.number = number;
   late.change = -1;
   late.late = true;
+  late.joins = joins;
   send(root_, std::move(late));
+}
+
+std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t born_after) {
+  const std::uint32_t later = led_to_.end(born_after);
+  if (later <= next) return next;
+  leave(next);
+  enter(later);
+  if (later < next_report_) {
+    send_late_change(next, later);  // one message: the root completes no number between the two
+  } else {
+    died(next);
+    born(later);
+  }
+  return later;
 }
 
 void ReductionTree::enter(std::uint32_t next) {
@@ -105,8 +135,13 @@ void ReductionTree::leave(std::uint32_t next) {
   elements_at_.remove(next);
 }
 
-void ReductionTree::added(std::uint32_t number) {
+void ReductionTree::added(std::uint32_t number, const Cause& cause) {
   Gathering& gathering = *current_;
+  gathering.cause.met = std::max(gathering.cause.met, cause.met);
+  if (cause.led_by - 1 < gathering.cause.led_by - 1) [[unlikely]] {
+    gathering.cause.led_by = cause.led_by;
+    learn(number, cause.led_by);
+  }
   const EpochId epoch = gathering.shares.front().epoch;
   pe_.completion().sent(epoch);
   ++gathering.shares.front().n;
@@ -116,7 +151,9 @@ void ReductionTree::added(std::uint32_t number) {
   if (ready(next_report_)) advance();
 }
 
-void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> value) {
+void ReductionTree::contribute(std::uint32_t number,
+                               std::unique_ptr<Partial> value,
+                               const Cause& cause) {
   const EpochId epoch = pe_.context().epoch;
   pe_.completion().sent(epoch);
   leave(number);
@@ -126,6 +163,7 @@ void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> va
     late.number = number;
     late.n = 1;
     late.late = true;
+    late.cause = cause;
     late.value.held = std::move(value);
     late.shares = {{epoch, 1}};
     send(root_, std::move(late));
@@ -135,9 +173,11 @@ void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> va
   gathering.known = true;
   ++gathering.n;
   merge(gathering, std::move(value));
+  merge(gathering, cause);
   merge(gathering, EpochShare{epoch, 1});
   current_ = &gathering;
   current_number_ = number;
+  learn(number, cause.led_by);
   advance();
 }
 
@@ -153,8 +193,13 @@ void ReductionTree::advance() {
     if (static_cast<std::size_t>(gathering.children) < children_.size()) {
       if (!gathering.asked) {
         gathering.asked = true;
-        for (const PeId child : children_) ask(child, next_report_);
+        ask_children(next_report_, gathering.cause);
       }
+      return;
+    }
+    // Who is born here after the report has met what led to it.
+    if (gathering.cause.met > collection_.broadcasts().applied()) {
+      awaited_broadcast_ = gathering.cause.met;
       return;
     }
     if (current_ == &gathering) current_ = nullptr;
@@ -175,6 +220,8 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
                 gathered.n,
                 gathered.change,
                 false,
+                0,
+                gathered.cause,
                 PartialBox{std::move(gathered.value)},
                 std::move(gathered.shares)});
     return;
@@ -200,6 +247,8 @@ void ReductionTree::on_report(Report&& report) {
       merge(whole.sum, std::move(report.value.held));
       merge(whole.sum, report.shares);
     }
+    if (report.joins != 0) whole_[report.joins].sum.change += 1;
+    learn(report.number, report.cause.led_by);
     complete_if_whole();
     return;
   }
@@ -209,13 +258,19 @@ void ReductionTree::on_report(Report&& report) {
   gathering.n += report.n;
   gathering.change += report.change;
   merge(gathering, std::move(report.value.held));
+  merge(gathering, report.cause);
   merge(gathering, report.shares);
+  learn(report.number, report.cause.led_by);
   advance();
 }
 
 void ReductionTree::on_begin(const Begin& begin) {
-  if (begin.number < next_report_) return;
-  gathering_[begin.number].known = true;
+  if (begin.number >= next_report_) {
+    Gathering& gathering = gathering_[begin.number];
+    gathering.known = true;
+    merge(gathering, begin.cause);
+  }
+  learn(begin.number, begin.cause.led_by);
   advance();
 }
 
@@ -230,10 +285,11 @@ void ReductionTree::complete_if_whole() {
     whole_.erase(at);
     ++next_complete_;
     if (done.value) {
-      const EpochId before = pe_.context().epoch;
+      const Context before = pe_.context();
       pe_.context().epoch = done.shares.size() == 1 ? done.shares.front().epoch : EpochId{};
+      pe_.context().led_by = 0;  // what follows from the result, whoever contributed last, is new
       done.value->complete(pe_);
-      pe_.context().epoch = before;
+      pe_.context() = before;
     }
     // The result has been sent on the same account before the contributions are done with.
     for (const EpochShare& share : done.shares)

@@ -11,11 +11,26 @@
 //     contributions that arrived ≤ contributions made ≤ members ≤ members reported     (births are
 //     never late)
 //
-// An element born on a PE joins at the first number that this PE has not reported yet. A PE without
-// elements reports as soon as it hears of r: from a child, or from a parent that is ready and still
-// waits.
+// A PE without elements reports as soon as it hears of r: from a child, or from a parent that is
+// ready and still waits.
+//
+// Where an element joins: one that is born on a PE after broadcast b was applied there meets b + 1,
+// b + 2, …, and joins at the first number that this PE has not reported and that no broadcast up to
+// b led to. (A broadcast leads to the contributions of its entry method, and of the coroutines and
+// messages among the array's elements that follow from it.) It is neither ahead nor behind:
+//
+//     ahead    Reports and Begins carry the last broadcast that any contributor had met, and a PE
+//              reports once it has applied that one. So an element that is born after its PE has
+//              reported r has met, or was born after, all that led to r. The result of r is
+//              delivered after all PEs have reported r: where it is known, no birth that follows
+//              from it, on whichever PE, meets those broadcasts or joins at r.
+//     behind   A newborn element holds up the number it joins at until it contributes. Once its PE
+//              learns of a contribution to r that a broadcast up to b led to, it joins after r. So
+//              r is complete without it, and the broadcast that was started when r was known finds
+//              it at the number that this broadcast leads to.
 #pragma once
 
+#include "runtime/collections/led_to.hpp"
 #include "runtime/collections/number_counts.hpp"
 #include "runtime/collections/partial.hpp"
 #include "runtime/ids.hpp"
@@ -38,6 +53,13 @@ struct EpochShare {
   std::uint64_t n = 0;
 };
 
+/// What contributions follow from: the last broadcast that any of the contributors had met, and the
+/// first that led to one of the contributions (0: none is known to).
+struct Cause {
+  std::uint64_t met = 0;
+  std::uint32_t led_by = 0;
+};
+
 /// Which tree of a collection: its own, or a second one over members that a library gives it (the
 /// balancer's barrier).
 enum class Track : std::uint8_t { own, second };
@@ -53,11 +75,15 @@ class ReductionTree {
  public:
   ReductionTree(Pe& pe, Collection& collection, Track track, PeId root, TreeWords words);
 
-  /// The number at which an element that is born here now joins; the caller has counted it by
-  /// enter().
-  [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
+  /// The number at which an element joins that is born here now, after this broadcast.
+  [[nodiscard]] std::uint32_t joins_at(std::uint32_t broadcast = 0) const {
+    return std::max(next_report_, led_to_.end(broadcast));
+  }
 
   void born(std::uint32_t at) { changes_[at] += 1; }
+  /// An element on this PE that was born after this broadcast, and is a member from `next` on: the
+  /// number at which it joins by what is known now.
+  [[nodiscard]] std::uint32_t postpone(std::uint32_t next, std::uint32_t born_after);
   /// An element died that would have contributed to `next`.
   void died(std::uint32_t next);
 
@@ -67,7 +93,7 @@ class ReductionTree {
 
   /// An element on this PE contributes to `number`; it was entered with it and is now entered with
   /// the next.
-  void contribute(std::uint32_t number, std::unique_ptr<Partial> value);
+  void contribute(std::uint32_t number, std::unique_ptr<Partial> value, const Cause& cause = {});
 
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added to
   /// them where they are; null otherwise: then contribute(). Whoever adds calls added().
@@ -78,7 +104,7 @@ class ReductionTree {
     return current_->value.get();
   }
   /// A contribution was added to open_sum().
-  void added(std::uint32_t number);
+  void added(std::uint32_t number, const Cause& cause);
 
   /// Looks whether something can be reported; called after elements came or went.
   void advance();
@@ -86,21 +112,33 @@ class ReductionTree {
   /// The collection ends: contributions that are gathered here are dropped.
   void end();
 
+  /// This PE has applied a broadcast, at whose start `n_complete` reductions were complete.
+  void applied(std::uint64_t broadcast, std::uint32_t n_complete) {
+    led_to_.forget_below(n_complete);
+    if (broadcast == awaited_broadcast_) [[unlikely]]
+      advance();
+  }
+  /// At the root: how many are complete.
+  [[nodiscard]] std::uint32_t n_complete() const { return next_complete_; }
+
   struct Report {
     std::uint32_t number = 0;
     std::uint64_t n = 0;
     std::int64_t change = 0;
-    bool late = false;  // to the root, outside the tree
+    bool late = false;        // to the root, outside the tree
+    std::uint32_t joins = 0;  // late: who leaves the membership of `number` joins there; 0: nobody
+    Cause cause;
     PartialBox value;
     std::vector<EpochShare> shares;
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(number, n, change, late, value, shares);
+      ar(number, n, change, late, joins, cause, value, shares);
     }
     std::uint64_t drop(Pe& pe) const;  // the collection has ended
   };
   struct Begin {
     std::uint32_t number = 0;
+    Cause cause;
   };
   void on_report(Report&& report);
   void on_begin(const Begin& begin);
@@ -116,10 +154,16 @@ class ReductionTree {
     bool asked = false;  // the children were told to begin
     std::unique_ptr<Partial> value;
     const PartialKind* kind = nullptr;  // of the value
+    Cause cause;
     std::vector<EpochShare> shares;
   };
 
   static void merge(Gathering& into, std::unique_ptr<Partial> value);
+  static void merge(Gathering& into, const Cause& cause) {
+    into.cause.met = std::max(into.cause.met, cause.met);
+    // The least but for 0, which is none.
+    into.cause.led_by = std::min(into.cause.led_by - 1, cause.led_by - 1) + 1;
+  }
   static void merge(Gathering& into, const EpochShare& share);
   static void merge(Gathering& into, const std::vector<EpochShare>& shares) {
     for (const EpochShare& share : shares) merge(into, share);
@@ -129,7 +173,9 @@ class ReductionTree {
   void complete_if_whole();
 
   void send(PeId to, Report&& report);
-  void ask(PeId child, std::uint32_t number);
+  void send_late_change(std::uint32_t number, std::uint32_t joins);
+  void ask_children(std::uint32_t number, const Cause& cause);
+  void learn(std::uint32_t number, std::uint32_t led_by);
 
   Pe& pe_;
   Collection& collection_;
@@ -140,8 +186,10 @@ class ReductionTree {
   std::uint32_t next_report_ = 0;  // this PE has reported all numbers below
   std::map<std::uint32_t, Gathering> gathering_;
   std::map<std::uint32_t, std::int64_t> changes_;
-  NumberCounts elements_at_;      // local elements by their next number
-  Gathering* current_ = nullptr;  // in gathering_, to which an element contributed last
+  LedTo led_to_;
+  std::uint64_t awaited_broadcast_ = 0;  // a report waits until it is applied
+  NumberCounts elements_at_;             // local elements by their next number
+  Gathering* current_ = nullptr;         // in gathering_, to which an element contributed last
   std::uint32_t current_number_ = 0;
 
   // At the root: numbers in the order of completion.

@@ -20,86 +20,112 @@ void ArrayOf<Index>::forward(Letter* letter, const Place& place) {
 }
 
 template <class Index>
-void ArrayOf<Index>::route(Letter* letter) {
-  const Index& index = letter->index;
+void ArrayOf<Index>::park(Letter* letter, Parked why) {
+  table_.at(letter->index).park(why);
+  parked(why)[letter->index].push_back(letter);
+}
+
+template <class Index>
+auto ArrayOf<Index>::unpark(const Index& index, Parked why) -> std::vector<Letter*> {
+  Record* record = table_.find(index);
+  if (record == nullptr || !record->parks(why)) return {};
+  record->unpark(why);
+  Letters& letters = parked(why);
+  const auto at = letters.find(index);
+  if (at == letters.end()) return {};  // a grave to which no message came
+  std::vector<Letter*> out = std::move(at->second);
+  letters.erase(at);
+  return out;
+}
+
+template <class Index>
+void ArrayOf<Index>::learn(const Index& index, const Place& place) {
+  if (place.pe == pe_.id() || home(index) == pe_.id()) return;
+  const Record* known = table_.find(index);
+  if (known == nullptr || known->state() == IndexState::unknown) {
+    if (++n_hints_ > most_hints) {
+      table_.forget_hints();
+      n_hints_ = 1;
+    }
+  } else if (known->state() == IndexState::here || place.version <= known->version()) {
+    return;
+  }
+  table_.at(index).set(IndexState::hint, place.pe, place.version);
+}
+
+/// `record`: what this PE knows of the index, or null.
+template <class Index>
+void ArrayOf<Index>::route(Letter* letter, Record* record) {
   if (pe_.birth() != nullptr) [[unlikely]] {
     // A constructor sent it: it may be to an element that is made next, or to its own.
     arrive_later(letter);
     return;
   }
-  if (const auto at = pending_.find(index); at != pending_.end()) {
-    at->second.letters.push_back(letter);
-    return;
-  }
-  if (const auto at = graves_.find(index); at != graves_.end()) {
-    at->second.letters.push_back(letter);
-    return;
-  }
-  const PeId at = home(index);
-  if (const auto left = departed_.find(index);
-      left != departed_.end() && left->second.version > letter->tried) {
-    if (letter->hops < most_hops || at == pe_.id()) {
-      forward(letter, left->second);
-    } else {
-      // The home waits with it for the landing: it would send it back here until then.
-      letter->tried = left->second.version;
-      letter->ask = false;
-      pe_.send(at, letter);
+  if (record != nullptr && record->parks_any()) {
+    for (const Parked why : {Parked::pending, Parked::grave}) {
+      if (!record->parks(why)) continue;
+      park(letter, why);
+      return;
     }
-    return;
   }
+  const PeId at = home(letter->index);
   if (at == pe_.id()) {
-    at_home(letter);
+    at_home(letter, record);
     return;
   }
-  if (const Place* hint = cache_.find(index);
-      hint != nullptr && hint->version > letter->tried && letter->hops < most_hops) {
-    forward(letter, *hint);
-    return;
+  if (record != nullptr && record->state() != IndexState::unknown &&
+      record->version() > letter->tried) {
+    if (letter->hops < most_hops) {
+      forward(letter, Place{record->pe(), record->version()});
+      return;
+    }
+    // The home waits with it for news of that place: it would send it back here until then.
+    letter->tried = record->version();
+    letter->ask = false;
   }
   if (letter->ask) {
     ask(letter);
-    return;
+  } else {
+    pe_.send(at, letter);
   }
-  pe_.send(at, letter);
 }
 
 template <class Index>
-void ArrayOf<Index>::at_home(Letter* letter) {
-  const Index& index = letter->index;
-  const HomeRecord* record = registry_.find(index);
-  if (record != nullptr && !record->dead) {
-    if (record->version > letter->tried || (record->version == letter->tried && record->landed)) {
-      forward(letter, Place{record->pe, record->version});
+void ArrayOf<Index>::at_home(Letter* letter, const Record* record) {
+  const Index index = letter->index;
+  const IndexState state = record == nullptr ? IndexState::unknown : record->state();
+  if (state == IndexState::live || state == IndexState::moving) {
+    if (record->version() > letter->tried ||
+        (record->version() == letter->tried && state == IndexState::live)) {
+      forward(letter, Place{record->pe(), record->version()});
     } else {
-      registry_.wait(letter);
+      park(letter, Parked::waiting);
     }
     return;
   }
-  const std::uint32_t incarnation = record == nullptr ? 0 : record->version.incarnation;
-  if (letter->tried.incarnation >
-      incarnation) {  // it knows a life that this home has yet to hear of
-    registry_.wait(letter);
+  const bool died = state == IndexState::dead;
+  const Version last = died ? record->version() : Version{};
+  if (letter->tried.incarnation > last.incarnation) {
+    park(letter, Parked::waiting);  // it knows a life that this home has yet to hear of
     return;
   }
-  const bool revives = letter->demand == Demand::none && record != nullptr &&
-                       dead_letters() == DeadLetters::recreate;
+  const bool revives =
+      letter->demand == Demand::none && died && dead_letters() == DeadLetters::recreate;
   if (letter->demand == Demand::home || revives) {
-    grant(index, Version{incarnation + 1, 1});
+    grant(index, Version{last.incarnation + 1, 1});
     arrive_later(letter);
   } else if (letter->demand == Demand::none) {
-    if (record == nullptr || dead_letters() == DeadLetters::wait) {
-      registry_.wait(letter);
+    if (!died || dead_letters() == DeadLetters::wait) {
+      park(letter, Parked::waiting);
     } else {
       dead_letter(letter);
     }
   } else if (letter->asker == pe_.id()) {
-    pending_[index].letters.push_back(letter);
-    grant(index, Version{incarnation + 1, 1});
+    park(letter, Parked::pending);
+    grant(index, Version{last.incarnation + 1, 1});
   } else {
     letter->ask = true;
-    // Not to be misled by a hint to the life that is over.
-    letter->tried = record == nullptr ? Version{} : record->version;
+    letter->tried = last;  // not to be misled by a hint to the life that is over
     pe_.send(letter->asker, letter);
   }
 }
@@ -117,7 +143,7 @@ template <class Index>
 void ArrayOf<Index>::ask(Letter* letter) {
   const Index index = letter->index;
   letter->ask = false;
-  pending_[index].letters.push_back(letter);
+  park(letter, Parked::pending);
   send_to_collection<&request_arrives, Traffic::location>(
       *this, home(index), Request{index, pe_.id()});
 }
@@ -128,20 +154,20 @@ void ArrayOf<Index>::on_request(const Request& request) {
     send_to_collection<&where_arrives, Traffic::location>(
         *this, request.from, Where{request.index, place});
   };
-  if (const Indexed* element = find(request.index); element != nullptr) {
-    reply(Place{pe_.id(), element->state_.version});
+  Record& record = table_.at(request.index);
+  if (record.state() == IndexState::here) {
+    reply(Place{pe_.id(), record.element()->state_.version});
     return;
   }
-  const HomeRecord* record = registry_.find(request.index);
-  if (record != nullptr && !record->dead) {
-    reply(Place{record->pe, record->version});
+  if (record.state() == IndexState::live || record.state() == IndexState::moving) {
+    reply(Place{record.pe(), record.version()});
     return;
   }
-  const Version version{record == nullptr ? 1 : record->version.incarnation + 1, 1};
-  registry_.at(request.index) = HomeRecord{request.from, version, true, false};
+  const Version version{record.version().incarnation + 1, 1};
+  record.set(IndexState::live, request.from, version);
   send_to_collection<&grant_arrives, Traffic::location>(
       *this, request.from, Grant{request.index, version});
-  reroute(registry_.take_waiting(request.index));
+  reroute(unpark(request.index, Parked::waiting));
 }
 
 /// This PE creates the element now: with the first constructor call that waits for it, or by
@@ -149,18 +175,17 @@ void ArrayOf<Index>::on_request(const Request& request) {
 template <class Index>
 void ArrayOf<Index>::grant(const Index& granted, Version version) {
   const Index index = granted;
-  // What waits stays in pending_ until the constructor is through: if it throws, nothing is lost.
+  // What waits stays parked until the constructor is through: if it throws, nothing is lost.
   Letter* insert = nullptr;
-  if (const auto at = pending_.find(index); at != pending_.end()) {
-    for (Letter* letter : at->second.letters) {
+  Record& record = table_.at(index);
+  record.set_unknown();
+  if (record.parks(Parked::pending)) {
+    for (Letter* letter : pending_.at(index)) {
       const bool inserts =
           letter->demand == Demand::insert || letter->demand == Demand::insert_if_absent;
       if (insert == nullptr && inserts) insert = letter;
     }
   }
-  cache_.forget(index);
-  departed_.erase(index);
-  if (home(index) == pe_.id()) registry_.erase(index);
   if (insert == nullptr) {
     bear(index, version, [this] { return construct_default(); });
   } else {
@@ -172,11 +197,7 @@ void ArrayOf<Index>::grant(const Index& granted, Version version) {
     });
     pe_.context().epoch = before;
   }
-  std::vector<Letter*> letters;
-  if (const auto at = pending_.find(index); at != pending_.end()) {
-    letters = std::move(at->second.letters);
-    pending_.erase(at);
-  }
+  std::vector<Letter*> letters = unpark(index, Parked::pending);
   if (insert != nullptr) {
     std::erase(letters, insert);
     const EpochId epoch = insert->epoch;
@@ -184,17 +205,14 @@ void ArrayOf<Index>::grant(const Index& granted, Version version) {
     pe_.completion().processed(epoch);
   }
   reroute(std::move(letters));
-  if (home(index) == pe_.id()) reroute(registry_.take_waiting(index));
+  reroute(unpark(index, Parked::waiting));
 }
 
 template <class Index>
 void ArrayOf<Index>::on_where(const Where& where) {
   learn(where.index, where.place);
-  const auto at = pending_.find(where.index);
-  if (at == pending_.end()) return;
-  std::vector<Letter*> letters = std::move(at->second.letters);
-  pending_.erase(at);
-  reroute(std::move(letters));
+  reroute(unpark(where.index, Parked::pending));
+  table_.tidy(where.index);
 }
 
 template <class Index>
@@ -214,11 +232,10 @@ void ArrayOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
                          ", ",
                          what));
   };
-  for (const auto& [index, letters] : registry_.waiting())
-    say(index, letters, "which does not exist");
-  for (const auto& [index, pending] : pending_)
-    say(index, pending.letters, "whose creation was not answered");
-  for (const auto& [index, grave] : graves_) say(index, grave.letters, "whose death was not noted");
+  for (const auto& [index, letters] : waiting_) say(index, letters, "which does not exist");
+  for (const auto& [index, letters] : pending_)
+    say(index, letters, "whose creation was not answered");
+  for (const auto& [index, letters] : graves_) say(index, letters, "whose death was not noted");
 }
 
 }  // namespace tess

@@ -24,10 +24,11 @@ struct ElementMessage : Envelope {
   Demand demand = Demand::none;
   bool ask = false;  ///< the asker is to ask the home for leave to create
   std::uint8_t hops = 0;
+  std::uint32_t led_by = 0;  ///< the broadcast of this array that led to it; 0: none
 
   template <class Ar>
   void serialize_head(Ar& ar) {
-    ar(collection, index, tried, asker, demand, ask, hops);
+    ar(collection, index, tried, asker, demand, ask, hops, led_by);
   }
 };
 

@@ -13,6 +13,7 @@
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <new>
 #include <utility>
@@ -51,11 +52,25 @@ struct Action : Registered {
         unpack(unpack_),
         traffic(traffic_) {}
 
+  /// How long its messages run, as far as the PEs of this process know: one that is not quick must
+  /// not keep others from what was sent before it.
+  enum class Pace : std::uint8_t { unknown, quick, slow };
+  [[nodiscard]] bool quick() const {
+    return pace_.load(std::memory_order_relaxed) == Pace::quick;  // a hint: nothing hangs on it
+  }
+  void set_pace(Pace pace) const {
+    if (pace_.load(std::memory_order_relaxed) != pace)
+      pace_.store(pace, std::memory_order_relaxed);
+  }
+
   Run run;          ///< on the target PE's thread; takes ownership of the envelope
   Destroy destroy;  ///< ends the arguments and frees the block
   Pack pack;
   Unpack unpack;
   Traffic traffic;
+
+ private:
+  mutable std::atomic<Pace> pace_{Pace::unknown};
 };
 
 /// Ends a message that will not be run again.

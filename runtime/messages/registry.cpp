@@ -51,7 +51,15 @@ std::string plain_name(std::string_view compiler_name) {
   // "tess::Call<Block, &Block::step>" is Block::step to a reader.
   if (const auto function = compiler_name.rfind('&'); function != std::string_view::npos) {
     compiler_name.remove_prefix(function + 1);
-    compiler_name = compiler_name.substr(0, compiler_name.find_first_of(">)"));
+    // To the bracket that closes what is before the name: "&Block<A<int> >::step>".
+    int depth = 0;
+    std::size_t end = 0;
+    for (; end < compiler_name.size(); ++end) {
+      const char c = compiler_name[end];
+      depth += c == '<' || c == '(' ? 1 : c == '>' || c == ')' ? -1 : 0;
+      if (depth < 0) break;
+    }
+    compiler_name = compiler_name.substr(0, end);
   }
   std::string name(compiler_name);
   for (const std::string_view noise : {"{anonymous}::", "(anonymous namespace)::", "tess::"}) {

@@ -15,4 +15,21 @@ inline void release_block(void* block, std::size_t /*n_bytes*/) {
   Pool::release(block, pe != nullptr ? &pe->pool() : nullptr);
 }
 
+/// Nodes of containers that live in chares: from the pool of the PE that runs.
+template <class T>
+struct PoolAllocator {
+  using value_type = T;
+  PoolAllocator() = default;
+  template <class Other>
+  PoolAllocator(const PoolAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] T* allocate(std::size_t n) {
+    static_assert(alignof(T) <= 16, "blocks of the pool are aligned to 16 bytes");
+    Pe* const pe = current_pe_or_null();
+    return static_cast<T*>(Pool::allocate(n * sizeof(T), pe != nullptr ? &pe->pool() : nullptr));
+  }
+  void deallocate(T* at, std::size_t n) { release_block(at, n * sizeof(T)); }
+  friend bool operator==(const PoolAllocator&, const PoolAllocator&) { return true; }
+};
+
 }  // namespace tess

@@ -1,6 +1,6 @@
-// Which collections have ended on a PE. Their ids are never used again, and a message to one may
-// come at any time later, so a PE never forgets: ids are kept as intervals of each creator's
-// numbers, as many as there are collections that live between those that ended.
+// Ids of collections, and which have ended on a PE. An id is never used again, and a message to an
+// ended collection may come at any time later, so a PE never forgets: ids are kept as intervals of
+// each creator's numbers, as many as there are collections that live between those that ended.
 #pragma once
 
 #include "runtime/base/interval_set.hpp"
@@ -14,24 +14,37 @@ enum class LateMessages : std::uint8_t {
   ignored,  ///< nothing is said of it: a library's own collection
 };
 
-class EndedCollections {
+/// The numbers that a PE gives to the collections it creates: a row of each kind.
+///
+///     | 1 bit: ignored | 39 bits: how many of the kind before | 24 bits: the creator |
+class CollectionNumbers {
  public:
-  void add(CollectionId id, LateMessages late) {
-    ended_.insert(key(id));
-    if (late == LateMessages::ignored) ignored_.insert(key(id));
+  [[nodiscard]] CollectionId next(PeId creator, LateMessages late) {
+    const bool ignored = late == LateMessages::ignored;
+    return CollectionId{(ignored ? ignored_bit : 0) | ++n_made_[ignored ? 1 : 0] << 24U |
+                        static_cast<std::uint64_t>(creator.value)};
   }
-  [[nodiscard]] bool contains(CollectionId id) const { return ended_.contains(key(id)); }
-  /// Whether messages to it are dead letters.
-  [[nodiscard]] bool counts(CollectionId id) const { return !ignored_.contains(key(id)); }
+  [[nodiscard]] static LateMessages late_messages(CollectionId id) {
+    return (id.value & ignored_bit) != 0 ? LateMessages::ignored : LateMessages::counted;
+  }
 
  private:
-  /// An id holds its creator's count above the creator's PE (Pe::new_collection_id); the numbers of
-  /// one creator are to stand in a row.
+  static constexpr std::uint64_t ignored_bit = std::uint64_t{1} << 63U;
+  std::uint64_t n_made_[2] = {0, 0};
+};
+
+class EndedCollections {
+ public:
+  void add(CollectionId id) { ended_.insert(key(id)); }
+  [[nodiscard]] bool contains(CollectionId id) const { return ended_.contains(key(id)); }
+
+ private:
+  /// The numbers of one creator and kind stand in a row.
   [[nodiscard]] static std::uint64_t key(CollectionId id) {
     return id.value << 40U | id.value >> 24U;
   }
 
-  IntervalSet ended_, ignored_;
+  IntervalSet ended_;
 };
 
 }  // namespace tess

@@ -26,10 +26,24 @@ struct LoadRecord {
     std::uint64_t calls = 0;
   };
 
+  /// Since when the element is measured.
+  enum class Since : std::uint8_t {
+    somewhere,  ///< after it had run already: what it costs in a phase is not known
+    birth,
+    phase,  ///< from the beginning of the phase
+  };
+
   std::uint64_t ticks = 0;     ///< of the PE's meter
   std::vector<Entry> entries;  ///< by entry method: few
   boost::unordered_flat_map<ElementKey, SentTo, ElementKeyHash> sent;
   std::uint64_t* of_pe = nullptr;  ///< where the PE adds up the ticks of all such elements
+  Since since = Since::somewhere;
+
+  /// Whether `ticks` are all that the element cost in this phase. Of a newborn that has not run yet
+  /// they say nothing.
+  [[nodiscard]] bool known() const {
+    return since == Since::phase || (since == Since::birth && !entries.empty());
+  }
 
   void spend(const Action* action, std::uint64_t spent) {
     ticks += spent;
@@ -42,7 +56,9 @@ struct LoadRecord {
     }
     entries.push_back({action, spent, 1});
   }
+  /// A phase begins.
   void clear() {
+    since = Since::phase;
     ticks = 0;
     entries.clear();
     sent.clear();

@@ -2,6 +2,7 @@
 
 #include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::size_t flush_bytes = 32U << 10U;
 constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
-/// The longest that a message waits for others to the same PE of this process, or to another process.
+/// The longest that a message waits for others to the same PE of this process, or to another
+/// process.
 constexpr double parcel_seconds = 1e-6;
 constexpr double packed_seconds = 4e-6;
 /// Messages between two looks at the clock, while something is held back and messages are short.
@@ -105,17 +107,32 @@ void Pe::accept(Parcel* parcel) {
   Pool::release(parcel, &pool_);
 }
 
-void Pe::look_at_clock() {
-  const std::uint64_t held = read_ticks() - held_since_;
-  if (held > packed_ticks_) {
-    flush();
-    return;
+/// Runs a message that may take long: what was sent before it leaves first.
+void Pe::run_slow(Envelope* message, const Action& action) {
+  flush();
+  const std::uint64_t begin = read_ticks();
+  run_one(message);
+  const bool quick = read_ticks() - begin < parcel_ticks_;
+  action.set_pace(quick ? Action::Pace::quick : Action::Pace::slow);
+}
+
+/// After a message of this action, while something is held back.
+void Pe::look_at_clock(const Action& action) {
+  const std::uint64_t now = read_ticks();
+  if (now - last_look_ > parcel_ticks_) {
+    if (look_every_ == 1) action.set_pace(Action::Pace::slow);
+    look_every_ = 1;
+  } else {
+    look_every_ = std::min(2 * look_every_, most_between_looks);
   }
-  if (held > parcel_ticks_) {
+  until_look_ = look_every_;
+  last_look_ = now;
+  if (now - held_since_ > packed_ticks_) {
+    flush();
+  } else if (now - held_since_ > parcel_ticks_) {
     flush_parcels();
     holds_ = holds_packed_;
   }
-  until_look_ = look_every_ = std::min(2 * look_every_, most_between_looks);
 }
 
 void Pe::pack(PeId to, Envelope* message) {
@@ -172,14 +189,10 @@ void Pe::receive(std::span<const std::byte> bytes) {
     const auto header = read.take<PackedHeader>();
     Reader body(read.view(header.n_bytes));
     const auto& action = static_cast<const Action&>(Registry::at(header.action));
-    Envelope* message = action.unpack(*this, body);
-    TESS_CHECK(body.remaining() == 0,
-               plain_name(action.name()),
-               ": the arguments read back leave ",
-               body.remaining(),
-               " of ",
-               header.n_bytes,
-               " bytes; does serialize() read what it writes?");
+    Envelope* message = read_all(
+        body,
+        [&action] { return plain_name(action.name()); },
+        [this, &action](Reader& arguments) { return action.unpack(*this, arguments); });
     message->action = &action;
     message->epoch = header.epoch;
     message->source = header.source;
@@ -200,7 +213,7 @@ void Pe::run(Envelope* message) {
     discard(message);
     return;
   }
-  context_ = Context{nullptr, message->action, message->epoch};
+  of_message_ = Context{nullptr, message->action, message->epoch};
   try {
     message->action->run(*this, message);
     if (kept_exception_) [[unlikely]]
@@ -214,8 +227,16 @@ void Pe::run(Envelope* message) {
   } catch (...) {
     exception("an exception that is no std::exception", 1);
   }
-  context_ = Context{};
+  of_message_ = Context{};
   if (counted) completion_.hop_processed();
+}
+
+void Pe::run_one(Envelope* message) {
+  if (trace_) [[unlikely]] {
+    run_traced(message);
+  } else {
+    run(message);
+  }
 }
 
 void Pe::run_traced(Envelope* message) {
@@ -231,6 +252,10 @@ void Pe::run_traced(Envelope* message) {
 
 void Pe::note_place() {
   if (place_.empty()) place_ = runtime_.describe(*this);
+}
+
+void Pe::note_constructor(const std::string& name) {
+  if (place_.empty()) place_ = runtime_.describe(*this) + " " + name;
 }
 
 void Pe::exception(const char* what, int exit_code) {
@@ -252,16 +277,15 @@ std::size_t Pe::step(std::size_t most) {
   std::size_t n = 0;
   if (meter_) [[unlikely]]
     meter_->step_begins();
-  if (trace_) [[unlikely]] {
-    for (; n < most && !ready_.empty(); ++n) {
-      run_traced(static_cast<Envelope*>(ready_.pop()));
-      flush_if_due();
+  for (; n < most && !ready_.empty(); ++n) {
+    auto* const message = static_cast<Envelope*>(ready_.pop());
+    const Action& action = *message->action;
+    if (holds_ && !action.quick()) [[unlikely]] {
+      run_slow(message, action);
+    } else {
+      run_one(message);
     }
-  } else {
-    for (; n < most && !ready_.empty(); ++n) {
-      run(static_cast<Envelope*>(ready_.pop()));
-      flush_if_due();
-    }
+    if (holds_ && --until_look_ == 0) look_at_clock(action);
   }
   statistics_.messages += n;
   idle_calls_ = 0;
@@ -301,7 +325,8 @@ void Pe::drop_all() {
   early_.clear();
   for (Parcel*& parcel : parcels_) {
     if (parcel == nullptr) continue;
-    for (std::uint32_t i = 0; i < parcel->n; ++i) discard(static_cast<Envelope*>(parcel->messages[i]));
+    for (std::uint32_t i = 0; i < parcel->n; ++i)
+      discard(static_cast<Envelope*>(parcel->messages[i]));
     Pool::release(std::exchange(parcel, nullptr), &pool_);
   }
   dropping_ = true;
@@ -330,19 +355,20 @@ void Pe::add(CollectionId id, std::unique_ptr<Collection> collection) {
 void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&)) {
   if (ended_.contains(id)) {
     const std::uint64_t n_lost = drop(*this, *message);
-    if (ended_.counts(id)) statistics_.dead_letters += n_lost;
+    if (CollectionNumbers::late_messages(id) == LateMessages::counted)
+      statistics_.dead_letters += n_lost;
     discard(message);
     return;
   }
   early_[id].push_back(message);
 }
 
-std::unique_ptr<Collection> Pe::take_out(CollectionId id, LateMessages late) {
+std::unique_ptr<Collection> Pe::take_out(CollectionId id) {
   const auto at = collections_.find(id);
   std::unique_ptr<Collection> collection = std::move(at->second);
   collections_.erase(at);
   last_id_ = CollectionId{~std::uint64_t{0}};
-  ended_.add(id, late);
+  ended_.add(id);
   return collection;
 }
 
@@ -357,10 +383,6 @@ Pe::Ending Pe::take_ending(CollectionId id) {
   Ending taken = std::move(*at);
   ending_.erase(at);
   return taken;
-}
-
-CollectionId Pe::new_collection_id() {
-  return CollectionId{(++n_collections_made_ << 24U) | static_cast<std::uint64_t>(id_.value)};
 }
 
 std::vector<Collection*> Pe::collections() const {
@@ -380,7 +402,8 @@ PeId Pe::whim() {
 
 std::vector<std::string> Pe::census() const {
   std::vector<std::string> lines;
-  for (const Suspended& one : suspended_) {
+  for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
+    const Suspended& one = *at;
     lines.push_back(
         text(one.element != nullptr ? element_text(*one.element) : text("the main program"),
              " on ",

@@ -6,6 +6,7 @@
 #include "runtime/base/mix.hpp"
 #include "runtime/base/pool.hpp"
 #include "runtime/base/ticks.hpp"
+#include "runtime/check.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
@@ -22,6 +23,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -30,11 +32,13 @@ class Collection;
 class Element;
 class Runtime;
 
-/// What a PE is doing: whose code runs, on which epoch's account.
+/// What a PE is doing: whose code runs, on which epoch's account, and which broadcast of the
+/// element's collection led to it (0: none).
 struct Context {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
+  std::uint32_t led_by = 0;
 };
 
 /// What happened on a PE since the start; printed by --stats.
@@ -62,7 +66,9 @@ class Pe {
   [[nodiscard]] Runtime& runtime() { return runtime_; }
   [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
-  [[nodiscard]] Context& context() { return context_; }
+  [[nodiscard]] Context& context() { return *context_; }
+  /// Another context is in force from now on; returns the one before. It outlives its time in force.
+  Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
@@ -79,7 +85,7 @@ class Pe {
   template <class M>
   M* stamp(M* message) {
     message->source = id_;
-    message->epoch = context_.epoch;
+    message->epoch = context_->epoch;
     if (trace_) [[unlikely]]
       message->trace = trace_->sent(meter_->now());
     return message;
@@ -128,7 +134,7 @@ class Pe {
   void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
   [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
   /// Takes a collection out of the table: it ends here, and messages to it are dropped from now on.
-  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id, LateMessages late);
+  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id);
   /// Keeps a collection that was taken out until the coroutines of its elements are done.
   void keep_ending(std::unique_ptr<Collection> collection, EpochId epoch);
   struct Ending {
@@ -136,7 +142,9 @@ class Pe {
     EpochId epoch{};  ///< waits for it
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
-  [[nodiscard]] CollectionId new_collection_id();
+  [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted) {
+    return collection_numbers_.next(id_, late);
+  }
   [[nodiscard]] std::vector<Collection*> collections() const;
 
   // Called by the machine through the runtime.
@@ -192,6 +200,8 @@ class Pe {
   }
   /// An exception leaves the code of an element: the report is to say where that was.
   void note_place();
+  /// The same for a constructor, by its name.
+  void note_constructor(const std::string& name);
 
   /// The index (and array) of the element that is constructed right now; null between.
   [[nodiscard]] const void* birth() const { return birth_index_; }
@@ -231,14 +241,12 @@ class Pe {
   void hold() {
     if (holds_) return;
     holds_ = true;
-    held_since_ = read_ticks();
+    held_since_ = last_look_ = read_ticks();
     until_look_ = look_every_ = 1;
   }
-  /// After each message: what was held back for too long leaves.
-  void flush_if_due() {
-    if (holds_ && --until_look_ == 0) look_at_clock();
-  }
-  void look_at_clock();
+  void look_at_clock(const Action& action);
+  void run_slow(Envelope* message, const Action& action);
+  void run_one(Envelope* message);
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -263,7 +271,8 @@ class Pe {
   const void* birth_index_ = nullptr;
   Collection* birth_collection_ = nullptr;
   ReadyQueue ready_;
-  Context context_;
+  Context of_message_;  // of the message that runs
+  Context* context_ = &of_message_;
   Completion completion_;
   SuspendedList suspended_;
   PeStatistics statistics_;
@@ -274,16 +283,17 @@ class Pe {
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
 
-  // What is held back to leave together: packed messages by process, pointers by PE of this process.
+  // What is held back to leave together: packed messages by process, pointers by PE of this
+  // process.
   bool holds_ = false, holds_packed_ = false;
   std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
-  std::uint64_t held_since_ = 0;                   // in ticks
+  std::uint64_t held_since_ = 0, last_look_ = 0;   // in ticks
   std::vector<Buffer> packed_;
-  std::vector<Parcel*> parcels_;       // empty where the machine takes none
-  std::vector<std::int32_t> opened_;   // those of parcels_ that hold something
+  std::vector<Parcel*> parcels_;      // empty where the machine takes none
+  std::vector<std::int32_t> opened_;  // those of parcels_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
-  std::uint64_t n_collections_made_ = 0;
+  CollectionNumbers collection_numbers_;
   boost::unordered_flat_map<CollectionId, std::unique_ptr<Collection>, std::hash<CollectionId>>
       collections_;
   boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
@@ -302,6 +312,16 @@ inline thread_local Pe* the_current_pe = nullptr;
 
 /// The PE that this thread runs right now. Misuse outside of a PE ends the job.
 [[nodiscard]] Pe& current_pe();
+
+/// There must be a PE of that number in the run.
+inline void check_exists(const Pe& pe, PeId id) {
+  TESS_CHECK(id.value >= 0 && id.value < pe.n_pes(),
+             "there is no ",
+             id,
+             ": the run has ",
+             pe.n_pes(),
+             pe.n_pes() == 1 ? " PE" : " PEs");
+}
 
 /// Makes a PE current for a scope.
 class RunsOn {

@@ -1,6 +1,6 @@
 // The messages that a PE may run, first in first out: a ring of pointers that grows. The messages
-// themselves are touched only when their turn is near; then they are fetched into the cache ahead of
-// it. One thread only.
+// themselves are touched only when their turn is near; then they are fetched into the cache ahead
+// of it. One thread only.
 #pragma once
 
 #include "runtime/base/link.hpp"
@@ -38,7 +38,7 @@ class ReadyQueue {
 
  private:
   static constexpr std::size_t first_capacity = 256;
-  static constexpr std::size_t distance = 3;  // of the prefetch
+  static constexpr std::size_t distance = 6;  // of the prefetch
 
   void grow() {
     const std::size_t n = tail_ - head_;

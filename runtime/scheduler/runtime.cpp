@@ -166,6 +166,8 @@ void Runtime::error_line(const std::string& line) {
 std::string Runtime::describe(Pe& pe) const {
   const Context& context = pe.context();
   std::string out = text("on ", pe.id());
+  if (pe.birth() != nullptr)
+    return out + text(", ", pe.birth_collection()->birth_text(pe.birth()), ", in the constructor");
   if (context.element != nullptr) out += text(", ", element_text(*context.element));
   if (context.action != nullptr) out += text(", in ", plain_name(context.action->name()));
   if (context.epoch.value != 0) out += text(", epoch ", context.epoch.value >> 24U);
@@ -224,18 +226,27 @@ void Runtime::quiescent(Pe& pe) {
   if (stopping_) return;
   n_answers_ = pe.n_pes();
   census_ = Census{};
+  empty_on_.clear();
   send_to_all<&census_asked_arrives>(pe, Nothing{});
 }
 
 void Runtime::on_census_asked(Pe& pe) {
+  std::vector<EmptyArray> empty;
+  for (Collection* collection : pe.collections())
+    if (collection->n_local() == 0 && collection->broadcasts().applied() != 0)
+      empty.push_back({collection->id(), collection->name()});
   send_uncounted<&census_arrives>(
-      pe, PeId{0}, Census{pe.census(), pe.statistics().dead_letters, pe.stopped()});
+      pe,
+      PeId{0},
+      Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
   if (stopping_) return;  // exit() came meanwhile; it counts answers of its own
   census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
   census_.dead_letters += census.dead_letters;
+  for (EmptyArray& array : census.empty)
+    if (++empty_on_[array.id] == pe.n_pes()) census_.empty.push_back(std::move(array));
   census_.exits = census_.exits || census.exits;
   if (--n_answers_ != 0 || census_.exits) return;
   if (census_.dead_letters != 0)
@@ -252,6 +263,9 @@ void Runtime::on_census(Pe& pe, Census&& census) {
       report += "\n  " + census_.lines[i];
     if (census_.lines.size() > most)
       report += text("\n  … and ", census_.lines.size() - most, " more");
+    // Whoever waits for such a result cannot say of which array.
+    for (const EmptyArray& array : census_.empty)
+      report += text("\n  note: ", array.name, " has no elements: its reductions have no result");
     error_line(report);
     end_with(pe, 1);
     return;

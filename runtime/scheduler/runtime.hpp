@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -65,9 +66,14 @@ class Runtime final : public Program {
   void finish(PeId id) override;
 
   // Control messages.
+  struct EmptyArray {
+    CollectionId id{};
+    std::string name;
+  };
   struct Census {
     std::vector<std::string> lines;
     std::uint64_t dead_letters = 0;
+    std::vector<EmptyArray> empty;  // on this PE, though they were broadcast to
     bool exits = false;  // exit() was called: that message is on its way, outside of epoch 0
   };
   void run_main(Pe& pe);
@@ -101,6 +107,7 @@ class Runtime final : public Program {
   bool stopping_ = false;
   std::int32_t n_answers_ = 0;
   Census census_;
+  std::map<CollectionId, std::int32_t> empty_on_;  // how many PEs
   // On each PE: the greatest code asked for here.
   std::vector<int> asked_;
 };

@@ -19,6 +19,7 @@ class Phases {
       for (std::size_t i = 0; i < loads[pe].size(); ++i) {
         report.keys.push_back({CollectionId{7}, 100 * pe + i});
         report.seconds.push_back(loads[pe][i]);
+        report.measured.push_back(1);
         report.migratable.push_back(1);
         report.size_bytes.push_back(10);
       }
@@ -34,6 +35,7 @@ class Phases {
           if (one.element == i) to = slot(one.to);
         next[to].keys.push_back(reports[pe].keys[i]);
         next[to].seconds.push_back(reports[pe].seconds[i]);
+        next[to].measured.push_back(1);
         next[to].migratable.push_back(1);
         next[to].size_bytes.push_back(10);
       }
@@ -56,7 +58,7 @@ class Phases {
     for (const PeReport& report : reports) {
       double seconds = report.background;
       for (const double one : report.seconds) seconds += one;
-      all = MergeSums()(all, {seconds, seconds, 1});
+      all = MergeSums()(all, {seconds, seconds, 1, seconds, report.seconds.size(), 0});
     }
     return all;
   }
@@ -103,6 +105,46 @@ TEST_CASE("a round tells what the one before gained, against the same phase with
   CHECK(count(coordinator.decide(phases.reports)) == 0);
   CHECK(coordinator.history().at(0).measured == Approx(1));
   CHECK(coordinator.history().at(0).gain == Approx(0.5));
+}
+
+TEST_CASE("a round moves nothing while no load is known, and counts unknown ones as the mean",
+          "[balance][rounds]") {
+  Phases phases({{3, 3, 0, 0}, {}});
+  BalanceOptions options;
+  options.strategy = "greedy";
+  for (std::uint8_t& one : phases.reports[0].measured) one = 0;
+  Coordinator blind(options, {});
+  CHECK(count(blind.decide(phases.reports)) == 0);
+  CHECK(blind.history().at(0).skipped);
+  CHECK(blind.history().at(0).n_unknown == 4);
+
+  phases.reports[0].measured = {1, 1, 0, 0};
+  Coordinator coordinator(options, {});
+  const auto moves = coordinator.decide(phases.reports);
+  CHECK(coordinator.history().at(0).before == Approx(2));  // 12 s of work, all on the first
+  CHECK(coordinator.history().at(0).predicted == Approx(1));
+  for (const Move& one : moves[0]) CHECK(one.element < 2);
+  CHECK(count(moves) == 2);
+}
+
+TEST_CASE("an automatic round waits until a load is known", "[balance][rounds]") {
+  Coordinator coordinator(automatic(), {});
+  CHECK_FALSE(coordinator.worth({5, 5, 2, 0, 0, 10}));
+  CHECK(coordinator.worth({5, 5, 2, 5, 1, 0}));
+}
+
+TEST_CASE("a prediction leaves out phases in which a load was not known", "[balance][rounds]") {
+  Phases phases(std::vector<std::vector<double>>{{5}});
+  Predictor predictor(Prediction::moving_average);
+  phases.reports[0].measured = {0};
+  const Snapshot unknown = snapshot_of(phases.reports, {});
+  CHECK_FALSE(unknown.elements.knows_load(0));
+  predictor.record(unknown);
+  CHECK(predictor.n_known() == 0);
+  phases.reports[0].measured = {1};
+  predictor.record(snapshot_of(phases.reports, {}));
+  CHECK(predictor.predict(unknown).elements.load[0] == Approx(5));
+  CHECK(predictor.predict(unknown).elements.knows_load(0));
 }
 
 TEST_CASE("automatic waits until what imbalance lost is what a round costs", "[balance][rounds]") {

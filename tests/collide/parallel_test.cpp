@@ -141,6 +141,7 @@ struct Problem {
   std::optional<ModelId> only;
   std::vector<AllTold> rounds;  ///< what was told in each collision
   std::int64_t n_refused = 0;
+  std::size_t n_left = 0;  ///< collections of PE 0 after the end of all
 };
 
 constexpr std::int32_t kRounds = 2;
@@ -161,6 +162,11 @@ Task collide_rounds(Problem& problem) {
     clients.broadcast<&Client::gather>(all.callback());
     problem.rounds.push_back(in_order(co_await all));
   }
+  co_await epoch([&] {
+    collider.destroy();
+    clients.destroy();
+  });
+  problem.n_left = current_pe().collections().size();
 }
 
 Task collide_bad(Problem& problem) {
@@ -212,6 +218,7 @@ void check_told(const std::string& option, std::uint64_t seed) {
   CAPTURE(option, seed);
   REQUIRE(run_with(option, problem, &collide_rounds) == 0);
   REQUIRE(problem.rounds.size() == kRounds);
+  REQUIRE(problem.n_left == 0);
   for (std::int32_t round = 0; round < kRounds; ++round) {
     Scene scene = problem.scene;
     scene.round = round;

@@ -18,17 +18,25 @@ std::uint64_t n_seeds() {
 #endif
 }
 
-void run_seeds(std::string_view name) {
+void run_seeds(std::string_view name,
+               std::int32_t (*pes_of)(std::uint64_t) = &tess::fuzz::pes_of_seed) {
   const auto& scenario = tess::fuzz::scenario(name);
   for (std::uint64_t seed = 0; seed < n_seeds(); ++seed) {
-    Trial trial(seed, tess::fuzz::pes_of_seed(seed), Trial::On::simulated);
+    const std::int32_t n_pes = pes_of(seed);
+    Trial trial(seed, n_pes, Trial::On::simulated);
     scenario.run(trial);
     if (trial.failures().empty()) continue;
-    FAIL_CHECK("protocol_fuzz --scenario " << name << " --seeds " << seed << ":" << seed << "\n"
+    FAIL_CHECK("protocol_fuzz --scenario " << name << " --seeds " << seed << ":" << seed
+                                           << " --pes " << n_pes << "\n"
                                            << trial.failures().front());
     return;
   }
   SUCCEED();
+}
+
+/// Each number of PEs from 2 to 8 in turn.
+std::int32_t two_to_eight(std::uint64_t seed) {
+  return 2 + static_cast<std::int32_t>(seed % 7);
 }
 
 }  // namespace
@@ -45,6 +53,10 @@ TEST_CASE("no element passes the balance barrier before all have reached it",
 }
 TEST_CASE("rotate puts elements where it says, 40 rounds", "[runtime][protocol][balance]") {
   run_seeds("balance_rotate");
+}
+TEST_CASE("a load that is shown as known is that of a whole phase, from the first round on",
+          "[runtime][protocol][balance]") {
+  run_seeds("balance_first_round");
 }
 TEST_CASE("periodic balance rounds lose no message", "[runtime][protocol][balance]") {
   run_seeds("balance_periodic");
@@ -63,6 +75,14 @@ TEST_CASE("every element meets every broadcast of its life once", "[runtime][pro
 }
 TEST_CASE("reductions are exact while elements move, come and go", "[runtime][protocol]") {
   run_seeds("rounds");
+}
+TEST_CASE("an element born after a result was awaited takes part in later rounds only",
+          "[runtime][protocol]") {
+  run_seeds("newborns", &two_to_eight);
+}
+TEST_CASE("an element born in the middle of a step is never one ahead or behind",
+          "[runtime][protocol]") {
+  run_seeds("refinement", &two_to_eight);
 }
 TEST_CASE("messages find an element that visits every PE", "[runtime][protocol]") {
   run_seeds("tour");
@@ -91,6 +111,10 @@ TEST_CASE("messages to the dead are counted", "[runtime][protocol]") {
 TEST_CASE("arrays that end in mid use leave nothing behind", "[runtime][protocol]") {
   run_seeds("destroyed");
 }
+TEST_CASE("a constructor contributes to the first reduction of its element",
+          "[runtime][protocol]") {
+  run_seeds("constructors");
+}
 TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
   run_seeds("groups");
 }
@@ -102,12 +126,15 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "lives",
                            "broadcasts",
                            "rounds",
+                           "newborns",
+                           "refinement",
                            "tour",
                            "epochs",
                            "epoch_migrations",
                            "flood_exit",
                            "mailboxes",
                            "destroyed",
+                           "constructors",
                            "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {

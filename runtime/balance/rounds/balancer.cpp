@@ -7,15 +7,18 @@
 namespace tess::balance {
 namespace {
 
-/// Waits on each PE until the exchange, if there is one, and the array are known there.
+/// Waits on each PE until the exchange, if there is one, and the array are known there. On the
+/// account of the epoch that start_balancing() runs in: when it ends, all elements are measured.
 struct Attach {
   CollectionId balancer{};
   CollectionId array{};
+  EpochId epoch{};
 
   /// The array has ended, or the exchange has: then the balancer ends, too.
-  [[nodiscard]] std::uint64_t drop(Pe& /*pe*/) const {
+  [[nodiscard]] std::uint64_t drop(Pe& pe) const {
     if (Balancer* member = GroupProxy<Balancer>(balancer).local_or_null(); member != nullptr)
       member->array_ends();
+    pe.completion().processed(epoch);
     return 0;
   }
 };
@@ -23,6 +26,7 @@ void attach_arrives(Collection& array, Attach&& m) {
   // The balancer may have ended: the array's end is on its way to this PE then.
   if (Balancer* member = GroupProxy<Balancer>(m.balancer).local_or_null(); member != nullptr)
     member->attach(array);
+  array.pe().completion().processed(m.epoch);
 }
 void exchange_known(Collection& exchange, Attach&& m) {
   Pe& pe = exchange.pe();
@@ -48,7 +52,10 @@ Balancer::Balancer(const Plan& plan)
                group()[plan.coordinator].target<&Balancer::reached>()),
       measured_(current_pe()) {
   Pe& pe = current_pe();
-  const Attach attach{group().id(), plan_.array};
+  // At once where the array is known: what was sent after start_balancing() comes later.
+  if (Collection* array = pe.find(plan_.array); array != nullptr) watch(*array);
+  const Attach attach{group().id(), plan_.array, plan_.epoch};
+  pe.completion().sent(plan_.epoch);
   if (plan_.distributed == DistributedStrategy::none) {
     send_to_collection<&attach_arrives>(pe, plan_.array, pe.id(), attach);
   } else {
@@ -56,11 +63,16 @@ Balancer::Balancer(const Plan& plan)
   }
 }
 
-void Balancer::attach(Collection& array) {
+void Balancer::watch(Collection& array) {
   TESS_CHECK(array.watcher() == nullptr, array.name(), " has a balancer already");
   array_ = &array;
   array.set_watcher(*this);
   measured_.attach(array);
+}
+
+void Balancer::attach(Collection& array) {
+  if (array_ == nullptr) watch(array);
+  barrier_is_open_ = true;
   if (plan_.passes) {
     for (Element* element : array.elements())
       if (element != nullptr) pass(*element);
@@ -76,7 +88,8 @@ void Balancer::attach(Collection& array) {
 }
 
 void Balancer::array_ends() {
-  if (array_ == nullptr)  // for those that wait until all have attached
+  if (array_ended_) return;
+  if (!barrier_is_open_)  // for those that wait until all have attached
     contribute(
         sum, std::int64_t{0}, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
   detach();
@@ -85,7 +98,6 @@ void Balancer::array_ends() {
 }
 
 void Balancer::group_ends() {
-  if (array_ != nullptr) array_->remove_watcher();
   detach();
 }
 
@@ -93,14 +105,14 @@ void Balancer::detach() {
   current_pe().start_meter().remove_alarms(this);
   measured_.detach();
   barrier_.detach();
+  if (array_ != nullptr) array_->remove_watcher();
   array_ = nullptr;
 }
 
 void Balancer::end_if_over() {
   if (!array_ended_ || running_ || coordinator_ == nullptr) return;
-  end_collection(group().id(), LateMessages::ignored);
-  if (plan_.distributed != DistributedStrategy::none)
-    end_collection(plan_.exchange.id(), LateMessages::ignored);
+  group().destroy();
+  if (plan_.distributed != DistributedStrategy::none) plan_.exchange.destroy();
 }
 
 void Balancer::attached_everywhere(std::int64_t n_under_way) {
@@ -133,6 +145,7 @@ const std::vector<Round>& Balancer::history() const {
 
 void Balancer::entered(Element& element) {
   measured_.entered(element);
+  if (!barrier_is_open_) return;
   if (plan_.passes) {
     pass(element);
   } else if (barrier_.entered(element)) {
@@ -142,14 +155,15 @@ void Balancer::entered(Element& element) {
 
 void Balancer::left(Element& element) {
   measured_.left(element);
-  if (!plan_.passes) barrier_.left(element);
+  if (barrier_is_open_ && !plan_.passes) barrier_.left(element);
 }
 
 void Balancer::died(Element& element) {
-  if (!plan_.passes) barrier_.died(element);
+  if (barrier_is_open_ && !plan_.passes) barrier_.died(element);
 }
 
 void Balancer::at_sync(Element& element) {
+  if (!barrier_is_open_) return;
   if (plan_.passes) {
     pass(element);
   } else {
@@ -171,16 +185,31 @@ Task Balancer::reached(std::uint64_t /*n_elements*/) {
   group().broadcast<&Balancer::resume>(barrier);
 }
 
+Task Balancer::attached() {
+  if (attached_) co_return;
+  Future<std::uint64_t> everywhere;
+  when_attached_ = everywhere.callback();
+  co_await everywhere;
+}
+
+Task Balancer::begin_phase() {
+  TESS_CHECK(coordinator_ != nullptr, "phases are begun on ", plan_.coordinator, " only");
+  TESS_CHECK(!running_, "a phase begins while a round runs: await that one first");
+  running_ = true;
+  co_await attached();
+  Future<std::uint64_t> forgotten;
+  group().broadcast<&Balancer::forget>(forgotten.callback());
+  co_await forgotten;
+  phase_began_ = current_pe().now();
+  running_ = false;
+}
+
 Task Balancer::phase_ends() {
   TESS_CHECK(coordinator_ != nullptr, "rounds are asked for on ", plan_.coordinator, " alone");
   TESS_CHECK(!array_ended_, "a round of an array that was destroyed");
   TESS_CHECK(!running_, "a round while another runs: await that one first");
   running_ = true;
-  if (!attached_) {
-    Future<std::uint64_t> attached;
-    when_attached_ = attached.callback();
-    co_await attached;
-  }
+  co_await attached();
   bool worth = true;
   if (plan_.when == BalanceWhen::automatic) {
     Future<PhaseSums> sums;
@@ -191,7 +220,9 @@ Task Balancer::phase_ends() {
   if (worth) {
     co_await round();
   } else {
-    group().broadcast<&Balancer::forget>();
+    Future<std::uint64_t> forgotten;
+    group().broadcast<&Balancer::forget>(forgotten.callback());
+    co_await forgotten;
   }
   phase_began_ = current_pe().now();
   running_ = false;
@@ -244,10 +275,10 @@ Task Balancer::distributed_round() {
   Future<PhaseSums> prepared;
   group().broadcast<&Balancer::prepare>(prepared.callback());
   const PhaseSums before = co_await prepared;
-  const double average = before.work / before.speed;
+  const double average = before.average_time();
   Future<std::uint64_t> traded;
-  plan_.exchange[pe()].send<&Exchange::run>(Exchange::Order{plan_.distributed, average},
-                                            traded.callback());
+  plan_.exchange[pe()].send<&Exchange::run>(
+      Exchange::Order{plan_.distributed, average, before.mean_load()}, traded.callback());
   co_await traded;
   co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
   Future<Outcome> summed;
@@ -255,6 +286,7 @@ Task Balancer::distributed_round() {
   const Outcome outcome = co_await summed;
   Round round;
   round.n_elements = outcome.n_elements;
+  round.n_unknown = before.n_unknown;
   round.n_moved = outcome.n_moved;
   round.moved_bytes = outcome.moved_bytes;
   round.before = average > 0 ? before.slowest / average : 1;
@@ -286,8 +318,9 @@ void Balancer::resume(std::uint32_t round) {
   barrier_.resume(round);
 }
 
-void Balancer::forget() {
+void Balancer::forget(Callback<std::uint64_t> done) {
   measured_.clear();
+  contribute(sum, std::uint64_t{0}, std::move(done));
 }
 
 void Balancer::prepare(Callback<PhaseSums> target) {
@@ -334,6 +367,7 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
   const GroupProxy<Balancer> group =
       create_group<Balancer>(Balancer::Plan{array,
                                             pe.id(),
+                                            pe.context().epoch,
                                             options.when,
                                             options.period.count(),
                                             passes,

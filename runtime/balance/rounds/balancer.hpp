@@ -27,10 +27,13 @@ namespace tess::balance {
 
 class Balancer final : public Group<Balancer>, private ElementWatcher {
  public:
+  static constexpr LateMessages late_messages = LateMessages::ignored;
+
   /// What every member needs of the options.
   struct Plan {
     CollectionId array{};
     PeId coordinator{};
+    EpochId epoch{};  ///< that balancing starts in
     BalanceWhen when = BalanceWhen::at_sync;
     std::int64_t period_ns = 0;
     bool passes = false;         ///< strategy none: at_sync() goes on at once
@@ -48,7 +51,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   };
   explicit Balancer(const Plan& plan);
 
-  /// The array is known here.
+  /// The array is known here: its elements are waited for from now on.
   void attach(Collection& array);
   /// On the coordinator: what decides.
   void coordinate(std::unique_ptr<Coordinator> coordinator) {
@@ -59,6 +62,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void group_ends();
   /// The array has ended on this PE, maybe before attach().
   void array_ends();
+  /// On the coordinator: a phase begins, what was measured before is forgotten.
+  Task begin_phase();
   /// On the coordinator: a phase is over, without a barrier of the elements.
   Task phase_ends();
 
@@ -72,7 +77,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void collect(Callback<std::vector<PeReport>> target);
   void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
-  void forget();
+  void forget(Callback<std::uint64_t> done);
   void prepare(Callback<PhaseSums> target);
   void fetch();
   void sum_outcome(Callback<Outcome> target);
@@ -85,6 +90,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void at_sync(Element& element) override;
   void collection_ends() override { array_ends(); }
 
+  void watch(Collection& array);
+  Task attached();
   Task round();
   Task central_round();
   Task distributed_round();
@@ -98,7 +105,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   const Plan plan_;
   Barrier barrier_;
   Measured measured_;
-  Collection* array_ = nullptr;
+  Collection* array_ = nullptr;   // from when on its elements are measured
+  bool barrier_is_open_ = false;  // here; before, elements are measured only
   std::uint64_t n_collected_ = 0;
   std::uint64_t n_rounds_seen_ = 0;  // periodic: that this member knows of
   Outcome outcome_;                  // of this PE, in a distributed round

@@ -2,6 +2,7 @@
 
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/metrics.hpp"
+#include "runtime/balance/unknown_loads.hpp"
 #include "runtime/messages/registry.hpp"
 
 #include <algorithm>
@@ -36,8 +37,9 @@ Coordinator::Coordinator(BalanceOptions options, Strategy users)
 }
 
 bool Coordinator::worth(const PhaseSums& phase) {
+  if (phase.n_measured == 0) return false;
   if (judges_) return true;
-  const double average = phase.work / phase.speed;
+  const double average = phase.average_time();
   const double above_floor = std::max(0.0, phase.slowest - (floor_ + noise) * average);
   const double in_vain = std::max(0.0, phase.slowest - (1 + noise) * average) - above_floor;
   lost_ += above_floor + counts_in_vain * in_vain;
@@ -99,10 +101,13 @@ std::vector<std::vector<Move>> Coordinator::decide(const std::vector<PeReport>& 
   round.number = history_.size();
   round.strategy = options_.strategy;
   round.n_elements = measured.elements.size();
+  round.n_unknown = measured.elements.size() - n_known_loads(measured);
   round.seconds_by_entry = by_entry(reports);
   round.before = measure(measured, measured.elements.pe).max_over_average;
   judge_last_round(measured, round.before * average_time(measured));
-  const Assignment wanted = choose(measured, round);
+  const bool blind = round.n_elements > 0 && round.n_unknown == round.n_elements;
+  round.skipped = blind;
+  const Assignment wanted = blind ? measured.elements.pe : choose(measured, round);
   const Metrics metrics = measure(measured, wanted);
   if (round.skipped || round.rolled_back) round.predicted = metrics.max_over_average;
   round.n_moved = metrics.n_moves;

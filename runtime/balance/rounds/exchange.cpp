@@ -44,11 +44,19 @@ void Exchange::hold(const PeReport& report, double speed, std::uint64_t memory_l
                                                     : static_cast<std::int64_t>(memory_limit_bytes);
   gossip_.reset();
   local_ = std::make_unique<LocalPe>(PeSummary{0, report.background, speed, room});
-  for (std::size_t i = 0; i < report.keys.size(); ++i)
-    local_->hold({report.seconds[i] * speed,
+  n_unknown_ = 0;
+  for (std::size_t i = 0; i < report.keys.size(); ++i) {
+    const bool known = report.measured[i] != 0;
+    n_unknown_ += known ? 0U : 1U;
+    local_->hold({known ? report.seconds[i] * speed : 0.0,
                   item_name(pe(), i),
                   static_cast<std::int64_t>(report.size_bytes[i])},
-                 report.migratable[i] != 0);
+                 known && report.migratable[i] != 0);
+  }
+}
+
+void Exchange::weigh_unknown(double mean_load) {
+  local_->hold({mean_load * static_cast<double>(n_unknown_), item_name(pe(), 0), 0}, false);
 }
 
 std::vector<Item> Exchange::arrived() const {
@@ -61,30 +69,31 @@ std::vector<Item> Exchange::arrived() const {
 Task Exchange::run(Order order, Callback<std::uint64_t> done) {
   n_all_ = 0;
   if (order.strategy == DistributedStrategy::diffusion) {
-    co_await run_diffusion();
+    co_await run_diffusion(order);
   } else {
-    co_await run_gossip(order.average_time);
+    co_await run_gossip(order);
   }
   done(n_all_);
 }
 
-Task Exchange::run_diffusion() {
+Task Exchange::run_diffusion(Order order) {
   for (std::uint64_t number = 0; number < most_sweeps; ++number) {
     Future<std::uint64_t> trades;
-    group().broadcast<&Exchange::sweep>(number, trades.callback());
+    group().broadcast<&Exchange::sweep>(Sweep{number, order.mean_load}, trades.callback());
     const std::uint64_t n = co_await trades;
     n_all_ += n;
     if (n == 0) break;
   }
 }
 
-Task Exchange::sweep(std::uint64_t number, Callback<std::uint64_t> n_trades) {
+Task Exchange::sweep(Sweep sweep, Callback<std::uint64_t> n_trades) {
+  if (sweep.number == 0) weigh_unknown(sweep.mean_load);
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   const std::size_t stages = n_stages(n_pes);
   n_trades_ = 0;
   for (std::size_t stage = 0; stage < stages; ++stage) {
     const PeId other = pe_at(partner(slot(pe()), stage, n_pes));
-    if (other != pe()) co_await diffuse_with(other, number * stages + stage);
+    if (other != pe()) co_await diffuse_with(other, sweep.number * stages + stage);
   }
   contribute(sum, n_trades_, std::move(n_trades));
 }
@@ -135,11 +144,11 @@ void Exchange::hear(Talk talk) {
   talks_.put(std::move(talk));
 }
 
-Task Exchange::run_gossip(double average_time) {
+Task Exchange::run_gossip(Order order) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   const auto n_rounds = static_cast<int>((std::bit_width(n_pes) + 1) / 2);
   Future<std::uint64_t> begun;
-  group().broadcast<&Exchange::begin_gossip>(average_time, begun.callback());
+  group().broadcast<&Exchange::begin_gossip>(order, begun.callback());
   co_await begun;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     Future<std::uint64_t> forgot;
@@ -158,8 +167,9 @@ Task Exchange::run_gossip(double average_time) {
   }
 }
 
-void Exchange::begin_gossip(double average_time, Callback<std::uint64_t> done) {
-  gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), average_time, 1);
+void Exchange::begin_gossip(Order order, Callback<std::uint64_t> done) {
+  weigh_unknown(order.mean_load);
+  gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), order.average_time, 1);
   contribute(sum, std::uint64_t{0}, std::move(done));
 }
 

@@ -38,12 +38,15 @@ enum class DistributedStrategy : std::uint8_t { none, diffusion, gossip };
 
 class Exchange final : public Group<Exchange> {
  public:
+  static constexpr LateMessages late_messages = LateMessages::ignored;
+
   /// This PE's elements, as it has reported them; before run().
   void hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes);
 
   struct Order {
     DistributedStrategy strategy = DistributedStrategy::none;
     double average_time = 0;  ///< of all PEs, in seconds
+    double mean_load = 0;     ///< what an element weighs whose load is not known, at speed 1
   };
   /// On one member: has all carry out the strategy; `done` is given the number of trades.
   Task run(Order order, Callback<std::uint64_t> done);
@@ -73,9 +76,13 @@ class Exchange final : public Group<Exchange> {
   };
 
   // Entry methods.
-  Task sweep(std::uint64_t number, Callback<std::uint64_t> n_trades);
+  struct Sweep {
+    std::uint64_t number = 0;
+    double mean_load = 0;
+  };
+  Task sweep(Sweep sweep, Callback<std::uint64_t> n_trades);
   void hear(Talk talk);
-  void begin_gossip(double average_time, Callback<std::uint64_t> done);
+  void begin_gossip(Order order, Callback<std::uint64_t> done);
   void begin_iteration(Callback<std::uint64_t> done);
   void spread(Callback<std::uint64_t> done);
   void rumour(const std::vector<Rumour>& rumours);
@@ -85,11 +92,13 @@ class Exchange final : public Group<Exchange> {
 
  private:
   Task diffuse_with(PeId other, std::uint64_t stage);
-  Task run_diffusion();
-  Task run_gossip(double average_time);
+  Task run_diffusion(Order order);
+  Task run_gossip(Order order);
+  void weigh_unknown(double mean_load);
   [[nodiscard]] const LocalPe& local() const { return gossip_ ? gossip_->local() : *local_; }
 
   std::unique_ptr<LocalPe> local_;
+  std::uint64_t n_unknown_ = 0;       // elements here whose load is not known: pinned
   std::unique_ptr<GossipPe> gossip_;  // holds a copy of it from begin_gossip() on
   Mailbox<&Talk::key> talks_;
   Mailbox<&Reply::key> replies_;

@@ -13,6 +13,7 @@ constexpr std::uint64_t rounds_between_weighings = 16;
 
 void Measured::attach(Collection& array) {
   array_ = &array;
+  begin_phase();
   for (Element* element : array.elements())
     if (element != nullptr) entered(*element);
 }
@@ -26,6 +27,7 @@ void Measured::detach() {
 
 void Measured::entered(Element& element) {
   BalanceRecord& record = Collection::make_record(element);
+  if (Collection::never_ran(element)) record.load.since = LoadRecord::Since::birth;
   record.load.of_pe = &in_elements_;
   record.position = BalanceRecord::nowhere;
 }
@@ -58,6 +60,7 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
     record.size_bytes = array_->packed_bytes(element);
   report.keys.push_back({array_->id(), key});
   report.seconds.push_back(meter_.seconds(record.load.ticks));
+  report.measured.push_back(record.load.known() ? 1 : 0);
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
   if (const auto position = array_->position_of(element)) report.positions.push_back(*position);
@@ -89,11 +92,24 @@ PeReport Measured::report(std::uint64_t round) {
 }
 
 PhaseSums Measured::sums(double speed) const {
-  double seconds = busy_outside();
-  if (array_ == nullptr) return {seconds, seconds * speed, speed};
-  for (const Element* element : array_->elements())
-    if (element != nullptr) seconds += meter_.seconds(Collection::record_of(*element)->load.ticks);
-  return {seconds, seconds * speed, speed};
+  double seconds = 0;
+  std::uint64_t n_measured = 0, n_unknown = 0;
+  if (array_ == nullptr) {
+    seconds = busy_outside();
+    return {seconds, seconds * speed, speed, 0, 0, 0};
+  }
+  for (const Element* element : array_->elements()) {
+    if (element == nullptr) continue;
+    const LoadRecord& load = Collection::record_of(*element)->load;
+    if (load.known()) {
+      seconds += meter_.seconds(load.ticks);
+      ++n_measured;
+    } else {
+      ++n_unknown;
+    }
+  }
+  const double all = seconds + busy_outside();
+  return {all, all * speed, speed, seconds * speed, n_measured, n_unknown};
 }
 
 void Measured::clear() {

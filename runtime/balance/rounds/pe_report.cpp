@@ -1,5 +1,7 @@
 #include "runtime/balance/rounds/pe_report.hpp"
 
+#include "runtime/balance/unknown_loads.hpp"
+
 #include <boost/unordered/unordered_flat_map.hpp>
 
 namespace tess::balance {
@@ -10,6 +12,7 @@ void append(Snapshot& s, const PeReport& report, std::size_t pe, double speed) {
   e.key.insert(e.key.end(), report.keys.begin(), report.keys.end());
   e.pe.insert(e.pe.end(), report.keys.size(), pe_at(pe));
   for (const double seconds : report.seconds) e.load.push_back(seconds * speed);
+  e.measured.insert(e.measured.end(), report.measured.begin(), report.measured.end());
   e.migratable.insert(e.migratable.end(), report.migratable.begin(), report.migratable.end());
   e.size_bytes.insert(e.size_bytes.end(), report.size_bytes.begin(), report.size_bytes.end());
   e.position.insert(e.position.end(), report.positions.begin(), report.positions.end());
@@ -30,6 +33,8 @@ Snapshot snapshot_of(const std::vector<PeReport>& reports, const BalanceOptions&
     any_parcels = any_parcels || !reports[pe].parcels.empty();
   }
   s.elements.memory_bytes = s.elements.size_bytes;
+  if (n_known_loads(s) == s.elements.size()) s.elements.measured.clear();
+  assume_mean_loads(s);
   // Elements that give no position leave those that do without: a strategy needs all.
   if (s.elements.position.size() != s.elements.size()) s.elements.position.clear();
   if (!any_parcels) return s;

@@ -17,7 +17,10 @@ std::string describe(const Round& round, const Round* last) {
       round.predicted,
       1e3 * round.round_seconds,
       1e3 * round.strategy_seconds);
-  if (round.skipped) line += "; nothing to gain";
+  if (round.n_unknown > 0)
+    line += fmt::format("; {} loads are not known yet", round.n_unknown);
+  else if (round.skipped)
+    line += "; nothing to gain";
   if (round.rolled_back) line += "; the round before is undone";
   if (last != nullptr && last->measured > 0)
     line += fmt::format("; round {} measured {:.3f}, gain {:.1f} %",

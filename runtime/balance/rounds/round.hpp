@@ -14,6 +14,7 @@ struct Round {
   std::uint64_t number = 0;
   std::string strategy;
   std::size_t n_elements = 0;
+  std::size_t n_unknown = 0;  ///< of these, elements whose load is not known yet: they stay
   std::size_t n_moved = 0;
   std::uint64_t moved_bytes = 0;  ///< packed; what a process boundary would see
   double before = 1;              ///< max/average as measured in the phase that ended
@@ -25,7 +26,7 @@ struct Round {
   double strategy_seconds = 0;  ///< the strategy alone; a distributed one: 0, it is the round
   double round_seconds = 0;     ///< from the barrier (or the trigger) to the resume
   double phase_seconds = 0;     ///< from the last resume to the barrier
-  bool skipped = false;         ///< automatic: not worth it
+  bool skipped = false;         ///< nothing to gain, or no load is known yet
   bool rolled_back = false;     ///< automatic: the moves of the round before were undone
   std::map<std::string, double> seconds_by_entry;  ///< of all elements in the phase
 };

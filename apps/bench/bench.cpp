@@ -1,0 +1,63 @@
+#include "apps/bench/bench.hpp"
+
+#include <algorithm>
+
+namespace bench {
+namespace {
+
+/// "threads: 2 PEs" of "threads: 2 PEs on cores 0, 1; …".
+std::string short_description(const tess::Machine& machine) {
+  const std::string text = machine.describe();
+  return text.substr(0, std::min(text.find(';'), text.find(" on ")));
+}
+
+}  // namespace
+
+Bench::Bench(Options options, std::vector<char*> command_line, const tess::Machine& machine)
+    : options_(std::move(options)),
+      command_line_(std::move(command_line)),
+      origin_{short_description(machine), machine.n_pes(), machine.n_processes()},
+      virtual_time_(machine.virtual_time()),
+      speaks_(machine.process().value == 0) {}
+
+tess::Setup Bench::fresh() const {
+  std::vector<char*> line = command_line_;
+  auto argc = static_cast<int>(line.size());
+  line.push_back(nullptr);
+  return tess::take_options(argc, line.data());
+}
+
+bool Bench::has(Needs needs) const {
+  switch (needs) {
+    case Needs::nothing:
+      return true;
+    case Needs::two_pes:
+      return origin_.pes > 1;
+    case Needs::two_cores:
+      return origin_.pes > 1 && origin_.ranks == 1 && !virtual_time_;
+    case Needs::two_processes:
+      return origin_.ranks > 1 && !virtual_time_;
+  }
+  return false;
+}
+
+bool Bench::wants(std::string_view row) const {
+  return std::find(wanted_.begin(), wanted_.end(), row) != wanted_.end();
+}
+
+void Bench::row(std::string_view name,
+                const Samples& samples,
+                std::string_view unit,
+                double limit) {
+  if (!speaks_ || !wants(name)) return;
+  rows_.push_back(make_row(name, samples, unit, limit));
+  tess::print(csv_line(rows_.back(), origin_));
+}
+
+std::int64_t times_in_sample(double nanoseconds, std::int64_t most) {
+  const double n = sample_nanoseconds / std::max(nanoseconds, 1e-3);
+  return n >= static_cast<double>(most) ? most
+                                        : std::max<std::int64_t>(1, static_cast<std::int64_t>(n));
+}
+
+}  // namespace bench

@@ -1,0 +1,140 @@
+// A broadcast of an int that every element answers by contributing it; the sum goes to one element,
+// which starts the next round.
+#include "apps/bench/shapes/shapes.hpp"
+#include "runtime/runtime.hpp"
+
+namespace bench {
+namespace {
+
+struct Rounds {
+  std::int32_t n = 0;
+  std::int32_t n_elements = 0;
+  tess::Callback<std::int32_t> done;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n, n_elements, done);
+  }
+};
+
+template <class Index>
+class Voter : public tess::Chare<Voter<Index>, Index> {
+ public:
+  void vote(std::int32_t value) {
+    this->contribute(tess::sum, value, this->array()[Index{}].template target<&Voter::next>());
+  }
+  /// To the first element: it conducts.
+  void begin(Rounds rounds) {
+    rounds_ = std::move(rounds);
+    value_ = 1;
+    this->array().template broadcast<&Voter::vote>(value_);
+  }
+  void next(std::int32_t sum) {
+    TESS_CHECK(sum == value_ * rounds_.n_elements,
+               rounds_.n_elements,
+               " votes of ",
+               value_,
+               " add up to ",
+               sum);
+    if (value_ == rounds_.n)
+      rounds_.done(value_);
+    else
+      this->array().template broadcast<&Voter::vote>(++value_);
+  }
+
+ private:
+  std::int32_t value_ = 0;
+  Rounds rounds_;
+};
+
+using DenseVoters = tess::ArrayProxy<Voter<tess::Index1>>;
+using SparseVoters = tess::ArrayProxy<Voter<tess::Index3>>;
+
+/// Fills a sparse array: each PE inserts its share of n elements.
+class Registrar : public tess::Group<Registrar> {
+ public:
+  void fill(SparseVoters voters, std::int64_t n) {
+    const std::int64_t me = pe().value, n_pes = tess::current_pe().n_pes();
+    fill_from({voters, n * me / n_pes, n * (me + 1) / n_pes});
+  }
+
+ private:
+  struct Part {
+    SparseVoters voters;
+    std::int64_t next = 0, last = 0;
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(voters, next, last);
+    }
+  };
+  void fill_from(Part part) {
+    const std::int64_t end = std::min(part.last, part.next + 100);
+    for (; part.next < end; ++part.next) {
+      const auto i = static_cast<std::int32_t>(part.next);
+      part.voters[{i % 100, i / 100 % 100, i / 10'000}].insert();
+    }
+    if (part.next < part.last) group()[pe()].send<&Registrar::fill_from>(part);
+  }
+};
+
+template <class Index>
+tess::Task hold_votes(const Bench& bench,
+                      tess::ArrayProxy<Voter<Index>> voters,
+                      std::int32_t n_elements,
+                      Samples& samples) {
+  std::int32_t n_rounds = 2;
+  for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
+    tess::Future<std::int32_t> done;
+    const Stopwatch watch;
+    voters[Index{}].template send<&Voter<Index>::begin>(
+        Rounds{n_rounds, n_elements, done.callback()});
+    const std::int32_t last = co_await done;
+    const double nanoseconds = watch.nanoseconds() / n_rounds;
+    TESS_CHECK(last == n_rounds, last, " rounds were held, not ", n_rounds);
+    if (turn == 0)
+      n_rounds = static_cast<std::int32_t>(times_in_sample(nanoseconds, bench.size(200, 3)));
+    else
+      samples.add(nanoseconds / n_elements);
+  }
+}
+
+tess::Task measure_dense(const Bench& bench, std::int32_t n_elements, Samples& samples) {
+  const DenseVoters voters = tess::create<Voter<tess::Index1>>(tess::range(n_elements));
+  co_await hold_votes(bench, voters, n_elements, samples);
+}
+
+tess::Task measure_sparse(const Bench& bench, std::int32_t n_elements, Samples& samples) {
+  const SparseVoters voters = tess::create<Voter<tess::Index3>>(tess::sparse);
+  const auto registrar = tess::create_group<Registrar>();
+  const auto fill = [&] { registrar.broadcast<&Registrar::fill>(voters, n_elements); };
+  co_await tess::epoch(fill);
+  co_await hold_votes(bench, voters, n_elements, samples);
+}
+
+int run_collectives(Bench& bench) {
+  const auto measure = [&bench](const char* name, auto program, std::int32_t n_elements) {
+    if (!bench.wants(name)) return 0;
+    Samples samples;
+    const int code = bench.run([&] { return program(bench, n_elements, samples); });
+    if (code == 0) bench.row(name, samples, "ns");
+    return code;
+  };
+  int code = measure("broadcast_sum_1k", &measure_dense, bench.size(1000, 100));
+  if (code == 0) code = measure("broadcast_sum_100k", &measure_dense, bench.size(100'000, 1000));
+  if (code == 0)
+    code = measure("broadcast_sum_1M_sparse", &measure_sparse, bench.size(1'000'000, 2000));
+  return code;
+}
+
+}  // namespace
+
+Shape collectives_shape() {
+  return {"collectives",
+          "broadcast of an int that all contribute, the sum starts the next of 200 rounds, "
+          "elapsed time over rounds and elements",
+          {{"broadcast_sum_1k", "1 000 elements of a dense array"},
+           {"broadcast_sum_100k", "100 000 elements of a dense array"},
+           {"broadcast_sum_1M_sparse", "10^6 elements of a sparse array"}},
+          &run_collectives};
+}
+
+}  // namespace bench

@@ -1,0 +1,155 @@
+#include "apps/task_bench/experiment.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <fmt/format.h>
+
+namespace task_bench {
+namespace {
+
+/// The arrays of one case.
+class Bench {
+ public:
+  Bench(const Settings& settings, std::vector<Graph> graphs)
+      : settings_(settings), graphs_(std::move(graphs)), pe_(tess::current_pe()) {
+    for (const Graph& graph : graphs_) {
+      columns_.push_back(tess::create<Column>(tess::range(graph.width), graph));
+      totals_.push_back(totals(graph));
+      if (settings_.balance)
+        balancers_.push_back(tess::start_balancing(columns_.back(), *settings_.balance));
+    }
+  }
+
+  /// One run of all graphs; `seconds` is what it took. `iterations`: of every kernel, or as each
+  /// graph has them.
+  tess::Task run(std::optional<std::int64_t> iterations, double* seconds);
+  /// The median of a few runs, after one that is not counted where there are several.
+  tess::Task measure(std::optional<std::int64_t> iterations, Row* row);
+  /// Runs, or the search.
+  tess::Task measure_all(Result* result);
+
+ private:
+  [[nodiscard]] double kernel_seconds(const Graph& graph, std::int64_t iterations) const {
+    if (is_virtual())
+      return 1e-9 * static_cast<double>(virtual_nanoseconds(graph.kernel, iterations));
+    return calibrate(graph.kernel, iterations);
+  }
+  [[nodiscard]] bool is_virtual() const { return pe_.machine().virtual_time(); }
+  void check(std::size_t graph, const Count& count) const;
+  [[nodiscard]] Row row_of(std::optional<std::int64_t> iterations, double seconds) const;
+
+  const Settings& settings_;
+  const std::vector<Graph> graphs_;
+  tess::Pe& pe_;
+  std::vector<tess::ArrayProxy<Column>> columns_;
+  std::vector<tess::BalancerProxy> balancers_;
+  std::vector<Totals> totals_;
+};
+
+tess::Task Bench::run(std::optional<std::int64_t> iterations, double* seconds) {
+  std::deque<tess::Future<Count>> done;
+  const tess::Time began = pe_.now();
+  for (std::size_t k = 0; k < graphs_.size(); ++k) {
+    Run run;
+    run.iterations = iterations.value_or(graphs_[k].kernel.iterations);
+    run.sync_every = settings_.sync_every;
+    if (settings_.spoiled) run.spoiled = {settings_.spoiled->first, settings_.spoiled->second};
+    run.virtual_time = is_virtual() ? 1 : 0;
+    run.done = done.emplace_back().callback();
+    columns_[k].broadcast<&Column::begin>(run);
+  }
+  for (std::size_t k = 0; k < graphs_.size(); ++k) {
+    tess::Future<Count>& future = done[k];
+    const Count count = co_await future;
+    check(k, count);
+  }
+  *seconds = tess::seconds(pe_.now() - began);
+}
+
+void Bench::check(std::size_t graph, const Count& count) const {
+  const Totals& expected = totals_[graph];
+  if (count.n_tasks == expected.n_tasks && count.n_inputs == expected.n_dependences) return;
+  std::fprintf(stderr,
+               "task_bench: wrong answer: %s ran %llu tasks with %llu inputs, the graph has %llu "
+               "and %llu\n",
+               name_of(graphs_[graph].type).c_str(),
+               static_cast<unsigned long long>(count.n_tasks),
+               static_cast<unsigned long long>(count.n_inputs),
+               static_cast<unsigned long long>(expected.n_tasks),
+               static_cast<unsigned long long>(expected.n_dependences));
+  tess::exit(1);
+}
+
+Row Bench::row_of(std::optional<std::int64_t> iterations, double seconds) const {
+  Row row;
+  double kernels = 0;
+  for (std::size_t k = 0; k < graphs_.size(); ++k) {
+    const Graph& graph = graphs_[k];
+    row.type += (k > 0 ? "+" : "") + name_of(graph.type);
+    row.kernel += (k > 0 ? "+" : "") + name_of(graph.kernel.type);
+    row.n_tasks += totals_[k].n_tasks;
+    row.n_dependences += totals_[k].n_dependences;
+    // A kernel's time is linear in its iterations, so a random number of them counts as its mean.
+    kernels += static_cast<double>(totals_[k].n_tasks) *
+               kernel_seconds(graph, iterations.value_or(graph.kernel.iterations));
+  }
+  row.width = graphs_.front().width;
+  row.steps = graphs_.front().steps;
+  row.pes = pe_.n_pes();
+  row.ranks = pe_.machine().n_processes();
+  row.iterations = iterations.value_or(graphs_.front().kernel.iterations);
+  row.grain_seconds = kernels / static_cast<double>(row.n_tasks);
+  row.seconds = seconds;
+  row.efficiency = kernels / (seconds * row.pes);
+  return row;
+}
+
+tess::Task Bench::measure(std::optional<std::int64_t> iterations, Row* row) {
+  double seconds = 0;
+  if (settings_.repeat > 1) co_await run(iterations, &seconds);
+  std::vector<double> all;
+  for (std::int32_t k = 0; k < settings_.repeat; ++k) {
+    co_await run(iterations, &seconds);
+    all.push_back(seconds);
+  }
+  std::ranges::sort(all);
+  *row = row_of(iterations, all[all.size() / 2]);
+}
+
+tess::Task Bench::measure_all(Result* result) {
+  result->graphs = graphs_;
+  if (settings_.metg) {
+    MetgSearch search;
+    while (const auto iterations = search.next()) {
+      Row row;
+      co_await measure(*iterations, &row);
+      search.tell(row);
+    }
+    result->metg = search.found();
+    result->rows = search.rows();
+  } else {
+    Row row;
+    co_await measure(std::nullopt, &row);
+    result->rows.push_back(row);
+  }
+  for (const tess::BalancerProxy& balancer : balancers_)
+    result->rounds.insert(
+        result->rounds.end(), balancer.history().begin(), balancer.history().end());
+}
+
+}  // namespace
+
+tess::Task run_all(const Settings& settings,
+                   void (*tell)(const Settings&, const Result&),
+                   std::vector<Result>& results) {
+  for (const std::vector<Graph>& graphs : cases(settings)) {
+    Bench bench(settings, graphs);
+    Result result;
+    co_await bench.measure_all(&result);
+    tell(settings, result);
+    results.push_back(std::move(result));
+  }
+}
+
+}  // namespace task_bench

@@ -1,0 +1,42 @@
+// task_bench: the task graphs of Task Bench (Slaughter et al., SC20) on chare arrays: how small may
+// tasks be before the runtime costs as much as they do?
+#include "apps/plot/write_file.hpp"
+#include "apps/task_bench/report.hpp"
+
+namespace task_bench {
+namespace {
+
+tess::Task measure(Settings settings) {
+  const tess::Machine& machine = tess::current_pe().machine();
+  print_head(settings, machine);
+  std::vector<Result> results;
+  co_await run_all(settings, &print_result, results);
+  if (!settings.json.empty()) write_json(settings.json, results, machine.describe());
+  if (!settings.csv.empty()) write_csv(settings.csv, results);
+  if (!settings.plot.empty()) draw(settings.plot, results);
+}
+
+int start(tess::Setup& setup, int argc, char** argv) {
+  const auto settings = parse(argc, argv, *setup.machine);
+  if (!settings) return 0;
+  // On all processes: a fault has to meet them all.
+  plot::require_writable("--json", settings->json);
+  plot::require_writable("--csv", settings->csv);
+  if (!settings->plot.empty() && plot::data_path(settings->plot) == settings->csv)
+    tess::fail(tess::ErrorCode::bad_argument,
+               "--csv ",
+               settings->csv,
+               ": the data of --plot goes there; choose another name");
+  plot::require_writable("--plot", settings->plot);
+  if (settings->explain && setup.machine->process() == tess::ProcessId{0})
+    tess::print_text(explain(*settings));
+  return tess::run(setup, [&] { return measure(*settings); });
+}
+
+}  // namespace
+}  // namespace task_bench
+
+int main(int argc, char** argv) {
+  return tess::guarded(
+      argc, argv, [&](tess::Setup& setup) { return task_bench::start(setup, argc, argv); });
+}

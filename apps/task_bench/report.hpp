@@ -1,0 +1,25 @@
+// What task_bench says: the lines of Task Bench for a run, a table for METG, files.
+#pragma once
+
+#include "apps/task_bench/experiment.hpp"
+
+#include <string>
+#include <vector>
+
+namespace task_bench {
+
+/// "Total Tasks 16 …" as Task Bench prints it, and the efficiency; or a line of the METG table.
+void print_result(const Settings& settings, const Result& result);
+void print_head(const Settings& settings, const tess::Machine& machine);
+
+/// What a case uses, and what it does without.
+[[nodiscard]] std::string explain(const Settings& settings);
+
+void write_json(const std::string& path,
+                const std::vector<Result>& results,
+                const std::string& machine);
+void write_csv(const std::string& path, const std::vector<Result>& results);
+/// Efficiency against the grain, one line per case.
+void draw(const std::string& path, const std::vector<Result>& results);
+
+}  // namespace task_bench

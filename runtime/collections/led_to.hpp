@@ -1,0 +1,52 @@
+// Which reductions the broadcasts of a collection have led to, as far as one PE knows: from this
+// follows where an element joins that was born between two broadcasts (see ReductionTree). A few
+// entries, ascending in both numbers; those of complete reductions are forgotten.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace tess {
+
+class LedTo {
+ public:
+  /// One past the last reduction that broadcasts up to this one led to; 0 if none is known.
+  [[nodiscard]] std::uint32_t end(std::uint32_t broadcast) const {
+    std::uint32_t found = 0;
+    for (const Entry& entry : entries_) {
+      if (entry.broadcast > broadcast) break;
+      found = entry.end;
+    }
+    return found;
+  }
+
+  /// This broadcast led to a contribution to reduction `number`. False if that says nothing new.
+  bool learn(std::uint32_t broadcast, std::uint32_t number) {
+    if (end(broadcast) > number) return false;
+    const auto at = std::lower_bound(
+        entries_.begin(), entries_.end(), broadcast, [](const Entry& entry, std::uint32_t least) {
+          return entry.broadcast < least;
+        });
+    const auto last = std::find_if(
+        at, entries_.end(), [&](const Entry& entry) { return entry.end > number + 1; });
+    entries_.insert(entries_.erase(at, last), Entry{broadcast, number + 1});
+    return true;
+  }
+
+  /// Reductions below this one are complete: no element is going to join there.
+  void forget_below(std::uint32_t number) {
+    const auto last = std::find_if(
+        entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.end > number; });
+    entries_.erase(entries_.begin(), last);
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t broadcast = 0;
+    std::uint32_t end = 0;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace tess

@@ -1,0 +1,26 @@
+// Where chares and group members are constructed, so that an exception there can be reported.
+#pragma once
+
+#include "runtime/messages/registry.hpp"
+#include "runtime/scheduler/pe.hpp"
+
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace tess {
+
+/// Makes a chare by its constructor. The report of an exception that leaves it names it.
+template <class C, class... Args>
+[[nodiscard]] C* make_chare(Args&&... args) {
+  try {
+    return new C(std::forward<Args>(args)...);
+  } catch (...) {
+    std::string types;
+    ((types += (types.empty() ? "" : ", ") + plain_name(name_of_type<std::decay_t<Args>>)), ...);
+    current_pe().note_constructor(text(plain_name(name_of_type<C>), "(", types, ")"));
+    throw;
+  }
+}
+
+}  // namespace tess

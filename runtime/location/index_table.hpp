@@ -1,0 +1,217 @@
+// All that a PE knows of the indices of one array: one small record per index, found by one look-up.
+//
+//     state      on the PE that …                              the record holds
+//     here       has the element                               the element
+//     hint       heard where the element was                   PE and version
+//     departed   had it; its home has not confirmed the move   PE and version
+//     live       is the home; the element landed elsewhere     PE and version
+//     moving     is the home; the element left it              PE and version
+//     dead       is the home; the element was destroyed        the version of its last life
+//
+// A record may also say that messages to the index are parked here (Parked). Indices within the
+// range that the array was created with are found by their rank, in pages that are made when they
+// are first used; others in a hash table with linear probing, one cache line for most look-ups.
+#pragma once
+
+#include "runtime/collections/element.hpp"
+#include "runtime/index.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace tess {
+
+enum class IndexState : std::uint8_t { unknown, here, hint, departed, live, moving, dead };
+
+/// Why messages to an index are parked, a bit each; the messages are in a table of their own.
+enum class Parked : std::uint8_t {
+  pending = 1,  ///< this PE asked the home for leave to create the element
+  grave = 2,    ///< the element died here, and its home has not noted that
+  waiting = 4,  ///< this is the home: there is no element, or it is not known where
+};
+
+template <class Element>
+class IndexRecord {
+ public:
+  [[nodiscard]] IndexState state() const { return state_; }
+  /// The element, if it is here; null otherwise.
+  [[nodiscard]] Element* element() const {
+    return state_ == IndexState::here ? element_ : nullptr;
+  }
+  /// Where it is, as far as known, and since which version; not if it is here.
+  [[nodiscard]] PeId pe() const { return pe_; }
+  [[nodiscard]] Version version() const { return version_; }
+
+  void set_here(Element& element) {
+    element_ = &element;
+    state_ = IndexState::here;
+  }
+  void set(IndexState state, PeId pe, Version version) {
+    version_ = version;
+    pe_ = pe;
+    state_ = state;
+  }
+  void set_unknown() { set(IndexState::unknown, PeId{}, Version{}); }
+  /// What was departed is a hint from now on, which may be forgotten.
+  void confirm() { state_ = IndexState::hint; }
+
+  [[nodiscard]] bool parks(Parked why) const {
+    return (parked_ & static_cast<std::uint8_t>(why)) != 0;
+  }
+  [[nodiscard]] bool parks_any() const { return parked_ != 0; }
+  void park(Parked why) { parked_ |= static_cast<std::uint8_t>(why); }
+  void unpark(Parked why) {
+    parked_ = static_cast<std::uint8_t>(parked_ & ~static_cast<unsigned>(why));
+  }
+  [[nodiscard]] bool empty() const { return state_ == IndexState::unknown && parked_ == 0; }
+
+ private:
+  union {
+    Element* element_;  // state here
+    Version version_{};
+  };
+  PeId pe_{};
+  IndexState state_ = IndexState::unknown;
+  std::uint8_t parked_ = 0;
+};
+
+/// A pointer or reference to a record holds until the next record is made or erased.
+template <class Index, class Element>
+class IndexTable {
+ public:
+  using Record = IndexRecord<Element>;
+
+  explicit IndexTable(const Range& range) : range_(range) {}
+
+  [[nodiscard]] Record* find(const Index& index) {
+    if constexpr (Coordinates<Index>) {
+      if (const std::int64_t rank = rank_in(range_, index); rank >= 0) {
+        const auto page = static_cast<std::size_t>(rank) / page_size;
+        if (page >= pages_.size() || !pages_[page]) return nullptr;
+        return &(*pages_[page])[static_cast<std::size_t>(rank) % page_size];
+      }
+    }
+    if (n_entries_ == 0) return nullptr;
+    for (std::size_t at = ideal(index);; at = next(at)) {
+      Entry& entry = entries_[at];
+      if (!entry.used) return nullptr;
+      if (entry.index == index) return &entry.record;
+    }
+  }
+
+  /// Makes the record if there is none.
+  Record& at(const Index& index) {
+    if constexpr (Coordinates<Index>) {
+      if (const std::int64_t rank = rank_in(range_, index); rank >= 0) {
+        const auto page = static_cast<std::size_t>(rank) / page_size;
+        if (page >= pages_.size()) pages_.resize(range_.size() / page_size + 1);
+        if (!pages_[page]) pages_[page] = std::make_unique<Page>();
+        return (*pages_[page])[static_cast<std::size_t>(rank) % page_size];
+      }
+    }
+    if (8 * (n_entries_ + 1) > 7 * entries_.size()) grow();
+    std::size_t at = ideal(index);
+    for (; entries_[at].used; at = next(at))
+      if (entries_[at].index == index) return entries_[at].record;
+    entries_[at].index = index;
+    entries_[at].used = true;
+    ++n_entries_;
+    return entries_[at].record;
+  }
+
+  /// Frees the record of the index if it holds nothing.
+  void tidy(const Index& index) {
+    if constexpr (Coordinates<Index>) {
+      if (rank_in(range_, index) >= 0) return;
+    }
+    if (n_entries_ == 0) return;
+    std::size_t at = ideal(index);
+    for (; entries_[at].used; at = next(at))
+      if (entries_[at].index == index) break;
+    if (entries_[at].used && entries_[at].record.empty()) erase(at);
+  }
+
+  /// Calls f(index, record) for each record; f may change records, but neither make nor free any.
+  template <class F>
+  void for_each(F f) const {
+    if constexpr (Coordinates<Index>) {
+      for (std::size_t page = 0; page < pages_.size(); ++page) {
+        if (!pages_[page]) continue;
+        for (std::size_t i = 0; i < page_size; ++i) {
+          if ((*pages_[page])[i].empty()) continue;
+          f(index_at<Index>(range_, static_cast<std::int64_t>(page * page_size + i)),
+            (*pages_[page])[i]);
+        }
+      }
+    }
+    for (Entry& entry : entries_)
+      if (entry.used) f(entry.index, entry.record);
+  }
+
+  /// Forgets all hints.
+  void forget_hints() {
+    const auto forget = [](const Index& /*index*/, Record& record) {
+      if (record.state() == IndexState::hint) record.set_unknown();
+    };
+    for_each(forget);
+    // An entry that moves into the place of one that is erased is looked at again.
+    for (std::size_t at = 0; at < entries_.size();) {
+      if (entries_[at].used && entries_[at].record.empty()) {
+        erase(at);
+      } else {
+        ++at;
+      }
+    }
+  }
+
+ private:
+  struct Entry {
+    Index index{};
+    bool used = false;
+    Record record;
+  };
+  static constexpr std::size_t page_size = 256;
+  using Page = std::array<Record, page_size>;
+
+  /// Where the search for an index begins.
+  [[nodiscard]] std::size_t ideal(const Index& index) const {
+    __extension__ using Wide = unsigned __int128;
+    return static_cast<std::size_t>(Wide{IndexHash<Index>()(index)} * entries_.size() >> 64U);
+  }
+  [[nodiscard]] std::size_t next(std::size_t at) const {
+    return at + 1 == entries_.size() ? 0 : at + 1;
+  }
+  void grow() {
+    std::vector<Entry> old(std::max<std::size_t>(16, entries_.size() + entries_.size() / 2));
+    old.swap(entries_);
+    for (Entry& entry : old) {
+      if (!entry.used) continue;
+      std::size_t at = ideal(entry.index);
+      while (entries_[at].used) at = next(at);
+      entries_[at] = std::move(entry);
+    }
+  }
+  /// Moves the entries behind it forward, so that no search stops at the gap.
+  void erase(std::size_t gap) {
+    for (std::size_t at = next(gap); entries_[at].used; at = next(at)) {
+      const std::size_t begin = ideal(entries_[at].index);
+      // It may move to the gap unless its search begins behind the gap.
+      const bool behind = gap <= at ? gap < begin && begin <= at : gap < begin || begin <= at;
+      if (behind) continue;
+      entries_[gap] = std::move(entries_[at]);
+      gap = at;
+    }
+    entries_[gap] = Entry{};
+    --n_entries_;
+  }
+
+  const Range range_;
+  std::vector<std::unique_ptr<Page>> pages_;  // by rank
+  mutable std::vector<Entry> entries_;
+  std::size_t n_entries_ = 0;
+};
+
+}  // namespace tess

@@ -1,0 +1,51 @@
+// Bytes that one value fills: what reads fewer or more of them than were written is found where it
+// is read, by name, and not by what is read next.
+#pragma once
+
+#include "runtime/check.hpp"
+#include "runtime/messages/registry.hpp"
+#include "runtime/serialize.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tess {
+
+/// Calls read(body), which is to read all of it. `what`: gives the name of what is read.
+template <class What, class Read>
+auto read_all(Reader& body, const What& what, const Read& read) {
+  const std::size_t n_bytes = body.remaining();
+  try {
+    auto value = read(body);
+    TESS_CHECK(body.remaining() == 0,
+               what(),
+               ": ",
+               body.remaining(),
+               " of ",
+               n_bytes,
+               " bytes are left when it is read back; does serialize() read what it writes?");
+    return value;
+  } catch (const Error& error) {
+    check_failed("read back",
+                 __FILE__,
+                 __LINE__,
+                 text(what(), ": ", error.what(), "; does serialize() read what it writes?"));
+  }
+}
+
+/// A value of its own length behind that length.
+template <class Pack>
+void pack_framed(Writer& ar, const Pack& pack) {
+  const std::size_t at = ar.position();
+  ar(std::uint64_t{0});
+  pack(ar);
+  ar.patch(at, static_cast<std::uint64_t>(ar.position() - at - sizeof(std::uint64_t)));
+}
+template <class Read>
+auto unpack_framed(Reader& ar, std::string_view type, const Read& read) {
+  Reader body(ar.view(ar.take<std::uint64_t>()));
+  return read_all(
+      body, [type] { return plain_name(type); }, read);
+}
+
+}  // namespace tess

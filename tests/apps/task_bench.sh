@@ -1,0 +1,133 @@
+#!/usr/bin/env bash
+# task_bench from outside: every type and kernel with its inputs checked, on threads, under mpirun and in adversarial
+# order; a wrong input is found; METG and balancing give what the simulated machine's cost model says.
+set -uo pipefail
+bin=$1/task_bench
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+passed=0
+failed=0
+mpirun=(mpirun -q --allow-run-as-root --oversubscribe)
+
+# ok WANTED_TEXT COMMAND…: exit code 0 and the text in the output.
+ok() {
+  local want=$1
+  shift
+  timeout 60 "$@" >"$scratch/out" 2>"$scratch/err"
+  local code=$?
+  if [[ $code -eq 0 ]] && grep -q -- "$want" "$scratch/out"; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED (exit $code, wanted \"$want\"): $*"
+    tail -3 "$scratch/out" "$scratch/err"
+  fi
+}
+# fails CODE WANTED_TEXT COMMAND…: that exit code, and one line of error that has the text.
+fails() {
+  local want_code=$1 want=$2
+  shift 2
+  timeout 60 "$@" >"$scratch/out" 2>"$scratch/err"
+  local code=$?
+  if [[ $code -eq $want_code ]] && grep -q -- "$want" "$scratch/err" &&
+    { [[ $want_code -ne 2 ]] || [[ $(wc -l <"$scratch/err") -eq 1 ]]; }; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED (exit $code, wanted $want_code and \"$want\"): $*"
+    cat "$scratch/err"
+  fi
+}
+
+types=(trivial no_comm stencil_1d stencil_1d_periodic dom tree fft all_to_all nearest spread random_nearest)
+kernels=(empty busy_wait memory_bound compute_bound load_imbalance)
+checked="every input was checked"
+for type in "${types[@]}"; do
+  for kernel in "${kernels[@]}"; do
+    extra=()
+    [[ $kernel == memory_bound ]] && extra=(-scratch 4096)
+    [[ $kernel == load_imbalance ]] && extra=(-imbalance 1)
+    for pes in 1 3; do
+      ok "$checked" "$bin" -steps 23 -width 11 -type "$type" -kernel "$kernel" -iter 20 "${extra[@]}" --pes $pes
+    done
+  done
+  for seed in 1 2 3 4 5 6; do
+    ok "$checked" "$bin" -steps 23 -width 11 -type "$type" --sim pes=4,cost=100ns,seed=$seed --repeat 2
+    ok "$checked" "$bin" -steps 23 -width 11 -type "$type" -output 100 --sim pes=3,cost=100ns,seed=$seed \
+      --balance random --balance-every 4
+  done
+done
+many=()
+for type in "${types[@]}"; do many+=(-steps 20 -width 9 -type "$type" -output $((16 + ${#type})) -and); done
+ok "$checked" "${mpirun[@]}" -n 2 "$bin" "${many[@]}" -steps 5 --pes 1
+ok "$checked" "${mpirun[@]}" -n 2 "$bin" "${many[@]}" -steps 5 --pes 2 --balance greedy --balance-every 5
+ok "$checked" "$bin" "${many[@]}" -steps 5 --pes 2 --repeat 3
+ok "Total Tasks 600" "$bin" -steps 10 -width 20 -and -steps 20 -width 20 -type fft --pes 2
+ok "Total Dependencies 522" "$bin" -steps 10 -width 20 -type stencil_1d --pes 2
+
+# A wrong output is found by whoever takes it.
+for type in stencil_1d stencil_1d_periodic dom tree fft all_to_all nearest spread; do
+  fails 1 "wrong input" "$bin" -steps 20 -width 8 -type $type --spoil 12,3 --pes 2
+done
+fails 1 "wrong input" "$bin" -steps 20 -width 8 -type stencil_1d -output 64 --spoil 12,4 --sim pes=3
+fails 1 "wrong input" "${mpirun[@]}" -n 2 "$bin" -steps 20 -width 8 -type fft --spoil 12,4 --pes 1
+
+# Virtual time is exact: 100 ns a message, one a task of trivial and two of stencil_1d.
+"$bin" -metg -type all -steps 200 --sim pes=4,cost=100ns,latency=0us --repeat 1 --json "$scratch/m.json" \
+  --csv "$scratch/rows.csv" --plot "$scratch/m.svg" >"$scratch/out" 2>&1
+python3 - "$scratch/m.json" "$scratch/rows.csv" <<'PYTHON' && passed=$((passed + 1)) || failed=$((failed + 1))
+import csv, json, sys
+results = json.load(open(sys.argv[1]))["results"]
+metg = {one["type"]: one["metg_us"] for one in results}
+assert len(metg) == 11, metg
+assert 0.095 < metg["trivial"] < 0.11, metg
+assert 0.095 < metg["no_comm"] < 0.11, metg
+assert 0.19 < metg["stencil_1d"] < 0.21, metg
+for one in results:
+    assert one["pes"] == 4 and one["ranks"] == 1 and one["width"] == 64 and one["rows"], one
+    assert all(set(row) >= {"iterations", "grain_us", "seconds", "efficiency"} for row in one["rows"])
+rows = list(csv.DictReader(open(sys.argv[2])))
+assert len(rows) == sum(len(one["rows"]) for one in results)
+PYTHON
+[[ -s $scratch/m.csv ]] || { failed=$((failed + 1)); echo "FAILED: no m.csv"; }
+
+# Persistent imbalance and four columns per PE: greedy_refine evens it out, an exact answer of the simulated machine.
+seconds_of() { timeout 60 "$@" | sed -n 's/^Elapsed Time \(.*\) seconds/\1/p'; }
+work=("$bin" -type nearest -steps 200 -width 64 -kernel load_imbalance -imbalance 2 -persistent -iter 2500
+  --sim pes=4,cost=100ns)
+plain=$(seconds_of "${work[@]}")
+balanced=$(seconds_of "${work[@]}" --balance greedy_refine --balance-every 20)
+if python3 -c "import sys; sys.exit(0 if $balanced < 0.97 * $plain else 1)"; then
+  passed=$((passed + 1))
+else
+  failed=$((failed + 1))
+  echo "FAILED: balanced $balanced s, without $plain s"
+fi
+
+fails 2 "-nonsense" "$bin" -nonsense
+fails 2 "--steps" "$bin" --steps 5
+fails 2 "-steps" "$bin" -steps
+fails 2 "-steps 0" "$bin" -steps 0
+fails 2 "-width x" "$bin" -width x
+fails 2 "torus" "$bin" -type torus
+fails 2 "gemm" "$bin" -kernel gemm
+fails 2 "-type all" "$bin" -type all
+fails 2 "-period" "$bin" -type fft -period 3
+fails 2 "at most 2" "$bin" -type spread -width 4 -radix 2
+fails 2 "-scratch" "$bin" -kernel memory_bound -iter 3
+fails 2 "-output 8" "$bin" -output 8
+fails 2 "-imbalance 3" "$bin" -kernel load_imbalance -imbalance 3
+fails 2 "-fraction" "$bin" -fraction 1.5
+fails 2 "no grain" "$bin" -metg -kernel empty
+fails 2 "gredy" "$bin" --balance gredy
+fails 2 "--spoil" "$bin" --spoil 3
+fails 2 "missing" "$bin" --json "$scratch/missing/x.json"
+fails 2 "--plot" "$bin" --csv "$scratch/x.csv" --plot "$scratch/x.svg"
+fails 2 ".svg" "$bin" --plot "$scratch/x.png"
+fails 2 "-nonsense" "${mpirun[@]}" -n 2 "$bin" -nonsense
+ok "-imbalance" "$bin" --help
+ok "--sim" "$bin" -h
+ok "no barrier" "$bin" --explain
+
+echo "$passed passed, $failed failed"
+((failed == 0))

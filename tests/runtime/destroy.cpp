@@ -1,0 +1,214 @@
+// The end of arrays and groups: what is freed, and what is said where it is missed.
+#include "runtime/balance.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+#include <malloc.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/allocator_interface.h>
+#endif
+
+namespace {
+
+std::size_t allocated_bytes() {
+#ifdef __SANITIZE_ADDRESS__
+  return __sanitizer_get_current_allocated_bytes();
+#else
+  return mallinfo2().uordblks;
+#endif
+}
+
+class Worker : public tess::Chare<Worker, tess::Index1> {
+ public:
+  Worker() : ballast_(100) {}
+  void work(tess::Callback<double> done) {
+    array()[{(index().x + 1) % 16}].send<&Worker::hear>(1.0);
+    migrate_to(tess::PeId{(tess::current_pe().id().value + 1) % tess::current_pe().n_pes()});
+    contribute(tess::sum, 1.0, done);
+  }
+  void hear(double value) { ballast_[0] += value; }
+  void resume_from_sync() {}
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(ballast_);
+  }
+
+ private:
+  std::vector<double> ballast_;
+};
+
+class Member : public tess::Group<Member> {
+ public:
+  void add(tess::Callback<double> done) { contribute(tess::sum, 1.0, done); }
+
+ private:
+  std::vector<double> ballast_ = std::vector<double>(100);
+};
+
+/// One round of making, using and ending one of each.
+tess::Task use_and_end(int round) {
+  const auto workers = tess::create<Worker>(round % 2 == 0 ? tess::range(16) : tess::sparse);
+  const auto members = tess::create_group<Member>();
+  if (round % 3 == 0)
+    tess::start_balancing(workers,
+                          {.strategy = round % 2 == 0 ? "greedy" : "diffusion",
+                           .when = tess::BalanceWhen::periodic,
+                           .period = std::chrono::microseconds(1)});
+  if (round % 2 != 0) {
+    co_await tess::epoch([&] {
+      for (int i = 0; i < 16; ++i) workers[{i}].insert();
+    });
+  }
+  tess::Future<double> worked, added;
+  workers.broadcast<&Worker::work>(worked.callback());
+  members.broadcast<&Member::add>(added.callback());
+  CHECK(co_await worked == 16);
+  CHECK(co_await added == tess::current_pe().n_pes());
+  co_await tess::epoch([&] {
+    workers.destroy();
+    members.destroy();
+  });
+}
+
+tess::Task use_and_end_often(int n_rounds, std::vector<std::size_t>& bytes) {
+  for (int round = 0; round < n_rounds; ++round) {
+    co_await use_and_end(round);
+    if (round % 1000 == 999) bytes.push_back(allocated_bytes());
+  }
+}
+
+struct Ending {
+  int exit_code = 0;
+  std::string report;
+};
+template <class Main>
+Ending run(std::int32_t n_pes, Main main) {
+  tess::Setup setup;
+  tess::SimulatedOptions options;
+  options.n_pes = n_pes;
+  options.cost = tess::Time(100);
+  setup.machine = tess::make_simulated_machine(options);
+  Ending ending;
+  setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
+  ending.exit_code = tess::run(setup, main);
+  return ending;
+}
+
+TEST_CASE("ten thousand arrays, groups and balancers that end leave no memory behind",
+          "[runtime][destroy]") {
+#ifdef TESS_CHECKS_ALL
+  constexpr int n_rounds = 3000;
+#else
+  constexpr int n_rounds = 10'000;
+#endif
+  std::vector<std::size_t> bytes;
+  bytes.reserve(n_rounds / 1000);
+  const Ending ending = run(4, [&]() -> tess::Task { return use_and_end_often(n_rounds, bytes); });
+  CHECK(ending.exit_code == 0);
+  CHECK(ending.report == "");
+  REQUIRE(bytes.size() == n_rounds / 1000);
+  // Tables grow and shrink a little; 8 bytes a round would be 72 KB.
+  INFO(bytes.front() << " bytes after 1000 rounds, " << bytes.back() << " after all");
+  CHECK(bytes.back() < bytes.front() + 32768);
+}
+
+class Waiter : public tess::Chare<Waiter, tess::Index1> {
+ public:
+  struct Letter {
+    int key = 0;
+  };
+  tess::Task wait() { (void)co_await letters_.take(3); }
+  void put() { letters_.put(Letter{3}); }
+
+ private:
+  tess::Mailbox<&Letter::key> letters_;
+};
+
+TEST_CASE("a coroutine that waits for a message of its destroyed array is reported",
+          "[runtime][destroy]") {
+  const Ending ending = run(2, [] {
+    const auto waiters = tess::create<Waiter>(tess::range(2));
+    waiters[{1}].send<&Waiter::wait>();
+    waiters[{1}].send<&Waiter::wait>();
+    waiters.destroy();
+  });
+  CHECK(ending.exit_code == 1);
+  CHECK(ending.report.find("Waiter on PE 1 was destroyed, but coroutines of its elements wait") !=
+        std::string::npos);
+  CHECK(ending.report.find("Waiter[1] on PE 1: Waiter::wait waits for a message of key 3") !=
+        std::string::npos);
+}
+
+tess::Task send_late(int n_ends) {
+  const auto waiters = tess::create<Waiter>(tess::range(2));
+  co_await tess::epoch([&] {
+    for (int i = 0; i < n_ends; ++i) waiters.destroy();
+  });
+  waiters[{0}].send<&Waiter::put>();
+  waiters[{7}].insert();
+  waiters.broadcast<&Waiter::put>();
+}
+
+TEST_CASE(
+    "what is sent to a destroyed array is counted and reported, however often it was destroyed",
+    "[runtime][destroy]") {
+  for (const int n_ends : {1, 3}) {
+    const Ending ending = run(3, [n_ends]() -> tess::Task { return send_late(n_ends); });
+    CHECK(ending.exit_code == 0);
+    CHECK(ending.report ==
+          "tessera: 3 messages to elements that had been destroyed were not delivered\n");
+  }
+}
+
+int n_alive = 0;  // one thread runs all simulated PEs
+
+class Last : public tess::Chare<Last, tess::Index1> {
+ public:
+  Last() { ++n_alive; }
+  Last(const Last&) = delete;
+  Last& operator=(const Last&) = delete;
+  ~Last() override { --n_alive; }
+  void end() {
+    array().destroy();
+    CHECK(n_alive == 5);  // not before this message is done
+  }
+};
+
+class LastMember : public tess::Group<LastMember> {
+ public:
+  LastMember() { ++n_alive; }
+  LastMember(const LastMember&) = delete;
+  LastMember& operator=(const LastMember&) = delete;
+  ~LastMember() override { --n_alive; }
+  tess::Task end() {
+    const tess::Callback<int> target = given_.callback();
+    group().destroy();
+    group()[pe()].send<&LastMember::nothing>();
+    target(7);
+    CHECK(co_await given_ == 7);
+    CHECK(n_alive >= 1);
+  }
+  void nothing() {}
+
+ private:
+  tess::Future<int> given_;
+};
+
+tess::Task end_from_within() {
+  const auto array = tess::create<Last>(tess::range(5));
+  co_await tess::epoch([&] { array[{3}].send<&Last::end>(); });
+  CHECK(n_alive == 0);
+  const auto group = tess::create_group<LastMember>();
+  co_await tess::epoch([&] { group[tess::PeId{1}].send<&LastMember::end>(); });
+  CHECK(n_alive == 0);
+  CHECK(group.local_or_null() == nullptr);
+  CHECK(tess::current_pe().collections().empty());
+}
+
+TEST_CASE("an array and a group are ended by their own members", "[runtime][destroy]") {
+  const Ending ending = run(3, []() -> tess::Task { return end_from_within(); });
+  CHECK(ending.exit_code == 0);
+}
+
+}  // namespace

@@ -1,0 +1,152 @@
+// Uses that are wrong, each of which has to end the job with one clear line and an exit code that
+// is not 0; run by misuse.sh.
+//
+//     test_misuse NAME_OF_THE_MISUSE
+#include "runtime/runtime.hpp"
+
+#include <map>
+#include <stdexcept>
+
+namespace {
+
+using tess::PeId;
+
+class Member : public tess::Group<Member> {
+ public:
+  void nothing() {}
+};
+
+/// What a value is packed to and read from: reads a number less than it writes, or more.
+template <int read_too_many>
+struct Uneven {
+  std::vector<int> values{1, 2, 3};
+  template <class Ar>
+  void serialize(Ar& ar) {
+    int extra = 7;
+    ar(values);
+    if (Ar::is_reading == (read_too_many > 0)) ar(extra);
+  }
+  friend Uneven operator+(Uneven a, const Uneven& /*b*/) { return a; }
+};
+using Short = Uneven<0>;
+using Long = Uneven<1>;
+
+class Block : public tess::Chare<Block, tess::Index1> {
+ public:
+  Block() = default;
+  explicit Block(int order) {
+    if (order == 1) throw std::runtime_error("the mould is broken");
+    if (order == 2) TESS_CHECK(order == 0, "the mould is wrong");
+  }
+  void nothing() {}
+  void end() { destroy(); }
+  void answer(tess::Callback<int> target) { target(7); }
+  void give(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
+  void move(PeId pe) { migrate_to(pe); }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+
+/// Reads, where it arrives, another number of bytes than it wrote.
+template <class Value>
+class Carrier : public tess::Chare<Carrier<Value>, tess::Index1> {
+ public:
+  void go() { this->migrate_to(PeId{tess::current_pe().n_pes() - 1}); }
+  void hear(Value /*value*/) {}
+  void give(tess::Callback<Value> target) { this->contribute(tess::sum, Value{}, target); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(value_);
+  }
+
+ private:
+  Value value_;
+};
+
+template <class Value>
+void carry() {
+  tess::create<Carrier<Value>>(tess::range(1))[{0}].template send<&Carrier<Value>::go>();
+}
+template <class Value>
+void hear() {
+  const std::int32_t n = tess::current_pe().n_pes();
+  const auto carriers = tess::create<Carrier<Value>>(tess::range(n));
+  carriers[{n - 1}].template send<&Carrier<Value>::hear>(Value{});
+}
+template <class Value>
+void hear_all() {
+  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::current_pe().n_pes()));
+  carriers.template broadcast<&Carrier<Value>::hear>(Value{});
+}
+template <class Value>
+tess::Task sum_all() {
+  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::current_pe().n_pes()));
+  tess::Future<Value> sum;
+  carriers.template broadcast<&Carrier<Value>::give>(sum.callback());
+  (void)co_await sum;
+}
+
+tess::Task sum_of_none() {
+  const auto blocks = tess::create<Block>(tess::sparse);
+  tess::Future<int> sum;
+  blocks.broadcast<&Block::give>(sum.callback());
+  (void)co_await sum;
+}
+
+tess::Task use_after_end() {
+  const auto blocks = tess::create<Block>(tess::range(3));
+  co_await tess::epoch([&] { blocks.destroy(); });
+  (void)blocks.size();
+}
+
+tess::Task use_member_after_end() {
+  const auto members = tess::create_group<Member>();
+  co_await tess::epoch([&] { members.destroy(); });
+  members.local().nothing();
+}
+
+auto blocks() {
+  return tess::create<Block>(tess::range(3));
+}
+
+const std::map<std::string, std::function<void()>> misuses{
+    {"member_99", [] { tess::create_group<Member>()[PeId{99}].send<&Member::nothing>(); }},
+    {"member_-1", [] { tess::create_group<Member>()[PeId{-1}].send<&Member::nothing>(); }},
+    {"insert_on_77", [] { blocks()[{3}].insert_on(PeId{77}); }},
+    {"migrate_to_-3", [] { blocks()[{0}].migrate_to(PeId{-3}); }},
+    {"move_to_55", [] { blocks()[{1}].send<&Block::move>(PeId{55}); }},
+    {"empty_callback", [] { blocks()[{2}].send<&Block::answer>(tess::Callback<int>()); }},
+    {"empty_target", [] { blocks().broadcast<&Block::give>(tess::Callback<int>()); }},
+    {"exit_-1", [] { tess::exit(-1); }},
+    {"exit_256", [] { tess::exit(256); }},
+    {"throw_inserted", [] { blocks()[{7}].insert(1); }},
+    {"throw_initial", [] { tess::create<Block>(tess::range(1), 1); }},
+    {"check_inserted", [] { blocks()[{7}].insert_on(PeId{0}, 2); }},
+    {"short_element", &carry<Short>},
+    {"long_element", &carry<Long>},
+    {"short_argument", &hear<Short>},
+    {"long_argument", &hear<Long>},
+    {"short_broadcast", &hear_all<Short>},
+    {"long_broadcast", &hear_all<Long>},
+    {"short_sum", [] { const tess::Task task = sum_all<Short>(); }},
+    {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},
+    {"sum_of_none", [] { const tess::Task task = sum_of_none(); }},
+    {"array_after_end", [] { const tess::Task task = use_after_end(); }},
+    {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
+};
+
+int misuse(int argc, char** argv) {
+  tess::Setup setup = tess::take_options(argc, argv);
+  const auto at = misuses.find(argc > 1 ? argv[1] : "");
+  if (at == misuses.end()) {
+    for (const auto& [name, function] : misuses) tess::print(name, "\n");
+    return 0;
+  }
+  return tess::run(setup, at->second);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] { return misuse(argc, argv); });
+}

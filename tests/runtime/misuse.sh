@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# Each misuse ends the job on every machine with exit code 1 and a line that says what is wrong and where.
+#
+#     misuse.sh MPIEXEC PROGRAM
+set -uo pipefail
+program=$2
+threads=("$program")
+simulated=("$program")
+processes=("$1" --allow-run-as-root --oversubscribe -n 2 "$program")
+on_threads=(--pes 2)
+on_simulated=(--sim pes=2,per-process=1,cost=100ns)
+on_processes=(--pes 1)
+out=$(mktemp)
+trap 'rm -f "$out"' EXIT
+failed=0
+passed=0
+
+# says WHERE MISUSE PATTERN…: on that machine the misuse ends with exit code 1 and matches all patterns.
+says() {
+  local -n command=$1 options=on_$1
+  local where=$1 misuse=$2 code missing=""
+  shift 2
+  timeout -k 5 30 "${command[@]}" "$misuse" "${options[@]}" >"$out" 2>&1 </dev/null
+  code=$?
+  for pattern in "$@"; do
+    grep -q -- "$pattern" "$out" || missing+=" '$pattern'"
+  done
+  if ((code == 1)) && [[ -z $missing ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $misuse on $where: exit code $code, not found:$missing"
+    head -8 "$out"
+  fi
+}
+# everywhere MISUSE PATTERN…; here: without mpirun, which takes a second to start.
+here() {
+  says threads "$@"
+  says simulated "$@"
+}
+everywhere() {
+  here "$@"
+  says processes "$@"
+}
+
+everywhere member_99 "there is no PE 99: the run has 2 PEs" "on PE 0"
+here member_-1 "there is no PE -1"
+everywhere insert_on_77 "there is no PE 77"
+here migrate_to_-3 "there is no PE -3"
+here move_to_55 "there is no PE 55" "on PE 0, Block\[1\], in Block::move"
+everywhere empty_callback "an empty Callback<int> is called" "Block\[2\], in Block::answer"
+here empty_target "contributes, but its Callback<int> for the result is empty"
+everywhere exit_-1 "exit(-1): an exit code is a number of 0"
+everywhere exit_256 "exit(256): an exit code is a number of 0"
+everywhere throw_inserted "the mould is broken" "Block\[7\], in the constructor Block(int)"
+here throw_initial "the mould is broken" "Block\[0\], in the constructor Block(int)"
+here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructor"
+here array_after_end "the array of this proxy was destroyed on PE 0"
+here group_after_end "this group was destroyed on PE 0"
+everywhere sum_of_none "waits for a future of int" "Block has no elements: its reductions have no result"
+# What reads other bytes than it wrote, between processes. (With CHECKS=all it is found where it is sent.)
+for kind in short long; do
+  says simulated ${kind}_element "Uneven<[01]> *>\[0\]\|Uneven<[01]>: " "serialize()"
+  says simulated ${kind}_argument "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
+  says simulated ${kind}_broadcast "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
+  says simulated ${kind}_sum "MergedPartial<Uneven<[01]>, Sum>: " "serialize()"
+done
+says processes short_element "Uneven<0> >\[0\]\|Uneven<0>: " "serialize()"
+
+echo "$passed passed, $failed failed"
+((failed == 0))
