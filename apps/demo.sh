@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The main job from a bare machine: installs what is missing, builds, and transfers a field between two real unstructured
-# meshes: in one process, then under mpirun. Then error against run time over a series of source meshes.
+# The main job from a bare machine: installs what is missing, builds, and transfers a field between two unstructured meshes
+# of about a hundred thousand tetrahedra: in one process, then under mpirun. Then error against run time over a ladder of
+# meshes. Leaves a picture of the result.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,35 +18,40 @@ if ((EUID == 0)); then mpirun+=(--allow-run-as-root); fi
 
 meshes=build/demo
 mkdir -p "$meshes"
-# cube NAME H: an unstructured mesh of the unit cube with edges of about H, once.
+# cube H: an unstructured mesh of the unit cube with edges of about H, made once; its path.
 cube() {
-  [[ -e $meshes/$1.msh ]] || gmsh -v 0 -3 -format msh41 -clmax "$2" -clmin "$2" -o "$meshes/$1.msh" apps/m2m_transfer/cube.geo >/dev/null
+  local mesh=$meshes/cube_$1.msh
+  if [[ ! -e $mesh ]]; then
+    gmsh -v 0 -3 -format msh41 -clmax "$1" -clmin "$1" -o "$mesh.part.msh" apps/m2m_transfer/cube.geo >/dev/null
+    mv "$mesh.part.msh" "$mesh"
+  fi
+  echo "$mesh"
 }
 
-data=${TESS_DATA:-../shared/data}
-source=$data/nalu/3d_tet4_taylor_green_0p4.exo
-target=$data/nalu/3d_tet4_taylor_green_0p2.exo
-if [[ ! -e $source || ! -e $target ]]; then
-  echo "demo: $data is not on this machine: meshes by gmsh instead"
-  cube source 0.11
-  cube target 0.08
-  source=$meshes/source.msh
-  target=$meshes/target.msh
-fi
-
+echo "demo: meshing"
+source=$(cube 0.04)    # about 73 000 tetrahedra
+target=$(cube 0.0358)  # about 100 000
 echo "== one process, all cores"
-"$transfer" "$source" "$target" --field sin --out "$meshes/result.exo" --json "$meshes/result.json" --explain
+"$transfer" "$source" "$target" --field sin --out "$meshes/result.exo" --json "$meshes/result.json" \
+  --picture "$meshes/result.svg" --explain
 for ranks in 1 2; do
   echo "== mpirun -n $ranks"
   "${mpirun[@]}" -n "$ranks" "$transfer" "$source" "$target" --field sin --pes 1
 done
 
-echo "== error against run time: unstructured cubes, the source refined, onto one target"
-cube target 0.05
-sources=()
-for h in 0.16 0.11 0.08 0.056; do
-  cube "source_$h" "$h"
-  sources+=("$meshes/source_$h.msh")
-done
-"$transfer" "$(IFS=,; echo "${sources[*]}")" "$meshes/target.msh" --field sin --study "$meshes/study"
-echo "written: $meshes/result.exo, $meshes/result.json"
+data=${TESS_DATA:-../shared/data}
+coarse=$data/nalu/3d_tet4_taylor_green_0p4.exo
+fine=$data/nalu/3d_tet4_taylor_green_0p2.exo
+if [[ -e $coarse && -e $fine ]]; then
+  echo "== two meshes of a flow solver, ExodusII"
+  "$transfer" "$coarse" "$fine" --field sin
+fi
+
+echo "== error against run time: unstructured cubes, each onto a somewhat finer one"
+sources=() targets=()
+for h in 0.16 0.113 0.08 0.0566 0.04; do sources+=("$(cube "$h")"); done
+for h in 0.143 0.101 0.0716 0.0506 0.0358; do targets+=("$(cube "$h")"); done
+list() { (IFS=,; echo "$*"); }
+"$transfer" "$(list "${sources[@]}")" "$(list "${targets[@]}")" --field sin --study "$meshes/study"
+echo "demo: written: $meshes/result.svg (a picture: open it in a browser), result.exo (for ParaView), result.json,"
+echo "demo:          $meshes/study/error_time.svg, error_edge.svg, study.csv, study.json"

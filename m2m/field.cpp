@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tess::m2m {
@@ -67,8 +68,10 @@ Field sample(const TetMesh& mesh, const std::string& name, const Formula& formul
 
 ErrorNorms error_norms(const TetMesh& mesh,
                        std::span<const double> values,
-                       std::span<const double> truth) {
-  TESS_CHECK(values.size() == mesh.n_points() && truth.size() == mesh.n_points(),
+                       std::span<const double> truth,
+                       const std::vector<bool>& counts) {
+  TESS_CHECK(values.size() == mesh.n_points() && truth.size() == mesh.n_points() &&
+                 (counts.empty() || counts.size() == mesh.n_points()),
              "expected ",
              mesh.n_points(),
              " values, got ",
@@ -83,19 +86,26 @@ ErrorNorms error_norms(const TetMesh& mesh,
   ErrorNorms norms;
   double weighted = 0, plain = 0, reference = 0;
   for (std::size_t v = 0; v < values.size(); ++v) {
+    if (!counts.empty() && !counts[v]) continue;
     const double error = std::abs(values[v] - truth[v]);
     weighted += mass[v] * error * error;
     reference += mass[v] * truth[v] * truth[v];
     plain += error * error;
     // A NaN is the worst of errors, not the least.
-    if (error > norms.linf || (std::isnan(error) && !std::isnan(norms.linf))) {
+    if (norms.n_vertices++ == 0 || error > norms.linf ||
+        (std::isnan(error) && !std::isnan(norms.linf))) {
       norms.linf = error;
       norms.worst = static_cast<GlobalId>(v);
     }
   }
+  if (norms.n_vertices == 0) {
+    norms.l2 = norms.l2_relative = norms.rms = norms.linf =
+        std::numeric_limits<double>::quiet_NaN();
+    return norms;
+  }
   norms.l2 = std::sqrt(weighted);
   norms.l2_relative = reference > 0 ? norms.l2 / std::sqrt(reference) : norms.l2;
-  norms.rms = values.empty() ? 0 : std::sqrt(plain / static_cast<double>(values.size()));
+  norms.rms = std::sqrt(plain / static_cast<double>(norms.n_vertices));
   return norms;
 }
 

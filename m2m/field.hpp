@@ -31,21 +31,23 @@ using Formula = std::function<double(const Point&)>;
 /// The formula at every vertex. Throws Error (bad_value) where it is not finite, naming the vertex.
 [[nodiscard]] Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula);
 
-/// How far a scalar transferred field is from the truth.
+/// How far a scalar transferred field is from the truth, over some vertices: e = value - truth.
 struct ErrorNorms {
   double l2 = 0;  ///< sqrt(sum m e²), m the lumped mass of a vertex: a quarter of the volume of its
                   ///< tetrahedra
-  double l2_relative = 0;  ///< l2 / sqrt(sum m truth²); l2 where the truth is zero
-  double rms = 0;          ///< sqrt(mean of e²) over vertices
-  double linf = 0;         ///< greatest |e|
-  GlobalId worst = 0;      ///< the vertex where |e| is greatest, the first of several
+  double l2_relative = 0;      ///< l2 / sqrt(sum m truth²); l2 where the truth is zero
+  double rms = 0;              ///< sqrt(mean of e²)
+  double linf = 0;             ///< greatest |e|
+  GlobalId worst = 0;          ///< the vertex where |e| is greatest, the first of several
+  std::size_t n_vertices = 0;  ///< that count; of none, the norms are NaN
 };
 
 /// Norms of values - truth on the mesh that holds the values. `values`, `truth`: one number a
-/// vertex.
+/// vertex. `counts`: which vertices count; empty: all of them.
 [[nodiscard]] ErrorNorms error_norms(const TetMesh& mesh,
                                      std::span<const double> values,
-                                     std::span<const double> truth);
+                                     std::span<const double> truth,
+                                     const std::vector<bool>& counts = {});
 
 /// FNV-1a (64 bits) over the bits of the values, byte by byte from the low end, in order: one
 /// number for a result.

@@ -1,10 +1,6 @@
 #include "m2m/mesh.hpp"
 
-#include "runtime/error.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <cstddef>
 
 namespace tess::m2m {
 
@@ -27,60 +23,13 @@ double signed_volume(const TetMesh& mesh, std::size_t tet) {
          6.0;
 }
 
-MeshCensus validate(const TetMesh& mesh) {
-  const std::size_t n = mesh.n_points();
-  if (mesh.tets.empty()) {
-    fail(
-        ErrorCode::bad_mesh, mesh.name, ": has no tetrahedra; give a volume mesh of TET4 elements");
+std::string skipped_text(const TetMesh& mesh) {
+  std::string out;
+  for (const Skipped& skipped : mesh.skipped) {
+    if (!out.empty()) out += ", ";
+    out += std::to_string(skipped.n_elements) + " " + skipped.type;
   }
-  if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
-    fail(ErrorCode::bad_mesh,
-         mesh.name,
-         ": has ",
-         n,
-         " vertices; at most 2147483647 fit in one mesh, split it");
-  }
-  constexpr double largest = 1e100;  // beyond, volumes (cubes of lengths) leave the range of double
-  for (std::size_t v = 0; v < n; ++v) {
-    const Point& p = mesh.points[v];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(p[axis]) || std::abs(p[axis]) > largest) {
-        fail(ErrorCode::bad_mesh,
-             mesh.name,
-             ": vertex ",
-             v,
-             " has ",
-             "xyz"[axis],
-             " = ",
-             p[axis],
-             "; coordinates must be finite and within 1e100: repair or rescale the mesh");
-      }
-    }
-  }
-  std::vector<char> used(n, 0);
-  MeshCensus census;
-  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    for (const VertexId v : mesh.tets[t]) {
-      if (v < 0 || static_cast<std::size_t>(v) >= n) {
-        fail(ErrorCode::bad_mesh,
-             mesh.name,
-             ": tetrahedron ",
-             t,
-             " names vertex ",
-             v,
-             " (counted from 0) of ",
-             n,
-             " vertices; write the mesh again");
-      }
-      used[static_cast<std::size_t>(v)] = 1;
-    }
-    const double volume = signed_volume(mesh, t);
-    census.n_flat += volume == 0;
-    census.n_inverted += volume < 0;
-  }
-  census.n_unused = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
-  census.bounds = bounds(mesh);
-  return census;
+  return out;
 }
 
 }  // namespace tess::m2m

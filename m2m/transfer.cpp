@@ -9,7 +9,7 @@ namespace tess::m2m {
 Task transfer(DistributedMesh source,
               DistributedMesh target,
               TransferOptions options,
-              TransferTimes* times) {
+              TransferSummary* summary) {
   TESS_CHECK(source.n_components == target.n_components,
              "the source has ",
              source.n_components,
@@ -21,30 +21,35 @@ Task transfer(DistributedMesh source,
   };
   enter("broad");
   const Time start = pe.now();
-  TransferSetup setup;
+  TransferSetup setup{{}, {}, source.workers, target.workers};
   co_await epoch([&] {
     setup.collider = make_collider({options.voxel_origin, options.voxel_size, {}});
-    setup.source = source.workers;
-    setup.target = target.workers;
-    setup.n_source_parts = source.n_parts;
-    setup.n_components = source.n_components;
+    setup.id = TransferId{setup.collider.voxels.id().value};  // one collider, one transfer
   });
   co_await epoch([&] {
     source.workers.broadcast<&Worker::submit_tets>(setup);
     target.workers.broadcast<&Worker::submit_points>(setup);
   });
   // Named: g++ 12 destroys an aggregate that is written inside a co_await expression twice.
-  const Report to_target{report_to<&Worker::receive_hits>(target.workers), target_model};
+  const Report to_target{report_to_target(target.workers, setup.id), target_model};
   co_await collide(setup.collider, to_target);
+  setup.collider.destroy();
   const Time broad = pe.now();
   enter("narrow");
-  co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(); });
+  co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(setup.id); });
   const Time narrow = pe.now();
   enter("report");
-  co_await epoch([&] { target.workers.broadcast<&Worker::settle>(options.policy); });
+  Settlement settlement{setup.id, options.policy, {}};
+  if (std::holds_alternative<Nearest>(options.policy)) settlement.source_boxes = source.boxes;
+  co_await epoch([&] { target.workers.broadcast<&Worker::settle>(settlement); });
+  co_await epoch([&] { target.workers.broadcast<&Worker::share>(setup.id); });
+  Future<Tally> tally;
+  target.workers.broadcast<&Worker::take_over>(setup.id, tally.callback());
+  source.workers.broadcast<&Worker::forget>(setup.id);
+  const Tally all = co_await tally;
   const Time report = pe.now();
-  if (times != nullptr)
-    *times = {seconds(broad - start), seconds(narrow - broad), seconds(report - narrow)};
+  if (summary != nullptr)
+    *summary = {seconds(broad - start), seconds(narrow - broad), seconds(report - narrow), all};
 }
 
 Point suggest_voxel_size(const TetMesh& source, const TetMesh& target) {

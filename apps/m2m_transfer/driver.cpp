@@ -2,6 +2,7 @@
 
 #include "apps/m2m_transfer/explain.hpp"
 #include "apps/m2m_transfer/measure.hpp"
+#include "apps/m2m_transfer/picture.hpp"
 #include "apps/m2m_transfer/study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/io/exodus_writer.hpp"
@@ -25,6 +26,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
     fail(ErrorCode::bad_argument, "--policy is given more than once: that is for --study");
   plot::require_writable("--json", options.json);
   plot::require_writable("--out", options.out);
+  plot::require_writable("--picture", options.picture);
   if (options.request.target.empty())
     fail(ErrorCode::bad_argument, "TARGET is missing (--help lists the arguments)");
   Request request = options.request;
@@ -39,14 +41,15 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   co_await measure(problem, gauge, progress);
   progress.phase("writing");
   if (!options.json.empty()) plot::write_file(options.json, json({problem.report}));
+  if (!options.picture.empty()) plot::write_file(options.picture, picture(problem));
   if (!options.out.empty()) write_exodus(options.out, problem.target, problem.target_fields);
   progress.clear();
   print(table(problem.report));
 }
 
 Task run_study(const DriverOptions& options, apps::Progress& progress) {
-  if (!options.out.empty())
-    fail(ErrorCode::bad_argument, "--out is for one transfer, not for --study");
+  if (!options.out.empty() || !options.picture.empty())
+    fail(ErrorCode::bad_argument, "--out and --picture are for one transfer, not for --study");
   plot::require_writable("--json", options.json);
   std::vector<Request> requests = plan_study(options.request, options.policies);
   prepare_folder(*options.study);

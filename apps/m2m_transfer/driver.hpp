@@ -15,7 +15,7 @@ struct DriverOptions {
   Request request;
   std::vector<std::string> policies{"keep"};
   std::optional<std::int32_t> repeat;  ///< absent: 1, in a study 3
-  std::string out, json;
+  std::string out, json, picture;
   bool explain = false;
   std::optional<std::string> study;  ///< the folder of the study's report
 };

@@ -29,6 +29,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "transfers in a row; the times are those of the fastest (default: 1, with --study 3)")
       .between(1, 1000000);
   line.option("--out", options.out, "write the target mesh with fields and status as ExodusII");
+  line.option("--picture",
+              options.picture,
+              "draw a cut through the target, the first field and its error, as SVG");
   line.option("--json", options.json, "write the report as JSON");
   line.flag("--explain", options.explain, "say what this transfer uses and what it left out");
   std::string study;

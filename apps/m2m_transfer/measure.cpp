@@ -15,31 +15,31 @@ void take(const Outcome& outcome, Problem& problem) {
   std::vector<double> status(problem.target.n_points());
   for (std::size_t i = 0; i < outcome.points.size(); ++i) {
     const auto vertex = static_cast<std::size_t>(outcome.points[i]);
-    ++problem.report.counts[static_cast<std::size_t>(outcome.status[i])];
     status[vertex] = static_cast<double>(outcome.status[i]);
     for (std::size_t f = 0; f < n_fields; ++f)
       problem.target_fields[f].values[vertex] = outcome.values[i * n_fields + f];
   }
   problem.target_fields.push_back({"status", 1, std::move(status)});
-  problem.report.n_candidates = outcome.n_candidates;
 }
 
 void judge(Problem& problem) {
   TransferReport& report = problem.report;
   std::uint64_t hash = result_hash({});
+  const Field& status = problem.target_fields.back();
+  std::vector<bool> found(status.values.size());
+  for (std::size_t v = 0; v < found.size(); ++v)
+    found[v] = status.values[v] != static_cast<double>(Status::outside);
   for (std::size_t f = 0; f < problem.truth.size(); ++f) {
     const Field& truth = problem.truth[f];
     const std::vector<double>& values = problem.target_fields[f].values;
-    report.fields.push_back({truth.name, error_norms(problem.target, values, truth.values)});
+    report.fields.push_back({truth.name,
+                             error_norms(problem.target, values, truth.values),
+                             error_norms(problem.target, values, truth.values, found)});
     hash = result_hash(values, hash);
   }
   report.result_hash = hash;
   report.worst_at =
       problem.target.points[static_cast<std::size_t>(report.fields.front().norms.worst)];
-}
-
-void end(const DistributedMesh& mesh) {
-  for (std::int32_t k = 0; k < mesh.n_parts; ++k) mesh.workers[{k}].destroy();
 }
 
 }  // namespace
@@ -64,15 +64,17 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   options.policy = problem.policy;
   options.on_phase = [&progress](const char* name) { progress.phase(name); };
   for (std::int32_t round = 0; round < problem.repeat; ++round) {
-    TransferTimes times;
-    co_await transfer(source, target, options, &times);
+    TransferSummary summary;
+    co_await transfer(source, target, options, &summary);
     PhaseSeconds& best = report.seconds;
-    if (round == 0 || times.broad + times.narrow + times.report < best.transfer()) {
-      best.broad = times.broad;
-      best.narrow = times.narrow;
-      best.report = times.report;
+    if (round == 0 || summary.broad + summary.narrow + summary.report < best.transfer()) {
+      best.broad = summary.broad;
+      best.narrow = summary.narrow;
+      best.report = summary.report;
     }
     if (round != 0) continue;
+    report.counts = summary.tally.counts;
+    report.n_candidates = summary.tally.n_candidates;
     gauge.broadcast<&Gauge::read>(after.callback());
     report.footprint.bytes_sent = (co_await after).bytes_sent - sent_before.bytes_sent;
   }
@@ -86,8 +88,8 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   report.footprint.peak_memory_bytes = peak.peak_memory_bytes;
   report.footprint.greatest_peak_memory_bytes = peak.greatest_peak_memory_bytes;
   co_await epoch([&] {
-    end(source);
-    end(target);
+    source.destroy();
+    target.destroy();
   });
 }
 

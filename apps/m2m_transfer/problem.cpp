@@ -39,6 +39,8 @@ Problem load(const Request& request, const Machine& machine) {
   TransferReport& report = problem.report;
   report.source = request.source;
   report.target = request.target;
+  report.source_skipped = skipped_text(problem.source);
+  report.target_skipped = skipped_text(problem.target);
   report.policy = request.policy;
   report.machine = machine.describe();
   report.pes = machine.n_pes();

@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/report.hpp"
 
+#include <array>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -10,20 +11,48 @@ double megabytes(std::uint64_t bytes) {
   return static_cast<double>(bytes) / 1e6;
 }
 
+nlohmann::ordered_json norms_of(const ErrorNorms& norms) {
+  return {{"l2", norms.l2},
+          {"l2_relative", norms.l2_relative},
+          {"rms", norms.rms},
+          {"linf", norms.linf}};
+}
+
+/// What the numbers mean.
+struct Definition {
+  const char* name;
+  const char* meaning;
+};
+constexpr std::array definitions{
+    Definition{"e", "value - truth at a vertex of the target"},
+    Definition{"l2", "sqrt(sum m e^2); m: a quarter of the volume of the vertex's tetrahedra"},
+    Definition{"l2_relative", "l2 / sqrt(sum m truth^2)"},
+    Definition{"rms", "sqrt(mean e^2)"},
+    Definition{"linf", "max |e|"},
+    Definition{"all",
+               "sums, mean and maximum over all vertices; those outside have what the policy gave"},
+    Definition{"found", "the same over vertices that are inside, boundary or snapped"}};
+
+/// {"vertices": n, "l2": …}; null where no vertex was found.
+nlohmann::ordered_json found_of(const ErrorNorms& norms) {
+  if (norms.n_vertices == 0) return nullptr;
+  auto out = norms_of(norms);
+  out["vertices"] = norms.n_vertices;
+  return out;
+}
+
 nlohmann::ordered_json pair_of(const TransferReport& r) {
   nlohmann::ordered_json pair;
   pair["source"] = r.source;
   pair["target"] = r.target;
+  pair["skipped"] = {{"source", r.source_skipped}, {"target", r.target_skipped}};
   pair["targets"] = r.targets;
   pair["inside"] = r.counts[0];
   pair["boundary"] = r.counts[1];
   pair["snapped"] = r.counts[2];
   pair["outside"] = r.counts[3];
-  const ErrorNorms& first = r.fields.front().norms;
-  pair["l2"] = first.l2;
-  pair["l2_relative"] = first.l2_relative;
-  pair["rms"] = first.rms;
-  pair["linf"] = first.linf;
+  pair.update(norms_of(r.fields.front().norms));
+  pair["found"] = found_of(r.fields.front().found);
   pair["candidates"] = r.n_candidates;
   pair["seconds"] = {{"read", r.seconds.read},
                      {"setup", r.seconds.setup},
@@ -44,12 +73,12 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair["chares"] = r.chares;
   pair["voxel"] = r.voxel;
   pair["fields"] = nlohmann::ordered_json::array();
-  for (const FieldError& field : r.fields)
-    pair["fields"].push_back({{"name", field.name},
-                              {"l2", field.norms.l2},
-                              {"l2_relative", field.norms.l2_relative},
-                              {"rms", field.norms.rms},
-                              {"linf", field.norms.linf}});
+  for (const FieldError& field : r.fields) {
+    nlohmann::ordered_json of_field{{"name", field.name}};
+    of_field.update(norms_of(field.norms));
+    of_field["found"] = found_of(field.found);
+    pair["fields"].push_back(std::move(of_field));
+  }
   return pair;
 }
 
@@ -64,6 +93,8 @@ std::string table(const TransferReport& r) {
   line("machine", r.machine);
   line("chares", fmt::format("{} a mesh, voxels of {:.4g}", r.chares, r.voxel));
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
+  if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
+  if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
   line("found",
        fmt::format("{} inside, {} boundary, {} snapped, {} outside",
                    r.counts[0],
@@ -74,15 +105,25 @@ std::string table(const TransferReport& r) {
        fmt::format("{} ({:.2f} a vertex)",
                    r.n_candidates,
                    static_cast<double>(r.n_candidates) / static_cast<double>(r.targets)));
-  out += fmt::format(
-      "  {:<12} {:>11} {:>11} {:>11} {:>11}\n", "error", "L2", "relative", "RMS", "Linf");
-  for (const FieldError& field : r.fields)
-    out += fmt::format("  {:<12} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}\n",
-                       field.name,
-                       field.norms.l2,
-                       field.norms.l2_relative,
-                       field.norms.rms,
-                       field.norms.linf);
+  const auto errors = [&](const std::string& title, auto&& norms_of_field) {
+    out += fmt::format(
+        "  {:<26} {:>11} {:>11} {:>11} {:>11}\n", title, "L2", "relative", "RMS", "Linf");
+    for (const FieldError& field : r.fields) {
+      const ErrorNorms norms = norms_of_field(field);
+      out += fmt::format("  {:<26} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}\n",
+                         field.name,
+                         norms.l2,
+                         norms.l2_relative,
+                         norms.rms,
+                         norms.linf);
+    }
+  };
+  const std::size_t n_found = r.fields.front().found.n_vertices;
+  if (n_found > 0 && n_found < r.targets)
+    errors(fmt::format("error, {} found", n_found), [](const FieldError& f) { return f.found; });
+  errors(n_found == r.targets ? fmt::format("error, {} all found", r.targets)
+                              : fmt::format("error, all {}", r.targets),
+         [](const FieldError& f) { return f.norms; });
   line("worst at",
        fmt::format("({:.4g}, {:.4g}, {:.4g})", r.worst_at[0], r.worst_at[1], r.worst_at[2]));
   out += fmt::format("  {:<12} {:>11} {:>11} {:>11} {:>11} {:>11}\n",
@@ -107,11 +148,19 @@ std::string table(const TransferReport& r) {
                    megabytes(r.footprint.greatest_peak_memory_bytes),
                    megabytes(r.footprint.bytes_sent)));
   line("result", fmt::format("{:016x}", r.result_hash));
+  out +=
+      "  with e = value - truth and m = a quarter of the volume of a vertex's tetrahedra:\n"
+      "  L2 = sqrt(sum m e^2), relative = L2 / sqrt(sum m truth^2), RMS = sqrt(mean e^2), Linf = "
+      "max "
+      "|e|,\n  over the vertices found (inside, boundary, snapped), and over all (outside: what "
+      "the "
+      "policy gave)\n";
   return out;
 }
 
 std::string json(const std::vector<TransferReport>& reports) {
   nlohmann::ordered_json whole;
+  for (const Definition& d : definitions) whole["definitions"][d.name] = d.meaning;
   whole["pairs"] = nlohmann::ordered_json::array();
   for (const TransferReport& report : reports) whole["pairs"].push_back(pair_of(report));
   return whole.dump(2) + "\n";

@@ -21,11 +21,13 @@ struct PhaseSeconds {
 /// One field's distance from the truth.
 struct FieldError {
   std::string name;
-  ErrorNorms norms;
+  ErrorNorms norms;  ///< over all vertices of the target
+  ErrorNorms found;  ///< over those that are not outside
 };
 
 struct TransferReport {
   std::string source, target, policy, machine;
+  std::string source_skipped, target_skipped;  ///< elements that are no volumes: "120 TRI3"
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
   double source_edge = 0;  ///< of a cube that holds six of its tetrahedra: 1/N for kuhn:N
@@ -40,7 +42,7 @@ struct TransferReport {
 };
 
 [[nodiscard]] std::string table(const TransferReport& report);
-/// {"pairs": [{…}]}
+/// {"definitions": {…}, "pairs": [{…}]}
 [[nodiscard]] std::string json(const std::vector<TransferReport>& reports);
 
 }  // namespace tess::m2m

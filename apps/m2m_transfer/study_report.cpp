@@ -94,7 +94,7 @@ std::string table(const Study& study) {
   const bool policies = several_policies(study);
   Text to(out);
   fmt::format_to(to,
-                 "  {:<{}} {:<{}} {:>9} {:>9} {:>9} {:>8}  {:<10} {:>11} {:>11}{}\n",
+                 "  {:<{}} {:<{}} {:>9} {:>9} {:>9} {:>8}  {:<10} {:>11} {:>11} {:>11} {:>11}{}\n",
                  "source",
                  wide,
                  "target",
@@ -106,6 +106,8 @@ std::string table(const Study& study) {
                  "field",
                  "L2",
                  "Linf",
+                 "L2 found",
+                 "Linf found",
                  policies ? "  policy" : "");
   for (const TransferReport& r : study.reports) {
     for (const FieldError& field : r.fields) {
@@ -124,21 +126,26 @@ std::string table(const Study& study) {
       else
         fmt::format_to(to, "{:{}}", "", 2 * wide + 42);
       fmt::format_to(to,
-                     "  {:<10} {:>11.4e} {:>11.4e}{}\n",
+                     "  {:<10} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}{}\n",
                      field.name,
                      field.norms.l2,
                      field.norms.linf,
+                     field.found.l2,
+                     field.found.linf,
                      policies ? "  " + r.policy : std::string());
     }
   }
-  fmt::format_to(
-      to,
-      "fitted powers: error ~ edge^p, error ~ seconds^q\n  {:<22} {:>8} {:>8} {:>10} {:>10}\n",
-      "field",
-      "p(L2)",
-      "p(Linf)",
-      "q(L2)",
-      "q(Linf)");
+  out +=
+      "L2: sqrt(sum m e^2), m the lumped mass; Linf: max |e|; over all vertices of the target, and "
+      "over those found\n";
+  fmt::format_to(to,
+                 "fitted powers (over all): error ~ edge^p, error ~ seconds^q\n  {:<22} {:>8} "
+                 "{:>8} {:>10} {:>10}\n",
+                 "field",
+                 "p(L2)",
+                 "p(Linf)",
+                 "q(L2)",
+                 "q(Linf)");
   for (const Trend& t : trends(study)) {
     const std::string name = t.field + (policies ? ", " + t.policy : std::string());
     if (t.exact)
@@ -176,38 +183,43 @@ std::string json(const Study& study) {
 std::string csv(const Study& study) {
   std::string out =
       "source,target,policy,field,edge,source_tets,targets,inside,boundary,snapped,outside,l2,"
-      "l2_relative,rms,linf,candidates,setup,broad,narrow,report,transfer,bytes_sent,pes,"
+      "l2_relative,rms,linf,l2_found,l2_relative_found,rms_found,linf_found,candidates,setup,broad,"
+      "narrow,report,transfer,bytes_sent,pes,"
       "processes,result_hash\n";
   for (const TransferReport& r : study.reports)
     for (const FieldError& field : r.fields)
-      fmt::format_to(
-          Text(out),
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:016x}\n",
-          plot::csv_field(r.source),
-          plot::csv_field(r.target),
-          plot::csv_field(r.policy),
-          plot::csv_field(field.name),
-          r.source_edge,
-          r.source_tets,
-          r.targets,
-          r.counts[0],
-          r.counts[1],
-          r.counts[2],
-          r.counts[3],
-          field.norms.l2,
-          field.norms.l2_relative,
-          field.norms.rms,
-          field.norms.linf,
-          r.n_candidates,
-          r.seconds.setup,
-          r.seconds.broad,
-          r.seconds.narrow,
-          r.seconds.report,
-          r.seconds.transfer(),
-          r.footprint.bytes_sent,
-          r.pes,
-          r.processes,
-          r.result_hash);
+      fmt::format_to(Text(out),
+                     "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}"
+                     ",{},{},{:016x}\n",
+                     plot::csv_field(r.source),
+                     plot::csv_field(r.target),
+                     plot::csv_field(r.policy),
+                     plot::csv_field(field.name),
+                     r.source_edge,
+                     r.source_tets,
+                     r.targets,
+                     r.counts[0],
+                     r.counts[1],
+                     r.counts[2],
+                     r.counts[3],
+                     field.norms.l2,
+                     field.norms.l2_relative,
+                     field.norms.rms,
+                     field.norms.linf,
+                     field.found.l2,
+                     field.found.l2_relative,
+                     field.found.rms,
+                     field.found.linf,
+                     r.n_candidates,
+                     r.seconds.setup,
+                     r.seconds.broad,
+                     r.seconds.narrow,
+                     r.seconds.report,
+                     r.seconds.transfer(),
+                     r.footprint.bytes_sent,
+                     r.pes,
+                     r.processes,
+                     r.result_hash);
   return out;
 }
 

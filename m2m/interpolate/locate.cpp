@@ -69,7 +69,7 @@ bool snaps(const Point& p,
 std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corners) {
   for (std::size_t i = 0; i < 4; ++i) {
     if (p == corners[i]) {
-      Location vertex{{}, 0, Status::boundary};
+      Location vertex{{}, 0, Status::boundary, Place::corner};
       vertex.weights[i] = 1;
       return vertex;
     }

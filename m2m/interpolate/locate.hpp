@@ -33,7 +33,13 @@ struct Location {
   Weights weights;   ///< sum 1, of the tetrahedron's vertices in its order
   double violation;  ///< max(0, -least weight)
   Status status;     ///< inside, boundary or snapped
+  Place place = Place::elsewhere;
 };
+
+/// The claim of the tetrahedron of that global number, where the point is located in it.
+[[nodiscard]] inline Candidate claim_of(const Location& location, GlobalId tet) noexcept {
+  return {location.violation, tet, location.status, location.place};
+}
 
 /// Where `p` lies with respect to the tetrahedron of these corners; nothing where it is outside
 /// beyond the tolerance.

@@ -1,5 +1,6 @@
 #include "m2m/io/exodus_reader.hpp"
 
+#include "m2m/io/exodus_elements.hpp"
 #include "m2m/io/netcdf_header.hpp"
 #include "runtime/error.hpp"
 
@@ -89,13 +90,37 @@ class ExodusReader {
            " vertices; at most 2147483647 fit in one mesh, split it");
     }
     if (n > 0) read_points(mesh, n);
-    std::vector<std::int64_t> ids(static_cast<std::size_t>(n_blocks));
-    if (n_blocks > 0) check(ex_get_ids(id_, EX_ELEM_BLOCK, ids.data()), "ex_get_ids");
-    for (const std::int64_t block : ids) read_block(mesh, block, most);
+    set_name_length();
+    for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks)) read_block(mesh, block, most);
+    read_sets(mesh, most);
     return mesh;
   }
 
  private:
+  /// Names may be longer than the 32 characters that the library returns by itself.
+  void set_name_length() {
+    constexpr std::int64_t longest = 255;
+    const std::int64_t used = ex_inquire_int(id_, EX_INQ_DB_MAX_USED_NAME_LENGTH);
+    ex_set_max_name_length(id_, static_cast<int>(std::clamp<std::int64_t>(used, 32, longest)));
+  }
+
+  /// Numbers of blocks or sets, in file order. Each occurs once.
+  [[nodiscard]] std::vector<std::int64_t> ids_of(ex_entity_type type, std::int64_t n) const {
+    std::vector<std::int64_t> ids(static_cast<std::size_t>(n));
+    if (n > 0) check(ex_get_ids(id_, type, ids.data()), "ex_get_ids");
+    std::vector<std::int64_t> sorted = ids;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+      damaged("a number that two blocks or sets have", -1);
+    return ids;
+  }
+
+  [[nodiscard]] std::string name_of(ex_entity_type type, std::int64_t id) const {
+    std::array<char, 512> name{};
+    if (ex_get_name(id_, type, id, name.data()) < 0) return {};  // files before names
+    return name.data();
+  }
+
   [[noreturn]] void damaged(const char* call, int code) const {
     fail(ErrorCode::bad_file,
          path_,
@@ -124,21 +149,24 @@ class ExodusReader {
       mesh.points[i] = {axes[0][i], axes[1][i], axes[2][i]};
   }
 
-  void read_block(TetMesh& mesh, std::int64_t id, std::int64_t most) const {
+  void read_block(TetMesh& mesh, std::int64_t id, std::int64_t most) {
     ex_block block{};
     block.id = id;
     block.type = EX_ELEM_BLOCK;
     check(ex_get_block_param(id_, &block), "ex_get_block_param");
     block.topology[MAX_STR_LENGTH] = '\0';
     if (block.num_entry == 0) return;
+    if (block.num_entry < 0 || block.num_entry > most - n_elements_)
+      damaged("number of elements", -1);
+    n_elements_ += block.num_entry;
     std::string type = block.topology;
     for (char& c : type) {
       c = std::isprint(static_cast<unsigned char>(c)) != 0
               ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
               : '?';
     }
-    const bool tet = type == "TET4" || type == "TET" || type == "TETRA" || type == "TETRA4";
-    if (!tet || block.num_nodes_per_entry != 4) {
+    const ExodusElement element = exodus_element(type, block.num_nodes_per_entry);
+    if (element == ExodusElement::other) {
       fail(ErrorCode::bad_mesh,
            path_,
            ": block ",
@@ -149,7 +177,11 @@ class ExodusReader {
            block.num_nodes_per_entry,
            " vertices; only TET4 is read: mesh it with linear tetrahedra");
     }
-    if (block.num_entry < 0 || block.num_entry > most) damaged("number of elements", -1);
+    if (element == ExodusElement::no_volume) return skip(mesh, type, block.num_entry);
+    mesh.blocks.push_back(
+        {id, name_of(EX_ELEM_BLOCK, id), static_cast<std::size_t>(block.num_entry)});
+    element_runs_.push_back(
+        {n_elements_, static_cast<GlobalId>(mesh.n_tets()) - (n_elements_ - block.num_entry)});
     const auto n = static_cast<std::size_t>(block.num_entry);
     std::vector<std::int64_t> vertices(4 * n);
     check(ex_get_n_conn(
@@ -180,8 +212,113 @@ class ExodusReader {
     }
   }
 
+  void skip(TetMesh& mesh, const std::string& type, std::int64_t n) {
+    const auto known = std::find_if(mesh.skipped.begin(),
+                                    mesh.skipped.end(),
+                                    [&](const Skipped& other) { return other.type == type; });
+    if (known == mesh.skipped.end())
+      mesh.skipped.push_back({type, static_cast<std::uint64_t>(n)});
+    else
+      known->n_elements += static_cast<std::uint64_t>(n);
+    element_runs_.push_back({n_elements_, std::nullopt});
+  }
+
+  /// The tetrahedron that is this element of the file (counted from 1 over all blocks); -1 for an
+  /// element that was skipped, -2 for one that is not there.
+  [[nodiscard]] GlobalId tet_of(std::int64_t element) const {
+    const auto run = std::partition_point(
+        element_runs_.begin(), element_runs_.end(), [&](const Run& r) { return r.last < element; });
+    if (element < 1 || run == element_runs_.end()) return -2;
+    return run->shift ? element - 1 + *run->shift : -1;
+  }
+
+  void read_sets(TetMesh& mesh, std::int64_t most) const {
+    const std::int64_t n_side_sets = inquire(EX_INQ_SIDE_SETS);
+    const std::int64_t n_node_sets = inquire(EX_INQ_NODE_SETS);
+    if (n_side_sets > most || n_node_sets > most) damaged("number of sets", -1);
+    for (const std::int64_t id : ids_of(EX_SIDE_SET, n_side_sets)) read_side_set(mesh, id, most);
+    for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id, most);
+  }
+
+  /// How many entries and distribution factors a set has.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type,
+                                                            std::int64_t id,
+                                                            std::int64_t most) const {
+    std::int64_t n = 0, n_factors = 0;
+    check(ex_get_set_param(id_, type, id, &n, &n_factors), "ex_get_set_param");
+    if (n < 0 || n > most || n_factors < 0 || n_factors > most) damaged("size of a set", -1);
+    return {static_cast<std::size_t>(n), static_cast<std::size_t>(n_factors)};
+  }
+
+  [[nodiscard]] std::vector<double> factors_of(ex_entity_type type,
+                                               std::int64_t id,
+                                               std::size_t n) const {
+    std::vector<double> factors(n);
+    if (n > 0) check(ex_get_set_dist_fact(id_, type, id, factors.data()), "ex_get_set_dist_fact");
+    return factors;
+  }
+
+  /// Sides of skipped elements are left out, and with them the set's factors, which are not told
+  /// apart by side.
+  void read_side_set(TetMesh& mesh, std::int64_t id, std::int64_t most) const {
+    const auto [n, n_factors] = size_of(EX_SIDE_SET, id, most);
+    std::vector<std::int64_t> elements(n), sides(n);
+    if (n > 0) check(ex_get_set(id_, EX_SIDE_SET, id, elements.data(), sides.data()), "ex_get_set");
+    SideSet set{id, name_of(EX_SIDE_SET, id)};
+    for (std::size_t i = 0; i < n; ++i) {
+      const GlobalId tet = tet_of(elements[i]);
+      if (tet == -1) continue;
+      if (tet < 0 || sides[i] < 1 || sides[i] > 4) {
+        fail(ErrorCode::bad_mesh,
+             path_,
+             ": side set ",
+             id,
+             " names side ",
+             sides[i],
+             " of element ",
+             elements[i],
+             " of ",
+             n_elements_,
+             "; write the mesh again");
+      }
+      set.entries.push_back({tet, static_cast<std::int32_t>(sides[i])});
+    }
+    if (set.entries.size() == n) set.factors = factors_of(EX_SIDE_SET, id, n_factors);
+    mesh.side_sets.push_back(std::move(set));
+  }
+
+  void read_node_set(TetMesh& mesh, std::int64_t id, std::int64_t most) const {
+    const auto [n, n_factors] = size_of(EX_NODE_SET, id, most);
+    std::vector<std::int64_t> vertices(n);
+    if (n > 0) check(ex_get_set(id_, EX_NODE_SET, id, vertices.data(), nullptr), "ex_get_set");
+    NodeSet set{id, name_of(EX_NODE_SET, id), {}, factors_of(EX_NODE_SET, id, n_factors)};
+    for (const std::int64_t vertex : vertices) {
+      if (vertex < 1 || vertex > static_cast<std::int64_t>(mesh.n_points())) {
+        fail(ErrorCode::bad_mesh,
+             path_,
+             ": node set ",
+             id,
+             " names vertex ",
+             vertex,
+             " of ",
+             mesh.n_points(),
+             "; write the mesh again");
+      }
+      set.entries.push_back(static_cast<VertexId>(vertex - 1));
+    }
+    mesh.node_sets.push_back(std::move(set));
+  }
+
+  /// The elements of a block of the file.
+  struct Run {
+    std::int64_t last;              // of the file's elements, counted from 1
+    std::optional<GlobalId> shift;  // from element - 1 to tetrahedron; none where they were skipped
+  };
+
   const std::string& path_;
   int id_ = -1;
+  std::int64_t n_elements_ = 0;    // read so far, skipped ones included
+  std::vector<Run> element_runs_;  // in file order
 };
 
 }  // namespace

@@ -11,8 +11,9 @@
 
 namespace tess::m2m {
 
-/// All blocks of TET4 elements, in file order, as one mesh. Throws Error (bad_file) on damage,
-/// (bad_mesh) on elements of another type or fewer than three dimensions. `bytes`: the content of
+/// All blocks of TET4 elements, in file order, as one mesh, with the file's side and node sets.
+/// Blocks of surface, line and point elements are skipped and counted. Throws Error (bad_file) on
+/// damage, (bad_mesh) on other solids or fewer than three dimensions. `bytes`: the content of
 /// the file at `path`.
 [[nodiscard]] TetMesh read_exodus(const std::string& path, std::string_view bytes);
 

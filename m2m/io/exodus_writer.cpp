@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <exodusII.h>
 #include <fmt/core.h>
+#include <limits>
 #include <system_error>
 #include <unistd.h>
 #include <vector>
@@ -112,10 +113,78 @@ class PartFile {
   int id_ = -1;
 };
 
-void put_mesh(const PartFile& file, const TetMesh& mesh) {
-  const auto n_points = static_cast<std::int64_t>(mesh.n_points());
-  const auto n_tets = static_cast<std::int64_t>(mesh.n_tets());
-  file.check(ex_put_init(file.id(), "Tessera mesh transfer", 3, n_points, n_tets, 1, 0, 0),
+/// The mesh's blocks, or one for all.
+std::vector<Block> blocks_of(const TetMesh& mesh) {
+  return mesh.blocks.empty() ? std::vector{Block{1, {}, mesh.n_tets()}} : mesh.blocks;
+}
+
+void put_name(const PartFile& file, ex_entity_type type, std::int64_t id, const std::string& name) {
+  if (!name.empty()) file.check(ex_put_name(file.id(), type, id, name.c_str()), "ex_put_name");
+}
+
+void put_blocks(const PartFile& file, const TetMesh& mesh, const std::vector<Block>& blocks) {
+  std::size_t first = 0;
+  std::vector<int> vertices;
+  for (const Block& block : blocks) {
+    const auto n = static_cast<std::int64_t>(block.n_tets);
+    file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, block.id, "TET4", n, 4, 0, 0, 0),
+               "ex_put_block");
+    put_name(file, EX_ELEM_BLOCK, block.id, block.name);
+    vertices.clear();
+    for (std::size_t t = first; t < first + block.n_tets; ++t)
+      for (const VertexId v : mesh.tets[t]) vertices.push_back(v + 1);
+    if (n > 0)
+      file.check(ex_put_conn(file.id(), EX_ELEM_BLOCK, block.id, vertices.data(), nullptr, nullptr),
+                 "ex_put_conn");
+    first += block.n_tets;
+  }
+}
+
+template <class Entry>
+void put_set(const PartFile& file,
+             ex_entity_type type,
+             const EntrySet<Entry>& set,
+             const std::vector<int>& entries,
+             const int* extra) {
+  file.check(ex_put_set_param(file.id(),
+                              type,
+                              set.id,
+                              static_cast<std::int64_t>(entries.size()),
+                              static_cast<std::int64_t>(set.factors.size())),
+             "ex_put_set_param");
+  put_name(file, type, set.id, set.name);
+  if (!entries.empty())
+    file.check(ex_put_set(file.id(), type, set.id, entries.data(), extra), "ex_put_set");
+  if (!set.factors.empty())
+    file.check(ex_put_set_dist_fact(file.id(), type, set.id, set.factors.data()),
+               "ex_put_set_dist_fact");
+}
+
+void put_sets(const PartFile& file, const TetMesh& mesh) {
+  for (const SideSet& set : mesh.side_sets) {
+    std::vector<int> elements, sides;
+    for (const Side& side : set.entries) {
+      elements.push_back(static_cast<int>(side.tet + 1));
+      sides.push_back(side.side);
+    }
+    put_set(file, EX_SIDE_SET, set, elements, sides.data());
+  }
+  for (const NodeSet& set : mesh.node_sets) {
+    std::vector<int> vertices;
+    for (const VertexId v : set.entries) vertices.push_back(v + 1);
+    put_set(file, EX_NODE_SET, set, vertices, nullptr);
+  }
+}
+
+void put_mesh(const PartFile& file, const TetMesh& mesh, const std::vector<Block>& blocks) {
+  file.check(ex_put_init(file.id(),
+                         "Tessera mesh transfer",
+                         3,
+                         static_cast<std::int64_t>(mesh.n_points()),
+                         static_cast<std::int64_t>(mesh.n_tets()),
+                         static_cast<std::int64_t>(blocks.size()),
+                         static_cast<std::int64_t>(mesh.node_sets.size()),
+                         static_cast<std::int64_t>(mesh.side_sets.size())),
              "ex_put_init");
   std::array<std::vector<double>, 3> axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -126,14 +195,8 @@ void put_mesh(const PartFile& file, const TetMesh& mesh) {
   std::array<char, 2> x{"x"}, y{"y"}, z{"z"};
   std::array<char*, 3> names{x.data(), y.data(), z.data()};
   file.check(ex_put_coord_names(file.id(), names.data()), "ex_put_coord_names");
-  file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, 1, "TET4", n_tets, 4, 0, 0, 0), "ex_put_block");
-  std::vector<int> vertices;
-  vertices.reserve(4 * mesh.n_tets());
-  for (const Tet& tet : mesh.tets) {
-    for (const VertexId v : tet) vertices.push_back(v + 1);
-  }
-  file.check(ex_put_conn(file.id(), EX_ELEM_BLOCK, 1, vertices.data(), nullptr, nullptr),
-             "ex_put_conn");
+  put_blocks(file, mesh, blocks);
+  put_sets(file, mesh);
 }
 
 void name_variables(const PartFile& file, ex_entity_type type, const std::vector<Variable>& all) {
@@ -146,25 +209,58 @@ void name_variables(const PartFile& file, ex_entity_type type, const std::vector
   }
 }
 
-void put_variables(const PartFile& file,
-                   ex_entity_type type,
-                   const std::vector<Variable>& all,
-                   std::size_t n_rows) {
-  std::vector<double> column(n_rows);
+/// Values of some consecutive rows: of all vertices, or of the tetrahedra of a block.
+struct Rows {
+  ex_entity_type type;
+  std::int64_t id;
+  std::size_t first, n;
+};
+
+void put_variables(const PartFile& file, const std::vector<Variable>& all, const Rows& rows) {
+  if (rows.n == 0) return;
+  std::vector<double> column(rows.n);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Field& field = *all[i].field;
-    for (std::size_t row = 0; row < n_rows; ++row) {
-      column[row] = field.values[row * field.n_components + all[i].component];
-    }
+    for (std::size_t row = 0; row < rows.n; ++row)
+      column[row] = field.values[(rows.first + row) * field.n_components + all[i].component];
     file.check(ex_put_var(file.id(),
                           1,
-                          type,
+                          rows.type,
                           static_cast<int>(i + 1),
-                          1,
-                          static_cast<std::int64_t>(n_rows),
+                          rows.id,
+                          static_cast<std::int64_t>(rows.n),
                           column.data()),
                "ex_put_var");
   }
+}
+
+/// Numbers of blocks and sets are 32 bits in this kind of file, names have an end.
+void check_groups(const TetMesh& mesh, const std::vector<Block>& blocks, const std::string& path) {
+  const auto check = [&](const char* kind, std::int64_t id, const std::string& name) {
+    if (id < 0 || id > std::numeric_limits<std::int32_t>::max() || name.size() > longest_name)
+      fail(ErrorCode::bad_value,
+           path,
+           ": ",
+           kind,
+           " ",
+           id,
+           " '",
+           name,
+           "' cannot be written; numbers reach from 0 to 2147483647, names have at most ",
+           longest_name,
+           " characters");
+  };
+  for (const Block& block : blocks) check("block", block.id, block.name);
+  for (const SideSet& set : mesh.side_sets) check("side set", set.id, set.name);
+  for (const NodeSet& set : mesh.node_sets) check("node set", set.id, set.name);
+}
+
+std::size_t longest_name_of(const TetMesh& mesh, const std::vector<Block>& blocks) {
+  std::size_t longest = 32;
+  for (const Block& block : blocks) longest = std::max(longest, block.name.size());
+  for (const SideSet& set : mesh.side_sets) longest = std::max(longest, set.name.size());
+  for (const NodeSet& set : mesh.node_sets) longest = std::max(longest, set.name.size());
+  return longest;
 }
 
 }  // namespace
@@ -175,19 +271,25 @@ void write_exodus(const std::string& path,
                   std::span<const Field> tet_fields) {
   const std::vector<Variable> nodal = variables(vertex_fields, mesh.n_points(), path);
   const std::vector<Variable> element = variables(tet_fields, mesh.n_tets(), path);
-  std::size_t longest = 32;
+  const std::vector<Block> blocks = blocks_of(mesh);
+  check_groups(mesh, blocks, path);
+  std::size_t longest = longest_name_of(mesh, blocks);
   for (const auto* list : {&nodal, &element}) {
     for (const Variable& variable : *list) longest = std::max(longest, variable.name.size());
   }
   PartFile file(path);
   ex_set_max_name_length(file.id(), static_cast<int>(longest));
-  put_mesh(file, mesh);
+  put_mesh(file, mesh, blocks);
   name_variables(file, EX_NODAL, nodal);
   name_variables(file, EX_ELEM_BLOCK, element);
   const double time = 0;
   file.check(ex_put_time(file.id(), 1, &time), "ex_put_time");
-  put_variables(file, EX_NODAL, nodal, mesh.n_points());
-  put_variables(file, EX_ELEM_BLOCK, element, mesh.n_tets());
+  put_variables(file, nodal, {EX_NODAL, 1, 0, mesh.n_points()});
+  std::size_t first = 0;
+  for (const Block& block : blocks) {
+    put_variables(file, element, {EX_ELEM_BLOCK, block.id, first, block.n_tets});
+    first += block.n_tets;
+  }
   file.finish();
 }
 

@@ -4,6 +4,7 @@
 #include "m2m/io/gmsh_scanner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -90,6 +91,10 @@ class GmshReader {
     }
     if (!have_nodes) file_.damaged("$Nodes is missing");
     if (!have_elements) file_.damaged("$Elements is missing");
+    for (const GmshElement& type : gmsh_elements) {
+      const std::uint64_t n = n_skipped_[static_cast<std::size_t>(type.number)];
+      if (n > 0) mesh_.skipped.push_back({std::string(type.name), n});
+    }
     return std::move(mesh_);
   }
 
@@ -197,7 +202,10 @@ class GmshReader {
 
   template <class Tag>
   void vertices(const GmshElement& type) {
-    if (type.number != gmsh_tet4) return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
+    if (type.number != gmsh_tet4) {
+      ++n_skipped_[static_cast<std::size_t>(type.number)];
+      return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
+    }
     Tet tet;
     for (VertexId& vertex : tet) {
       const Tag tag = file_.number<Tag>();
@@ -263,6 +271,7 @@ class GmshReader {
   TetMesh mesh_;
   std::vector<std::uint64_t> node_tags_;
   TagMap tags_;
+  std::array<std::uint64_t, 128> n_skipped_{};  // by number of type
   bool have_format_ = false;
   bool legacy_ = false;
   bool binary_ = false;

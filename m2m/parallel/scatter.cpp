@@ -2,6 +2,8 @@
 
 #include "runtime/check.hpp"
 
+#include <span>
+
 namespace tess::m2m {
 namespace {
 
@@ -44,8 +46,11 @@ DistributedMesh scatter(const TetMesh& mesh,
   out.workers = create<Worker>(range(n_parts));
   for (std::int32_t k = 0; k < n_parts; ++k) {
     MeshPart& part = parts[static_cast<std::size_t>(k)];
+    out.boxes.push_back(
+        box_around(std::span(part.points).first(static_cast<std::size_t>(part.n_owned))));
     std::vector<double> rows = rows_of(part, fields, out.n_components);
-    out.workers[{k}].send<&Worker::load>(std::move(part), std::move(rows));
+    out.workers[{k}].send<&Worker::load>(
+        PartLoad{std::move(part), out.n_components, std::move(rows)});
   }
   return out;
 }

@@ -20,6 +20,11 @@ struct DistributedMesh {
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 0;
   std::size_t n_components = 0;  ///< of all fields together
+  std::vector<Aabb> boxes{};     ///< of each part's own vertices; lo > hi where it has none
+
+  /// Ends the mesh, between two transfers: its Workers are freed on all PEs. The epoch that runs
+  /// waits for that.
+  void destroy() const { workers.destroy(); }
 };
 
 /// Sends the parts of a mesh, with their rows of the fields, to new Workers, spread evenly over all

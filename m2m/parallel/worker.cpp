@@ -1,7 +1,5 @@
 #include "m2m/parallel/worker.hpp"
 
-#include "m2m/search/nearest_vertex.hpp"
-
 #include <algorithm>
 
 namespace tess::m2m {
@@ -15,23 +13,53 @@ std::int32_t as_row(LocalId id) {
   return static_cast<std::int32_t>(id);
 }
 
+void call_target(const Callback<Hits>& callback, Hits&& hits) {
+  const auto [target, transfer] =
+      from_bytes<std::tuple<CollectionId, TransferId>>(callback.where());
+  const Index1 owner = index_of(hits.owner);
+  ArrayProxy<Worker>(target)[owner].send<&Worker::receive_hits>(transfer, std::move(hits));
+}
+const Callback<Hits>::Kind target_kind{naming::value<&call_target>(), &call_target};
+
 }  // namespace
 
 Outcome JoinOutcomes::operator()(Outcome a, const Outcome& b) const {
   a.points.insert(a.points.end(), b.points.begin(), b.points.end());
   a.status.insert(a.status.end(), b.status.begin(), b.status.end());
   a.values.insert(a.values.end(), b.values.begin(), b.values.end());
-  a.n_candidates += b.n_candidates;
   return a;
 }
 
-void Worker::load(MeshPart part, std::vector<double> values) {
-  part_ = std::move(part);
-  values_ = std::move(values);
+Callback<Hits> report_to_target(ArrayProxy<Worker> target, TransferId transfer) {
+  return Callback<Hits>(target_kind, to_bytes(std::tuple(target.id(), transfer)));
+}
+
+void Worker::load(PartLoad load) {
+  part_ = std::move(load.part);
+  n_components_ = load.n_components;
+  values_ = std::move(load.values);
+  status_.assign(static_cast<std::size_t>(part_.n_owned), Status::outside);
+}
+
+Worker::Outgoing& Worker::outgoing(TransferId transfer) {
+  const auto at = outgoing_.find(transfer);
+  TESS_CHECK(at != outgoing_.end(), "a transfer that this Worker is no source of");
+  return at->second;
+}
+
+Worker::Incoming& Worker::incoming(TransferId transfer) {
+  const auto at = incoming_.find(transfer);
+  TESS_CHECK(at != incoming_.end(), "a transfer that this Worker is no target of");
+  return at->second;
+}
+
+void Worker::put(Incoming& to, std::int32_t point, const double* values) const {
+  std::copy_n(values, n_components_, row(to.values, point));
+  to.is_new[static_cast<std::size_t>(point)] = 1;
 }
 
 void Worker::submit_tets(const TransferSetup& setup) {
-  setup_ = setup;
+  outgoing_.emplace(setup.id, Outgoing{setup});
   std::vector<Item> items;
   items.reserve(part_.tets.size());
   for (std::size_t t = 0; t < part_.tets.size(); ++t)
@@ -41,12 +69,11 @@ void Worker::submit_tets(const TransferSetup& setup) {
 }
 
 void Worker::submit_points(const TransferSetup& setup) {
-  setup_ = setup;
-  hits_.clear();
-  n_candidates_ = 0;
   const auto n_owned = static_cast<std::size_t>(part_.n_owned);
-  claims_.assign(n_owned, Candidate{});
-  nearest_.clear();
+  Incoming& to = incoming_.emplace(setup.id, Incoming{setup}).first->second;
+  to.claims.resize(n_owned);
+  to.values.resize(values_.size());
+  to.is_new.resize(part_.points.size());
   std::vector<Item> items;
   items.reserve(n_owned);
   for (std::size_t v = 0; v < n_owned; ++v)
@@ -54,13 +81,15 @@ void Worker::submit_points(const TransferSetup& setup) {
   setup.collider.submit(std::move(items));
 }
 
-void Worker::receive_hits(Hits hits) {
-  n_candidates_ += hits.pairs.size();
-  hits_.push_back(std::move(hits));
+void Worker::receive_hits(TransferId transfer, Hits hits) {
+  Incoming& to = incoming(transfer);
+  to.n_candidates += hits.pairs.size();
+  to.hits.push_back(std::move(hits));
 }
 
-void Worker::ask_sources() {
-  std::vector<Hits> all = std::exchange(hits_, {});
+void Worker::ask_sources(TransferId transfer) {
+  Incoming& to = incoming(transfer);
+  std::vector<Hits> all = std::exchange(to.hits, {});
   std::vector<Query> queries;
   std::vector<OwnerId> sources;  // whom each query asks; few, so that they are sought one by one
   std::vector<std::uint32_t> query_of(all.size());
@@ -82,6 +111,7 @@ void Worker::ask_sources() {
     hits_of[query_of[h]].push_back(static_cast<std::uint32_t>(h));
   for (std::size_t q = 0; q < queries.size(); ++q) {
     Query& query = queries[q];
+    query.transfer = transfer;
     query.from = index();
     query.pairs.reserve(n_pairs[q]);
     query.rows.reserve(std::min(n_owned, n_pairs[q]));
@@ -101,11 +131,13 @@ void Worker::ask_sources() {
       query.points.push_back(part_.points[static_cast<std::size_t>(row)]);
       place[static_cast<std::size_t>(row)] = -1;
     }
-    setup_.source[index_of(sources[q])].send<&Worker::answer>(std::move(query));
+    to.setup.source[index_of(sources[q])].send<&Worker::answer>(std::move(query));
   }
 }
 
 void Worker::answer(Query query) {
+  const Outgoing& from = outgoing(query.transfer);
+  const std::vector<double>& values = from.values ? *from.values : values_;
   std::vector<Found> found;
   locate_pairs(part_.points, part_.tets, query.points, query.pairs, found);
   std::vector<Candidate> best(query.rows.size());
@@ -113,14 +145,13 @@ void Worker::answer(Query query) {
   for (const Found& f : found) {
     const PointPair& pair = query.pairs[static_cast<std::size_t>(f.pair)];
     const auto point = static_cast<std::size_t>(pair.point);
-    const Candidate claim{
-        f.location.violation, part_.tet_ids[static_cast<std::size_t>(pair.tet)], f.location.status};
+    const Candidate claim = claim_of(f.location, part_.tet_ids[static_cast<std::size_t>(pair.tet)]);
     if (!better(claim, best[point])) continue;
     best[point] = claim;
     winner[point] = &f;
   }
-  Answer answer;
-  const std::size_t n = setup_.n_components;
+  Answer answer{query.transfer, {}, {}, {}};
+  const std::size_t n = n_components_;
   answer.rows.reserve(best.size());
   answer.claims.reserve(best.size());
   answer.values.reserve(best.size() * n);
@@ -132,75 +163,149 @@ void Worker::answer(Query query) {
     answer.rows.push_back(query.rows[point]);
     answer.claims.push_back(best[point]);
     for (std::size_t c = 0; c < n; ++c)
-      answer.values.push_back(weigh(f.location.weights, tet, values_.data() + c, n));
+      answer.values.push_back(weigh(f.location.weights, tet, values.data() + c, n));
   }
   if (!answer.rows.empty())
-    setup_.target[query.from].send<&Worker::receive_answer>(std::move(answer));
+    from.setup.target[query.from].send<&Worker::receive_answer>(std::move(answer));
 }
 
 void Worker::receive_answer(const Answer& answer) {
-  const std::size_t n = setup_.n_components;
+  Incoming& to = incoming(answer.transfer);
   for (std::size_t i = 0; i < answer.rows.size(); ++i) {
-    Candidate& mine = claims_[static_cast<std::size_t>(answer.rows[i])];
+    Candidate& mine = to.claims[static_cast<std::size_t>(answer.rows[i])];
     if (!better(answer.claims[i], mine)) continue;
     mine = answer.claims[i];
-    std::copy_n(answer.values.data() + i * n, n, row(answer.rows[i]));
+    put(to, answer.rows[i], answer.values.data() + i * n_components_);
   }
 }
 
-void Worker::settle(const OutsidePolicy& policy) {
-  NearestQuery query{index(), {}, {}};
-  for (std::int32_t v = 0; v < static_cast<std::int32_t>(part_.n_owned); ++v) {
-    if (claims_[static_cast<std::size_t>(v)].status != Status::outside) continue;
-    if (const auto* given = std::get_if<UseValue>(&policy))
-      std::fill_n(row(v), setup_.n_components, given->value);
-    if (!std::holds_alternative<Nearest>(policy)) continue;
-    query.rows.push_back(v);
-    query.points.push_back(part_.points[static_cast<std::size_t>(v)]);
+void Worker::settle(const Settlement& settlement) {
+  Incoming& to = incoming(settlement.transfer);
+  if (std::holds_alternative<Keep>(settlement.policy)) return;
+  std::vector<std::int32_t> outside;
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(part_.n_owned); ++v)
+    if (to.claims[static_cast<std::size_t>(v)].status == Status::outside) outside.push_back(v);
+  if (outside.empty()) return;
+  if (const auto* given = std::get_if<UseValue>(&settlement.policy)) {
+    const std::vector<double> given_row(n_components_, given->value);
+    for (const std::int32_t v : outside) put(to, v, given_row.data());
+    return;
   }
-  if (query.rows.empty()) return;
-  nearest_.assign(static_cast<std::size_t>(part_.n_owned), NearestClaim{});
-  for (std::int32_t k = 0; k < setup_.n_source_parts; ++k)
-    setup_.source[{k}].send<&Worker::answer_nearest>(query);
+  Aabb box = box_of(part_.points[static_cast<std::size_t>(outside.front())]);
+  for (const std::int32_t v : outside)
+    box = merged(box, box_of(part_.points[static_cast<std::size_t>(v)]));
+  to.nearest_parts = NearestParts(settlement.source_boxes, box);
+  to.nearest.resize(to.claims.size());
+  ask_nearest(to, outside);
+}
+
+void Worker::ask_nearest(Incoming& to, std::span<const std::int32_t> rows) {
+  std::map<std::int32_t, NearestQuery> queries;  // by part
+  for (const std::int32_t v : rows) {
+    NearestClaim& mine = to.nearest[static_cast<std::size_t>(v)];
+    const Point& point = part_.points[static_cast<std::size_t>(v)];
+    const NearestParts::Part next = to.nearest_parts.next(point, mine.asked);
+    if (next == NearestParts::none || next.squared_distance > mine.squared_distance) continue;
+    mine.asked = next;
+    NearestQuery& query = queries[next.number];
+    query.rows.push_back(v);
+    query.points.push_back(point);
+    query.squared_reaches.push_back(mine.squared_distance);
+  }
+  for (auto& [part, query] : queries) {
+    query.transfer = to.setup.id;
+    query.from = index();
+    to.setup.source[{part}].send<&Worker::answer_nearest>(std::move(query));
+  }
 }
 
 void Worker::answer_nearest(NearestQuery query) {
-  if (part_.points.empty()) return;
-  const NearestVertex nearest(part_.points);
-  NearestAnswer answer;
-  answer.rows = std::move(query.rows);
-  for (const Point& point : query.points) {
-    const NearestVertex::Answer found = nearest.find(point);
+  Outgoing& from = outgoing(query.transfer);
+  std::vector<double>& values = from.values ? *from.values : values_;
+  if (!nearest_)
+    nearest_.emplace(std::span(part_.points).first(static_cast<std::size_t>(part_.n_owned)));
+  NearestAnswer answer{query.transfer, std::move(query.rows), {}, {}, {}};
+  answer.squared_distances.reserve(answer.rows.size());
+  answer.vertices.reserve(answer.rows.size());
+  answer.values.resize(answer.rows.size() * n_components_);
+  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+    const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
     answer.squared_distances.push_back(found.squared_distance);
-    answer.vertices.push_back(part_.point_ids[static_cast<std::size_t>(found.vertex)]);
-    const double* values = row(found.vertex);
-    answer.values.insert(answer.values.end(), values, values + setup_.n_components);
+    answer.vertices.push_back(
+        found.vertex < 0 ? -1 : part_.point_ids[static_cast<std::size_t>(found.vertex)]);
+    if (found.vertex >= 0)
+      std::copy_n(
+          row(values, found.vertex), n_components_, answer.values.data() + i * n_components_);
   }
-  setup_.target[query.from].send<&Worker::receive_nearest>(std::move(answer));
+  from.setup.target[query.from].send<&Worker::receive_nearest>(std::move(answer));
 }
 
 void Worker::receive_nearest(const NearestAnswer& answer) {
-  const std::size_t n = setup_.n_components;
+  Incoming& to = incoming(answer.transfer);
   for (std::size_t i = 0; i < answer.rows.size(); ++i) {
-    NearestClaim& mine = nearest_[static_cast<std::size_t>(answer.rows[i])];
+    NearestClaim& mine = to.nearest[static_cast<std::size_t>(answer.rows[i])];
     const double d = answer.squared_distances[i];
-    if (d > mine.squared_distance ||
-        (d == mine.squared_distance && answer.vertices[i] >= mine.vertex))
+    const GlobalId vertex = answer.vertices[i];
+    if (vertex < 0 || d > mine.squared_distance ||
+        (d == mine.squared_distance && vertex >= mine.vertex))
       continue;
-    mine = {d, answer.vertices[i]};
-    std::copy_n(answer.values.data() + i * n, n, row(answer.rows[i]));
+    mine.squared_distance = d;
+    mine.vertex = vertex;
+    put(to, answer.rows[i], answer.values.data() + i * n_components_);
+  }
+  ask_nearest(to, answer.rows);
+}
+
+void Worker::share(TransferId transfer) {
+  Incoming& to = incoming(transfer);
+  for (const Ghosts& ghosts : part_.ghosts) {
+    GhostRows message{transfer, {}, {}};
+    for (std::size_t i = 0; i < ghosts.here.size(); ++i) {
+      const std::int32_t v = ghosts.here[i];
+      if (to.is_new[static_cast<std::size_t>(v)] == 0) continue;
+      message.rows.push_back(ghosts.there[i]);
+      const double* values = row(to.values, v);
+      message.values.insert(message.values.end(), values, values + n_components_);
+    }
+    if (!message.rows.empty())
+      array()[{ghosts.part}].send<&Worker::receive_ghosts>(std::move(message));
   }
 }
 
+void Worker::receive_ghosts(const GhostRows& ghosts) {
+  Incoming& to = incoming(ghosts.transfer);
+  for (std::size_t i = 0; i < ghosts.rows.size(); ++i)
+    put(to, ghosts.rows[i], ghosts.values.data() + i * n_components_);
+}
+
+void Worker::take_over(TransferId transfer, Callback<Tally> tally) {
+  Incoming to = std::move(incoming(transfer));
+  incoming_.erase(transfer);
+  for (auto& [id, from] : outgoing_)
+    if (!from.values) from.values = values_;
+  for (std::size_t v = 0; v < to.is_new.size(); ++v) {
+    if (to.is_new[v] == 0) continue;
+    const auto point = static_cast<std::int32_t>(v);
+    std::copy_n(row(to.values, point), n_components_, row(values_, point));
+  }
+  Tally mine{{}, to.n_candidates};
+  for (std::size_t v = 0; v < status_.size(); ++v) {
+    status_[v] = to.claims[v].status;
+    ++mine.counts[static_cast<std::size_t>(status_[v])];
+  }
+  contribute(AddTallies{}, mine, std::move(tally));
+}
+
+void Worker::forget(TransferId transfer) {
+  outgoing_.erase(transfer);
+}
+
 void Worker::gather(Callback<Outcome> target) {
-  Outcome outcome;
-  const auto n_owned = static_cast<std::size_t>(part_.n_owned);
-  outcome.points.assign(part_.point_ids.begin(), part_.point_ids.begin() + part_.n_owned);
-  for (const Candidate& claim : claims_) outcome.status.push_back(claim.status);
-  outcome.values.assign(
-      values_.begin(),
-      values_.begin() + static_cast<std::ptrdiff_t>(n_owned * setup_.n_components));
-  outcome.n_candidates = n_candidates_;
+  const auto owned = static_cast<std::ptrdiff_t>(part_.n_owned);
+  const auto n = static_cast<std::ptrdiff_t>(n_components_);
+  Outcome outcome{{part_.point_ids.begin(), part_.point_ids.begin() + owned},
+                  status_,
+                  {values_.begin(), values_.begin() + owned * n}};
   contribute(JoinOutcomes{}, std::move(outcome), std::move(target));
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <mutex>
 #include <zoltan.h>
 
 #ifdef __SANITIZE_ADDRESS__
@@ -23,7 +24,14 @@ struct NotOurLeaks {
 };
 #endif
 
-/// Initialises MPI as a singleton where nobody has; who initialises it finalises it.
+/// Zoltan and the MPI below it are one per process, and neither is reentrant: one call at a time.
+std::mutex& zoltan_turn() {
+  static std::mutex turn;
+  return turn;
+}
+
+/// Initialises MPI as a singleton where that has not been done, and finalises it at exit then. Call
+/// it in turn.
 void need_mpi() {
   int up = 0;
   MPI_Initialized(&up);
@@ -130,10 +138,11 @@ std::vector<std::int32_t> partition(const TetMesh& mesh,
   }
   std::vector<std::int32_t> parts(mesh.n_tets(), 0);
   if (n_parts == 1) return parts;
+  std::vector<Point> centres = centroids(mesh);
+  const std::lock_guard in_turn(zoltan_turn());
   need_mpi();
   float version = 0;
   check(Zoltan_Initialize(0, nullptr, &version), "Zoltan_Initialize");
-  std::vector<Point> centres = centroids(mesh);
   Zoltan zoltan;
   zoltan.set("DEBUG_LEVEL", "0");
   zoltan.set("LB_METHOD", method == PartitionMethod::rcb ? "RCB" : "HSFC");

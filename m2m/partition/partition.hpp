@@ -19,9 +19,9 @@ enum class PartitionMethod {
 [[nodiscard]] PartitionMethod parse_partition_method(const std::string& name);
 
 /// The part (0 to n_parts - 1) of every tetrahedron; some parts are empty where there are more
-/// parts than tetrahedra. Zoltan needs MPI: where nobody has initialised it, this call does (as a
-/// singleton), and it is finalised at exit. One thread at a time. Throws Error (bad_argument) on no
-/// part, (environment) where Zoltan fails.
+/// parts than tetrahedra. Zoltan needs MPI: where it has not been initialised, this call does so
+/// (as a singleton), and it is finalised at exit. Any thread may call it; calls of one process take
+/// turns. Throws Error (bad_argument) on no part, (environment) where Zoltan fails.
 [[nodiscard]] std::vector<std::int32_t> partition(const TetMesh& mesh,
                                                   std::int32_t n_parts,
                                                   PartitionMethod method);

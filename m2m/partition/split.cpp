@@ -6,6 +6,26 @@
 #include <limits>
 
 namespace tess::m2m {
+namespace {
+
+/// Tells the owners of all parts' ghosts of them.
+void list_ghosts(std::vector<MeshPart>& parts, std::span<const std::int32_t> owner) {
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const MeshPart& user = parts[p];
+    for (auto v = static_cast<std::size_t>(user.n_owned); v < user.points.size(); ++v) {
+      MeshPart& of =
+          parts[static_cast<std::size_t>(owner[static_cast<std::size_t>(user.point_ids[v])])];
+      const auto owned_end = of.point_ids.begin() + of.n_owned;
+      const auto at = std::lower_bound(of.point_ids.begin(), owned_end, user.point_ids[v]);
+      if (of.ghosts.empty() || of.ghosts.back().part != static_cast<std::int32_t>(p))
+        of.ghosts.push_back({static_cast<std::int32_t>(p), {}, {}});
+      of.ghosts.back().here.push_back(static_cast<std::int32_t>(at - of.point_ids.begin()));
+      of.ghosts.back().there.push_back(static_cast<std::int32_t>(v));
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<MeshPart> split(const TetMesh& mesh,
                             std::span<const std::int32_t> parts,
@@ -62,6 +82,7 @@ std::vector<MeshPart> split(const TetMesh& mesh,
     }
     for (const GlobalId v : part.point_ids) local[static_cast<std::size_t>(v)] = -1;
   }
+  list_ghosts(result, owner);
   return result;
 }
 

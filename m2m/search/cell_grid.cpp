@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tess::m2m {
 
@@ -68,14 +67,6 @@ std::span<const std::int32_t> CellGrid::items(const Cell& cell) const {
   const std::size_t c = index(cell);
   return std::span(items_).subspan(static_cast<std::size_t>(begin_[c]),
                                    static_cast<std::size_t>(begin_[c + 1] - begin_[c]));
-}
-
-double CellGrid::least_side() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (shape_[axis] > 1) least = std::min(least, 1 / cells_a_length_[axis]);
-  }
-  return std::isfinite(least) ? least : 0;
 }
 
 std::size_t CellGrid::index(const Cell& cell) const {

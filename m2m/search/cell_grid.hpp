@@ -1,5 +1,5 @@
 // A uniform grid of cells over a box, and the items that overlap each cell, as one array (counted,
-// then filled). What the serial searches stand on. Immutable after it is built.
+// then filled). For the serial search. Immutable after it is built.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -23,9 +23,6 @@ class CellGrid {
   [[nodiscard]] Cell cell_of(const Point& p) const;
   /// The items that touch a cell, ascending.
   [[nodiscard]] std::span<const std::int32_t> items(const Cell& cell) const;
-  [[nodiscard]] const Cell& shape() const { return shape_; }
-  /// The shortest side of a cell along the axes that have more than one; 0 where none has.
-  [[nodiscard]] double least_side() const;
 
  private:
   [[nodiscard]] std::size_t index(const Cell& cell) const;

@@ -1,59 +1,81 @@
 #include "m2m/search/nearest_vertex.hpp"
 
-#include "runtime/check.hpp"
-
 #include <algorithm>
-#include <cstdlib>
-#include <limits>
+#include <array>
+#include <numeric>
 
 namespace tess::m2m {
 namespace {
 
-CellGrid grid_of(std::span<const Point> points) {
-  TESS_CHECK(!points.empty(), "expected at least one point");
-  std::vector<Aabb> boxes;
-  for (const Point& p : points) boxes.push_back(box_of(p));
-  return CellGrid(box_around(points), points.size() / 2, boxes);
+constexpr std::int32_t points_of_leaf = 16;
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+std::size_t longest_axis(const Aabb& box) {
+  std::size_t longest = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis)
+    if (box.hi[axis] - box.lo[axis] > box.hi[longest] - box.lo[longest]) longest = axis;
+  return longest;
 }
 
 }  // namespace
 
 NearestVertex::NearestVertex(std::span<const Point> points)
-    : points_(points), grid_(grid_of(points)) {}
+    : points_(points.begin(), points.end()), vertices_(points.size()) {
+  std::iota(vertices_.begin(), vertices_.end(), 0);
+  if (!points.empty()) build(0, static_cast<std::int32_t>(points.size()));
+  for (std::size_t i = 0; i < vertices_.size(); ++i) points_[i] = points[at(vertices_[i])];
+}
 
-NearestVertex::Answer NearestVertex::find(const Point& p) const {
-  Answer best{-1, std::numeric_limits<double>::infinity()};
-  const auto look = [&](const CellGrid::Cell& cell) {
-    for (const std::int32_t v : grid_.items(cell)) {
-      const Point& at = points_[static_cast<std::size_t>(v)];
-      const double x = at[0] - p[0], y = at[1] - p[1], z = at[2] - p[2];
-      const double squared = x * x + y * y + z * z;
-      if (squared < best.squared_distance || (squared == best.squared_distance && v < best.vertex))
-        best = {v, squared};
-    }
+/// Orders vertices_ alone: points_ are in their first order until all is built.
+void NearestVertex::build(std::int32_t first, std::int32_t last) {
+  const std::size_t self = nodes_.size();
+  const auto begin = vertices_.begin() + first, end = vertices_.begin() + last;
+  Aabb box = box_of(points_[at(*begin)]);
+  for (auto v = begin; v != end; ++v) box = merged(box, box_of(points_[at(*v)]));
+  nodes_.push_back({box, first, last});
+  if (last - first <= points_of_leaf) return;
+  const std::size_t axis = longest_axis(box);
+  const std::int32_t middle = first + (last - first) / 2;
+  std::nth_element(begin, vertices_.begin() + middle, end, [&](std::int32_t a, std::int32_t b) {
+    return points_[at(a)][axis] < points_[at(b)][axis];
+  });
+  build(first, middle);
+  nodes_[self].second = static_cast<std::int32_t>(nodes_.size());
+  build(middle, last);
+}
+
+NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) const {
+  Answer best{-1, squared_reach};
+  if (nodes_.empty()) return best;
+  struct Later {
+    std::int32_t node;
+    double squared_distance;
   };
-  const CellGrid::Cell centre = grid_.cell_of(p);
-  const CellGrid::Cell& shape = grid_.shape();
-  const std::int32_t last = std::max({shape[0], shape[1], shape[2]});
-  for (std::int32_t shell = 0; shell <= last; ++shell) {
-    // All cells of this shell and beyond are at least (shell - 1) cells away; the factor absorbs
-    // the rounding of cell_of.
-    const double away = (shell - 1) * grid_.least_side() * (1 - 1e-9);
-    if (best.vertex >= 0 && shell > 1 && away * away > best.squared_distance) break;
-    const auto range = [&](std::size_t axis) {
-      return std::pair(std::max(centre[axis] - shell, 0),
-                       std::min(centre[axis] + shell, shape[axis] - 1));
-    };
-    const auto [x0, x1] = range(0);
-    const auto [y0, y1] = range(1);
-    const auto [z0, z1] = range(2);
-    for (std::int32_t z = z0; z <= z1; ++z) {
-      for (std::int32_t y = y0; y <= y1; ++y) {
-        const bool face = std::abs(z - centre[2]) == shell || std::abs(y - centre[1]) == shell;
-        for (std::int32_t x = x0; x <= x1; ++x) {
-          if (face || std::abs(x - centre[0]) == shell) look({x, y, z});
+  std::array<Later, 64> stack;  // the tree halves, so that it is at most 32 deep
+  std::size_t n = 0;
+  stack[n++] = {0, squared_distance(p, nodes_[0].box)};
+  while (n > 0) {
+    Later next = stack[--n];
+    while (next.squared_distance <= best.squared_distance) {
+      const Node& node = nodes_[at(next.node)];
+      if (node.second < 0) {
+        for (std::int32_t i = node.first; i < node.last; ++i) {
+          const double squared = squared_distance(p, points_[at(i)]);
+          const std::int32_t vertex = vertices_[at(i)];
+          const bool first = best.vertex < 0 || vertex < best.vertex;
+          if (squared < best.squared_distance || (squared == best.squared_distance && first))
+            best = {vertex, squared};
         }
+        break;
       }
+      Later near{next.node + 1, squared_distance(p, nodes_[at(next.node + 1)].box)};
+      Later far{node.second, squared_distance(p, nodes_[at(node.second)].box)};
+      if (far.squared_distance < near.squared_distance) std::swap(near, far);
+      stack[n++] = far;
+      next = near;
     }
   }
   return best;

@@ -34,7 +34,7 @@ std::vector<Winner> search(const TetMesh& source,
     for (const Found& f : found) {
       const PointPair& pair = pairs[static_cast<std::size_t>(f.pair)];
       Winner& winner = winners[static_cast<std::size_t>(pair.point)];
-      const Candidate candidate{f.location.violation, pair.tet, f.location.status};
+      const Candidate candidate = claim_of(f.location, pair.tet);
       if (better(candidate, winner.candidate)) winner = {candidate, f.location.weights};
     }
     n_candidates += pairs.size();

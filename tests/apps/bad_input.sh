@@ -29,6 +29,18 @@ printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 n
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n0\n$EndElements\n' >"$scratch/none.msh"
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n' >"$scratch/short.msh"
 
+# Boxes that cannot be computed with.
+source "$(dirname "$0")/box_mesh.sh"
+box "$scratch/box.msh" 1 0
+box "$scratch/far.msh" 1 1e15
+box "$scratch/tiny.msh" 1e-150 0
+box "$scratch/point.msh" 1e-322 0
+"$bin/m2m_transfer" "$scratch/box.msh" kuhn:4 >"$scratch/out" || { echo "FAILED: box.msh is a mesh"; failed=1; }
+refuses "far.msh: .* shift the mesh" "${transfer[@]}" "$scratch/far.msh" kuhn:2
+refuses "far.msh: .* shift the mesh" "${transfer[@]}" kuhn:2 "$scratch/far.msh"
+refuses "tiny.msh: .* rescale the mesh" "${transfer[@]}" "$scratch/tiny.msh" "$scratch/tiny.msh"
+refuses "point.msh: .* rescale the mesh" "${transfer[@]}" "$scratch/point.msh" kuhn:2
+
 refuses missing.exo "${transfer[@]}" "$scratch/missing.exo" kuhn:2
 refuses empty.exo "${transfer[@]}" kuhn:2 "$scratch/empty.exo"
 refuses nan.msh "${transfer[@]}" kuhn:2 "$scratch/nan.msh"
@@ -50,12 +62,13 @@ refuses SOURCE "${transfer[@]}"
 
 # A study: nothing in its folder.
 refuses "missing/result.json: cannot be written: its folder" "$bin/m2m_transfer" kuhn:2 kuhn:3 --json "$scratch/missing/result.json"
+refuses "--picture $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --picture "$scratch"
 refuses "--out $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --out "$scratch"
 study=("$bin/m2m_transfer" --json "$scratch/result.json")
 refuses kuhn:x "${study[@]}" kuhn:2,x --study "$scratch/result.exo"
 refuses missing.msh "${study[@]}" "kuhn:2,4" "$scratch/missing.msh" --study "$scratch/result.exo"
 refuses empty.exo "${study[@]}" kuhn:2,4 kuhn:3 --study "$scratch/empty.exo"
-refuses "is for one transfer" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
+refuses "are for one transfer" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
 
 # A job of several processes says it once, and all of them end with 2. (mpirun reports the exit code
 # of the first process that failed; --quiet: without its own words.)

@@ -47,5 +47,38 @@ same "${mpirun[@]}" -n 2 "${transfer[@]}" --pes 2
 same "${transfer[@]}" --sim pes=16
 for seed in 1 2 3; do same "${transfer[@]}" --sim pes=5,seed=$seed; done
 
+# Most vertices of the target outside, many of them as near to several vertices of the source.
+source "$(dirname "$0")/box_mesh.sh"
+box "$scratch/wide.msh" 3 -1 12
+transfer=("$bin/m2m_transfer" kuhn:8 "$scratch/wide.msh" --field 'x+10*y+100*z' --policy nearest)
+"${transfer[@]}" --pes 1 --chares 1 --json "$scratch/first.json" >/dev/null || exit 1
+want=$(hash_of "$scratch/first.json")
+echo "mostly outside: $want"
+for chares in 2 7 64 256; do same "${transfer[@]}" --pes 2 --chares $chares; done
+same "${transfer[@]}" --pes 2 --voxel 0.03
+same "${mpirun[@]}" -n 2 "${transfer[@]}" --pes 2
+for seed in 4 5 6; do same "${transfer[@]}" --sim pes=5,seed=$seed; done
+
+# A thousand transfers: the same answer, and no more memory than ten take.
+same "${transfer[@]}" --pes 2 --repeat 3
+memory_of() { grep -o '"peak_memory_bytes": [0-9]*' "$1" | grep -o '[0-9]*$'; }
+small=("$bin/m2m_transfer" kuhn:8@0.2 kuhn:9@0.2 --field sin --policy nearest)
+# no_growth COMMAND…: the peak of a thousand repeats exceeds that of ten by less than 4 MB.
+no_growth() {
+  "$@" --repeat 10 --json "$scratch/few.json" >"$scratch/out" 2>&1 &&
+    timeout 120 "$@" --repeat 1000 --json "$scratch/many.json" >"$scratch/out" 2>&1
+  local code=$? few=0 many=0
+  ((code == 0)) && few=$(memory_of "$scratch/few.json") many=$(memory_of "$scratch/many.json")
+  if ((code == 0 && many < few + 4000000)) && [[ $(hash_of "$scratch/few.json") == "$(hash_of "$scratch/many.json")" ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED (exit $code): $few bytes after 10 transfers, $many after 1000: $*"
+    tail -5 "$scratch/out"
+  fi
+}
+no_growth "${small[@]}" --pes 2
+no_growth "${mpirun[@]}" -n 2 "${small[@]}" --pes 1
+
 echo "$passed passed, $failed failed"
 ((failed == 0))

@@ -1,6 +1,8 @@
 #include "apps/m2m_transfer/study.hpp"
 
 #include "apps/m2m_transfer/driver.hpp"
+#include "m2m/io/exodus_writer.hpp"
+#include "m2m/io/kuhn.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/apps/xml.hpp"
 #include "tests/m2m/scratch.hpp"
@@ -91,6 +93,8 @@ TEST_CASE("a study shows second order, and writes what it prints", "[apps][study
     REQUIRE(drive(setup, options) == 0);
     const auto report = nlohmann::json::parse(slurp(*options.study + "/study.json"));
     REQUIRE(report["pairs"].size() == 3);
+    CHECK(report["pairs"][1]["found"]["l2"] == report["pairs"][1]["l2"]);  // all are found
+    CHECK(report["definitions"]["found"].get<std::string>().find("inside") != std::string::npos);
     const auto& trends = report["trends"];
     REQUIRE(trends.size() == 3);
     CHECK(trends[0]["l2_of_edge"].get<double>() == Approx(2).margin(0.25));
@@ -114,4 +118,39 @@ TEST_CASE("a study shows second order, and writes what it prints", "[apps][study
             }) == 3);  // L2, Linf, and order 2
     }
   }
+}
+
+TEST_CASE("norms over found vertices leave out what the policy gave", "[apps][transfer]") {
+  const Scratch scratch;
+  TetMesh target = kuhn_mesh({5});
+  for (Point& p : target.points) p[0] *= 2;  // half outside
+  write_exodus(scratch.path("wide.exo"), target, {});
+  DriverOptions options;
+  options.request.source = "kuhn:4";
+  options.request.target = scratch.path("wide.exo");
+  options.request.fields = {"linear"};
+  options.policies = {"value:1000"};
+  options.json = scratch.path("report.json");
+  options.picture = scratch.path("cut.svg");
+  Setup setup{make_threads_machine(2), {}};
+  REQUIRE(drive(setup, options) == 0);
+  const auto pair = nlohmann::json::parse(slurp(options.json))["pairs"][0];
+  CHECK(pair["outside"] == 3 * 36);
+  CHECK(pair["found"]["vertices"] == 3 * 36);
+  CHECK(pair["found"]["linf"].get<double>() < 1e-12);
+  CHECK(pair["fields"][0]["found"]["l2"].get<double>() < 1e-12);
+  CHECK(pair["linf"].get<double>() > 900);
+  CHECK(pair["fields"][0]["l2"].get<double>() > 100);
+  // The picture is the plane across the first of the two short sides, from both ends of the
+  // colours.
+  const std::string svg = slurp(options.picture);
+  const auto elements = test::read_xml(svg);
+  const auto count = [&](const std::string& name) {
+    return std::count_if(elements.begin(), elements.end(), [&](const test::XmlElement& e) {
+      return e.name == name;
+    });
+  };
+  CHECK(count("text") == 6);
+  CHECK(count("path") >= 4);
+  CHECK_THAT(svg, Catch::Contains(">linear, z = 0.3<") && Catch::Contains(">1000<"));
 }

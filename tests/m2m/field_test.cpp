@@ -56,6 +56,17 @@ TEST_CASE("norms are those of a constant error, and a NaN is the worst", "[m2m][
   CHECK(even.l2 == Approx(0.5));  // the box has volume 1
   CHECK(even.l2_relative == Approx(0.25));
   CHECK(even.rms == Approx(0.5));
+  // Over some vertices: the others change nothing, whatever their values.
+  std::vector<bool> counts(mesh.n_points(), true);
+  counts[17] = counts[30] = false;
+  const ErrorNorms some = error_norms(mesh, values, truth, counts);
+  CHECK(some.n_vertices == mesh.n_points() - 2);
+  CHECK(even.n_vertices == mesh.n_points());
+  CHECK(some.linf == 0.5);
+  CHECK(some.rms == Approx(0.5));
+  CHECK(some.l2_relative == Approx(0.25));
+  CHECK(some.l2 < even.l2);
+  CHECK(error_norms(mesh, values, truth, std::vector<bool>(mesh.n_points())).n_vertices == 0);
   values[5] = std::numeric_limits<double>::quiet_NaN();
   CHECK(error_norms(mesh, values, truth).worst == 5);
   CHECK(std::isnan(error_norms(mesh, values, truth).linf));

@@ -130,6 +130,51 @@ void damage_everywhere(const std::string& name,
   }
 }
 
+/// A mesh with blocks and sets of all kinds.
+TetMesh grouped_mesh() {
+  TetMesh mesh = kuhn_mesh({2, 0.1});
+  mesh.blocks = {{7, "fluid", 40}, {3, "", 0}, {12, "a name that is longer than 32 characters", 8}};
+  mesh.side_sets = {{4, "inlet", {{0, 1}, {47, 4}}, {}},
+                    {9, "", {{3, 2}}, {0.5, 1.5, 2.5}},
+                    {10, "empty", {}, {}}};
+  mesh.node_sets = {{5, "fixed", {26, 0, 13}, {1, 2, 3}}, {6, "", {1}, {}}};
+  return mesh;
+}
+
+/// An ExodusII file of tetrahedra (of that type and number of vertices) between blocks of triangles
+/// and bars, with sides of both.
+std::string mixed_file(const Scratch& scratch, const char* tet_type, int n_tet_vertices = 4) {
+  const std::string path = scratch.path("mixed.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
+  ex_put_init(id, "mixed", 3, 5, 7, 4, 1, 2);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  const std::vector<int> triangles{1, 2, 3, 1, 2, 4}, bars{1, 2, 2, 3, 3, 4};
+  std::vector<int> first{1, 2, 3, 4}, second{2, 3, 4, 5};
+  first.resize(static_cast<std::size_t>(n_tet_vertices), 1);
+  second.resize(static_cast<std::size_t>(n_tet_vertices), 1);
+  const auto block = [&](int number, const char* type, int n, int n_vertices, const auto& list) {
+    ex_put_block(id, EX_ELEM_BLOCK, number, type, n, n_vertices, 0, 0, 0);
+    ex_put_conn(id, EX_ELEM_BLOCK, number, list.data(), nullptr, nullptr);
+  };
+  block(20, "tri3", 2, 3, triangles);
+  block(21, tet_type, 1, n_tet_vertices, first);
+  block(22, "BAR2", 3, 2, bars);
+  block(23, tet_type, 1, n_tet_vertices, second);
+  const std::array<int, 2> elements{3, 7}, sides{1, 4}, mixed{1, 7}, mixed_sides{1, 2};
+  ex_put_set_param(id, EX_SIDE_SET, 1, 2, 0);
+  ex_put_set(id, EX_SIDE_SET, 1, elements.data(), sides.data());
+  ex_put_set_param(id, EX_SIDE_SET, 2, 2, 0);
+  ex_put_set(id, EX_SIDE_SET, 2, mixed.data(), mixed_sides.data());
+  const int vertex = 5;
+  ex_put_set_param(id, EX_NODE_SET, 8, 1, 0);
+  ex_put_set(id, EX_NODE_SET, 8, &vertex, nullptr);
+  ex_close(id);
+  return path;
+}
+
 }  // namespace
 
 TEST_CASE("gmsh files of both versions and modes give the same mesh, also with gaps between tags",
@@ -189,6 +234,92 @@ TEST_CASE("a written mesh is read back with its fields, and nothing else is left
   CHECK(scratch.n_files() == 1);
 }
 
+TEST_CASE("blocks, side and node sets of a written mesh are read back, numbers, names and factors",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = grouped_mesh();
+  (void)validate(mesh);
+  Field part{"part", 1, std::vector<double>(mesh.n_tets())};
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) part.values[t] = static_cast<double>(t);
+  const std::string path = scratch.path("out.exo");
+  write_exodus(path, mesh, {}, std::array{part});
+  TetMesh read = read_mesh(path);
+  CHECK(read.tets == mesh.tets);
+  CHECK(read.blocks == std::vector{mesh.blocks[0], mesh.blocks[2]});  // without the empty one
+  CHECK(read.side_sets == mesh.side_sets);
+  CHECK(read.node_sets == mesh.node_sets);
+
+  int compute = 8, stored = 0;
+  float version = 0;
+  const int id = ex_open(path.c_str(), EX_READ, &compute, &stored, &version);
+  REQUIRE(id >= 0);
+  std::vector<double> values(8);
+  ex_get_var(id, 1, EX_ELEM_BLOCK, 1, 12, 8, values.data());
+  CHECK(values.front() == 40);
+  CHECK(values.back() == 47);
+  ex_close(id);
+
+  TetMesh bad = mesh;
+  bad.blocks.pop_back();
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("blocks have 40 of 48"));
+  bad = mesh;
+  bad.side_sets[0].entries[1].tet = 48;
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("side set 4 names side 4 of tet"));
+  bad = mesh;
+  bad.node_sets[1].entries[0] = 27;
+  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("node set 6 names vertex 27"));
+  bad = mesh;
+  bad.blocks[0].id = std::int64_t{1} << 40;
+  CHECK_THAT(message_of([&] { write_exodus(path, bad, {}); }),
+             Catch::Contains("block 1099511627776 'fluid' cannot be written"));
+}
+
+TEST_CASE("surface and line elements beside tetrahedra are skipped, and counted by type",
+          "[m2m][io]") {
+  const Scratch scratch;
+  for (const char* type :
+       {"TET", "TET4", "TETRA", "TETRA4", "TETRAHEDRA", "tetra", "Tetrahedron"}) {
+    CAPTURE(type);
+    const TetMesh mesh = read_mesh(mixed_file(scratch, type));
+    CHECK(mesh.tets == std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}});
+    CHECK(mesh.blocks == std::vector<Block>{{21, "", 1}, {23, "", 1}});
+    CHECK(mesh.skipped == std::vector<Skipped>{{"TRI3", 2}, {"BAR2", 3}});
+    CHECK(skipped_text(mesh) == "2 TRI3, 3 BAR2");
+    CHECK(mesh.side_sets.at(0) == SideSet{1, "", {{0, 1}, {1, 4}}, {}});
+    CHECK(mesh.side_sets.at(1) == SideSet{2, "", {{1, 2}}, {}});  // the triangle's side is left out
+    CHECK(mesh.node_sets.at(0) == NodeSet{8, "", {4}, {}});
+  }
+  for (const auto& [type, n] : {std::pair{"HEX8", 8},
+                                std::pair{"wedge", 6},
+                                std::pair{"PYRAMID5", 5},
+                                std::pair{"TET10", 10},
+                                std::pair{"TETRA", 10},
+                                std::pair{"superelement", 4}}) {
+    CAPTURE(type);
+    const std::string path = mixed_file(scratch, type, n);
+    CHECK_THAT(message_of([&] { (void)read_mesh(path); }),
+               Catch::Contains("block 21 has elements of type") &&
+                   Catch::Contains(type, Catch::CaseSensitive::No) && Catch::Contains(path));
+  }
+  const TetMesh gmsh = read_gmsh("test", as_gmsh(kuhn_mesh({1}), false, false, 1));
+  CHECK(gmsh.skipped == std::vector<Skipped>{{"point", 1}});
+}
+
+TEST_CASE("a real mesh keeps its blocks and sets when it is written", "[m2m][io]") {
+  for (const char* name : {"nalu/3d_tet4_pipe.exo", "nalu/3d_tet4_taylor_green_0p4.exo"}) {
+    const auto real = shared_data(name);
+    if (!real) return;
+    const Scratch scratch;
+    const TetMesh mesh = read_mesh(*real);
+    CHECK(mesh.blocks.size() + mesh.side_sets.size() > 1);
+    write_exodus(scratch.path("out.exo"), mesh, {});
+    const TetMesh read = read_mesh(scratch.path("out.exo"));
+    CHECK(read.blocks == mesh.blocks);
+    CHECK(read.side_sets == mesh.side_sets);
+    CHECK(read.node_sets == mesh.node_sets);
+  }
+}
+
 TEST_CASE("cut and flipped gmsh files end in one line of error", "[m2m][io]") {
   const TetMesh mesh = kuhn_mesh({2});
   for (const bool legacy : {false, true}) {
@@ -199,7 +330,7 @@ TEST_CASE("cut and flipped gmsh files end in one line of error", "[m2m][io]") {
 
 TEST_CASE("cut and flipped ExodusII files end in one line of error", "[m2m][io]") {
   const Scratch scratch;
-  const TetMesh mesh = kuhn_mesh({2});
+  const TetMesh mesh = grouped_mesh();
   const std::string path = scratch.path("whole.exo");
   write_exodus(path, mesh, std::array{sample(mesh, "f", make_formula("sin", bounds(mesh)))});
   damage_everywhere("cut.exo", slurp(path), 200, 1500);

@@ -15,7 +15,8 @@ namespace {
 const std::array<Point, 4> unit{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
 
 bool same_bits(const Location& a, const Location& b) {
-  return a.weights == b.weights && a.violation == b.violation && a.status == b.status;
+  return a.weights == b.weights && a.violation == b.violation && a.status == b.status &&
+         a.place == b.place;
 }
 
 }  // namespace
@@ -39,6 +40,8 @@ TEST_CASE("the closed tetrahedron and its tolerance are told apart", "[m2m][loca
   const auto corner = locate({0, 1, 0}, unit);
   REQUIRE(corner);
   CHECK(corner->weights == Weights{0, 0, 1, 0});
+  CHECK(corner->place == Place::corner);
+  CHECK(locate({0, 0.25, 0.25}, unit)->place == Place::elsewhere);
 }
 
 TEST_CASE("a tetrahedron without volume claims nothing but its corners", "[m2m][locate]") {

@@ -5,6 +5,7 @@
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
+#include "tests/m2m/non_conforming.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -127,19 +128,31 @@ TEST_CASE("a transfer through chares gives the bits of the serial one on every s
   }
 }
 
+TEST_CASE("nearest vertices through chares are those of the serial search, also where several tie",
+          "[m2m][parallel]") {
+  // Beside the source and beyond it: all vertices outside, or half; lattices, so that many tie.
+  for (const auto& [scale, offset] : {std::pair{1.0, 1.25}, std::pair{2.0, -0.5}}) {
+    INFO("scale " << scale << ", offset " << offset);
+    Case c = make_case(read_mesh("kuhn:6"), moved(read_mesh("kuhn:8"), scale, offset), Nearest{});
+    check_on_all_machines(c, 40);
+  }
+}
+
 TEST_CASE("a mesh transferred onto itself through chares returns its values bit for bit",
           "[m2m][parallel]") {
-  const TetMesh mesh = read_mesh("kuhn:5@0.1");
-  Case c = make_case(mesh, mesh, Keep{});
-  check_on_all_machines(c, 20);
-  Result got;
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
-  for (std::size_t f = 0; f < 2; ++f) {
-    const bool same_values = got.values[f] == c.source_fields[f].values;
-    REQUIRE(same_values);
+  for (const TetMesh& mesh : {read_mesh("kuhn:5@0.1"), test::non_conforming_mesh()}) {
+    INFO(mesh.name);
+    Case c = make_case(mesh, mesh, Keep{});
+    check_on_all_machines(c, 20);
+    Result got;
+    Setup setup{make_threads_machine(2), {}};
+    REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
+    for (std::size_t f = 0; f < 2; ++f) {
+      const bool same_values = got.values[f] == c.source_fields[f].values;
+      REQUIRE(same_values);
+    }
+    for (const Status status : got.status) REQUIRE(status == Status::boundary);
   }
-  for (const Status status : got.status) REQUIRE(status == Status::boundary);
 }
 
 TEST_CASE("offsets and scales lose no vertex through chares", "[m2m][parallel]") {

@@ -32,7 +32,7 @@ TEST_CASE("parts are balanced, the same each time, and cover the mesh", "[m2m][p
              Catch::Contains("'metis'"));
 }
 
-TEST_CASE("a split holds every tetrahedron once and every vertex with one owner",
+TEST_CASE("a split holds every tetrahedron once, every vertex with one owner that lists its ghosts",
           "[m2m][partition]") {
   TetMesh mesh = kuhn_mesh({4});
   mesh.points.push_back({7, 7, 7});  // used by nothing
@@ -74,6 +74,22 @@ TEST_CASE("a split holds every tetrahedron once and every vertex with one owner"
           FAIL("point " << i);
       }
     }
+    std::size_t n_ghosts = 0, n_listed = 0;
+    for (const MeshPart& part : split_parts) {
+      n_ghosts += part.points.size() - static_cast<std::size_t>(part.n_owned);
+      for (const Ghosts& ghosts : part.ghosts) {
+        const MeshPart& user = split_parts.at(static_cast<std::size_t>(ghosts.part));
+        REQUIRE(ghosts.here.size() == ghosts.there.size());
+        n_listed += ghosts.here.size();
+        for (std::size_t i = 0; i < ghosts.here.size(); ++i) {
+          const bool same = ghosts.here[i] < part.n_owned && ghosts.there[i] >= user.n_owned &&
+                            part.point_ids.at(static_cast<std::size_t>(ghosts.here[i])) ==
+                                user.point_ids.at(static_cast<std::size_t>(ghosts.there[i]));
+          if (!same) FAIL("ghost " << i << " of part " << ghosts.part);
+        }
+      }
+    }
+    CHECK(n_listed == n_ghosts);
     CHECK(std::count(tets.begin(), tets.end(), 1) == static_cast<std::ptrdiff_t>(mesh.n_tets()));
     CHECK(std::count(owners.begin(), owners.end(), 1) ==
           static_cast<std::ptrdiff_t>(mesh.n_points()));

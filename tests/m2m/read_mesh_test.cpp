@@ -160,3 +160,38 @@ TEST_CASE("validate names the element and passes flat and inverted tetrahedra", 
   bad.tets.clear();
   CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("no tetrahedra"));
 }
+
+TEST_CASE("a mesh whose coordinates have collapsed is refused by name, with the remedy", "[m2m]") {
+  const auto moved = [](double scale, double shift) {
+    TetMesh mesh = kuhn_mesh({4, 0.2});
+    mesh.name = "the mesh";
+    for (Point& p : mesh.points)
+      for (double& x : p) x = x * scale + shift;
+    return mesh;
+  };
+  const auto refused = [](const TetMesh& mesh, const char* word) {
+    const std::string message = message_of([&] { validate(mesh); });
+    CHECK(one_line(message));
+    CHECK_THAT(message, Catch::StartsWith("the mesh: ") && Catch::Contains(word));
+  };
+  refused(moved(1, 1e15), "shift the mesh towards the origin");
+  refused(moved(1, -1e14), "shift the mesh towards the origin");
+  refused(moved(1e-150, 0), "rescale the mesh");
+  refused(moved(1e-320, 0), "rescale the mesh");
+  refused(moved(0, 0), "rescale the mesh");
+  refused(moved(0, 3), "shift the mesh");
+  TetMesh flat = moved(1, 0);
+  for (Point& p : flat.points) p[2] = 0;
+  refused(flat, "no tetrahedron has a volume");
+
+  for (const auto& [scale, shift] : {std::pair{1.0, 1e9},
+                                     std::pair{1e-9, 0.0},
+                                     std::pair{1e9, 0.0},
+                                     std::pair{1e-70, 0.0},
+                                     std::pair{1e60, 0.0},
+                                     std::pair{1.0, 1e12}})
+    CHECK_NOTHROW(validate(moved(scale, shift)));
+  TetMesh graded = moved(1, 0);  // a few collapsed tetrahedra among many
+  graded.tets.push_back({1, 1, 1, 1});
+  CHECK(validate(graded).n_flat == 1);
+}

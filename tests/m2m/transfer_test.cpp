@@ -1,9 +1,9 @@
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/io/kuhn.hpp"
 #include "m2m/io/read_mesh.hpp"
-#include "m2m/search/nearest_vertex.hpp"
 #include "m2m/search/serial_transfer.hpp"
 #include "runtime/error.hpp"
+#include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
@@ -148,8 +148,10 @@ TEST_CASE(
     double least = INFINITY;
     for (std::size_t t = 0; t < source.n_tets(); ++t) {
       const auto found = locate(target.points[v], corners_of(source.points, source.tets[t]));
-      if (!found || found->violation >= least) continue;
-      least = found->violation;
+      if (!found) continue;
+      const double rank = found->place == Place::corner ? -1 : found->violation;
+      if (rank >= least) continue;
+      least = rank;
       first = static_cast<GlobalId>(t);
     }
     if (first != moved.report.tet[v])
@@ -240,6 +242,21 @@ TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do no harm", "[
   CHECK(outside(move_formula(source, source, "linear")) == 0);
 }
 
+TEST_CASE("a non-conforming mesh onto itself is exact: the corner that coincides gives the value",
+          "[m2m][transfer]") {
+  const TetMesh mesh = tess::test::non_conforming_mesh();
+  std::vector<Field> from{{"f", 1, {}}};
+  const auto scramble = [](double x) { return std::fmod(x * 7919.0, 1.0); };
+  for (const Point& p : mesh.points)
+    from[0].values.push_back(scramble(p[0]) + scramble(3 * p[1]) + scramble(5 * p[2]));
+  std::vector<Field> to{{"f", 1, std::vector<double>(mesh.n_points())}};
+  const SerialReport report = transfer_serial(mesh, from, mesh, to, Keep{});
+  for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+    if (to[0].values[v] != from[0].values[v]) FAIL("vertex " << v << " has another value");
+    if (report.status[v] != Status::boundary) FAIL("vertex " << v << " is no corner");
+  }
+}
+
 TEST_CASE("points outside are counted and get what the policy says", "[m2m][transfer]") {
   const TetMesh source = kuhn_mesh({4});
   const TetMesh target = moved_by(kuhn_mesh({4}), 1, 0.5);
@@ -263,23 +280,6 @@ TEST_CASE("points outside are counted and get what the policy says", "[m2m][tran
   for (const char* text : {"", "value:", "value:x", "value:nan", "value:1 ", "drop"}) {
     CHECK_THAT(message_of([&] { (void)parse_policy(text); }),
                Catch::Contains("expected keep, nearest or value:NUMBER"));
-  }
-}
-
-TEST_CASE("the nearest vertex is that of brute force, also far away", "[m2m][search]") {
-  const TetMesh mesh = kuhn_mesh({6, 0.2});
-  const NearestVertex nearest(mesh.points);
-  TetMesh queries = moved_by(kuhn_mesh({5, 0.2}), 3, -1);
-  queries.points.push_back({1e9, 3, -1e9});
-  for (const Point& p : queries.points) {
-    NearestVertex::Answer best{-1, INFINITY};
-    for (std::size_t v = 0; v < mesh.n_points(); ++v) {
-      const Point& q = mesh.points[v];
-      const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-      const double squared = x * x + y * y + z * z;
-      if (squared < best.squared_distance) best = {static_cast<std::int32_t>(v), squared};
-    }
-    CHECK(nearest.find(p).vertex == best.vertex);
   }
 }
 

@@ -1,0 +1,189 @@
+#include "apps/m2m_transfer/picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace tess::m2m {
+namespace {
+
+/// A plane across one axis, seen along it.
+struct Plane {
+  std::size_t across = 2, right = 0, up = 1;
+  double at = 0;
+};
+
+/// At three tenths: the middle is where a sine is zero, and often a plane of mirror symmetry.
+Plane plane_through(const Aabb& box) {
+  const auto side = [&](std::size_t axis) { return box.hi[axis] - box.lo[axis]; };
+  Plane plane;
+  for (const std::size_t axis : {1U, 0U})
+    if (side(axis) < side(plane.across)) plane.across = axis;
+  plane.right = plane.across == 0 ? 1 : 0;
+  plane.up = plane.across == 2 ? 1 : 2;
+  plane.at = box.lo[plane.across] + 0.3 * side(plane.across);
+  return plane;
+}
+
+/// Where the plane meets an edge of a tetrahedron.
+struct Corner {
+  double x = 0, y = 0, value = 0;
+};
+/// The polygon in which a plane meets a tetrahedron: no corners, three or four, in order.
+struct Polygon {
+  std::array<Corner, 4> corners{};
+  std::size_t n = 0;
+
+  [[nodiscard]] double value() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) sum += corners[i].value;
+    return sum / static_cast<double>(n);
+  }
+};
+
+Polygon cut(const TetMesh& mesh,
+            const Tet& tet,
+            std::span<const double> values,
+            const Plane& plane) {
+  std::array<VertexId, 4> below{}, above{};
+  std::size_t n_below = 0, n_above = 0;
+  for (const VertexId v : tet) {
+    if (mesh.points[static_cast<std::size_t>(v)][plane.across] < plane.at)
+      below[n_below++] = v;
+    else
+      above[n_above++] = v;
+  }
+  Polygon polygon;
+  const auto meet = [&](VertexId low, VertexId high) {
+    const Point& p = mesh.points[static_cast<std::size_t>(low)];
+    const Point& q = mesh.points[static_cast<std::size_t>(high)];
+    const double t = (plane.at - p[plane.across]) / (q[plane.across] - p[plane.across]);
+    const auto mix = [t](double a, double b) { return a + t * (b - a); };
+    polygon.corners[polygon.n++] = {
+        mix(p[plane.right], q[plane.right]),
+        mix(p[plane.up], q[plane.up]),
+        mix(values[static_cast<std::size_t>(low)], values[static_cast<std::size_t>(high)])};
+  };
+  if (n_below == 2) {  // round the quadrilateral
+    meet(below[0], above[0]);
+    meet(below[0], above[1]);
+    meet(below[1], above[1]);
+    meet(below[1], above[0]);
+  } else {
+    for (std::size_t i = 0; i < n_below; ++i)
+      for (std::size_t k = 0; k < n_above; ++k) meet(below[i], above[k]);
+  }
+  return polygon;
+}
+
+constexpr std::size_t n_colours = 64;
+
+/// Dark blue over green to yellow, evenly perceived (five points of matplotlib's viridis).
+std::string colour(std::size_t level) {
+  constexpr std::array<std::array<double, 3>, 5> stops{
+      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+  const double at = 4.0 * static_cast<double>(level) / (n_colours - 1);
+  const std::size_t first = std::min<std::size_t>(static_cast<std::size_t>(at), 3);
+  std::array<int, 3> rgb{};
+  for (std::size_t c = 0; c < 3; ++c)
+    rgb[c] = static_cast<int>(
+        std::lround(stops[first][c] +
+                    (at - static_cast<double>(first)) * (stops[first + 1][c] - stops[first][c])));
+  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+constexpr double panel = 480, margin = 30;
+
+/// One panel of the picture, with its colours explained below.
+void draw(std::string& out,
+          const TetMesh& mesh,
+          std::span<const double> values,
+          const std::string& title,
+          double left) {
+  const Aabb box = bounds(mesh);
+  const Plane plane = plane_through(box);
+  const double scale = panel / std::max(box.hi[plane.right] - box.lo[plane.right],
+                                        box.hi[plane.up] - box.lo[plane.up]);
+  std::vector<Polygon> polygons;
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (const Tet& tet : mesh.tets) {
+    const Polygon polygon = cut(mesh, tet, values, plane);
+    if (polygon.n == 0 || !std::isfinite(polygon.value())) continue;
+    least = std::min(least, polygon.value());
+    greatest = std::max(greatest, polygon.value());
+    polygons.push_back(polygon);
+  }
+  std::array<std::string, n_colours> paths;
+  for (const Polygon& polygon : polygons) {
+    const double at = greatest > least ? (polygon.value() - least) / (greatest - least) : 0;
+    std::string& path = paths[static_cast<std::size_t>(at * (n_colours - 1) + 0.5)];
+    for (std::size_t i = 0; i < polygon.n; ++i)
+      fmt::format_to(std::back_inserter(path),
+                     "{}{:.1f} {:.1f}",
+                     i == 0 ? 'M' : 'L',
+                     left + (polygon.corners[i].x - box.lo[plane.right]) * scale,
+                     margin + panel - (polygon.corners[i].y - box.lo[plane.up]) * scale);
+    path += 'Z';
+  }
+  for (std::size_t level = 0; level < n_colours; ++level) {
+    if (!paths[level].empty())
+      out += fmt::format(
+          "<path fill=\"{0}\" stroke=\"{0}\" d=\"{1}\"/>\n", colour(level), paths[level]);
+    out += fmt::format("<rect x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"10\" fill=\"{}\"/>\n",
+                       left + panel * static_cast<double>(level) / n_colours,
+                       margin + panel + 10,
+                       panel / n_colours + 0.5,
+                       colour(level));
+  }
+  out += fmt::format("<text x=\"{}\" y=\"{}\">{}, {} = {:.4g}</text>\n",
+                     left,
+                     margin - 10,
+                     escaped(title),
+                     "xyz"[plane.across],
+                     plane.at);
+  out += fmt::format("<text x=\"{}\" y=\"{}\">{:.4g}</text>\n", left, margin + panel + 36, least);
+  out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n",
+                     left + panel,
+                     margin + panel + 36,
+                     greatest);
+}
+
+}  // namespace
+
+std::string picture(const Problem& problem) {
+  const Field& field = problem.target_fields.front();
+  const Field& truth = problem.truth.front();
+  std::vector<double> error(field.values.size());
+  for (std::size_t v = 0; v < error.size(); ++v)
+    error[v] = std::abs(field.values[v] - truth.values[v]);
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
+      "font-size=\"14\" stroke-width=\"0.5\">\n<rect width=\"100%\" height=\"100%\" "
+      "fill=\"white\"/>\n",
+      2 * panel + 3 * margin,
+      panel + 2 * margin + 20);
+  out += "<g stroke-linejoin=\"round\">\n";
+  draw(out, problem.target, field.values, field.name, margin);
+  draw(out, problem.target, error, "|error| of " + field.name, 2 * margin + panel);
+  out += "</g>\n</svg>\n";
+  return out;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,189 @@
+// What a mesh must be before anything is done with it.
+#include "m2m/mesh.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tess::m2m {
+namespace {
+
+void validate_groups(const TetMesh& mesh) {
+  std::size_t n_in_blocks = 0;
+  for (const Block& block : mesh.blocks) n_in_blocks += block.n_tets;
+  if (!mesh.blocks.empty() && n_in_blocks != mesh.n_tets())
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": its blocks have ",
+         n_in_blocks,
+         " of ",
+         mesh.n_tets(),
+         " tetrahedra; give all, or no blocks");
+  for (const SideSet& set : mesh.side_sets) {
+    for (const Side& side : set.entries) {
+      if (side.tet < 0 || side.tet >= static_cast<GlobalId>(mesh.n_tets()) || side.side < 1 ||
+          side.side > 4)
+        fail(ErrorCode::bad_mesh,
+             mesh.name,
+             ": side set ",
+             set.id,
+             " names side ",
+             side.side,
+             " of tetrahedron ",
+             side.tet,
+             " (counted from 0) of ",
+             mesh.n_tets(),
+             "; write the mesh again");
+    }
+  }
+  for (const NodeSet& set : mesh.node_sets) {
+    for (const VertexId v : set.entries) {
+      if (v < 0 || static_cast<std::size_t>(v) >= mesh.n_points())
+        fail(ErrorCode::bad_mesh,
+             mesh.name,
+             ": node set ",
+             set.id,
+             " names vertex ",
+             v,
+             " (counted from 0) of ",
+             mesh.n_points(),
+             "; write the mesh again");
+    }
+  }
+}
+
+std::array<Point, 4> corners_of(const TetMesh& mesh, std::size_t tet) {
+  std::array<Point, 4> corners;
+  for (std::size_t k = 0; k < 4; ++k)
+    corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[tet][k])];
+  return corners;
+}
+
+/// Tetrahedra too short for their coordinates, or for any computation.
+class Collapse {
+ public:
+  void look_at(const std::array<Point, 4>& corners) {
+    double longest = 0, largest = 0;  // per axis
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double low = corners[0][axis], high = low;
+      for (const Point& p : corners) {
+        low = std::min(low, p[axis]);
+        high = std::max(high, p[axis]);
+      }
+      longest = std::max(longest, high - low);
+      largest = std::max({largest, std::abs(low), std::abs(high)});
+    }
+    const bool rounded = longest < least_ulps * ulp * largest;
+    if (!rounded && !(longest < least_edge)) return;
+    if (n_++ == 0) first_ = {longest, largest, rounded};
+  }
+
+  /// Throws where they are more than a tenth.
+  void refuse(const TetMesh& mesh) const {
+    if (n_ <= mesh.n_tets() / 10) return;
+    const std::string where = text(mesh.name,
+                                   ": ",
+                                   n_,
+                                   " of ",
+                                   mesh.n_tets(),
+                                   " tetrahedra have collapsed: the first is ",
+                                   first_.longest);
+    if (first_.rounded)
+      fail(ErrorCode::bad_mesh,
+           where,
+           " long at coordinates of ",
+           first_.largest,
+           ", where numbers lie ",
+           first_.largest * ulp,
+           " apart; shift the mesh towards the origin before it is rounded");
+    fail(ErrorCode::bad_mesh,
+         where,
+         " long, and lengths below ",
+         least_edge,
+         " have no volume in floating point; rescale the mesh");
+  }
+
+ private:
+  static constexpr double ulp = 0x1p-52;
+  static constexpr double least_ulps = 64;
+  static constexpr double least_edge = 1e-80;
+  struct First {
+    double longest = 0, largest = 0;
+    bool rounded = false;
+  };
+  std::size_t n_ = 0;
+  First first_;
+};
+
+}  // namespace
+
+MeshCensus validate(const TetMesh& mesh) {
+  const std::size_t n = mesh.n_points();
+  if (mesh.tets.empty()) {
+    const std::string others = skipped_text(mesh);
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": has no tetrahedra",
+         others.empty() ? "" : " (but " + others + ")",
+         "; give a volume mesh of TET4 elements");
+  }
+  validate_groups(mesh);
+  if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": has ",
+         n,
+         " vertices; at most 2147483647 fit in one mesh, split it");
+  }
+  constexpr double largest = 1e100;  // beyond, volumes (cubes of lengths) leave the range of double
+  for (std::size_t v = 0; v < n; ++v) {
+    const Point& p = mesh.points[v];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(p[axis]) || std::abs(p[axis]) > largest) {
+        fail(ErrorCode::bad_mesh,
+             mesh.name,
+             ": vertex ",
+             v,
+             " has ",
+             "xyz"[axis],
+             " = ",
+             p[axis],
+             "; coordinates must be finite and within 1e100: repair or rescale the mesh");
+      }
+    }
+  }
+  std::vector<char> used(n, 0);
+  MeshCensus census;
+  Collapse collapse;
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    for (const VertexId v : mesh.tets[t]) {
+      if (v < 0 || static_cast<std::size_t>(v) >= n) {
+        fail(ErrorCode::bad_mesh,
+             mesh.name,
+             ": tetrahedron ",
+             t,
+             " names vertex ",
+             v,
+             " (counted from 0) of ",
+             n,
+             " vertices; write the mesh again");
+      }
+      used[static_cast<std::size_t>(v)] = 1;
+    }
+    collapse.look_at(corners_of(mesh, t));
+    const double volume = signed_volume(mesh, t);
+    census.n_flat += volume == 0;
+    census.n_inverted += volume < 0;
+  }
+  collapse.refuse(mesh);
+  if (census.n_flat == mesh.n_tets())
+    fail(ErrorCode::bad_mesh,
+         mesh.name,
+         ": no tetrahedron has a volume; give a mesh in three dimensions, with more digits");
+  census.n_unused = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+  census.bounds = bounds(mesh);
+  return census;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,267 @@
+// Several transfers on the same meshes, one after another and at once, against chains of transfers
+// in one thread: the same bits on every machine and schedule.
+#include "m2m/io/read_mesh.hpp"
+#include "m2m/search/serial_transfer.hpp"
+#include "m2m/transfer.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+/// A mesh with one field of two components.
+struct Piece {
+  TetMesh mesh;
+  Field field;
+};
+
+Piece piece(const char* name, double scale, double offset, const char* formula) {
+  Piece p{read_mesh(name), {"f", 2, {}}};
+  for (Point& point : p.mesh.points)
+    for (double& x : point) x = x * scale + offset;
+  const Field scalar = sample(p.mesh, formula, make_formula(formula, bounds(p.mesh)));
+  for (const double value : scalar.values) {
+    p.field.values.push_back(value);
+    p.field.values.push_back(1 - value);
+  }
+  return p;
+}
+
+std::vector<Status> transfer_alone(const Piece& from, Piece& to, const OutsidePolicy& policy) {
+  return transfer_serial(
+             from.mesh, std::span(&from.field, 1), to.mesh, std::span(&to.field, 1), policy)
+      .status;
+}
+
+/// What the Workers of a mesh hold, in global order.
+struct Held {
+  std::vector<double> values;
+  std::vector<Status> status;
+};
+
+Task gather(DistributedMesh mesh, Held* held) {
+  Future<Outcome> outcome;
+  mesh.workers.broadcast<&Worker::gather>(outcome.callback());
+  const Outcome all = co_await outcome;
+  held->values.resize(2 * all.points.size());
+  held->status.resize(all.points.size());
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const auto vertex = static_cast<std::size_t>(all.points[i]);
+    held->status.at(vertex) = all.status[i];
+    held->values.at(2 * vertex) = all.values[2 * i];
+    held->values.at(2 * vertex + 1) = all.values[2 * i + 1];
+  }
+}
+
+/// How many parts the two meshes of a case are cut into.
+struct Parts {
+  std::int32_t a = 0, b = 0;
+};
+
+DistributedMesh spread(const Piece& p, std::int32_t n_parts) {
+  return scatter(p.mesh, {p.field}, n_parts, PartitionMethod::rcb);
+}
+
+TransferOptions options_of(const Piece& from, const Piece& to, const OutsidePolicy& policy) {
+  return {{0.1, 0, 0}, suggest_voxel_size(from.mesh, to.mesh), policy};
+}
+
+/// REQUIREs equality without the whole lists in a failure's text.
+void require_same(const Held& got, const Piece& want, const std::vector<Status>& status) {
+  const bool same_values = got.values == want.field.values;
+  const bool same_status = got.status == status;
+  REQUIRE(same_values);
+  REQUIRE(same_status);
+}
+
+/// Two meshes of which each has vertices outside the other, and a policy.
+struct MeshPair {
+  Piece a = piece("kuhn:4@0.2", 1, 0, "sin");
+  Piece b = piece("kuhn:6@0.1", 1.1, -0.05, "gaussian");
+  OutsidePolicy policy{};
+
+  [[nodiscard]] TransferOptions there() const { return options_of(a, b, policy); }
+  [[nodiscard]] TransferOptions back() const { return options_of(b, a, policy); }
+};
+
+struct Spread {
+  DistributedMesh a, b;
+};
+
+Task spread_both(const MeshPair& c, Parts n, Spread* meshes) {
+  co_await epoch([&] {
+    meshes->a = spread(c.a, n.a);
+    meshes->b = spread(c.b, n.b);
+  });
+}
+
+struct HeldBoth {
+  Held a, b;
+};
+
+Task gather_both(const Spread* meshes, HeldBoth* held) {
+  co_await gather(meshes->a, &held->a);
+  co_await gather(meshes->b, &held->b);
+}
+
+Task there_and_back_and_there(const MeshPair& c, Parts n, HeldBoth* held) {
+  Spread meshes;
+  co_await spread_both(c, n, &meshes);
+  co_await transfer(meshes.a, meshes.b, c.there(), nullptr);
+  co_await transfer(meshes.b, meshes.a, c.back(), nullptr);
+  co_await transfer(meshes.a, meshes.b, c.there(), nullptr);
+  co_await gather_both(&meshes, held);
+}
+
+/// Both directions at once.
+Task exchange(const MeshPair& c, Parts n, HeldBoth* held) {
+  Spread meshes;
+  co_await spread_both(c, n, &meshes);
+  Task there = transfer(meshes.a, meshes.b, c.there(), nullptr);
+  Task back = transfer(meshes.b, meshes.a, c.back(), nullptr);
+  co_await there;
+  co_await back;
+  co_await gather_both(&meshes, held);
+}
+
+/// a to two meshes at once, one of them itself.
+Task to_two(const MeshPair& c, Parts n, HeldBoth* held) {
+  Spread meshes, others;
+  co_await spread_both(c, n, &meshes);
+  co_await spread_both(c, n, &others);
+  Task one = transfer(meshes.a, meshes.b, c.there(), nullptr);
+  Task two = transfer(meshes.a, others.b, c.there(), nullptr);
+  Task self = transfer(meshes.a, meshes.a, c.there(), nullptr);
+  co_await one;
+  co_await two;
+  co_await self;
+  co_await gather(meshes.b, &held->a);
+  co_await gather(others.b, &held->b);
+}
+
+/// Two sources that do not meet, to one target at once.
+Task from_two(const MeshPair& left, const MeshPair& right, Parts n, HeldBoth* held) {
+  Spread meshes, others;
+  co_await spread_both(left, n, &meshes);
+  co_await spread_both(right, n, &others);
+  Task one = transfer(meshes.a, meshes.b, left.there(), nullptr);
+  Task two = transfer(others.a, meshes.b, right.there(), nullptr);
+  co_await one;
+  co_await two;
+  co_await gather(meshes.b, &held->a);
+}
+
+/// What to run, and what to require of the result.
+struct Scenario {
+  std::function<Task(HeldBoth*)> program;
+  std::function<void(const HeldBoth&)> judge;
+};
+
+/// Runs a check on many schedules of the simulated machine, which also moves Workers, and on
+/// threads, with several numbers of parts.
+void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts)>& make) {
+  const auto run_one = [&](std::unique_ptr<Machine> machine, RuntimeOptions options, Parts n) {
+    const Scenario check = make(n);
+    HeldBoth held;
+    Setup setup{std::move(machine), std::move(options)};
+    REQUIRE(run(setup, [&]() -> Task { return check.program(&held); }) == 0);
+    check.judge(held);
+  };
+  for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
+    SimulatedOptions options;
+    options.n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
+    options.cost = Time(100);
+    options.seed = seed;
+    RuntimeOptions runtime_options;
+    runtime_options.seed = seed;
+    runtime_options.migration_chance = migration_chance(options);
+    const Parts n{static_cast<std::int32_t>(2 + seed * 5 % 7),
+                  static_cast<std::int32_t>(1 + seed * 3 % 8)};
+    INFO("--sim pes=" << options.n_pes << ",cost=100ns,seed=" << seed << " with " << n.a << " and "
+                      << n.b << " parts");
+    run_one(make_simulated_machine(options), runtime_options, n);
+  }
+  for (const std::int32_t pes : {1, 2, 4}) {
+    INFO("threads, " << pes << " PEs");
+    run_one(make_threads_machine(pes), {}, {5, 3});
+  }
+}
+
+}  // namespace
+
+TEST_CASE("there and back and there again gives the bits of three serial transfers",
+          "[m2m][several]") {
+  for (const OutsidePolicy& policy :
+       {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}, OutsidePolicy{Nearest{}}}) {
+    MeshPair c;
+    c.policy = policy;
+    MeshPair want = c;
+    transfer_alone(want.a, want.b, policy);
+    const auto a_status = transfer_alone(want.b, want.a, policy);
+    const auto b_status = transfer_alone(want.a, want.b, policy);
+    on_many_schedules(30, [&](Parts n) {
+      return Scenario{[&, n](HeldBoth* held) { return there_and_back_and_there(c, n, held); },
+                      [&](const HeldBoth& held) {
+                        require_same(held.a, want.a, a_status);
+                        require_same(held.b, want.b, b_status);
+                      }};
+    });
+  }
+}
+
+TEST_CASE("one mesh is the source of three transfers at once, one onto itself", "[m2m][several]") {
+  MeshPair c;
+  c.policy = Nearest{};
+  MeshPair want = c;
+  const auto status = transfer_alone(want.a, want.b, c.policy);
+  on_many_schedules(60, [&](Parts n) {
+    return Scenario{[&, n](HeldBoth* held) { return to_two(c, n, held); },
+                    [&](const HeldBoth& held) {
+                      require_same(held.a, want.b, status);
+                      require_same(held.b, want.b, status);
+                    }};
+  });
+}
+
+TEST_CASE("two transfers into one mesh at once lose no value of each other", "[m2m][several]") {
+  MeshPair left;
+  left.a = piece("kuhn:4@0.2", 0.45, 0, "sin");
+  MeshPair right = left;
+  right.a = piece("kuhn:3@0.1", 0.4, 0.55, "linear");
+  MeshPair want = left;
+  transfer_alone(left.a, want.b, Keep{});
+  transfer_alone(right.a, want.b, Keep{});
+  on_many_schedules(60, [&](Parts n) {
+    return Scenario{[&, n](HeldBoth* held) { return from_two(left, right, n, held); },
+                    [&](const HeldBoth& held) { REQUIRE(held.a.values == want.b.field.values); }};
+  });
+}
+
+TEST_CASE("transfers both ways at once read a mesh before or after it is written, never between",
+          "[m2m][several]") {
+  const MeshPair c;
+  std::array<MeshPair, 3> wants{c, c, c};
+  transfer_alone(c.a, wants[0].b, Keep{});  // both read first
+  transfer_alone(c.b, wants[0].a, Keep{});
+  transfer_alone(wants[1].a, wants[1].b, Keep{});
+  transfer_alone(wants[1].b, wants[1].a, Keep{});
+  transfer_alone(wants[2].b, wants[2].a, Keep{});
+  transfer_alone(wants[2].a, wants[2].b, Keep{});
+  on_many_schedules(60, [&](Parts n) {
+    return Scenario{[&, n](HeldBoth* held) { return exchange(c, n, held); },
+                    [&](const HeldBoth& held) {
+                      const auto is = [&](const MeshPair& want) {
+                        return held.a.values == want.a.field.values &&
+                               held.b.values == want.b.field.values;
+                      };
+                      REQUIRE(std::any_of(wants.begin(), wants.end(), is));
+                    }};
+  });
+}
