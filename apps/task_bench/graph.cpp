@@ -186,28 +186,30 @@ std::vector<std::int32_t> dependents(const Graph& g, std::int32_t set, std::int3
 }
 
 Totals totals(const Graph& g) {
-  // A dependence set repeats; a step's count is that of its set where all points have tasks.
   std::vector<std::uint64_t> of_set(static_cast<std::size_t>(n_sets(g)), 0);
-  std::vector<std::vector<std::vector<std::int32_t>>> from(of_set.size());
   for (std::size_t set = 0; set < of_set.size(); ++set)
-    for (std::int32_t p = 0; p < g.width; ++p) {
-      from[set].push_back(dependences(g, static_cast<std::int32_t>(set), p));
-      of_set[set] += from[set].back().size();
-    }
+    for (std::int32_t p = 0; p < g.width; ++p)
+      of_set[set] += dependences(g, static_cast<std::int32_t>(set), p).size();
   Totals result;
   for (std::int64_t step = 0; step < g.steps; ++step) {
     const Points now = points_at(g, step), before = points_at(g, step - 1);
-    const auto set = static_cast<std::size_t>(set_at(g, step));
-    result.n_tasks += static_cast<std::uint64_t>(now.end - now.first);
-    for (std::int32_t p = now.first; p < now.end; ++p)
-      result.n_iterations += static_cast<std::uint64_t>(iterations_of(g.kernel, g.number, step, p));
-    if (now.end - now.first == g.width && before.end - before.first == g.width) {
-      result.n_dependences += of_set[set];
-      continue;
+    const auto n_points = static_cast<std::uint64_t>(now.end - now.first);
+    result.n_tasks += n_points;
+    if (g.kernel.type != KernelType::load_imbalance) {
+      result.n_iterations += n_points * static_cast<std::uint64_t>(g.kernel.iterations);
+    } else {
+      for (std::int32_t p = now.first; p < now.end; ++p)
+        result.n_iterations +=
+            static_cast<std::uint64_t>(iterations_of(g.kernel, g.number, step, p));
     }
-    for (std::int32_t p = now.first; p < now.end; ++p)
-      for (const std::int32_t q : from[set][static_cast<std::size_t>(p)])
-        result.n_dependences += before.contains(q) ? 1U : 0U;
+    const std::int32_t set = set_at(g, step);
+    if (now.end - now.first == g.width && before.end - before.first == g.width) {
+      result.n_dependences += of_set[static_cast<std::size_t>(set)];
+    } else if (before.end > before.first) {
+      for (std::int32_t p = now.first; p < now.end; ++p)
+        for (const std::int32_t q : dependences(g, set, p))
+          result.n_dependences += before.contains(q) ? 1U : 0U;
+    }
   }
   return result;
 }

@@ -19,6 +19,7 @@ struct Settings {
   bool all_types = false;
   bool metg = false;
   std::int32_t repeat = 0;  ///< runs of each grain; the median counts
+  bool fastest = false;     ///< or the fastest
   std::int64_t sync_every = 10;
   std::optional<tess::BalanceOptions> balance;
   std::optional<std::pair<std::int64_t, std::int64_t>> spoiled;  ///< step and point of a task

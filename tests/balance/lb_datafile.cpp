@@ -17,6 +17,7 @@ void require_same(const Snapshot& a, const Snapshot& b) {
   REQUIRE(a.elements.key == b.elements.key);
   REQUIRE(a.elements.pe == b.elements.pe);
   REQUIRE(a.elements.load == b.elements.load);
+  REQUIRE(a.elements.measured == b.elements.measured);
   REQUIRE(a.elements.migratable == b.elements.migratable);
   REQUIRE(a.elements.size_bytes == b.elements.size_bytes);
   REQUIRE(a.elements.memory_bytes == b.elements.memory_bytes);
@@ -72,6 +73,18 @@ TEST_CASE("phases come back from a file as they were", "[balance][lb_datafile]")
       REQUIRE(back[k].id == phases[k].id);
       require_same(back[k].snapshot, phases[k].snapshot);
     }
+  }
+}
+
+TEST_CASE("a file tells loads that are not known from others", "[balance][lb_datafile]") {
+  Snapshot s = mod_seven(Start::blocks);
+  s.elements.measured.assign(64, 1);
+  s.elements.measured[5] = 0;
+  const std::string text = write_lb_datafile({{0, s}});
+  const Snapshot back = parse_lb_datafiles({{"data.0.json", text}}).at(0).snapshot;
+  for (std::size_t i = 0; i < 64; ++i) {
+    INFO(i);
+    CHECK(back.elements.knows_load(i) == (back.elements.key[i].element != 5));
   }
 }
 

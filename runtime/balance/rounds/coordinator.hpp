@@ -33,10 +33,10 @@ class Coordinator {
 
   [[nodiscard]] const BalanceOptions& options() const { return options_; }
 
-  /// automatic: whether to collect loads and decide() at this barrier.
+  /// automatic: whether to collect loads and decide() at this barrier. Not while no load is known.
   [[nodiscard]] bool worth(const PhaseSums& phase);
 
-  /// The moves of a round, for each PE.
+  /// The moves of a round, for each PE; none while no load is known.
   [[nodiscard]] std::vector<std::vector<Move>> decide(const std::vector<PeReport>& reports);
 
   /// A distributed strategy ran: what it says of itself.

@@ -1,5 +1,7 @@
 // The measured loads of an array's elements on one PE: reported to the coordinator, and then the
-// elements it names are moved. An element that leaves or ends between the two is struck off.
+// elements it names are moved. An element that leaves or ends between the two is struck off. The
+// load of an element is known from its birth on, or from the beginning of a phase: what ran before
+// it was measured makes it unknown until then.
 #pragma once
 
 #include "runtime/balance/rounds/coordinator.hpp"

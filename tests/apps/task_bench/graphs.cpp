@@ -199,7 +199,7 @@ TEST_CASE("inputs are complete when each dependence has its output, in any order
   }
 }
 
-TEST_CASE("an output that is nobody's input is refused", "[task_bench]") {
+TEST_CASE("an output that stands for no dependence is refused", "[task_bench]") {
   const Graph g = graph_of("nearest", 9);
   Inputs inputs(g, 4);
   inputs.advance();
