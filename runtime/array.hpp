@@ -70,7 +70,8 @@ class Array final : public ArrayOf<typename C::Index> {
   void take_in(Arrival<C>& arrival) {
     if (arrival.element == nullptr) {
       if constexpr (Migratable<C>) {
-        Reader ar(arrival.state);
+        const std::span<const std::byte> state(arrival.state.data(), arrival.state.size());
+        Reader ar(state);
         const auto index = ar.template take<Index>();
         {
           const Pe::Birth birth(this->pe_, &index, this);
@@ -81,7 +82,7 @@ class Array final : public ArrayOf<typename C::Index> {
           arrival.element->balance_.reset(new BalanceRecord);
           arrival.element->balance_->unpack(ar, this->pe_.start_meter());
         }
-        [[maybe_unused]] const auto sent = std::span(arrival.state).last(ar.remaining());
+        [[maybe_unused]] const auto sent = state.last(ar.remaining());
         arrival.element->serialize(ar);
         TESS_CHECK(ar.remaining() == 0,
                    this->name(),
@@ -125,10 +126,9 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override {
-    Buffer bytes;
-    Writer ar(bytes);
-    pack_element(static_cast<C&>(element), ar);
-    return bytes.size();
+    Writer count{std::span<std::byte>()};
+    pack_element(static_cast<C&>(element), count);
+    return count.n_bytes();
   }
 
   [[nodiscard]] bool migratable() const override {
@@ -183,7 +183,10 @@ void Arrival<C>::pack(Envelope& envelope, Writer& ar) {
 
 template <class C>
 void Arrival<C>::pack_state() {
-  Writer write(state);
+  Writer count{std::span<std::byte>()};
+  Array<C>::pack_element(*element, count);
+  state.resize(count.n_bytes());
+  Writer write{std::span(state.data(), state.size())};
   Array<C>::pack_element(*element, write);
   delete std::exchange(element, nullptr);
 }

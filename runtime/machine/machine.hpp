@@ -6,10 +6,14 @@
 //     thread Machine                 post / send / stop / now         called by the runtime
 //
 // Within a process a message travels as a pointer (post). Between processes it travels as bytes
-// (send): the runtime has packed many messages into one buffer. No order of delivery is promised,
-// by any machine.
+// (send): the runtime has packed many messages into one buffer. A large message is a parcel: a few
+// bytes, and parts that the machine moves from where they stand at the sender to where the program
+// at the receiver wants them. No order of delivery is promised, by any machine.
+//
+//     receiver:  place(head, sizes) → message, places    …parts come…    placed(message)
 #pragma once
 
+#include "runtime/base/buffer.hpp"
 #include "runtime/base/link.hpp"
 #include "runtime/ids.hpp"
 
@@ -27,8 +31,12 @@ namespace tess {
 /// another.
 enum class Traffic : std::uint8_t { user, location, migration, control };
 
-/// Bytes on their way between processes.
-using Buffer = std::vector<std::byte>;
+/// A large message on its way to another process.
+struct Parcel {
+  Buffer head;
+  std::vector<std::span<const std::byte>> parts;  ///< at least one; none is empty
+  std::shared_ptr<void> keeper;  ///< keeps the parts until they have left; any thread may end it
+};
 
 /// What a machine drives. Every function with a PE runs on that PE's thread, never twice at once
 /// for one PE.
@@ -49,6 +57,18 @@ class Program {
   virtual bool idle(PeId pe) = 0;
   /// Takes a buffer that another process sent; `pe` is the PE whose thread happened to receive it.
   virtual void receive(PeId pe, std::span<const std::byte> bytes) = 0;
+  /// Takes the head of a parcel, whose parts have these sizes: returns a message, and says in
+  /// `places` where each part is to be put.
+  virtual Link* place(PeId /*pe*/,
+                      std::span<const std::byte> /*head*/,
+                      std::span<const std::uint64_t> /*sizes*/,
+                      std::vector<std::span<std::byte>>& /*places*/) {
+    return nullptr;
+  }
+  /// All parts of that message have come; `pe` is the PE whose thread noticed.
+  virtual void placed(PeId /*pe*/, Link* /*message*/) {}
+  /// Frees a message whose parts came after finish().
+  virtual void drop(Link* /*message*/) {}
   /// Called once a PE, on its thread, after the last step; messages that remain are freed here.
   virtual void finish(PeId pe) = 0;
 };
@@ -99,6 +119,8 @@ class Machine {
   /// block. What it leaves of `bytes` is for clear() alone; it may keep its memory, to be filled
   /// again.
   virtual void send(PeId from, ProcessId to, Buffer&& bytes) = 0;
+  /// The same for a parcel.
+  virtual void send(PeId from, ProcessId to, Parcel&& parcel) = 0;
 
   /// Drives the PEs of this process until stop(); returns on the thread that called it.
   virtual void run(Program& program) = 0;

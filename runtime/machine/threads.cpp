@@ -24,6 +24,9 @@ class ThreadsMachine final : public Machine {
   void send(PeId from, ProcessId to, Buffer&&) override {
     TESS_CHECK(false, from, " sends bytes to ", to, ", but there is one process");
   }
+  void send(PeId from, ProcessId to, Parcel&&) override {
+    TESS_CHECK(false, from, " sends a parcel to ", to, ", but there is one process");
+  }
   void run(Program& program) override { team_.run(program, topology_); }
   void stop() override { team_.stop(); }
   [[noreturn]] void abort(int exit_code) override {

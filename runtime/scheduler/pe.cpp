@@ -9,25 +9,10 @@
 namespace tess {
 namespace {
 
-constexpr std::size_t flush_bytes = 32U << 10U;
-constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
-/// The longest that a packed message waits for others to the same process.
-constexpr double flush_seconds = 5e-6;
 /// After a step of so few messages no others are likely to follow soon: what was packed leaves.
 constexpr std::size_t few_messages = 2;
 /// A PE that never runs dry reports its epochs after so many messages.
 constexpr std::size_t messages_between_reports = 1024;
-
-/// What stands before each message in a packed buffer.
-struct PackedHeader {
-  std::uint64_t n_bytes;
-  EpochId epoch;
-  std::uint32_t action;
-  PeId source;
-  PeId target;
-  std::uint32_t trace_and_counted;  // the lowest bit: counted
-};
-static_assert(Bitwise<PackedHeader>);
 
 }  // namespace
 
@@ -37,7 +22,12 @@ Pe& current_pe() {
   return *detail::the_current_pe;
 }
 
-Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed)
+Pe::Pe(PeId id,
+       Runtime& runtime,
+       Machine& machine,
+       Pool& pool,
+       std::uint64_t seed,
+       const MessageOptions& messages)
     : id_(id),
       n_pes_(machine.n_pes()),
       runtime_(runtime),
@@ -46,10 +36,9 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
       message_cost_(machine.message_cost()),
-      flush_ticks_(static_cast<std::uint64_t>(flush_seconds / seconds_per_tick())),
       completion_(*this),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      packed_(static_cast<std::size_t>(machine.n_processes())) {}
+      outbox_(id, machine, messages) {}
 
 Pe::~Pe() = default;
 
@@ -62,75 +51,7 @@ void Pe::route(PeId to, Envelope* message) {
     machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
   } else {
     ++statistics_.sent_remote;
-    pack(to, message);
-  }
-}
-
-void Pe::pack(PeId to, Envelope* message) {
-  const auto process = static_cast<std::size_t>(machine_.process_of(to).value);
-  Buffer& out = packed_[process];
-  if (out.capacity() == 0) out.reserve(first_bytes);
-  const std::size_t begin = out.size();
-  PackedHeader header{0,
-                      message->epoch,
-                      message->action->id(),
-                      message->source,
-                      to,
-                      message->trace << 1U | (message->counted ? 1U : 0U)};
-  Writer write(out);
-  write(header);
-  message->action->pack(*message, write);
-  header.n_bytes = out.size() - begin - sizeof header;
-  std::memcpy(out.data() + begin, &header, sizeof header);
-  statistics_.bytes_sent += out.size() - begin;
-  discard(message);
-  if (!holds_packed_) {
-    holds_packed_ = true;
-    packed_since_ = read_ticks();
-  }
-  if (out.size() >= flush_bytes || intercepts_) {
-    machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
-    out.clear();
-  }
-}
-
-bool Pe::flush() {
-  if (!holds_packed_) return false;
-  holds_packed_ = false;
-  for (std::size_t process = 0; process < packed_.size(); ++process) {
-    if (packed_[process].empty()) continue;
-    machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(packed_[process]));
-    packed_[process].clear();
-  }
-  return true;
-}
-
-void Pe::receive(std::span<const std::byte> bytes) {
-  const RunsOn here(*this);
-  Reader read(bytes);
-  while (read.remaining() != 0) {
-    const auto header = read.take<PackedHeader>();
-    Reader body(read.view(header.n_bytes));
-    const auto& action = static_cast<const Action&>(Registry::at(header.action));
-    Envelope* message = action.unpack(*this, body);
-    TESS_CHECK(body.remaining() == 0,
-               plain_name(action.name()),
-               ": the arguments read back leave ",
-               body.remaining(),
-               " of ",
-               header.n_bytes,
-               " bytes; does serialize() read what it writes?");
-    message->action = &action;
-    message->epoch = header.epoch;
-    message->source = header.source;
-    message->target = header.target;
-    message->counted = (header.trace_and_counted & 1U) != 0;
-    message->trace = header.trace_and_counted >> 1U;
-    if (header.target == id_) {
-      ready_.push(message);
-    } else {
-      machine_.post(id_, header.target, message, header.n_bytes, action.traffic);
-    }
+    statistics_.bytes_sent += outbox_.put(message);
   }
 }
 
@@ -195,12 +116,12 @@ std::size_t Pe::step(std::size_t most) {
   if (trace_) [[unlikely]] {
     for (; n < most && !ready_.empty(); ++n) {
       run_traced(static_cast<Envelope*>(ready_.pop()));
-      flush_if_due();
+      outbox_.flush_if_due();
     }
   } else {
     for (; n < most && !ready_.empty(); ++n) {
       run(static_cast<Envelope*>(ready_.pop()));
-      flush_if_due();
+      outbox_.flush_if_due();
     }
   }
   statistics_.messages += n;

@@ -5,10 +5,10 @@
 
 #include "runtime/base/mix.hpp"
 #include "runtime/base/pool.hpp"
-#include "runtime/base/ticks.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/meter.hpp"
+#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
 #include "runtime/scheduler/trace.hpp"
@@ -50,7 +50,12 @@ struct PeStatistics {
 class Pe {
  public:
   /// The pool outlives all PEs of the process: messages of one are freed by another.
-  Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed);
+  Pe(PeId id,
+     Runtime& runtime,
+     Machine& machine,
+     Pool& pool,
+     std::uint64_t seed,
+     const MessageOptions& messages);
   Pe(const Pe&) = delete;
   Pe& operator=(const Pe&) = delete;
   ~Pe();
@@ -133,9 +138,14 @@ class Pe {
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
+  [[nodiscard]] Envelope* place(std::span<const std::byte> head,
+                                std::span<const std::uint64_t> sizes,
+                                std::vector<std::span<std::byte>>& taken);
+  /// Hands a message that came from another process to its PE.
+  void hand_over(Envelope* message, std::size_t n_bytes);
   /// Sends all that was held back to be packed together. True if there was any. Called after a few
   /// microseconds, when the PE idles, and before it starts local work on which other PEs wait.
-  bool flush();
+  bool flush() { return outbox_.flush(); }
   void drop_all();
 
   /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
@@ -204,10 +214,6 @@ class Pe {
 
  private:
   void route(PeId to, Envelope* message);
-  void pack(PeId to, Envelope* message);
-  void flush_if_due() {
-    if (holds_packed_ && read_ticks() - packed_since_ > flush_ticks_) flush();
-  }
   void run(Envelope* message);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
@@ -221,7 +227,6 @@ class Pe {
   const bool intercepts_;
   const unsigned patience_;
   const Time message_cost_;
-  const std::uint64_t flush_ticks_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
@@ -241,9 +246,7 @@ class Pe {
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
-  bool holds_packed_ = false;
-  std::uint64_t packed_since_ = 0;  // in ticks
-  std::vector<Buffer> packed_;  // one a process
+  Outbox outbox_;
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
   std::uint64_t n_collections_made_ = 0;
