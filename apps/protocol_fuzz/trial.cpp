@@ -35,6 +35,10 @@ Ending Trial::run_message(std::function<void()> main) {
     setup.machine = make_simulated_machine(options);
     setup.options.seed = *options.seed;
     setup.options.migration_chance = migration_chance(options);
+    // Vectors of this size, or more, travel apart from their message.
+    constexpr std::array<std::size_t, 4> attached_from{1, 100, 1000, 16'384};
+    setup.options.messages.attach_bytes =
+        attached_from[mix(*options.seed ^ 0x61747461U) % attached_from.size()];
   }
   setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
   ending.exit_code = run_on(setup, std::move(main));

@@ -79,6 +79,9 @@ TEST_CASE("exit in mid flood gives the greatest code and leaks nothing", "[runti
 TEST_CASE("early messages migrate with their mailbox", "[runtime][protocol]") {
   run_seeds("mailboxes");
 }
+TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]") {
+  run_seeds("payloads");
+}
 TEST_CASE("a deadlock says who waits for what", "[runtime][protocol]") {
   run_seeds("deadlocks");
 }
@@ -104,6 +107,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "epoch_migrations",
                            "flood_exit",
                            "mailboxes",
+                           "payloads",
                            "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
