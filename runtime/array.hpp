@@ -242,6 +242,9 @@ class ElementProxy {
   /// Moves the element to a PE.
   void migrate_to(PeId pe) const { system<Relocation<C>>(pe); }
 
+  /// Where a message to it goes from this PE.
+  [[nodiscard]] PeId next_pe() const { return branch(current_pe()).next_pe(index_); }
+
   /// A target for results: entry method F of this element.
   template <auto F>
   [[nodiscard]] auto target() const {

@@ -13,6 +13,7 @@
 #include "runtime/index.hpp"
 #include "runtime/mailbox.hpp"
 #include "runtime/reduction.hpp"
+#include "runtime/room.hpp"
 #include "runtime/run.hpp"
 #include "runtime/serialize.hpp"
 #include "runtime/task.hpp"

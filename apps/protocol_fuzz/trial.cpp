@@ -17,7 +17,11 @@ std::int32_t pes_of_seed(std::uint64_t seed) {
 }
 
 Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine)
-    : seed_(seed), n_pes_(n_pes), machine_(machine), random_(mix(seed + 1)) {}
+    : seed_(seed), n_pes_(n_pes), machine_(machine), random_(mix(seed + 1)) {
+  // Enough for all, for one message, for about two, for a few.
+  constexpr std::array<std::uint64_t, 4> choices{32U << 20U, 1, 300, 3000};
+  message_memory_ = choices[mix(seed ^ 0x6d656d6fU) % choices.size()];
+}
 
 Ending Trial::run_message(std::function<void()> main) {
   Ending ending;
@@ -35,6 +39,7 @@ Ending Trial::run_message(std::function<void()> main) {
     setup.machine = make_simulated_machine(options);
     setup.options.seed = *options.seed;
     setup.options.migration_chance = migration_chance(options);
+    setup.options.messages.memory_bytes = message_memory_;
     // Vectors of this size, or more, travel apart from their message.
     constexpr std::array<std::size_t, 4> attached_from{1, 100, 1000, 16'384};
     setup.options.messages.attach_bytes =

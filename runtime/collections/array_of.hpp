@@ -70,6 +70,14 @@ class ArrayOf : public Collection {
     return at == here_.end() ? nullptr : at->second;
   }
 
+  /// Where a message to that index goes from here, as far as this PE knows.
+  [[nodiscard]] PeId next_pe(const Index& index) {
+    if (here_.contains(index)) return pe_.id();
+    if (const auto left = departed_.find(index); left != departed_.end()) return left->second.pe;
+    if (const Place* hint = cache_.find(index); hint != nullptr) return hint->pe;
+    return home(index);
+  }
+
   /// A user's message starts here.
   void post(Letter* letter) {
     if (here_.contains(letter->index)) {

@@ -29,18 +29,63 @@ struct Sent {
 
 }  // namespace
 
-Outbox::Outbox(PeId self, Machine& machine, const MessageOptions& options)
+Outbox::Outbox(PeId self,
+               Machine& machine,
+               const MessageOptions& options,
+               std::uint64_t& bytes_sent)
     : self_(self),
       machine_(machine),
       one_by_one_(machine.intercepts_local()),
       flush_ticks_(static_cast<std::uint64_t>(flush_seconds / seconds_per_tick())),
+      limit_(std::max<std::uint64_t>(
+          credit_of(options.memory_bytes / 2 / static_cast<std::size_t>(machine.pes_per_process())),
+          1)),
+      portion_(std::max<std::uint64_t>(
+          limit_ / 2 / static_cast<std::size_t>(machine.pes_per_process()), 1)),
+      bytes_sent_(bytes_sent),
       lanes_(static_cast<std::size_t>(machine.n_processes())) {
   attached_.least_bytes = options.attach_bytes;
 }
 
-std::uint64_t Outbox::put(Envelope* message) {
+void Outbox::put(Envelope* message) {
   const ProcessId process = machine_.process_of(message->target);
-  return pack(lanes_[static_cast<std::size_t>(process.value)], process, message);
+  Lane& to = lane(process);
+  const bool charged = message->action->traffic == Traffic::user && message->counted;
+  if (charged && to.under_way >= limit_) [[unlikely]] {
+    to.waiting.push(message);
+  } else {
+    pack(to, process, message, charged);
+  }
+}
+
+std::uint64_t Outbox::owe(PeId sender, std::uint32_t credit) {
+  if (owed_.empty()) owed_.resize(static_cast<std::size_t>(machine_.n_pes()));
+  std::uint64_t& owed = owed_[static_cast<std::size_t>(sender.value)];
+  owed += credit;
+  return owed >= portion_ ? std::exchange(owed, 0) : 0;
+}
+
+void Outbox::repaid(ProcessId process, std::uint64_t credit) {
+  Lane& to = lane(process);
+  to.under_way -= credit;
+  while (to.under_way < limit_ && !to.waiting.empty())
+    pack(to, process, static_cast<Envelope*>(to.waiting.pop()), true);
+}
+
+bool Outbox::go_on_one(ProcessId process) {
+  Lane& to = lane(process);
+  if (to.producers.empty() || to.under_way >= limit_) return false;
+  const std::function<void()> go_on = std::move(to.producers.front());
+  to.producers.pop_front();
+  go_on();
+  return !to.producers.empty();
+}
+
+void Outbox::drop_all() {
+  for (Lane& to : lanes_) {
+    while (!to.waiting.empty()) discard(static_cast<Envelope*>(to.waiting.pop()));
+    to.producers.clear();
+  }
 }
 
 void Outbox::begin(Lane& lane) const {
@@ -51,7 +96,7 @@ void Outbox::begin(Lane& lane) const {
 
 /// Writes the message behind what the lane holds; returns the bytes that it takes. If there is no
 /// room for them nothing has happened.
-std::size_t Outbox::write(Lane& lane, Envelope* message) {
+std::size_t Outbox::write(Lane& lane, Envelope* message, bool charged) {
   attached_.clear();
   const std::span<std::byte> room = lane.packed.room();
   PackedHeader header{0,
@@ -59,7 +104,9 @@ std::size_t Outbox::write(Lane& lane, Envelope* message) {
                       message->action->id(),
                       message->source,
                       message->target,
-                      message->trace << 1U | (message->counted ? 1U : 0U)};
+                      message->trace << PackedHeader::n_flags |
+                          (message->counted ? PackedHeader::counted : 0U) |
+                          (charged ? PackedHeader::charged : 0U)};
   Writer write(room, &attached_);
   write(header);
   message->action->pack(*message, write);
@@ -82,18 +129,20 @@ void Outbox::make_room(Lane& lane, ProcessId process, std::size_t n_bytes) {
                                        : std::clamp(2 * lane.packed.capacity(), all, most_bytes));
 }
 
-std::uint64_t Outbox::pack(Lane& lane, ProcessId process, Envelope* message) {
+void Outbox::pack(Lane& lane, ProcessId process, Envelope* message, bool charged) {
   if (lane.packed.capacity() == 0) lane.packed.reserve(first_bytes);
   if (lane.packed.empty()) begin(lane);
-  std::size_t n_bytes = write(lane, message);
+  std::size_t n_bytes = write(lane, message, charged);
   while (n_bytes > lane.packed.room().size()) {
     make_room(lane, process, n_bytes);
-    n_bytes = write(lane, message);
+    n_bytes = write(lane, message, charged);
   }
+  const std::uint64_t all = n_bytes + attached_.n_bytes;
+  bytes_sent_ += all;
+  if (charged) lane.under_way += credit_of(all);
   if (!attached_.parts.empty()) [[unlikely]] {
-    const std::uint64_t all = n_bytes + attached_.n_bytes;
     send_parcel(lane, process, message, n_bytes);
-    return all;
+    return;
   }
   lane.packed.resize(lane.packed.size() + n_bytes);
   discard(message);
@@ -102,7 +151,6 @@ std::uint64_t Outbox::pack(Lane& lane, ProcessId process, Envelope* message) {
     packed_since_ = read_ticks();
   }
   if (lane.packed.size() >= flush_bytes || one_by_one_) send_packed(lane, process);
-  return n_bytes;
 }
 
 /// The message stands in the room behind what the lane holds, which stays.

@@ -6,6 +6,18 @@
 //     put(message) ─► lane: | sender | header, bytes | header, bytes | … ─► Machine::send(Buffer)
 //                  └► large: | sender | header, bytes |  + parts        ─► Machine::send(Parcel)
 //
+// Memory is bounded by credit. What users send is charged to its lane, by its bytes, until the
+// receiver has run it: a lane packs while what is under way is below half of its budget, so that
+// with the next message it is within the budget, or half of it and that message. What comes later
+// waits here, unpacked. The receiver repays in portions, by messages that need no credit:
+//
+//     portion = limit / (2 × PEs of the receiving process):  its PEs together keep back less than
+//     half of the limit, so some of what is under way is always about to be repaid
+//
+// A message that has run is repaid wherever it goes then, and messages of the runtime itself are
+// not charged. So nothing that holds credit waits for credit, and no deadlock is possible. What
+// waits here is sent and not processed: its epochs wait with it.
+//
 // The other end is Pe::receive and Pe::place. One PE's.
 #pragma once
 
@@ -13,9 +25,13 @@
 #include "runtime/ids.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/ready_queue.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -33,24 +49,35 @@ struct PackedHeader {
   std::uint32_t action = 0;
   PeId source{};
   PeId target{};
-  std::uint32_t trace_and_counted = 0;  ///< the lowest bit: counted
+  std::uint32_t trace_and_flags = 0;  ///< the lowest bits: counted, charged
+
+  static constexpr std::uint32_t counted = 1;
+  static constexpr std::uint32_t charged = 2;
+  static constexpr unsigned n_flags = 2;
 };
 static_assert(Bitwise<PackedFrom> && Bitwise<PackedHeader>);
+
+/// The credit that a message of so many bytes takes.
+[[nodiscard]] constexpr std::uint32_t credit_of(std::uint64_t n_bytes) {
+  return static_cast<std::uint32_t>(n_bytes / 16 + 1);
+}
 
 /// How messages travel between processes.
 struct MessageOptions {
   std::size_t attach_bytes = std::size_t{16} << 10;  ///< a vector of so many is a part of its own
+  std::size_t memory_bytes = std::size_t{32} << 20;  ///< under way from one process to another
 };
 
 class Outbox {
  public:
-  Outbox(PeId self, Machine& machine, const MessageOptions& options);
+  /// Counts in `bytes_sent` what it packs.
+  Outbox(PeId self, Machine& machine, const MessageOptions& options, std::uint64_t& bytes_sent);
   Outbox(const Outbox&) = delete;
   Outbox& operator=(const Outbox&) = delete;
   ~Outbox() = default;
 
-  /// Sends to a PE of another process; takes ownership. Returns the bytes of the message.
-  std::uint64_t put(Envelope* message);
+  /// Sends to a PE of another process; takes ownership.
+  void put(Envelope* message);
   /// Sends all that was held back to be packed together. True if there was any.
   bool flush();
   /// The same, once the oldest has waited for a few microseconds.
@@ -58,14 +85,41 @@ class Outbox {
     if (holds_packed_ && read_ticks() - packed_since_ > flush_ticks_) flush();
   }
 
+  /// A message of that sender has run here: what is to be repaid now, mostly 0.
+  [[nodiscard]] std::uint64_t owe(PeId sender, std::uint32_t credit);
+  /// A PE of that process has repaid: what waited is sent as far as it may.
+  void repaid(ProcessId process, std::uint64_t credit);
+
+  /// A message to that process would not wait.
+  [[nodiscard]] bool has_room(ProcessId process) const { return lane(process).under_way < limit_; }
+  /// Calls `go_on` once there is room, of several one after the other (go_on_one).
+  void wait_for_room(ProcessId process, std::function<void()> go_on) {
+    lane(process).producers.push_back(std::move(go_on));
+  }
+  /// Lets the first that waits for room go on, if there is any. True if others wait.
+  bool go_on_one(ProcessId process);
+  [[nodiscard]] bool awaited(ProcessId process) const { return !lane(process).producers.empty(); }
+
+  /// Frees what waits.
+  void drop_all();
+
  private:
   /// To one process.
   struct Lane {
     Buffer packed;
+    std::uint64_t under_way = 0;                  // credit
+    ReadyQueue waiting;                           // for credit; empty while under_way < limit_
+    std::deque<std::function<void()>> producers;  // wait for room
   };
 
-  [[nodiscard]] std::uint64_t pack(Lane& lane, ProcessId process, Envelope* message);
-  [[nodiscard]] std::size_t write(Lane& lane, Envelope* message);
+  [[nodiscard]] Lane& lane(ProcessId process) {
+    return lanes_[static_cast<std::size_t>(process.value)];
+  }
+  [[nodiscard]] const Lane& lane(ProcessId process) const {
+    return lanes_[static_cast<std::size_t>(process.value)];
+  }
+  void pack(Lane& lane, ProcessId process, Envelope* message, bool charged);
+  [[nodiscard]] std::size_t write(Lane& lane, Envelope* message, bool charged);
   void make_room(Lane& lane, ProcessId process, std::size_t n_bytes);
   void send_packed(Lane& lane, ProcessId process);
   void send_parcel(Lane& lane, ProcessId process, Envelope* message, std::size_t n_bytes);
@@ -75,10 +129,14 @@ class Outbox {
   Machine& machine_;
   const bool one_by_one_;
   const std::uint64_t flush_ticks_;
+  const std::uint64_t limit_;    // of a lane, in credit
+  const std::uint64_t portion_;  // that is repaid
+  std::uint64_t& bytes_sent_;
   bool holds_packed_ = false;
   std::uint64_t packed_since_ = 0;  // in ticks
   Attached attached_;
   std::vector<Lane> lanes_;
+  std::vector<std::uint64_t> owed_;  // to each PE, once there is anything
 };
 
 }  // namespace tess

@@ -38,7 +38,7 @@ Pe::Pe(PeId id,
       message_cost_(machine.message_cost()),
       completion_(*this),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      outbox_(id, machine, messages) {}
+      outbox_(id, machine, messages, statistics_.bytes_sent) {}
 
 Pe::~Pe() = default;
 
@@ -51,7 +51,7 @@ void Pe::route(PeId to, Envelope* message) {
     machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
   } else {
     ++statistics_.sent_remote;
-    statistics_.bytes_sent += outbox_.put(message);
+    outbox_.put(message);
   }
 }
 
@@ -61,6 +61,9 @@ void Pe::run(Envelope* message) {
     discard(message);
     return;
   }
+  const std::uint32_t charge = message->charge;
+  const PeId sender = message->sender;
+  message->charge = 0;  // wherever it goes from here
   context_ = Context{nullptr, message->action, message->epoch};
   try {
     message->action->run(*this, message);
@@ -76,6 +79,9 @@ void Pe::run(Envelope* message) {
     exception("an exception that is no std::exception", 1);
   }
   context_ = Context{};
+  if (charge != 0) [[unlikely]]
+    repay(sender,
+          charge);  // before it counts as processed: the run is not over while credit is due
   if (counted) completion_.hop_processed();
 }
 
@@ -160,6 +166,7 @@ void Pe::drop_all() {
     for (Envelope* message : messages) discard(message);
   }
   early_.clear();
+  outbox_.drop_all();
   dropping_ = true;
   end_all(suspended_);
 }

@@ -141,6 +141,9 @@ class Pe {
   [[nodiscard]] Envelope* place(std::span<const std::byte> head,
                                 std::span<const std::uint64_t> sizes,
                                 std::vector<std::span<std::byte>>& taken);
+  [[nodiscard]] Outbox& outbox() { return outbox_; }
+  /// A PE of another process has run what this PE had sent there.
+  void on_repaid(PeId from, std::uint64_t amount);
   /// Hands a message that came from another process to its PE.
   void hand_over(Envelope* message, std::size_t n_bytes);
   /// Sends all that was held back to be packed together. True if there was any. Called after a few
@@ -215,6 +218,7 @@ class Pe {
  private:
   void route(PeId to, Envelope* message);
   void run(Envelope* message);
+  void repay(PeId sender, std::uint32_t charge);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
   Collection* find_slow(CollectionId id);

@@ -82,6 +82,9 @@ TEST_CASE("early messages migrate with their mailbox", "[runtime][protocol]") {
 TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]") {
   run_seeds("payloads");
 }
+TEST_CASE("a flood is held back within the budget, and all of it arrives", "[runtime][protocol]") {
+  run_seeds("floods");
+}
 TEST_CASE("a deadlock says who waits for what", "[runtime][protocol]") {
   run_seeds("deadlocks");
 }
@@ -108,6 +111,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "flood_exit",
                            "mailboxes",
                            "payloads",
+                           "floods",
                            "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
