@@ -16,4 +16,5 @@
 #include "runtime/room.hpp"
 #include "runtime/run.hpp"
 #include "runtime/serialize.hpp"
+#include "runtime/shared_array.hpp"
 #include "runtime/task.hpp"

@@ -189,8 +189,8 @@ class Writer {
   /// The bytes written, or needed.
   [[nodiscard]] std::size_t n_bytes() const { return n_bytes_; }
 
-  /// Attaches memory that `keeper` holds; false if it is to be copied, as bytes() does. The reader
-  /// has to ask Reader::place() for it, or read bytes().
+  /// Attaches memory that `keeper` holds; false if it is to be copied. Then the length is written,
+  /// with Reader::attached_bit if it is attached (shared_array.hpp).
   bool attach(std::span<const std::byte> memory, std::shared_ptr<const void> keeper) {
     if (attached_ == nullptr || !fits(memory.size())) return false;
     add_part(memory);

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <variant>
 
@@ -15,6 +16,7 @@ struct Relay {
   Trial& trial;
   int n_elements = 0, n_hops = 0, most_numbers = 0;
   std::atomic<int> n_ended{0};
+  std::atomic<int> n_seen{0};
 };
 Relay* relay = nullptr;
 
@@ -48,6 +50,8 @@ struct Cargo {
   std::optional<std::vector<float>> perhaps;
   std::variant<int, std::vector<std::byte>> either;
   Folded folded;
+  SharedArray<double> shared;
+  std::map<int, SharedArray<std::int32_t>> shared_by_key;
   std::vector<std::pair<std::string, std::vector<double>>> named;
   friend bool operator==(const Cargo&, const Cargo&) = default;
 
@@ -63,6 +67,8 @@ struct Cargo {
     if (random.chance(0.5)) cargo.perhaps.emplace(random.below(50), 1.5F);
     if (random.chance(0.5)) cargo.either = std::vector<std::byte>(random.below(99), std::byte{7});
     cargo.folded.values = numbers(random());
+    cargo.shared = SharedArray<double>(numbers(random()));
+    cargo.shared_by_key[1] = SharedArray<std::int32_t>(std::vector<std::int32_t>(9, 4));
     cargo.named.resize(random.below(3), {"a name", numbers(random())});
     return cargo;
   }
@@ -74,6 +80,11 @@ class Carrier : public Chare<Carrier, Index1> {
   void load(std::uint64_t seed) {
     seed_ = seed;
     values_ = numbers(seed);
+  }
+  /// A broadcast is copied down the tree; what it shares is not.
+  void see(SharedArray<double> shared) {
+    relay->trial.expect(shared.size() == 100 && shared[99] == 99, "a broadcast was garbled");
+    ++relay->n_seen;
   }
   void hand_on(Cargo cargo, int left) {
     relay->trial.expect(cargo == Cargo::of(cargo.seed), "a value was garbled on its way");
@@ -110,11 +121,15 @@ void payloads(Trial& trial) {
   const std::uint64_t seed = trial.random()();
   trial.run_clean([&] {
     const auto carriers = tess::create<Carrier>(range(here.n_elements));
+    std::vector<double> counted(100);
+    std::iota(counted.begin(), counted.end(), 0.0);
+    carriers.broadcast<&Carrier::see>(SharedArray<double>(std::move(counted)));
     for (int i = 0; i < n_chains; ++i)
       carriers[{i % here.n_elements}].send<&Carrier::hand_on>(
           Cargo::of(mix(seed + static_cast<unsigned>(i))), here.n_hops);
   });
   trial.expect(here.n_ended == n_chains, here.n_ended.load(), " of ", n_chains, " chains ended");
+  trial.expect(here.n_seen == here.n_elements, here.n_seen.load(), " elements saw the broadcast");
 }
 
 }  // namespace tess::fuzz
