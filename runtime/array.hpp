@@ -74,7 +74,8 @@ class Array final : public ArrayOf<typename C::Index> {
   void take_in(Arrival<C>& arrival) {
     if (arrival.element == nullptr) {
       if constexpr (Migratable<C>) {
-        Reader ar(arrival.state);
+        const std::span<const std::byte> state(arrival.state.data(), arrival.state.size());
+        Reader ar(state);
         const auto index = ar.template take<Index>();
         {
           const Pe::Birth birth(this->pe_, &index, this);
@@ -89,12 +90,12 @@ class Array final : public ArrayOf<typename C::Index> {
           arrival.element->balance_.reset(new BalanceRecord);
           arrival.element->balance_->unpack(ar, this->pe_.start_meter());
         }
-        [[maybe_unused]] const auto sent = std::span(arrival.state).last(ar.remaining());
+        [[maybe_unused]] const auto sent = state.last(ar.remaining());
         read_all(
             ar,
             [&] { return this->name() + index_text(index); },
-            [&arrival](Reader& state) {
-              arrival.element->serialize(state);
+            [&arrival](Reader& rest) {
+              arrival.element->serialize(rest);
               return true;
             });
 #ifdef TESS_CHECKS_ALL
@@ -121,7 +122,7 @@ class Array final : public ArrayOf<typename C::Index> {
     if (arrival.element != nullptr) {
       record = arrival.element->balance_.get();
     } else {
-      Reader ar(arrival.state);
+      Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
       (void)ar.template take<Index>();
       (void)ar.template take<ElementState>();
       if (ar.template take<bool>()) {
@@ -159,10 +160,9 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override {
-    Buffer bytes;
-    Writer ar(bytes);
-    pack_element(static_cast<C&>(element), ar);
-    return bytes.size();
+    Writer count{std::span<std::byte>()};
+    pack_element(static_cast<C&>(element), count);
+    return count.n_bytes();
   }
 
   [[nodiscard]] bool migratable() const override {
@@ -223,7 +223,10 @@ std::uint64_t Arrival<C>::drop(Pe& pe, Envelope& envelope) {
 
 template <class C>
 void Arrival<C>::pack_state() {
-  Writer write(state);
+  Writer count{std::span<std::byte>()};
+  Array<C>::pack_element(*element, count);
+  state.resize(count.n_bytes());
+  Writer write{std::span(state.data(), state.size())};
   Array<C>::pack_element(*element, write);
   delete std::exchange(element, nullptr);
 }
@@ -283,6 +286,9 @@ class ElementProxy {
     check_exists(current_pe(), pe);
     system<Relocation<C>>(pe);
   }
+
+  /// Where a message to it goes from this PE.
+  [[nodiscard]] PeId next_pe() const { return branch(current_pe()).next_pe(index_); }
 
   /// A target for results: entry method F of this element.
   template <auto F>

@@ -38,6 +38,7 @@ class Future {
   struct Result {
     std::uint64_t id = 0;
     T value{};
+    using GivesMembers = void;
     template <class Ar>
     void serialize(Ar& ar) {
       ar(id, value);

@@ -197,6 +197,8 @@ class MemberProxy {
     pe.send(pe_, call);
   }
 
+  [[nodiscard]] PeId next_pe() const { return pe_; }
+
   /// A target for results: entry method F of this member.
   template <auto F>
   [[nodiscard]] auto target() const {

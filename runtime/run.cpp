@@ -23,6 +23,26 @@ std::int32_t whole_number(std::string_view option, std::string_view value, std::
   return number;
 }
 
+/// "64MiB": bytes, KiB, MiB or GiB.
+std::size_t memory_size(std::string_view option, std::string_view value) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  const std::string_view unit(end, static_cast<std::size_t>(value.data() + value.size() - end));
+  const int shift = unit.empty()    ? 0
+                    : unit == "KiB" ? 10
+                    : unit == "MiB" ? 20
+                    : unit == "GiB" ? 30
+                                    : -1;
+  constexpr std::size_t most = std::size_t{1} << 40U;
+  if (error != std::errc() || shift < 0 || number == 0 || number > most >> shift)
+    fail(ErrorCode::bad_argument,
+         option,
+         ": ",
+         value,
+         " is no size of 1 byte to 1024 GiB: write 64MiB (KiB, MiB, GiB, or bytes)");
+  return number << shift;
+}
+
 void print_error(const char* program, const Error& error) {
   const char* slash = std::strrchr(program, '/');
   std::fprintf(stderr,
@@ -68,6 +88,10 @@ std::string options_help() {
          "  --sim KEYS  run on a simulated machine: "
          "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
          "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations)\n"
+         "  --message-memory SIZE\n"
+         "              most bytes of messages under way from one process to another (default "
+         "32MiB); more wait\n"
+         "              with their sender\n"
          "  --stats     print what each PE did: messages, bytes, busy and idle seconds, chares\n"
          "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
          "              chrome://tracing (process p of several writes F.p)\n";
@@ -99,6 +123,8 @@ Setup take_options(int& argc, char** argv) {
     } else if (takes_value("--sim")) {
       simulates = true;
       simulated = value;
+    } else if (takes_value("--message-memory")) {
+      setup.options.messages.memory_bytes = memory_size("--message-memory", value);
     } else if (takes_value("--trace")) {
       setup.options.trace = value;
     } else if (option == "--stats") {

@@ -5,6 +5,7 @@
 //     --pes N      PEs of each process (default: all cores; under mpirun: the cores each process
 //     was given)
 //     --sim KEYS   the simulated machine: pes=8,latency=2us,bandwidth=10GB/s,cost=100ns,seed=7
+//     --message-memory SIZE   most bytes under way from one process to another (default 32MiB)
 //     --stats      what each PE did, at the end
 //     --trace F    what each PE ran when, as JSON for Perfetto
 #pragma once

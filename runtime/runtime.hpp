@@ -13,6 +13,8 @@
 #include "runtime/index.hpp"
 #include "runtime/mailbox.hpp"
 #include "runtime/reduction.hpp"
+#include "runtime/room.hpp"
 #include "runtime/run.hpp"
 #include "runtime/serialize.hpp"
+#include "runtime/shared_array.hpp"
 #include "runtime/task.hpp"

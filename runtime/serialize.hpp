@@ -8,8 +8,17 @@
 // kind of machine. Standard and Boost containers, pair, tuple, optional, variant and unique_ptr
 // work when what they hold does. A raw pointer does not compile. Reading checks every length
 // against what is left and throws tess::Error.
+//
+// In a message to another process a large vector of numbers is not copied: its bytes are attached,
+// and travel from where they stand to where they are read. The stream holds its length, with the
+// highest bit set.
+//
+//     bytes:     | header | index | length of the vector, attached | next member … |
+//     attached:  | the numbers of the vector |
 #pragma once
 
+#include "runtime/base/buffer.hpp"
+#include "runtime/base/uninitialised.hpp"
 #include "runtime/error.hpp"
 
 #include <boost/pfr/core.hpp>
@@ -65,6 +74,15 @@ struct IsArray : std::false_type {};
 template <class T, std::size_t N>
 struct IsArray<std::array<T, N>> : std::true_type {};
 template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::bool_constant<!std::is_same_v<T, bool>> {};
+/// What it gives to an archive are its own members, never a temporary: they may be attached.
+template <class T>
+concept GivesMembers = requires {
+  typename T::GivesMembers;
+};
+template <class T>
 struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
@@ -117,33 +135,122 @@ consteval bool is_bitwise() {
 template <class T>
 concept Bitwise = serialization::is_bitwise<std::remove_cv_t<T>>();
 
-/// Appends values to a byte vector. Never fails but for memory.
+/// Memory that belongs to a message but is not copied into its bytes. The message keeps it alive
+/// until it has been sent, or `keepers` does.
+struct Attached {
+  std::size_t least_bytes = 0;  ///< of an attached vector; a smaller one is copied
+  std::size_t n_bytes = 0;      ///< of all parts
+  std::vector<std::span<const std::byte>> parts;
+  std::vector<std::shared_ptr<const void>> keepers;
+
+  static constexpr std::size_t most_parts = 64;
+  void clear() {
+    n_bytes = 0;
+    parts.clear();
+    keepers.clear();
+  }
+};
+
+/// Where the attached parts of a message are to be put, as its members are read one after the
+/// other.
+struct Places {
+  std::span<const std::uint64_t> sizes;      ///< of the parts, as announced
+  std::vector<std::span<std::byte>>& taken;  ///< where each of them belongs
+};
+
+/// Writes values as bytes: at the end of a buffer, which grows; or into memory of a fixed size.
+/// What does not fit there is counted and not written, so n_bytes() says how much is needed.
 class Writer {
  public:
   static constexpr bool is_reading = false;
 
-  explicit Writer(std::vector<std::byte>& out) : out_(out) {}
+  explicit Writer(Buffer& out) : grows_(&out) {}
+  explicit Writer(std::span<std::byte> out, Attached* attached = nullptr)
+      : begin_(out.data()),
+        at_(out.data()),
+        end_(out.data() + out.size()),
+        attached_(attached),
+        may_attach_(attached != nullptr) {}
 
   template <class... T>
   void operator()(const T&... values) {
     (put(values), ...);
   }
   void bytes(const void* data, std::size_t n) {
-    const auto* first = static_cast<const std::byte*>(data);
-    out_.insert(out_.end(), first, first + n);
+    n_bytes_ += n;
+    if (n <= static_cast<std::size_t>(end_ - at_)) [[likely]] {
+      if (n != 0) std::memcpy(at_, data, n);
+      at_ += n;
+    } else if (grows_ != nullptr) {
+      grows_->append({static_cast<const std::byte*>(data), n});
+    } else {
+      end_ = at_;  // nothing after it is written either
+    }
   }
-  [[nodiscard]] std::size_t position() const { return out_.size(); }
+  /// The bytes written, or needed.
+  [[nodiscard]] std::size_t n_bytes() const { return n_bytes_; }
+
+  /// Attaches memory that `keeper` holds; false if it is to be copied. Then the length is written,
+  /// with Reader::attached_bit if it is attached (shared_array.hpp).
+  bool attach(std::span<const std::byte> memory, std::shared_ptr<const void> keeper) {
+    if (attached_ == nullptr || !fits(memory.size())) return false;
+    add_part(memory);
+    attached_->keepers.push_back(std::move(keeper));
+    return true;
+  }
+  [[nodiscard]] std::size_t position() const { return n_bytes_; }
   /// Writes over eight bytes that were written at that position.
   void patch(std::size_t position, std::uint64_t value) {
-    std::memcpy(out_.data() + position, &value, sizeof value);
+    if (grows_ != nullptr) {
+      std::memcpy(
+          grows_->data() + (grows_->size() - n_bytes_ + position), &value, sizeof value);
+    } else if (begin_ != nullptr && begin_ + position + sizeof value <= end_) {
+      std::memcpy(begin_ + position, &value, sizeof value);
+    }
   }
 
  private:
+  /// While it lives nothing is attached but by attach().
+  class CopiesAll {
+   public:
+    explicit CopiesAll(Writer& writer)
+        : writer_(writer), before_(std::exchange(writer.may_attach_, false)) {}
+    CopiesAll(const CopiesAll&) = delete;
+    CopiesAll& operator=(const CopiesAll&) = delete;
+    ~CopiesAll() { writer_.may_attach_ = before_; }
+
+   private:
+    Writer& writer_;
+    bool before_;
+  };
+
   template <class T>
   void put(const T& value);
+  [[nodiscard]] bool fits(std::size_t n_bytes) const {
+    return n_bytes != 0 && n_bytes >= attached_->least_bytes &&
+           attached_->parts.size() < Attached::most_parts;
+  }
+  void add_part(std::span<const std::byte> memory) {
+    attached_->parts.push_back(memory);
+    attached_->n_bytes += memory.size();
+  }
 
-  std::vector<std::byte>& out_;
+  std::byte* begin_ = nullptr;
+  std::byte* at_ = nullptr;
+  std::byte* end_ = nullptr;
+  std::size_t n_bytes_ = 0;
+  Buffer* grows_ = nullptr;
+  Attached* attached_ = nullptr;
+  bool may_attach_ = false;
 };
+
+/// The bytes that a value takes when written.
+template <class T>
+[[nodiscard]] std::size_t written_bytes(const T& value) {
+  Writer count{std::span<std::byte>()};
+  count(value);
+  return count.n_bytes();
+}
 
 /// Takes values from bytes, in the order they were written. Throws tess::Error when the bytes end
 /// too early.
@@ -151,7 +258,8 @@ class Reader {
  public:
   static constexpr bool is_reading = true;
 
-  explicit Reader(std::span<const std::byte> in) : in_(in) {}
+  explicit Reader(std::span<const std::byte> in, Places* places = nullptr)
+      : in_(in), places_(places) {}
 
   template <class... T>
   void operator()(T&... values) {
@@ -175,6 +283,29 @@ class Reader {
     return in_.subspan(at_ - n, n);
   }
   [[nodiscard]] std::size_t remaining() const { return in_.size() - at_; }
+  /// A reader of the next n bytes alone; attached parts are placed by both.
+  [[nodiscard]] Reader part(std::size_t n) { return Reader(view(n), places_); }
+
+  /// The next attached part, of that many bytes, is to be put there. It comes later; nothing may
+  /// look at that memory, or move it, before the message runs.
+  void place(void* memory, std::size_t n_bytes) {
+    if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
+        places_->sizes[places_->taken.size()] != n_bytes)
+      fail(ErrorCode::bad_value, "message has no attached part of ", n_bytes, " bytes here");
+    places_->taken.emplace_back(static_cast<std::byte*>(memory), n_bytes);
+  }
+  /// The length of what may be attached, in things of that many bytes each; second: it is.
+  [[nodiscard]] std::pair<std::size_t, bool> length_or_attached(std::size_t bytes_each) {
+    const auto n = take<std::uint64_t>();
+    if ((n & attached_bit) == 0) return {checked_length(n, bytes_each), false};
+    // Before memory of that size is asked for.
+    const std::uint64_t length = n & ~attached_bit;
+    if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
+        places_->sizes[places_->taken.size()] / bytes_each != length)
+      fail(ErrorCode::bad_value, "message has no attached part of ", length, " elements here");
+    return {length, true};
+  }
+  static constexpr std::uint64_t attached_bit = std::uint64_t{1} << 63U;
 
  private:
   template <class T>
@@ -190,7 +321,9 @@ class Reader {
            in_.size());
   }
   std::size_t length(std::size_t least_bytes_each) {
-    const auto n = take<std::uint64_t>();
+    return checked_length(take<std::uint64_t>(), least_bytes_each);
+  }
+  std::size_t checked_length(std::uint64_t n, std::size_t least_bytes_each) const {
     if (least_bytes_each != 0 && n > remaining() / least_bytes_each)
       fail(ErrorCode::bad_value,
            "message ends early: ",
@@ -203,6 +336,7 @@ class Reader {
 
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
+  Places* places_;
 };
 
 template <class T>
@@ -213,7 +347,12 @@ void Writer::put(const T& value) {
   if constexpr (Bitwise<T>) {
     bytes(&value, sizeof value);
   } else if constexpr (HasSerialize<T>) {
-    const_cast<T&>(value).serialize(*this);
+    if constexpr (GivesMembers<T>) {
+      const_cast<T&>(value).serialize(*this);
+    } else {
+      const CopiesAll scope(*this);
+      const_cast<T&>(value).serialize(*this);
+    }
   } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
     put(static_cast<std::uint64_t>(value.size()));
     for (const bool bit : value) put(static_cast<std::uint8_t>(bit));
@@ -224,13 +363,26 @@ void Writer::put(const T& value) {
     put(static_cast<std::uint64_t>(value.index()));
     std::visit([this](const auto& held) { put(held); }, value);
   } else if constexpr (Resizable<T>) {
-    put(static_cast<std::uint64_t>(value.size()));
-    if constexpr (Bitwise<typename T::value_type>) {
-      bytes(value.data(), value.size() * sizeof(typename T::value_type));
+    using Each = typename T::value_type;
+    const std::uint64_t n = value.size();
+    if constexpr (Bitwise<Each>) {
+      // A string may hold its bytes in itself, which moves: it is copied.
+      if constexpr (IsVector<T>::value || std::is_same_v<T, Buffer>) {
+        if (may_attach_ && fits(n * sizeof(Each))) {
+          put(n | Reader::attached_bit);
+          add_part(std::as_bytes(std::span(value.data(), n)));
+          return;
+        }
+      }
+      put(n);
+      bytes(value.data(), n * sizeof(Each));
     } else {
+      put(n);
       for (const auto& item : value) put(item);
     }
   } else if constexpr (Growable<T>) {
+    // The reader moves what it has read into the container: nothing is read in place.
+    const CopiesAll scope(*this);
     put(static_cast<std::uint64_t>(value.size()));
     for (const auto& item : value) put(item);
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
@@ -280,7 +432,17 @@ void Reader::get(T& value) {
     (std::make_index_sequence<std::variant_size_v<T>>());
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
-    if constexpr (Bitwise<Each>) {
+    if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, Buffer>)) {
+      const auto [n, attached] = length_or_attached(sizeof(Each));
+      if constexpr (IsVector<T>::value)
+        resize_uninitialised(value, n);
+      else
+        value.resize(n);
+      if (attached)
+        place(value.data(), n * sizeof(Each));
+      else
+        bytes(value.data(), n * sizeof(Each));
+    } else if constexpr (Bitwise<Each>) {
       value.resize(length(sizeof(Each)));
       bytes(value.data(), value.size() * sizeof(Each));
     } else {
@@ -316,7 +478,8 @@ void Reader::get(T& value) {
 template <class T>
 [[nodiscard]] std::vector<std::byte> to_bytes(const T& value) {
   std::vector<std::byte> out;
-  Writer write(out);
+  resize_uninitialised(out, written_bytes(value));
+  Writer write{std::span<std::byte>(out)};
   write(value);
   return out;
 }

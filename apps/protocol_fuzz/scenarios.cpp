@@ -34,6 +34,8 @@ constexpr std::array known{
         "epoch_migrations", "an epoch ends after the migrations that it caused", &epoch_migrations},
     Scenario{"flood_exit", "exit in mid flood: the greatest code, nothing leaks", &flood_exit},
     Scenario{"mailboxes", "coroutines and early messages under migration", &mailboxes},
+    Scenario{"payloads", "values of every kind arrive as they were sent", &payloads},
+    Scenario{"floods", "what has no credit waits, and no budget is too small", &floods},
     Scenario{"deadlocks", "a run that stands still says who waits for what", &deadlocks},
     Scenario{"exceptions", "an exception names element, entry method and PE", &exceptions},
     Scenario{"dead_letters", "messages to the dead are counted", &dead_letters},

@@ -23,6 +23,8 @@ void epochs(Trial& trial);            // epochs.cpp
 void epoch_migrations(Trial& trial);  // epoch_migrations.cpp
 void flood_exit(Trial& trial);        // exits.cpp
 void mailboxes(Trial& trial);         // mailboxes.cpp
+void payloads(Trial& trial);          // payloads.cpp
+void floods(Trial& trial);            // floods.cpp
 void deadlocks(Trial& trial);         // ends.cpp
 void exceptions(Trial& trial);        // ends.cpp
 void dead_letters(Trial& trial);      // ends.cpp

@@ -29,7 +29,11 @@ Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_
       n_pes_(n_pes),
       pes_of_process_(n_pes / n_processes),
       machine_(machine),
-      random_(mix(seed + 1)) {}
+      random_(mix(seed + 1)) {
+  // Enough for all, for one message, for about two, for a few.
+  constexpr std::array<std::uint64_t, 4> choices{32U << 20U, 1, 300, 3000};
+  message_memory_ = choices[mix(seed ^ 0x6d656d6fU) % choices.size()];
+}
 
 Ending Trial::run_message(std::function<void()> main) {
   Ending ending;
@@ -50,6 +54,11 @@ Ending Trial::run_message(std::function<void()> main) {
     setup.machine = make_simulated_machine(options);
     setup.options.seed = *options.seed;
     setup.options.migration_chance = migration_chance(options);
+    setup.options.messages.memory_bytes = message_memory_;
+    // Vectors of this size, or more, travel apart from their message.
+    constexpr std::array<std::size_t, 4> attached_from{1, 100, 1000, 16'384};
+    setup.options.messages.attach_bytes =
+        attached_from[mix(*options.seed ^ 0x61747461U) % attached_from.size()];
   }
   setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
   ending.exit_code = run_on(setup, std::move(main));

@@ -41,6 +41,9 @@ class Trial {
     return least + static_cast<int>(random_.below(static_cast<std::uint64_t>(most - least + 1)));
   }
 
+  /// Of the simulated machine: bytes under way from process to process.
+  [[nodiscard]] std::uint64_t message_memory() const { return message_memory_; }
+
   /// No element is sent away but by the scenario.
   void forbid_forced_migration() { forced_migration_ = false; }
 
@@ -75,6 +78,7 @@ class Trial {
   const On machine_;
   Random random_;
   std::uint64_t n_runs_ = 0;
+  std::uint64_t message_memory_ = 0;
   bool forced_migration_ = true;
   std::mutex mutex_;
   std::vector<std::string> failures_;

@@ -87,6 +87,13 @@ class ArrayOf : public Collection {
     return record == nullptr ? nullptr : record->element();
   }
 
+  /// Where a message to that index goes from here, as far as this PE knows.
+  [[nodiscard]] PeId next_pe(const Index& index) {
+    const Record* record = table_.find(index);
+    if (record == nullptr || record->state() == IndexState::unknown) return home(index);
+    return record->state() == IndexState::here ? pe_.id() : record->pe();
+  }
+
   /// A user's message starts here.
   void post(Letter* letter) {
     Record* record = table_.find(letter->index);

@@ -30,11 +30,7 @@ template <class... T>
   if constexpr ((Bitwise<T> && ...)) {
     return (sizeof(T) + ... + 0);
   } else {
-    thread_local Buffer bytes;
-    bytes.clear();
-    Writer ar(bytes);
-    ar(arguments);
-    return bytes.size();
+    return written_bytes(arguments);
   }
 }
 

@@ -19,6 +19,7 @@ template <class P>
 struct ToCollection {
   CollectionId collection;
   P payload;
+  using GivesMembers = void;
   template <class Ar>
   void serialize(Ar& ar) {
     ar(collection, payload);

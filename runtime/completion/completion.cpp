@@ -225,7 +225,7 @@ void Completion::end(EpochId epoch) {
   if (at == tallies_.end()) return;
   const SpanningTree tree = tree_of(epoch);
   for (std::int32_t slot = 0; slot < tree.n_children(); ++slot)
-    if ((at->second.heard >> static_cast<unsigned>(slot) & 1U) != 0)
+    if ((static_cast<unsigned>(at->second.heard) >> static_cast<unsigned>(slot) & 1U) != 0)
       send_system<&end_arrives>(pe_, tree.child(slot), End{epoch});
   forget_last();
   tallies_.erase(epoch);

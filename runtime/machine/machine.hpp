@@ -6,12 +6,16 @@
 //     thread Machine                 post / send / stop / now         called by the runtime
 //
 // Within a process a message travels as a pointer (post). Between processes it travels as bytes
-// (send): the runtime has packed many messages into one buffer. No order of delivery is promised,
-// by any machine.
+// (send): the runtime has packed many messages into one buffer. A large message is a parcel: a few
+// bytes, and parts that the machine moves from where they stand at the sender to where the program
+// at the receiver wants them. No order of delivery is promised, by any machine.
+//
+//     receiver:  place(head, sizes) → message, places    …parts come…    placed(message)
 #pragma once
 
+#include "runtime/base/buffer.hpp"
 #include "runtime/base/link.hpp"
-#include "runtime/base/parcel.hpp"
+#include "runtime/base/bundle.hpp"
 #include "runtime/ids.hpp"
 
 #include <chrono>
@@ -28,8 +32,12 @@ namespace tess {
 /// another.
 enum class Traffic : std::uint8_t { user, location, migration, control };
 
-/// Bytes on their way between processes.
-using Buffer = std::vector<std::byte>;
+/// A large message on its way to another process.
+struct Parcel {
+  Buffer head;
+  std::vector<std::span<const std::byte>> parts;  ///< at least one; none is empty
+  std::shared_ptr<void> keeper;  ///< keeps the parts until they have left; any thread may end it
+};
 
 /// What a machine drives. Every function with a PE runs on that PE's thread, never twice at once
 /// for one PE.
@@ -44,15 +52,27 @@ class Program {
   virtual void start(PeId pe) = 0;
   /// Takes a list of messages, first to run first, that others posted to this PE.
   virtual void accept(PeId pe, Link* first) = 0;
-  /// Takes several messages that another PE of the process posted together, and the parcel; called
-  /// only if the program posts parcels.
-  virtual void accept_parcel(PeId /*pe*/, Parcel* /*parcel*/) {}
+  /// Takes several messages that another PE of the process posted together, and the bundle; called
+  /// only if the program posts bundles.
+  virtual void accept_bundle(PeId /*pe*/, Bundle* /*bundle*/) {}
   /// Runs up to `most` messages that are ready; returns how many it ran.
   virtual std::size_t step(PeId pe, std::size_t most) = 0;
   /// Nothing is ready: flush what was held back for company. True if that made or sent anything.
   virtual bool idle(PeId pe) = 0;
   /// Takes a buffer that another process sent; `pe` is the PE whose thread happened to receive it.
   virtual void receive(PeId pe, std::span<const std::byte> bytes) = 0;
+  /// Takes the head of a parcel, whose parts have these sizes: returns a message, and says in
+  /// `places` where each part is to be put.
+  virtual Link* place(PeId /*pe*/,
+                      std::span<const std::byte> /*head*/,
+                      std::span<const std::uint64_t> /*sizes*/,
+                      std::vector<std::span<std::byte>>& /*places*/) {
+    return nullptr;
+  }
+  /// All parts of that message have come; `pe` is the PE whose thread noticed.
+  virtual void placed(PeId /*pe*/, Link* /*message*/) {}
+  /// Frees a message whose parts came after finish().
+  virtual void drop(Link* /*message*/) {}
   /// Called once a PE, on its thread, after the last step; messages that remain are freed here.
   virtual void finish(PeId pe) = 0;
 };
@@ -99,15 +119,17 @@ class Machine {
   /// the cost model. Any PE thread of this process may call it.
   virtual void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) = 0;
 
-  /// True if post_parcel() is worth while; otherwise messages are posted one by one.
-  [[nodiscard]] virtual bool takes_parcels() const { return false; }
+  /// True if post_bundle() is worth while; otherwise messages are posted one by one.
+  [[nodiscard]] virtual bool takes_bundles() const { return false; }
   /// Hands several messages to a PE of this process; takes ownership.
-  virtual void post_parcel(PeId /*to*/, Parcel* /*parcel*/) {}
+  virtual void post_bundle(PeId /*to*/, Bundle* /*bundle*/) {}
 
   /// Sends bytes to another process; never to this one. Any PE thread may call it; it does not
   /// block. What it leaves of `bytes` is for clear() alone; it may keep its memory, to be filled
   /// again.
   virtual void send(PeId from, ProcessId to, Buffer&& bytes) = 0;
+  /// The same for a parcel.
+  virtual void send(PeId from, ProcessId to, Parcel&& parcel) = 0;
 
   /// Drives the PEs of this process until stop(); returns on the thread that called it.
   virtual void run(Program& program) = 0;

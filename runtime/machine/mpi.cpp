@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #include <mutex>
 #include <string_view>
 #include <thread>
@@ -11,9 +14,21 @@
 namespace tess {
 namespace {
 
+/// Large messages come and go: their memory stays with the process, as glibc would have it after
+/// the first free of a block of 32 MiB. Otherwise each megabyte is 256 page faults, which cost more
+/// than the transfer.
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  constexpr int largest_kept = 32 << 20;
+  mallopt(M_MMAP_THRESHOLD, largest_kept);
+  mallopt(M_TRIM_THRESHOLD, 2 * largest_kept);
+#endif
+}
+
 class MpiMachine final : public Machine, private Network {
  public:
   MpiMachine(int& argc, char**& argv, const MpiOptions& options) : session_(argc, argv) {
+    keep_freed_memory();
     n_processes_ = session_.n_processes();
     process_ = ProcessId{session_.process()};
     const Session::Sharing shared = session_.sharing(topology_.cpuset());
@@ -43,12 +58,15 @@ class MpiMachine final : public Machine, private Network {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_->post(to, message);
   }
-  [[nodiscard]] bool takes_parcels() const override { return pes_per_process_ > 1; }
-  void post_parcel(PeId to, Parcel* parcel) override { team_->post(to, parcel); }
+  [[nodiscard]] bool takes_bundles() const override { return pes_per_process_ > 1; }
+  void post_bundle(PeId to, Bundle* bundle) override { team_->post(to, bundle); }
   void send(PeId, ProcessId to, Buffer&& bytes) override { transport_->send(to, bytes); }
+  void send(PeId, ProcessId to, Parcel&& parcel) override {
+    transport_->send(to, std::move(parcel));
+  }
   void run(Program& program) override {
     team_->run(program, topology_);
-    transport_->drain();
+    transport_->drain([&program](Link* message) { program.drop(message); });
   }
   void stop() override { team_->stop(); }
 
@@ -79,12 +97,25 @@ class MpiMachine final : public Machine, private Network {
     {
       const std::unique_lock held(transport_->lock, std::try_to_lock);
       if (!held) return false;
-      mail.clear();
-      transport_->push_out();
+      transport_->push_out(mail);
       transport_->take_in(mail);
     }  // before the program unpacks: others may go on
+    const bool any = mail.size() != 0;
     for (const auto bytes : mail.items()) program.receive(pe, bytes);
-    return !mail.items().empty();
+    for (auto& in : mail.large) take(program, pe, std::move(in));
+    mail.clear();
+    return any;
+  }
+  void take(Program& program, PeId pe, std::unique_ptr<Incoming> in) {
+    const std::span<const std::byte> bytes(in->bytes.data(), in->bytes.size());
+    if (in->message != nullptr) {
+      program.placed(pe, in->message);
+    } else if (in->sizes.empty()) {
+      program.receive(pe, bytes);
+    } else {
+      in->message = program.place(pe, bytes, in->sizes, in->places);
+      transport_->expect(std::move(in));
+    }
   }
 
   Topology topology_;  // first: MPI starts threads of its own

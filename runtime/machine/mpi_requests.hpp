@@ -8,7 +8,7 @@
 
 namespace tess {
 
-/// A transfer counts its requests that are not yet complete: `n_parts`. One thread at a time.
+/// A transfer counts its requests that are not yet complete: `n_requests`. One thread at a time.
 template <class Transfer>
 class Requests {
  public:
@@ -17,7 +17,7 @@ class Requests {
   void add(MPI_Request request, Transfer* transfer) {
     requests_.push_back(request);
     transfers_.push_back(transfer);
-    ++transfer->n_parts;
+    ++transfer->n_requests;
   }
 
   /// Calls done(transfer) for each transfer whose last part has completed; forgets those parts.
@@ -38,7 +38,7 @@ class Requests {
       if (requests_[i] != MPI_REQUEST_NULL) {
         requests_[kept] = requests_[i];
         transfers_[kept++] = transfers_[i];
-      } else if (--transfers_[i]->n_parts == 0) {
+      } else if (--transfers_[i]->n_requests == 0) {
         done(transfers_[i]);
       }
     }

@@ -14,15 +14,23 @@ constexpr std::size_t most_sends = 128;
 /// What the runtime flushes fits in one piece: 32 KiB and the message that went over.
 constexpr std::size_t usual_bytes = std::size_t{36} << 10U;
 
+/// An announcement with the sizes of many parts.
+constexpr std::size_t least_slot_bytes = 1024;
+
 }  // namespace
 
 Transport::Transport(MPI_Comm comm, std::int32_t n_processes, std::size_t chunk_bytes)
     : comm_(comm),
       chunk_bytes_(chunk_bytes),
       whole_bytes_(std::min(chunk_bytes, usual_bytes)),
-      slot_bytes_(std::max(whole_bytes_, sizeof(std::uint64_t))),
+      slot_bytes_(std::max(whole_bytes_, least_slot_bytes)),
       n_sent_(static_cast<std::size_t>(n_processes)) {
   must(MPI_Comm_dup(comm_, &chunk_comm_), "MPI_Comm_dup");
+  int* bound = nullptr;
+  int known = 0;
+  must(MPI_Comm_get_attr(chunk_comm_, MPI_TAG_UB, static_cast<void*>(&bound), &known),
+       "MPI_Comm_get_attr");
+  if (known != 0) tag_bound_ = *bound;
   for (Slot& slot : slots_) {
     slot.bytes = std::make_unique_for_overwrite<std::byte[]>(slot_bytes_);
     post(slot);
@@ -46,17 +54,54 @@ void Transport::send(ProcessId to, Buffer& bytes) {
     bytes.clear();
     return;
   }
-  auto* const out = new Outgoing;
+  auto out = std::make_unique<Outgoing>();
   out->to = to.value;
-  out->bytes = std::move(bytes);
-  bytes.clear();
-  out->n_bytes = out->bytes.size();
-  if (starts) {
-    sends_.add(request, out);
-  } else {
-    outbox_.push(out);
-    if (held) push_out();
+  if (bytes.size() > whole_bytes_)
+    announce(*out, std::move(bytes));
+  else
+    out->first = std::move(bytes);
+  if (starts)
+    sends_.add(request, out.release());
+  else if (held)
+    hand_in(std::move(out));
+  else
+    outbox_.push(out.release());
+}
+
+void Transport::send(ProcessId to, Parcel&& parcel) {
+  auto out = std::make_unique<Outgoing>();
+  out->to = to.value;
+  out->rest = std::move(parcel);
+  announce(*out, std::move(out->rest.head));
+  const std::unique_lock held(lock, std::try_to_lock);
+  if (held)
+    hand_in(std::move(out));
+  else
+    outbox_.push(out.release());
+}
+
+/// Leaves in rest.head what does not fit behind the announcement.
+void Transport::announce(Outgoing& out, Buffer bytes) {
+  out.announces = true;
+  const Announcement begins{bytes.size(), 0, static_cast<std::uint32_t>(out.rest.parts.size())};
+  out.first.reserve(sizeof begins + out.rest.parts.size() * sizeof(std::uint64_t) + 512);
+  out.first.append(std::as_bytes(std::span(&begins, 1)));
+  for (const auto part : out.rest.parts) {
+    const std::uint64_t size = part.size();
+    out.first.append(std::as_bytes(std::span(&size, 1)));
   }
+  if (out.first.size() + bytes.size() <= slot_bytes_)
+    out.first.append({bytes.data(), bytes.size()});
+  else
+    out.rest.head = std::move(bytes);
+}
+
+/// Under the lock: starts it now, or after those that came before it.
+void Transport::hand_in(std::unique_ptr<Outgoing> out) {
+  if (waiting_.empty() && sends_.size() < most_sends)
+    start(std::move(out));
+  else
+    waiting_.push_back(std::move(out));
 }
 
 /// True if MPI is done with the bytes already; else the request says when.
@@ -70,47 +115,67 @@ bool Transport::send_now(int to, const Buffer& bytes, MPI_Request& request) {
   return complete != 0;
 }
 
-void Transport::push_out() {
-  sends_.poll([](Outgoing* done) { delete done; });
+void Transport::push_out(Mail& mail) {
+  const auto done = [this](Outgoing* out) { sent_.emplace_back(out); };
+  sends_.poll(done);
   for (Link* link = outbox_.take_all(); link != nullptr;) {
     auto* const out = static_cast<Outgoing*>(link);
     link = link->next;
-    waiting_.push_back(out);
+    waiting_.emplace_back(out);
   }
   while (!waiting_.empty() && sends_.size() < most_sends) {
-    Outgoing* const out = waiting_.front();
+    auto out = std::move(waiting_.front());
     waiting_.pop_front();
-    start(*out);
+    start(std::move(out));
   }
+  for (Link* link = placed_.take_all(); link != nullptr;) {
+    auto* const in = static_cast<Incoming*>(link);
+    link = link->next;
+    receive_parts(in);
+  }
+  if (!sent_.empty()) std::swap(sent_, mail.sent);
 }
 
-void Transport::start(Outgoing& out) {
+void Transport::start(std::unique_ptr<Outgoing> out) {
+  if (out->announces) return start_large(std::move(out));
   MPI_Request request = MPI_REQUEST_NULL;
-  if (out.n_bytes <= whole_bytes_) {
-    if (send_now(out.to, out.bytes, request))
-      delete &out;
-    else
-      sends_.add(request, &out);
-    return;
-  }
-  ++n_sent_[static_cast<std::size_t>(out.to)];
-  must(
-      MPI_Isend(&out.n_bytes, sizeof(out.n_bytes), MPI_BYTE, out.to, announcement, comm_, &request),
-      "MPI_Isend");
-  sends_.add(request, &out);
-  for (std::size_t at = 0; at < out.n_bytes; at += chunk_bytes_) {
-    const auto n = static_cast<int>(std::min(chunk_bytes_, out.n_bytes - at));
-    must(MPI_Isend(out.bytes.data() + at, n, MPI_BYTE, out.to, 0, chunk_comm_, &request),
-         "MPI_Isend");
-    sends_.add(request, &out);
-  }
+  if (!send_now(out->to, out->first, request)) sends_.add(request, out.release());
+}
+
+void Transport::start_large(std::unique_ptr<Outgoing> owned) {
+  Outgoing* const out = owned.release();  // its requests have it
+  ++n_sent_[static_cast<std::size_t>(out->to)];
+  // In order, so that no two under way have the same; 0 is never used.
+  last_tag_ = last_tag_ == tag_bound_ ? 1 : last_tag_ + 1;
+  out->tag = last_tag_;
+  std::memcpy(out->first.data() + offsetof(Announcement, tag), &out->tag, sizeof out->tag);
+  MPI_Request request = MPI_REQUEST_NULL;
+  must(MPI_Isend(out->first.data(),
+                 static_cast<int>(out->first.size()),
+                 MPI_BYTE,
+                 out->to,
+                 announcement,
+                 comm_,
+                 &request),
+       "MPI_Isend");
+  sends_.add(request, out);
+  const auto send_chunks = [&](std::span<const std::byte> bytes) {
+    for (std::size_t at = 0; at < bytes.size(); at += chunk_bytes_) {
+      const auto n = static_cast<int>(std::min(chunk_bytes_, bytes.size() - at));
+      must(MPI_Isend(bytes.data() + at, n, MPI_BYTE, out->to, out->tag, chunk_comm_, &request),
+           "MPI_Isend");
+      sends_.add(request, out);
+    }
+  };
+  send_chunks({out->rest.head.data(), out->rest.head.size()});
+  for (const auto part : out->rest.parts) send_chunks(part);
 }
 
 void Transport::take_in(Mail& mail) {
   chunks_.poll([&](Incoming* done) {
-    mail.add(std::move(done->bytes), done->n_bytes);
-    ++n_received_;
-    delete done;
+    done->has_bytes = true;
+    if (!done->places.empty() || done->sizes.empty()) ++n_received_;
+    mail.large.emplace_back(done);
   });
   // The test that finds nothing costs as much as one that finds something: a message by itself is
   // handed over without it. In a flood all that has come is taken, so that its answers leave
@@ -125,9 +190,8 @@ void Transport::take_in(Mail& mail) {
     int count = 0;
     must(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
     if (status.MPI_TAG == announcement) {
-      std::uint64_t n_bytes = 0;
-      std::memcpy(&n_bytes, slot.bytes.get(), sizeof n_bytes);
-      expect(n_bytes, status.MPI_SOURCE);
+      read_announcement(
+          {slot.bytes.get(), static_cast<std::size_t>(count)}, status.MPI_SOURCE, mail);
     } else {
       mail.exchange(slot.bytes, static_cast<std::size_t>(count));
       ++n_received_;
@@ -149,30 +213,77 @@ void Transport::post(Slot& slot) {
        "MPI_Irecv");
 }
 
-/// Posts the receives of all chunks of an announced buffer. MPI keeps the order of messages of one
-/// source, and announcements are met in that order: each chunk meets its receive.
-void Transport::expect(std::uint64_t n_bytes, int source) {
-  auto* const in = new Incoming;
-  in->n_bytes = n_bytes;
-  in->bytes = std::make_unique_for_overwrite<std::byte[]>(in->n_bytes);
-  for (std::size_t at = 0; at < in->n_bytes; at += chunk_bytes_) {
+void Transport::read_announcement(std::span<const std::byte> bytes, int source, Mail& mail) {
+  Announcement begins;
+  std::memcpy(&begins, bytes.data(), sizeof begins);
+  auto in = std::make_unique<Incoming>();
+  in->source = source;
+  in->tag = begins.tag;
+  in->sizes.resize(begins.n_parts);
+  bytes = bytes.subspan(sizeof begins);
+  const std::size_t n = in->sizes.size() * sizeof(std::uint64_t);
+  if (n != 0) std::memcpy(in->sizes.data(), bytes.data(), n);
+  bytes = bytes.subspan(n);
+  if (bytes.size() == begins.n_bytes) {
+    in->has_bytes = true;
+    in->bytes.append(bytes);
+    if (in->sizes.empty()) ++n_received_;
+    mail.large.push_back(std::move(in));
+  } else {
+    in->bytes.resize(begins.n_bytes);
+    Incoming* const under_way = in.release();
+    receive({under_way->bytes.data(), under_way->bytes.size()}, under_way);
+  }
+}
+
+void Transport::expect(std::unique_ptr<Incoming> in) {
+  const std::unique_lock held(lock, std::try_to_lock);
+  if (held)
+    receive_parts(in.release());
+  else
+    placed_.push(in.release());
+}
+
+void Transport::receive_parts(Incoming* in) {
+  for (const auto place : in->places) receive(place, in);
+}
+
+/// In chunks; each meets the one sent for it, for MPI keeps their order.
+void Transport::receive(std::span<std::byte> memory, Incoming* in) {
+  for (std::size_t at = 0; at < memory.size(); at += chunk_bytes_) {
     MPI_Request request = MPI_REQUEST_NULL;
-    const auto n = static_cast<int>(std::min(chunk_bytes_, in->n_bytes - at));
-    must(MPI_Irecv(in->bytes.get() + at, n, MPI_BYTE, source, 0, chunk_comm_, &request),
+    const auto n = static_cast<int>(std::min(chunk_bytes_, memory.size() - at));
+    must(MPI_Irecv(memory.data() + at, n, MPI_BYTE, in->source, in->tag, chunk_comm_, &request),
          "MPI_Irecv");
     chunks_.add(request, in);
   }
 }
 
-void Transport::drain() {
+void Transport::drain(const std::function<void(Link*)>& drop) {
   Mail mail = new_mail();
   std::int64_t n_expected = 0;
   MPI_Request counted = MPI_REQUEST_NULL;
   bool counting = false;
   for (int all_counted = 0;;) {
-    push_out();
     mail.clear();
+    push_out(mail);
     take_in(mail);
+    const bool idle = mail.size() == 0;
+    for (auto& in : mail.large) {
+      if (in->message != nullptr) {
+        drop(in->message);
+      } else if (!in->sizes.empty() && in->places.empty()) {
+        std::size_t n_bytes = 0;
+        for (const std::uint64_t size : in->sizes) n_bytes += size;
+        in->bytes.resize(n_bytes);
+        std::byte* at = in->bytes.data();
+        for (const std::uint64_t size : in->sizes) {
+          in->places.emplace_back(at, size);
+          at += size;
+        }
+        receive_parts(in.release());
+      }
+    }
     if (!counting && waiting_.empty()) {
       must(MPI_Ireduce_scatter_block(
                n_sent_.data(), &n_expected, 1, MPI_INT64_T, MPI_SUM, comm_, &counted),
@@ -182,7 +293,7 @@ void Transport::drain() {
     if (counting && all_counted == 0)
       must(MPI_Test(&counted, &all_counted, MPI_STATUS_IGNORE), "MPI_Test");
     if (all_counted != 0 && n_received_ == n_expected && sends_.size() == 0) return;
-    if (mail.items().empty()) std::this_thread::yield();
+    if (idle) std::this_thread::yield();
   }
 }
 

@@ -5,8 +5,11 @@
 //
 // A few receives of the usual size are always posted, in a ring: MPI fills them in the order in
 // which they were posted, so one test, of the oldest, finds whatever has come, and a small message
-// goes from the sender's memory to its place without a probe. A larger buffer is announced by its
-// size, and follows in chunks through a communicator of their own.
+// goes from the sender's memory to its place without a probe. A larger buffer, or a parcel, is
+// announced: by its tag, the sizes of its parts and, if they fit, its bytes. The rest follows in
+// chunks through a communicator of their own, from where it stands to where it belongs.
+//
+//     announcement ─► take_in ─► Mail ─► Program::place ─► expect ─► MPI_Irecv … ─► Mail ─► placed
 #pragma once
 
 #include "runtime/base/mpsc_queue.hpp"
@@ -18,6 +21,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -35,16 +39,22 @@ class Transport {
 
   /// Any thread; does not block. Leaves `bytes` empty; it keeps its memory if MPI needs it no more.
   void send(ProcessId to, Buffer& bytes);
+  void send(ProcessId to, Parcel&& parcel);
 
-  /// Starts the sends that wait, as many as may be under way, and frees those that are done.
-  void push_out();
+  /// Any thread: the program has said where the parts belong.
+  void expect(std::unique_ptr<Incoming> in);
+
+  /// Starts the sends and receives that wait, as many as may be under way; those that are done are
+  /// the mail's to free.
+  void push_out(Mail& mail);
 
   /// Receives what has come, until the mail is full.
   void take_in(Mail& mail);
 
-  /// After the last send(): receives and drops until every buffer that any process sent has been
-  /// received. Counts, since a small send completes long before it is received.
-  void drain();
+  /// After the last send(): receives and drops until everything that any process sent has been
+  /// received. Counts, since a small send completes long before it is received. `drop` frees the
+  /// message of a parcel whose parts came too late.
+  void drain(const std::function<void(Link*)>& drop);
 
   /// Any thread.
   [[nodiscard]] Mail new_mail() const { return Mail(slot_bytes_); }
@@ -54,19 +64,11 @@ class Transport {
  private:
   enum Tag : int { whole, announcement };
 
-  /// A buffer on its way out. The size is a member so that the announcement outlives its send.
-  struct Outgoing : Link {
-    int to = 0;
-    Buffer bytes;
+  /// What an announcement begins with; the sizes of the parts follow, and the bytes if they fit.
+  struct Announcement {
     std::uint64_t n_bytes = 0;
-    std::size_t n_parts = 0;  // requests not yet complete
-  };
-
-  /// A buffer that comes in chunks.
-  struct Incoming {
-    Mail::Block bytes;
-    std::uint64_t n_bytes = 0;
-    std::size_t n_parts = 0;
+    std::int32_t tag = 0;
+    std::uint32_t n_parts = 0;
   };
 
   /// A receive that is posted ahead.
@@ -76,9 +78,15 @@ class Transport {
   };
 
   [[nodiscard]] bool send_now(int to, const Buffer& bytes, MPI_Request& request);
-  void start(Outgoing& out);
+  void announce(Outgoing& out, Buffer bytes);
+  void start(std::unique_ptr<Outgoing> out);
+  void start_large(std::unique_ptr<Outgoing> out);
+  void hand_in(std::unique_ptr<Outgoing> out);
   void post(Slot& slot);
-  void expect(std::uint64_t n_bytes, int source);
+  void read_announcement(std::span<const std::byte> bytes, int source, Mail& mail);
+  void receive_bytes(Incoming* in);
+  void receive_parts(Incoming* in);
+  void receive(std::span<std::byte> memory, Incoming* in);
 
   MPI_Comm comm_;
   MPI_Comm chunk_comm_ = MPI_COMM_NULL;
@@ -86,13 +94,17 @@ class Transport {
   const std::size_t whole_bytes_;  // the most that travels in one piece, unannounced
   const std::size_t slot_bytes_;
   std::array<Slot, 8> slots_;
-  std::size_t oldest_ = 0;         // of the slots: the next to be filled
-  unsigned n_finds_ = 0;           // calls of take_in() that found something, one after the other
-  MpscQueue outbox_;               // any PE pushes
-  std::deque<Outgoing*> waiting_;  // taken from the outbox, not yet started
+  std::size_t oldest_ = 0;  // of the slots: the next to be filled
+  unsigned n_finds_ = 0;    // calls of take_in() that found something, one after the other
+  std::int32_t tag_bound_ = 32767;
+  std::int32_t last_tag_ = 0;
+  MpscQueue outbox_;                               // any PE pushes
+  MpscQueue placed_;                               // Incoming; any PE pushes
+  std::deque<std::unique_ptr<Outgoing>> waiting_;  // taken from the outbox, not yet started
   Requests<Outgoing> sends_;
   Requests<Incoming> chunks_;
-  std::vector<std::int64_t> n_sent_;  // buffers, to each process
+  std::vector<std::unique_ptr<Outgoing>> sent_;  // for the next mail
+  std::vector<std::int64_t> n_sent_;             // buffers and parcels, to each process
   std::int64_t n_received_ = 0;
 };
 

@@ -25,8 +25,8 @@ struct Event {
   std::int64_t time;
   std::uint64_t order;  // ties: first posted first, or drawn
   std::int32_t pe;
-  Link* message;  // null: the PE looks at its queue
-  Buffer* bytes;
+  Link* message;   // null: the PE looks at its queue
+  Parcel* parcel;  // or takes what another process sent; without parts: a buffer
   friend bool operator<(const Event& a, const Event& b) {
     return a.time != b.time ? a.time > b.time : a.order > b.order;
   }
@@ -54,7 +54,7 @@ class SimulatedMachine final : public Machine {
     }
   }
   ~SimulatedMachine() override {
-    for (; !events_.empty(); events_.pop()) delete events_.top().bytes;
+    for (; !events_.empty(); events_.pop()) delete events_.top().parcel;
   }
   SimulatedMachine(const SimulatedMachine&) = delete;
   SimulatedMachine& operator=(const SimulatedMachine&) = delete;
@@ -68,7 +68,13 @@ class SimulatedMachine final : public Machine {
   }
   void send(PeId from, ProcessId to, Buffer&& bytes) override {
     const std::int64_t time = arrival(from, bytes.size(), Traffic::user);
-    push(time, to.value * pes_per_process_, nullptr, new Buffer(std::move(bytes)));
+    push(time, to.value * pes_per_process_, nullptr, new Parcel{std::move(bytes), {}, {}});
+  }
+  void send(PeId from, ProcessId to, Parcel&& parcel) override {
+    std::size_t n_bytes = parcel.head.size();
+    for (const auto part : parcel.parts) n_bytes += part.size();
+    const std::int64_t time = arrival(from, n_bytes, Traffic::user);
+    push(time, to.value * pes_per_process_, nullptr, new Parcel(std::move(parcel)));
   }
 
   void run(Program& program) override;
@@ -103,9 +109,9 @@ class SimulatedMachine final : public Machine {
     bool looks = false;  // an event to look at the queue is under way
   };
 
-  void push(std::int64_t time, std::int32_t pe, Link* message, Buffer* bytes) {
+  void push(std::int64_t time, std::int32_t pe, Link* message, Parcel* parcel) {
     ++n_posted_;
-    events_.push(Event{time, intercepts_local() ? random_() : n_posted_, pe, message, bytes});
+    events_.push(Event{time, intercepts_local() ? random_() : n_posted_, pe, message, parcel});
   }
   std::int64_t arrival(PeId from, std::size_t bytes, Traffic traffic) {
     auto delay = static_cast<double>(options_.latency.count()) +
@@ -126,6 +132,8 @@ class SimulatedMachine final : public Machine {
     clock.looks = true;
     push(clock.now, pe, nullptr, nullptr);
   }
+
+  static void deliver(Program& program, PeId pe, const Parcel& parcel);
 
   const SimulatedOptions options_;
   Random random_;
@@ -161,9 +169,8 @@ void SimulatedMachine::run(Program& program) {
       event.message->next = nullptr;
       program.accept(pe, event.message);
       look(event.pe);
-    } else if (event.bytes != nullptr) {
-      const std::unique_ptr<Buffer> bytes(event.bytes);
-      program.receive(pe, *bytes);
+    } else if (event.parcel != nullptr) {
+      deliver(program, pe, *std::unique_ptr<Parcel>(event.parcel));
       look(event.pe);
     } else {
       clock.looks = false;
@@ -184,12 +191,24 @@ void SimulatedMachine::run(Program& program) {
   // What is still under way belongs to the program: it frees it.
   for (; !events_.empty(); events_.pop()) {
     const Event& event = events_.top();
-    delete event.bytes;
+    delete event.parcel;
     if (event.message == nullptr) continue;
     event.message->next = nullptr;
     program.accept(PeId{event.pe}, event.message);
   }
   for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
+}
+
+void SimulatedMachine::deliver(Program& program, PeId pe, const Parcel& parcel) {
+  const std::span<const std::byte> head(parcel.head.data(), parcel.head.size());
+  if (parcel.parts.empty()) return program.receive(pe, head);
+  std::vector<std::uint64_t> sizes;
+  for (const auto part : parcel.parts) sizes.push_back(part.size());
+  std::vector<std::span<std::byte>> places;
+  Link* const message = program.place(pe, head, sizes, places);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    std::copy(parcel.parts[i].begin(), parcel.parts[i].end(), places[i].begin());
+  program.placed(pe, message);
 }
 
 double number_of(const std::string& value, const std::string& part, std::string* unit) {

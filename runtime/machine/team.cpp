@@ -101,9 +101,9 @@ void Team::drive(Program& program, PeId pe, Seat& seat) noexcept {
 
 bool Team::take_in(Program& program, PeId pe, Seat& seat) noexcept {
   bool any = false;
-  for (Link* link = seat.parcels.take_all(); link != nullptr; any = true) {
+  for (Link* link = seat.bundles.take_all(); link != nullptr; any = true) {
     Link* const next = link->next;
-    program.accept_parcel(pe, static_cast<Parcel*>(link));
+    program.accept_bundle(pe, static_cast<Bundle*>(link));
     link = next;
   }
   if (Link* const first = seat.inbox.take_all()) {

@@ -44,9 +44,9 @@ class Team {
     Seat& seat = seats_[static_cast<std::size_t>(to.value - first_.value)];
     if (seat.inbox.push(message)) seat.parker.wake();
   }
-  void post(PeId to, Parcel* parcel) noexcept {
+  void post(PeId to, Bundle* bundle) noexcept {
     Seat& seat = seats_[static_cast<std::size_t>(to.value - first_.value)];
-    if (seat.parcels.push(parcel)) seat.parker.wake();
+    if (seat.bundles.push(bundle)) seat.parker.wake();
   }
 
   /// Drives all PEs until stop(): the first on this thread, each other one on a thread of its own.
@@ -57,11 +57,11 @@ class Team {
 
  private:
   struct alignas(64) Seat {
-    MpscQueue inbox;  // single messages; in one line with the parcels, for both are looked at
-    MpscQueue parcels;
+    MpscQueue inbox;  // single messages; in one line with the bundles, for both are looked at
+    MpscQueue bundles;
     alignas(64) Parker parker;  // apart from the queues: each producer reads it, few write it
 
-    [[nodiscard]] bool empty() const noexcept { return inbox.empty() && parcels.empty(); }
+    [[nodiscard]] bool empty() const noexcept { return inbox.empty() && bundles.empty(); }
   };
 
   void drive(Program& program, PeId pe, Seat& seat) noexcept;

@@ -21,10 +21,13 @@ class ThreadsMachine final : public Machine {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_.post(to, message);
   }
-  [[nodiscard]] bool takes_parcels() const override { return pes_per_process_ > 1; }
-  void post_parcel(PeId to, Parcel* parcel) override { team_.post(to, parcel); }
+  [[nodiscard]] bool takes_bundles() const override { return pes_per_process_ > 1; }
+  void post_bundle(PeId to, Bundle* bundle) override { team_.post(to, bundle); }
   void send(PeId from, ProcessId to, Buffer&&) override {
     TESS_CHECK(false, from, " sends bytes to ", to, ", but there is one process");
+  }
+  void send(PeId from, ProcessId to, Parcel&&) override {
+    TESS_CHECK(false, from, " sends a parcel to ", to, ", but there is one process");
   }
   void run(Program& program) override { team_.run(program, topology_); }
   void stop() override { team_.stop(); }

@@ -30,6 +30,10 @@ struct Envelope : Link {
   PeId target{};
   bool counted = true;      ///< a hop of epoch 0; false for what measures or ends the run
   std::uint32_t trace = 0;  ///< the number of its send on the source, while a trace is kept
+  /// Credit that the PE which runs it owes to `sender`, which packed it for this hop (outbox.hpp);
+  /// 0 within a process.
+  std::uint32_t charge = 0;
+  PeId sender{};
 };
 
 /// What an envelope does when it is its turn. One static object for each kind of message.

@@ -43,7 +43,7 @@ void pack_framed(Writer& ar, const Pack& pack) {
 }
 template <class Read>
 auto unpack_framed(Reader& ar, std::string_view type, const Read& read) {
-  Reader body(ar.view(ar.take<std::uint64_t>()));
+  Reader body = ar.part(ar.take<std::uint64_t>());
   return read_all(
       body, [type] { return plain_name(type); }, read);
 }

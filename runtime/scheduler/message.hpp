@@ -24,9 +24,10 @@ struct Message final : Envelope {
   }
   static void pack(Envelope& envelope, Writer& ar) { ar(static_cast<Message&>(envelope).payload); }
   static Envelope* unpack(Pe& pe, Reader& ar) {
-    Payload payload{};
-    ar(payload);
-    return new (allocate_block(pe, sizeof(Message))) Message(std::move(payload));
+    // In place: the bytes of a large vector come later, to where it stands now.
+    auto* message = new (allocate_block(pe, sizeof(Message))) Message(Payload{});
+    ar(message->payload);
+    return message;
   }
 };
 

@@ -13,11 +13,9 @@
 namespace tess {
 namespace {
 
-constexpr std::size_t flush_bytes = 32U << 10U;
-constexpr std::size_t first_bytes = 4U << 10U;  // of a buffer; it grows with what is packed
 /// The longest that a message waits for others to the same PE of this process, or to another
 /// process.
-constexpr double parcel_seconds = 1e-6;
+constexpr double bundle_seconds = 1e-6;
 constexpr double packed_seconds = 4e-6;
 /// Messages between two looks at the clock, while something is held back and messages are short.
 constexpr std::uint32_t most_between_looks = 8;
@@ -25,17 +23,6 @@ constexpr std::uint32_t most_between_looks = 8;
 constexpr std::size_t few_messages = 2;
 /// A PE that never runs dry reports its epochs after so many messages.
 constexpr std::size_t messages_between_reports = 1024;
-
-/// What stands before each message in a packed buffer.
-struct PackedHeader {
-  std::uint64_t n_bytes;
-  EpochId epoch;
-  std::uint32_t action;
-  PeId source;
-  PeId target;
-  std::uint32_t trace_and_counted;  // the lowest bit: counted
-};
-static_assert(Bitwise<PackedHeader>);
 
 }  // namespace
 
@@ -45,7 +32,12 @@ Pe& current_pe() {
   return *detail::the_current_pe;
 }
 
-Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed)
+Pe::Pe(PeId id,
+       Runtime& runtime,
+       Machine& machine,
+       Pool& pool,
+       std::uint64_t seed,
+       const MessageOptions& messages)
     : id_(id),
       n_pes_(machine.n_pes()),
       runtime_(runtime),
@@ -56,12 +48,12 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       message_cost_(machine.message_cost()),
       first_here_(machine.process_of(id).value * machine.pes_per_process()),
       n_here_(machine.pes_per_process()),
-      parcel_ticks_(static_cast<std::uint64_t>(parcel_seconds / seconds_per_tick())),
+      bundle_ticks_(static_cast<std::uint64_t>(bundle_seconds / seconds_per_tick())),
       packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),
       completion_(*this),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      packed_(static_cast<std::size_t>(machine.n_processes())),
-      parcels_(machine.takes_parcels() ? static_cast<std::size_t>(n_here_) : 0) {}
+      outbox_(id, machine, messages, statistics_.bytes_sent),
+      bundles_(machine.takes_bundles() ? static_cast<std::size_t>(n_here_) : 0) {}
 
 Pe::~Pe() = default;
 
@@ -72,39 +64,40 @@ void Pe::route(PeId to, Envelope* message) {
   } else if (static_cast<std::uint32_t>(to.value - first_here_) <
              static_cast<std::uint32_t>(n_here_)) {
     ++statistics_.sent_remote;
-    hand_over(to, message);
+    pass(to, message, sizeof(Envelope));
   } else {
     ++statistics_.sent_remote;
-    pack(to, message);
+    outbox_.put(message);
+    if (outbox_.holds()) hold();
   }
 }
 
-void Pe::hand_over(PeId to, Envelope* message) {
-  if (parcels_.empty()) {
-    machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
+void Pe::pass(PeId to, Envelope* message, std::size_t n_bytes) {
+  if (bundles_.empty()) {
+    machine_.post(id_, to, message, n_bytes, message->action->traffic);
     return;
   }
-  Parcel*& parcel = parcels_[static_cast<std::size_t>(to.value - first_here_)];
-  if (parcel == nullptr) parcel = new (allocate_block(*this, sizeof(Parcel))) Parcel;
-  if (parcel->n == 0) opened_.push_back(to.value - first_here_);
-  parcel->messages[parcel->n++] = message;
-  if (parcel->n == Parcel::capacity) post(parcel, to);
+  Bundle*& bundle = bundles_[static_cast<std::size_t>(to.value - first_here_)];
+  if (bundle == nullptr) bundle = new (allocate_block(*this, sizeof(Bundle))) Bundle;
+  if (bundle->n == 0) opened_.push_back(to.value - first_here_);
+  bundle->messages[bundle->n++] = message;
+  if (bundle->n == Bundle::capacity) post(bundle, to);
   hold();
 }
 
-void Pe::post(Parcel*& parcel, PeId to) {
-  if (parcel->n == 1) {  // by itself; the parcel stays for the next
-    auto* const message = static_cast<Envelope*>(parcel->messages[0]);
-    parcel->n = 0;
+void Pe::post(Bundle*& bundle, PeId to) {
+  if (bundle->n == 1) {  // by itself; the bundle stays for the next
+    auto* const message = static_cast<Envelope*>(bundle->messages[0]);
+    bundle->n = 0;
     machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
   } else {
-    machine_.post_parcel(to, std::exchange(parcel, nullptr));
+    machine_.post_bundle(to, std::exchange(bundle, nullptr));
   }
 }
 
-void Pe::accept(Parcel* parcel) {
-  for (std::uint32_t i = 0; i < parcel->n; ++i) ready_.push(parcel->messages[i]);
-  Pool::release(parcel, &pool_);
+void Pe::accept(Bundle* bundle) {
+  for (std::uint32_t i = 0; i < bundle->n; ++i) ready_.push(bundle->messages[i]);
+  Pool::release(bundle, &pool_);
 }
 
 /// Runs a message that may take long: what was sent before it leaves first.
@@ -112,14 +105,14 @@ void Pe::run_slow(Envelope* message, const Action& action) {
   flush();
   const std::uint64_t begin = read_ticks();
   run_one(message);
-  const bool quick = read_ticks() - begin < parcel_ticks_;
+  const bool quick = read_ticks() - begin < bundle_ticks_;
   action.set_pace(quick ? Action::Pace::quick : Action::Pace::slow);
 }
 
 /// After a message of this action, while something is held back.
 void Pe::look_at_clock(const Action& action) {
   const std::uint64_t now = read_ticks();
-  if (now - last_look_ > parcel_ticks_) {
+  if (now - last_look_ > bundle_ticks_) {
     if (look_every_ == 1) action.set_pace(Action::Pace::slow);
     look_every_ = 1;
   } else {
@@ -129,42 +122,16 @@ void Pe::look_at_clock(const Action& action) {
   last_look_ = now;
   if (now - held_since_ > packed_ticks_) {
     flush();
-  } else if (now - held_since_ > parcel_ticks_) {
-    flush_parcels();
-    holds_ = holds_packed_;
+  } else if (now - held_since_ > bundle_ticks_) {
+    flush_bundles();
+    holds_ = outbox_.holds();
   }
 }
 
-void Pe::pack(PeId to, Envelope* message) {
-  const auto process = static_cast<std::size_t>(machine_.process_of(to).value);
-  Buffer& out = packed_[process];
-  if (out.capacity() == 0) out.reserve(first_bytes);
-  const std::size_t begin = out.size();
-  PackedHeader header{0,
-                      message->epoch,
-                      message->action->id(),
-                      message->source,
-                      to,
-                      message->trace << 1U | (message->counted ? 1U : 0U)};
-  Writer write(out);
-  write(header);
-  message->action->pack(*message, write);
-  header.n_bytes = out.size() - begin - sizeof header;
-  std::memcpy(out.data() + begin, &header, sizeof header);
-  statistics_.bytes_sent += out.size() - begin;
-  discard(message);
-  holds_packed_ = true;
-  hold();
-  if (out.size() >= flush_bytes || intercepts_) {
-    machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(out));
-    out.clear();
-  }
-}
-
-void Pe::flush_parcels() {
+void Pe::flush_bundles() {
   for (const std::int32_t at : opened_) {
-    Parcel*& parcel = parcels_[static_cast<std::size_t>(at)];
-    if (parcel != nullptr && parcel->n != 0) post(parcel, PeId{first_here_ + at});
+    Bundle*& bundle = bundles_[static_cast<std::size_t>(at)];
+    if (bundle != nullptr && bundle->n != 0) post(bundle, PeId{first_here_ + at});
   }
   opened_.clear();
 }
@@ -172,39 +139,9 @@ void Pe::flush_parcels() {
 bool Pe::flush() {
   if (!holds_) return false;
   holds_ = false;
-  flush_parcels();
-  if (!std::exchange(holds_packed_, false)) return true;
-  for (std::size_t process = 0; process < packed_.size(); ++process) {
-    if (packed_[process].empty()) continue;
-    machine_.send(id_, ProcessId{static_cast<std::int32_t>(process)}, std::move(packed_[process]));
-    packed_[process].clear();
-  }
+  flush_bundles();
+  outbox_.flush();
   return true;
-}
-
-void Pe::receive(std::span<const std::byte> bytes) {
-  const RunsOn here(*this);
-  Reader read(bytes);
-  while (read.remaining() != 0) {
-    const auto header = read.take<PackedHeader>();
-    Reader body(read.view(header.n_bytes));
-    const auto& action = static_cast<const Action&>(Registry::at(header.action));
-    Envelope* message = read_all(
-        body,
-        [&action] { return plain_name(action.name()); },
-        [this, &action](Reader& arguments) { return action.unpack(*this, arguments); });
-    message->action = &action;
-    message->epoch = header.epoch;
-    message->source = header.source;
-    message->target = header.target;
-    message->counted = (header.trace_and_counted & 1U) != 0;
-    message->trace = header.trace_and_counted >> 1U;
-    if (header.target == id_) {
-      ready_.push(message);
-    } else {
-      hand_over(header.target, message);
-    }
-  }
 }
 
 void Pe::run(Envelope* message) {
@@ -213,6 +150,9 @@ void Pe::run(Envelope* message) {
     discard(message);
     return;
   }
+  const std::uint32_t charge = message->charge;
+  const PeId sender = message->sender;
+  message->charge = 0;  // wherever it goes from here
   of_message_ = Context{nullptr, message->action, message->epoch};
   try {
     message->action->run(*this, message);
@@ -228,6 +168,8 @@ void Pe::run(Envelope* message) {
     exception("an exception that is no std::exception", 1);
   }
   of_message_ = Context{};
+  if (charge != 0) [[unlikely]]
+    repay(sender, charge);  // before it is processed: the run is not over while credit is due
   if (counted) completion_.hop_processed();
 }
 
@@ -323,12 +265,13 @@ void Pe::drop_all() {
     for (Envelope* message : messages) discard(message);
   }
   early_.clear();
-  for (Parcel*& parcel : parcels_) {
-    if (parcel == nullptr) continue;
-    for (std::uint32_t i = 0; i < parcel->n; ++i)
-      discard(static_cast<Envelope*>(parcel->messages[i]));
-    Pool::release(std::exchange(parcel, nullptr), &pool_);
+  for (Bundle*& bundle : bundles_) {
+    if (bundle == nullptr) continue;
+    for (std::uint32_t i = 0; i < bundle->n; ++i)
+      discard(static_cast<Envelope*>(bundle->messages[i]));
+    Pool::release(std::exchange(bundle, nullptr), &pool_);
   }
+  outbox_.drop_all();
   dropping_ = true;
   end_all(suspended_);
 }

@@ -11,6 +11,7 @@
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/meter.hpp"
+#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
 #include "runtime/scheduler/trace.hpp"
@@ -55,7 +56,12 @@ struct PeStatistics {
 class Pe {
  public:
   /// The pool outlives all PEs of the process: messages of one are freed by another.
-  Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed);
+  Pe(PeId id,
+     Runtime& runtime,
+     Machine& machine,
+     Pool& pool,
+     std::uint64_t seed,
+     const MessageOptions& messages);
   Pe(const Pe&) = delete;
   Pe& operator=(const Pe&) = delete;
   ~Pe();
@@ -155,10 +161,18 @@ class Pe {
       ready_.push(first);
     }
   }
-  void accept(Parcel* parcel);
+  void accept(Bundle* bundle);
   std::size_t step(std::size_t most);
   bool idle();
   void receive(std::span<const std::byte> bytes);
+  [[nodiscard]] Envelope* place(std::span<const std::byte> head,
+                                std::span<const std::uint64_t> sizes,
+                                std::vector<std::span<std::byte>>& taken);
+  [[nodiscard]] Outbox& outbox() { return outbox_; }
+  /// A PE of another process has run what this PE had sent there.
+  void on_repaid(PeId from, std::uint64_t amount);
+  /// Hands a message that came from another process to its PE.
+  void hand_over(Envelope* message, std::size_t n_bytes);
   /// Sends all that was held back to be packed together. True if there was any. Called after a few
   /// microseconds, when the PE idles, and before it starts local work on which other PEs wait.
   bool flush();
@@ -233,10 +247,9 @@ class Pe {
  private:
   void route(PeId to, Envelope* message);
   /// To a PE of this process, not this one.
-  void hand_over(PeId to, Envelope* message);
-  void pack(PeId to, Envelope* message);
-  void post(Parcel*& parcel, PeId to);
-  void flush_parcels();
+  void pass(PeId to, Envelope* message, std::size_t n_bytes);
+  void post(Bundle*& bundle, PeId to);
+  void flush_bundles();
   /// Something is held back from now on, if nothing was.
   void hold() {
     if (holds_) return;
@@ -248,6 +261,7 @@ class Pe {
   void run_slow(Envelope* message, const Action& action);
   void run_one(Envelope* message);
   void run(Envelope* message);
+  void repay(PeId sender, std::uint32_t charge);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
   Collection* find_slow(CollectionId id);
@@ -261,7 +275,7 @@ class Pe {
   const unsigned patience_;
   const Time message_cost_;
   const std::int32_t first_here_, n_here_;  // the PEs of this process
-  const std::uint64_t parcel_ticks_, packed_ticks_;
+  const std::uint64_t bundle_ticks_, packed_ticks_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
@@ -283,14 +297,14 @@ class Pe {
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
 
-  // What is held back to leave together: packed messages by process, pointers by PE of this
-  // process.
-  bool holds_ = false, holds_packed_ = false;
+  Outbox outbox_;  // to other processes
+
+  // What is held back to leave together: in the outbox, and pointers by PE of this process.
+  bool holds_ = false;
   std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
   std::uint64_t held_since_ = 0, last_look_ = 0;   // in ticks
-  std::vector<Buffer> packed_;
-  std::vector<Parcel*> parcels_;      // empty where the machine takes none
-  std::vector<std::int32_t> opened_;  // those of parcels_ that hold something
+  std::vector<Bundle*> bundles_;      // empty where the machine takes none
+  std::vector<std::int32_t> opened_;  // those of bundles_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
   CollectionNumbers collection_numbers_;

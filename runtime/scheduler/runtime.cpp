@@ -64,8 +64,12 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);
   for (std::int32_t i = 0; i < n_here; ++i) {
-    pes_.push_back(std::make_unique<Pe>(
-        PeId{first_.value + i}, *this, machine, pools_.emplace_back(), options.seed));
+    pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i},
+                                        *this,
+                                        machine,
+                                        pools_.emplace_back(),
+                                        options.seed,
+                                        options.messages));
     Pe& pe = *pes_.back();
     pe.set_migration_chance(options.migration_chance);
     if (options.statistics) pe.start_meter();
@@ -104,6 +108,11 @@ void Runtime::start(PeId id) {
 
 void Runtime::run_main(Pe& /*pe*/) {
   main_();
+}
+
+void Runtime::placed(PeId id, Link* message) {
+  const RunsOn here(pe(id));
+  pe(id).hand_over(static_cast<Envelope*>(message), sizeof(Envelope));
 }
 
 void Runtime::finish(PeId id) {

@@ -27,7 +27,8 @@ struct RuntimeOptions {
   double migration_chance =
       0;                    ///< after each message an element may be sent away: schedule fuzzing
   bool statistics = false;  ///< print what each PE did
-  std::string trace;        ///< the file that a trace is written to; empty: none is kept
+  MessageOptions messages;
+  std::string trace;  ///< the file that a trace is written to; empty: none is kept
   /// Who is given the lines of reports (deadlock, exception, statistics); absent: standard error.
   std::function<void(const std::string&)> report;
 };
@@ -59,10 +60,18 @@ class Runtime final : public Program {
   // Program.
   void start(PeId pe) override;
   void accept(PeId id, Link* first) override { pe(id).accept(first); }
-  void accept_parcel(PeId id, Parcel* parcel) override { pe(id).accept(parcel); }
+  void accept_bundle(PeId id, Bundle* bundle) override { pe(id).accept(bundle); }
   std::size_t step(PeId id, std::size_t most) override { return pe(id).step(most); }
   bool idle(PeId id) override { return pe(id).idle(); }
   void receive(PeId id, std::span<const std::byte> bytes) override { pe(id).receive(bytes); }
+  Link* place(PeId id,
+              std::span<const std::byte> head,
+              std::span<const std::uint64_t> sizes,
+              std::vector<std::span<std::byte>>& places) override {
+    return pe(id).place(head, sizes, places);
+  }
+  void placed(PeId id, Link* message) override;
+  void drop(Link* message) override { discard(static_cast<Envelope*>(message)); }
   void finish(PeId id) override;
 
   // Control messages.

@@ -99,6 +99,12 @@ TEST_CASE("exit in mid flood gives the greatest code and leaks nothing", "[runti
 TEST_CASE("early messages migrate with their mailbox", "[runtime][protocol]") {
   run_seeds("mailboxes");
 }
+TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]") {
+  run_seeds("payloads");
+}
+TEST_CASE("a flood is held back within the budget, and all of it arrives", "[runtime][protocol]") {
+  run_seeds("floods");
+}
 TEST_CASE("a deadlock says who waits for what", "[runtime][protocol]") {
   run_seeds("deadlocks");
 }
@@ -135,6 +141,8 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "mailboxes",
                            "destroyed",
                            "constructors",
+                           "payloads",
+                           "floods",
                            "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {

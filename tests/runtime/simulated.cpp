@@ -77,8 +77,25 @@ TEST_CASE("a bad option of the simulated machine is named", "[runtime][simulated
   }
 }
 
+TEST_CASE("the memory for messages is read with its unit", "[runtime]") {
+  std::string program = "test", option = "--message-memory", value = "3MiB";
+  std::array<char*, 4> argv{program.data(), option.data(), value.data(), nullptr};
+  int argc = 3;
+  CHECK(tess::take_options(argc, argv.data()).options.messages.memory_bytes == 3U << 20U);
+  CHECK(argc == 1);
+}
+
 TEST_CASE("a bad runtime option is refused", "[runtime]") {
-  for (const char* bad : {"--pes=0", "--pes=x", "--pes=-2", "--pes=", "--sim=colour=red"}) {
+  for (const char* bad : {"--pes=0",
+                          "--pes=x",
+                          "--pes=-2",
+                          "--pes=",
+                          "--sim=colour=red",
+                          "--message-memory=0",
+                          "--message-memory=8MB",
+                          "--message-memory=x",
+                          "--message-memory=2000GiB",
+                          "--message-memory=-1"}) {
     std::string program = "test", option = bad;
     std::array<char*, 3> argv{program.data(), option.data(), nullptr};
     int argc = 2;

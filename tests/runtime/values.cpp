@@ -74,6 +74,8 @@ TEST_CASE("values come back from their bytes, and truncated bytes are refused", 
   check_round_trip(std::optional<std::string>{"given"});
   check_round_trip(std::variant<int, std::string>{"second"});
   check_round_trip(std::tuple<int, std::string, Plain>{1, "2", {3, 4}});
+  check_round_trip(tess::SharedArray<int>(std::vector<int>{1, 2, 3}));
+  check_round_trip(tess::SharedArray<double>());
   check_round_trip(std::pair<std::string, int>{"first", 2});
   check_round_trip(std::array<std::string, 2>{"a", "b"});
   check_round_trip(boost::container::small_vector<int, 4>{1, 2, 3, 4, 5, 6});
@@ -190,4 +192,127 @@ TEST_CASE("a copy is compared with the bytes it was read from", "[runtime][seria
   std::vector<std::byte> more = sent;
   more.push_back(std::byte{0});
   CHECK(tess::difference_from_bytes(more, original).find("1 bytes less") != std::string::npos);
+}
+
+namespace {
+
+/// Gives the archive what is gone when it returns.
+struct Doubles {
+  std::vector<double> values;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    std::vector<double> copy = values;
+    ar(copy);
+    values = copy;
+  }
+};
+struct Load {
+  int number = 0;
+  std::vector<double> large, small;
+  std::string text;
+  std::map<int, std::vector<double>> moved_when_read;
+  Doubles temporary;
+  std::vector<std::vector<int>> nested;
+  tess::SharedArray<double> shared;
+};
+
+Load load_of(std::size_t n) {
+  Load load;
+  load.number = 7;
+  load.large.assign(n, 1.5);
+  load.small.assign(2, 2.5);
+  load.text.assign(8 * n, 't');
+  load.moved_when_read[1].assign(n, 3.5);
+  load.temporary.values.assign(n, 4.5);
+  load.nested.assign(2, std::vector<int>(2 * n, 5));
+  load.shared = tess::SharedArray<double>(std::vector<double>(n, 6.5));
+  return load;
+}
+
+/// A message of bytes and parts.
+struct Packed {
+  std::vector<std::byte> bytes;
+  tess::Attached attached;
+  std::vector<std::uint64_t> sizes;
+
+  explicit Packed(const Load& load) : bytes(10'000) {
+    attached.least_bytes = 100;
+    tess::Writer write(bytes, &attached);
+    write(load);
+    REQUIRE(write.n_bytes() <= bytes.size());
+    bytes.resize(write.n_bytes());
+    for (const auto part : attached.parts) sizes.push_back(part.size());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("large vectors are attached from where they stand and read in place",
+          "[runtime][serialize]") {
+  const Load load = load_of(100);
+  const Packed packed(load);
+  REQUIRE(packed.attached.parts.size() == 4);
+  CHECK(packed.attached.parts[0].data() == reinterpret_cast<const std::byte*>(load.large.data()));
+  CHECK(packed.attached.parts[3].data() == reinterpret_cast<const std::byte*>(load.shared.data()));
+  CHECK(packed.attached.n_bytes == 4 * 800);
+
+  std::vector<std::span<std::byte>> taken;
+  tess::Places places{packed.sizes, taken};
+  tess::Reader read(packed.bytes, &places);
+  Load back;
+  read(back);
+  CHECK(read.remaining() == 0);
+  REQUIRE(taken.size() == 4);
+  CHECK(taken[0].data() == reinterpret_cast<const std::byte*>(back.large.data()));
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    std::copy(packed.attached.parts[i].begin(), packed.attached.parts[i].end(), taken[i].begin());
+  CHECK(tess::to_bytes(back) == tess::to_bytes(load));
+}
+
+TEST_CASE("an attached part that was not announced is refused before memory is asked for",
+          "[runtime][serialize]") {
+  const Packed packed(load_of(100));
+  const auto refused = [&](std::vector<std::uint64_t> sizes) {
+    std::vector<std::span<std::byte>> taken;
+    tess::Places places{sizes, taken};
+    tess::Reader read(packed.bytes, &places);
+    Load back;
+    CHECK_THROWS_AS(read(back), tess::Error);
+  };
+  refused({});
+  refused({800, 800, 800});
+  refused({800, 800, 800, 808});
+  refused({800, 800, 801, 800});
+  // A buffer of packed messages has no parts.
+  tess::Reader read(packed.bytes);
+  Load back;
+  CHECK_THROWS_AS(read(back), tess::Error);
+}
+
+TEST_CASE("a writer without room counts what is needed and writes nothing beyond",
+          "[runtime][serialize]") {
+  const Load load = load_of(20);
+  const auto whole = tess::to_bytes(load);
+  CHECK(tess::written_bytes(load) == whole.size());
+  std::vector<std::byte> room(whole.size() + 8, std::byte{0x5a});
+  for (std::size_t n = 0; n < whole.size(); n += 7) {
+    tess::Writer write{std::span(room).first(n)};
+    write(load);
+    CHECK(write.n_bytes() == whole.size());
+    CHECK(room[n] == std::byte{0x5a});
+    std::fill(room.begin(), room.end(), std::byte{0x5a});
+  }
+}
+
+TEST_CASE("copies of a shared array are owners of one memory", "[runtime][serialize]") {
+  std::vector<double> values(1000, 1);
+  const double* const memory = values.data();
+  const tess::SharedArray<double> first(std::move(values));
+  tess::SharedArray<double> second;
+  CHECK(second.empty());
+  second = first;
+  CHECK(first.data() == memory);
+  CHECK(second.data() == memory);
+  CHECK(second == tess::SharedArray<double>(std::vector<double>(1000, 1)));
+  CHECK_FALSE(second == tess::SharedArray<double>(std::vector<double>(1000, 2)));
 }

@@ -1,5 +1,5 @@
 // Several messages to one PE, handed over at once: the receiver gets an array of pointers, so that
-// it can fetch the next messages into its cache while it runs the first. A parcel costs its sender
+// it can fetch the next messages into its cache while it runs the first. A bundle costs its sender
 // one atomic operation, however many messages it holds.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace tess {
 
 /// Four cache lines, with the header of its pool.
-struct Parcel : Link {
+struct Bundle : Link {
   static constexpr std::uint32_t capacity = 28;
   std::uint32_t n = 0;
   std::array<Link*, capacity> messages;  // the first n

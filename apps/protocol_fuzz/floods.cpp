@@ -1,0 +1,111 @@
+// All PEs flood one another with messages, some of them only as there is room; the memory for
+// messages between processes is drawn from the seed, down to one message. The oracle: every message
+// arrives; a process holds of one sender's no more than the budget allows; a producer that waits
+// for room has no more than one message waiting beside it; epochs wait for what is held back.
+#include "apps/protocol_fuzz/scenarios.hpp"
+
+#include <atomic>
+
+namespace tess::fuzz {
+namespace {
+
+struct Deluge {
+  Trial& trial;
+  int n_messages = 0, most_numbers = 0;
+  bool asks_for_room = false;
+  std::uint64_t seed = 0;
+  std::atomic<int> n_arrived{0};
+  std::mutex mutex{};
+  std::vector<std::uint64_t> held{};  // bytes unpacked and not yet run: sender × process
+
+  void holds(PeId sender, ProcessId process, std::uint64_t n_bytes, bool more) {
+    const std::lock_guard lock(mutex);
+    Machine& machine = current_pe().machine();
+    held.resize(static_cast<std::size_t>(machine.n_pes() * machine.n_processes()));
+    std::uint64_t& now =
+        held[static_cast<std::size_t>(sender.value * machine.n_processes() + process.value)];
+    now = more ? now + n_bytes : now - n_bytes;
+    const std::uint64_t limit =
+        trial.message_memory() / 2 / static_cast<std::uint64_t>(machine.pes_per_process()) + 16;
+    const std::uint64_t largest = static_cast<std::uint64_t>(most_numbers) * sizeof(double) + 200;
+    trial.expect(now < limit + largest, process, " holds ", now, " bytes of ", sender);
+  }
+};
+Deluge* deluge = nullptr;
+
+struct Freight {
+  PeId sender{};
+  std::vector<double> values;
+  bool packed = false;
+
+  [[nodiscard]] std::uint64_t n_bytes() const { return values.size() * sizeof(double); }
+  using GivesMembers = void;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(sender, values);
+    if constexpr (Ar::is_reading) {
+      packed = true;
+      Pe& pe = current_pe();
+      deluge->holds(sender, pe.machine().process_of(pe.id()), n_bytes(), true);
+    }
+  }
+};
+
+class Basin : public Group<Basin> {
+ public:
+  Task pour() {
+    Random random(mix(deluge->seed + static_cast<std::uint64_t>(pe().value)));
+    const auto n_pes = static_cast<std::uint64_t>(current_pe().n_pes());
+    const PeId fixed{static_cast<std::int32_t>(random.below(n_pes))};
+    for (int i = 0; i < deluge->n_messages; ++i) {
+      const PeId to =
+          random.chance(0.5) ? fixed : PeId{static_cast<std::int32_t>(random.below(n_pes))};
+      if (deluge->asks_for_room) {
+        co_await room(group()[to]);
+        Pe& here = current_pe();
+        if (!here.machine().same_process(here.id(), to))
+          deluge->trial.expect(here.outbox().has_room(here.machine().process_of(to)),
+                               "a producer goes on without room");
+      }
+      Freight freight{pe(), {}};
+      freight.values.assign(random.below(static_cast<std::uint64_t>(deluge->most_numbers)), 2.5);
+      group()[to].send<&Basin::fall>(std::move(freight));
+    }
+  }
+  void fall(Freight freight) {
+    (void)charge(std::chrono::milliseconds(1));  // slower than what comes
+    if (freight.packed)
+      deluge->holds(
+          freight.sender, current_pe().machine().process_of(pe()), freight.n_bytes(), false);
+    for (const double value : freight.values)
+      deluge->trial.expect(value == 2.5, "a value was garbled on its way");
+    ++deluge->n_arrived;
+  }
+};
+
+Task flood_twice(Deluge& here) {
+  GroupProxy<Basin> basins;
+  // A message to a group that is not known yet has run, as far as memory goes: it waits elsewhere.
+  co_await epoch([&] { basins = create_group<Basin>(); });
+  const int each = here.n_messages * here.trial.n_pes();
+  for (int round = 1; round <= 2; ++round) {
+    co_await epoch([&] { basins.broadcast<&Basin::pour>(); });
+    here.trial.expect(here.n_arrived == round * each,
+                      "an epoch ended after ",
+                      here.n_arrived.load(),
+                      " of ",
+                      round * each,
+                      " messages");
+  }
+}
+
+}  // namespace
+
+void floods(Trial& trial) {
+  Deluge here{
+      trial, trial.draw(0, 40), trial.draw(1, 100), trial.draw(0, 1) != 0, trial.random()()};
+  deluge = &here;
+  trial.run_clean([&here] { return flood_twice(here); });
+}
+
+}  // namespace tess::fuzz

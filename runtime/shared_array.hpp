@@ -1,0 +1,79 @@
+// tess::SharedArray<T>: numbers that are made once and then only read, by any number of owners.
+//
+//     std::vector<double> values = …;
+//     const tess::SharedArray<double> edge(std::move(values));   // no copy
+//     left.send<&Block::receive>(edge);                          // nor here
+//     right.send<&Block::receive>(edge);
+//
+// A copy of it is one more owner of the same memory, on whatever PE of the process; the last owner
+// frees it. A message to another process sends the numbers from that memory, which it owns until
+// they have left, and receives them into memory of their own: MPI copies them, if it has to, and
+// nothing else does. A reference to a number, or a span of them, is valid while there is an owner.
+#pragma once
+
+#include "runtime/serialize.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace tess {
+
+template <class T>
+class SharedArray {
+  static_assert(Bitwise<T> && !std::is_same_v<T, bool>,
+                "a SharedArray holds numbers, or aggregates of numbers without padding");
+
+ public:
+  using value_type = T;
+
+  SharedArray() = default;
+  /// Takes over the memory of the vector.
+  explicit SharedArray(std::vector<T>&& values)
+      : values_(std::make_shared<const std::vector<T>>(std::move(values))) {}
+
+  [[nodiscard]] std::size_t size() const { return values_ ? values_->size() : 0; }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  [[nodiscard]] const T* data() const { return values_ ? values_->data() : nullptr; }
+  [[nodiscard]] const T* begin() const { return data(); }
+  [[nodiscard]] const T* end() const { return data() + size(); }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return (*values_)[i]; }
+  [[nodiscard]] std::span<const T> view() const { return {data(), size()}; }
+
+  /// Equal numbers, in the same memory or not.
+  friend bool operator==(const SharedArray& a, const SharedArray& b) {
+    return a.values_ == b.values_ || std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (Ar::is_reading) {
+      const auto [n, attached] = ar.length_or_attached(sizeof(T));
+      std::vector<T> values;
+      resize_uninitialised(values, n);
+      if (attached)
+        ar.place(values.data(), n * sizeof(T));  // the vector moves, its memory does not
+      else
+        ar.bytes(values.data(), n * sizeof(T));
+      *this = SharedArray(std::move(values));
+    } else if constexpr (std::is_same_v<Ar, Writer>) {
+      const std::uint64_t n = size();
+      if (ar.attach(std::as_bytes(view()), values_)) {
+        ar(n | Reader::attached_bit);
+      } else {
+        ar(n);
+        ar.bytes(data(), n * sizeof(T));
+      }
+    } else {
+      ar(values_ ? *values_ : std::vector<T>());  // an archive that only compares
+    }
+  }
+
+ private:
+  std::shared_ptr<const std::vector<T>> values_;
+};
+
+}  // namespace tess
