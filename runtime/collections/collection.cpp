@@ -66,7 +66,7 @@ void Collection::born(Element& element) {
   const std::uint64_t applied = broadcasts_.applied();
   element.state_.seen_broadcast = applied;
   element.state_.born_after = static_cast<std::uint32_t>(applied);
-  element.state_.next_reduction = reductions_.joins_at(element.state_.born_after);
+  element.state_.next_reduction = reductions_.joins_at();  // list() postpones it
   reductions_.born(element.state_.next_reduction);
 }
 

@@ -74,8 +74,8 @@ void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cau
   if (cause.led_by - 1 >= into.cause.led_by - 1) return;  // 0, which is none, comes last
   into.cause.led_by = cause.led_by;
   (void)learn(number, cause.led_by);
-  // A PE below that was asked before may hold an element that waits for this.
-  if (into.asked) ask_children(number, into.cause);
+  // A PE below that was asked or has reported may hold an element that waits for this.
+  if (into.asked || into.children > 0) ask_children(number, into.cause);
 }
 
 void ReductionTree::take(std::uint32_t number, const Cause& cause) {
@@ -264,12 +264,15 @@ void ReductionTree::on_report(Report&& report) {
   }
   Gathering& gathering = gathering_[report.number];
   gathering.known = true;
-  ++gathering.children;
   gathering.n += report.n;
   gathering.change += report.change;
   merge(gathering, std::move(report.value.held));
   merge(gathering, report.shares);
   take(report.number, gathering, report.cause);
+  ++gathering.children;
+  // So may one that has reported without knowing.
+  if (report.cause.led_by != gathering.cause.led_by && !gathering.asked)
+    ask_children(report.number, gathering.cause);
   advance();
 }
 

@@ -75,10 +75,8 @@ class ReductionTree {
  public:
   ReductionTree(Pe& pe, Collection& collection, Track track, PeId root, TreeWords words);
 
-  /// The number at which an element joins that is born here now, after this broadcast.
-  [[nodiscard]] std::uint32_t joins_at(std::uint32_t broadcast = 0) const {
-    return std::max(next_report_, led_to_.end(broadcast));
-  }
+  /// The number at which an element joins that is born here now, unless it is postponed.
+  [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
 
   void born(std::uint32_t at) { changes_[at] += 1; }
   /// An element on this PE that was born after this broadcast, and is a member from `next` on: the
