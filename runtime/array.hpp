@@ -44,8 +44,8 @@ class Array final : public ArrayOf<typename C::Index> {
           return this->block_map().home(rank);
       }
       // The high bits: the low ones choose the slot in hash tables, which would cluster.
-      return PeId{static_cast<std::int32_t>(
-          (IndexHash<Index>()(index) >> 32U) % static_cast<std::uint64_t>(this->pe_.n_pes()))};
+      return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) %
+                                            static_cast<std::uint64_t>(this->pe_.n_pes()))};
     }
   }
 

@@ -116,9 +116,8 @@ class BlockMap {
   [[nodiscard]] PeId home(std::int64_t rank) const {
     __extension__ using Wide = unsigned __int128;
     const std::uint64_t scaled = static_cast<std::uint64_t>(rank) * n_pes_;
-    const std::uint64_t pe = inverse_ != 0
-                                 ? static_cast<std::uint64_t>(Wide{scaled} * inverse_ >> 64U)
-                                 : scaled / size_;
+    const std::uint64_t pe =
+        inverse_ != 0 ? static_cast<std::uint64_t>(Wide{scaled} * inverse_ >> 64U) : scaled / size_;
     return PeId{static_cast<std::int32_t>(pe)};
   }
 

@@ -202,8 +202,7 @@ class Writer {
   /// Writes over eight bytes that were written at that position.
   void patch(std::size_t position, std::uint64_t value) {
     if (grows_ != nullptr) {
-      std::memcpy(
-          grows_->data() + (grows_->size() - n_bytes_ + position), &value, sizeof value);
+      std::memcpy(grows_->data() + (grows_->size() - n_bytes_ + position), &value, sizeof value);
     } else if (begin_ != nullptr && begin_ + position + sizeof value <= end_) {
       std::memcpy(begin_ + position, &value, sizeof value);
     }

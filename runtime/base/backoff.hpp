@@ -42,9 +42,9 @@ class Backoff {
   [[nodiscard]] bool pause() noexcept {
     if (n_pauses_ == 0) {
       idle_since_ = last_look_ = Clock::now();
-      stage_ = idle_since_ < crowded_until_       ? Stage::sleep
-               : patience_.spin.count() > 0       ? Stage::spin
-                                                  : Stage::yield;
+      stage_ = idle_since_ < crowded_until_ ? Stage::sleep
+               : patience_.spin.count() > 0 ? Stage::spin
+                                            : Stage::yield;
     } else if (n_pauses_ % 16 == 0 || stage_ != Stage::spin) {
       const auto now = Clock::now();
       const auto idle = now - idle_since_;

@@ -76,7 +76,10 @@ class ArrayOf : public Collection {
   using Letter = ElementMessage<Index>;
 
   ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
-      : Collection(pe, id, std::move(name)), range_(range), block_map_(range, pe.n_pes()), table_(range) {}
+      : Collection(pe, id, std::move(name)),
+        range_(range),
+        block_map_(range, pe.n_pes()),
+        table_(range) {}
 
   [[nodiscard]] const Range& range() const { return range_; }
   [[nodiscard]] const BlockMap& block_map() const { return block_map_; }

@@ -1,10 +1,13 @@
-// When is it all done? One mechanism answers for every scoped epoch and for the whole run (epoch 0).
+// When is it all done? One mechanism answers for every scoped epoch and for the whole run (epoch
+// 0).
 //
-// Each PE counts, for each epoch, the messages it sent and those it processed (cumulative, 64 bits).
-// A message that waits anywhere (in a queue, a send buffer, for an absent element, in a suspended
-// coroutine) is sent and not yet processed. The epoch's coordinator is the PE that opened it.
+// Each PE counts, for each epoch, the messages it sent and those it processed (cumulative, 64
+// bits). A message that waits anywhere (in a queue, a send buffer, for an absent element, in a
+// suspended coroutine) is sent and not yet processed. The epoch's coordinator is the PE that opened
+// it.
 //
-//   1. A PE that runs dry reports to its parent in the coordinator's tree the counters of itself and
+//   1. A PE that runs dry reports to its parent in the coordinator's tree the counters of itself
+//   and
 //      of all PEs below it. It reports again only after the parent has answered, and the parent
 //      answers when it runs dry itself. So a busy PE is seldom disturbed, and an epoch costs a PE a
 //      few messages per round trip, however fine the work is.
@@ -163,10 +166,10 @@ class Completion {
   [[nodiscard]] Counters reading(EpochId epoch) const;
 
   Pe& pe_;
-  Tally run_;  // of epoch 0
+  Tally run_;                                                              // of epoch 0
   boost::unordered_flat_map<EpochId, Tally, std::hash<EpochId>> tallies_;  // of the others
   std::vector<EpochId> changed_;  // something to report or to answer
-  EpochId last_epoch_{};  // 0: none. It is listed, and tallies_ has not changed since.
+  EpochId last_epoch_{};          // 0: none. It is listed, and tallies_ has not changed since.
   Counters* last_ = nullptr;
   boost::unordered_flat_map<EpochId, Coordinated, std::hash<EpochId>> coordinated_;
   boost::unordered_flat_map<EpochId, Relay, std::hash<EpochId>> relays_;

@@ -1,4 +1,5 @@
-// All that a PE knows of the indices of one array: one small record per index, found by one look-up.
+// All that a PE knows of the indices of one array: one small record per index, found by one
+// look-up.
 //
 //     state      on the PE that …                              the record holds
 //     here       has the element                               the element
@@ -38,9 +39,7 @@ class IndexRecord {
  public:
   [[nodiscard]] IndexState state() const { return state_; }
   /// The element, if it is here; null otherwise.
-  [[nodiscard]] Element* element() const {
-    return state_ == IndexState::here ? element_ : nullptr;
-  }
+  [[nodiscard]] Element* element() const { return state_ == IndexState::here ? element_ : nullptr; }
   /// Where it is, as far as known, and since which version; not if it is here.
   [[nodiscard]] PeId pe() const { return pe_; }
   [[nodiscard]] Version version() const { return version_; }

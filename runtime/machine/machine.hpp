@@ -14,8 +14,8 @@
 #pragma once
 
 #include "runtime/base/buffer.hpp"
-#include "runtime/base/link.hpp"
 #include "runtime/base/bundle.hpp"
+#include "runtime/base/link.hpp"
 #include "runtime/ids.hpp"
 
 #include <chrono>

@@ -63,8 +63,7 @@ struct Action : Registered {
     return pace_.load(std::memory_order_relaxed) == Pace::quick;  // a hint: nothing hangs on it
   }
   void set_pace(Pace pace) const {
-    if (pace_.load(std::memory_order_relaxed) != pace)
-      pace_.store(pace, std::memory_order_relaxed);
+    if (pace_.load(std::memory_order_relaxed) != pace) pace_.store(pace, std::memory_order_relaxed);
   }
 
   Run run;          ///< on the target PE's thread; takes ownership of the envelope

@@ -73,7 +73,8 @@ class Pe {
   [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
   [[nodiscard]] Context& context() { return *context_; }
-  /// Another context is in force from now on; returns the one before. It outlives its time in force.
+  /// Another context is in force from now on; returns the one before. It outlives its time in
+  /// force.
   Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
@@ -303,8 +304,8 @@ class Pe {
   bool holds_ = false;
   std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
   std::uint64_t held_since_ = 0, last_look_ = 0;   // in ticks
-  std::vector<Bundle*> bundles_;      // empty where the machine takes none
-  std::vector<std::int32_t> opened_;  // those of bundles_ that hold something
+  std::vector<Bundle*> bundles_;                   // empty where the machine takes none
+  std::vector<std::int32_t> opened_;               // those of bundles_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
   Collection* last_ = nullptr;
   CollectionNumbers collection_numbers_;
