@@ -101,6 +101,8 @@ class ArrayOf : public Collection {
   void post(Letter* letter) {
     Record* record = table_.find(letter->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
+      letter->receiver = record->element();
+      letter->n_departures = n_departures_;
       pe_.send_here(letter);
     } else {
       route(letter, record);
@@ -109,6 +111,11 @@ class ArrayOf : public Collection {
 
   /// A message arrived: it runs if its element is here.
   void arrive(Letter* letter) {
+    if (letter->receiver != nullptr && letter->n_departures == n_departures_) [[likely]] {
+      execute(static_cast<Indexed&>(*letter->receiver), letter);
+      return;
+    }
+    letter->receiver = nullptr;
     Record* record = table_.find(letter->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
       execute(*record->element(), letter);
@@ -273,6 +280,7 @@ class ArrayOf : public Collection {
   const BlockMap block_map_;
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
+  std::uint32_t n_departures_ = 0;  // elements that left or died here: no message counts on one
   std::size_t n_hints_ = 0;             // learnt since they were last forgotten
   Letters pending_, waiting_, graves_;  // what is parked, by the reason (Parked)
   ByIndex<std::uint32_t> n_deaths_;     // of the indices with a grave

@@ -10,6 +10,7 @@ template <class Index>
 void ArrayOf<Index>::depart(Indexed& element, PeId to) {
   const Index index = element.index_;
   unlist(element);
+  ++n_departures_;
   count_departure(element);
   const Version version{element.state_.version.incarnation, element.state_.version.epoch + 1};
   element.state_.version = version;
@@ -99,6 +100,7 @@ void ArrayOf<Index>::end() {
 template <class Index>
 void ArrayOf<Index>::end_element(Indexed& element) {
   unlist(element);
+  ++n_departures_;
   table_.at(element.index_).set_unknown();
   destroy(element);
 }
@@ -114,6 +116,7 @@ void ArrayOf<Index>::bury(Indexed& element) {
   const Version version = element.state_.version;
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
+  ++n_departures_;
   table_.at(index).set_unknown();
   end_wait(element);
   if (watcher() != nullptr) [[unlikely]]

@@ -25,6 +25,8 @@ struct ElementMessage : Envelope {
   bool ask = false;  ///< the asker is to ask the home for leave to create
   std::uint8_t hops = 0;
   std::uint32_t led_by = 0;  ///< the broadcast of this array that led to it; 0: none
+  /// If there is a receiver: it is here as long as the array has this many departures on this PE.
+  std::uint32_t n_departures = 0;
 
   template <class Ar>
   void serialize_head(Ar& ar) {

@@ -14,6 +14,7 @@
 // are first used; others in a hash table with linear probing, one cache line for most look-ups.
 #pragma once
 
+#include "runtime/base/huge_pages.hpp"
 #include "runtime/collections/element.hpp"
 #include "runtime/index.hpp"
 
@@ -172,6 +173,7 @@ class IndexTable {
     bool used = false;
     Record record;
   };
+  using Entries = std::vector<Entry, HugePageAllocator<Entry>>;
   static constexpr std::size_t page_size = 256;
   using Page = std::array<Record, page_size>;
 
@@ -184,7 +186,7 @@ class IndexTable {
     return at + 1 == entries_.size() ? 0 : at + 1;
   }
   void grow() {
-    std::vector<Entry> old(std::max<std::size_t>(16, entries_.size() + entries_.size() / 2));
+    Entries old(std::max<std::size_t>(16, entries_.size() + entries_.size() / 2));
     old.swap(entries_);
     for (Entry& entry : old) {
       if (!entry.used) continue;
@@ -209,7 +211,7 @@ class IndexTable {
 
   const Range range_;
   std::vector<std::unique_ptr<Page>> pages_;  // by rank
-  mutable std::vector<Entry> entries_;
+  mutable Entries entries_;
   std::size_t n_entries_ = 0;
 };
 

@@ -20,11 +20,13 @@
 
 namespace tess {
 
+class Element;
 class Pe;
 struct Action;
 
 struct Envelope : Link {
   const Action* action = nullptr;
+  Element* receiver = nullptr;  ///< a hint, to fetch it into the cache; null where it is not known
   EpochId epoch{};
   PeId source{};
   PeId target{};

@@ -222,6 +222,8 @@ std::size_t Pe::step(std::size_t most) {
   for (; n < most && !ready_.empty(); ++n) {
     auto* const message = static_cast<Envelope*>(ready_.pop());
     const Action& action = *message->action;
+    if (const auto* soon = static_cast<const Envelope*>(ready_.ahead(2)); soon != nullptr)
+      __builtin_prefetch(soon->receiver, 1);
     if (holds_ && !action.quick()) [[unlikely]] {
       run_slow(message, action);
     } else {

@@ -26,6 +26,12 @@ class ReadyQueue {
     ring_[tail_++ & mask_] = link;
   }
 
+  /// The one whose turn comes after n others, already on its way into the cache; null if there is
+  /// none. n is less than the distance of the prefetch.
+  [[nodiscard]] Link* ahead(std::size_t n) const {
+    return head_ + n < tail_ ? ring_[(head_ + n) & mask_] : nullptr;
+  }
+
   /// The oldest; the queue must not be empty.
   Link* pop() {
     if (head_ + distance < tail_) {
