@@ -10,30 +10,30 @@
 
 namespace tess::fuzz {
 
-void create_at_once(Trial& trial);    // create.cpp
-void message_first(Trial& trial);     // create.cpp
-void lives(Trial& trial);             // lives.cpp
-void broadcasts(Trial& trial);        // broadcasts.cpp
-void constructors(Trial& trial);      // constructors.cpp
-void rounds(Trial& trial);            // rounds.cpp
-void newborns(Trial& trial);          // newborns.cpp
-void refinement(Trial& trial);        // newborns.cpp
-void tour(Trial& trial);              // tour.cpp
-void epochs(Trial& trial);            // epochs.cpp
-void epoch_migrations(Trial& trial);  // epoch_migrations.cpp
-void flood_exit(Trial& trial);        // exits.cpp
-void mailboxes(Trial& trial);         // mailboxes.cpp
-void deadlocks(Trial& trial);         // ends.cpp
-void exceptions(Trial& trial);        // ends.cpp
-void dead_letters(Trial& trial);      // ends.cpp
-void destroyed(Trial& trial);         // destroyed.cpp
-void groups(Trial& trial);            // groups.cpp
-void balance_rounds(Trial& trial);    // balance.cpp
-void balance_barrier(Trial& trial);   // balance_barrier.cpp
-void balance_rotate(Trial& trial);    // balance.cpp
+void create_at_once(Trial& trial);       // create.cpp
+void message_first(Trial& trial);        // create.cpp
+void lives(Trial& trial);                // lives.cpp
+void broadcasts(Trial& trial);           // broadcasts.cpp
+void constructors(Trial& trial);         // constructors.cpp
+void rounds(Trial& trial);               // rounds.cpp
+void newborns(Trial& trial);             // newborns.cpp
+void refinement(Trial& trial);           // newborns.cpp
+void tour(Trial& trial);                 // tour.cpp
+void epochs(Trial& trial);               // epochs.cpp
+void epoch_migrations(Trial& trial);     // epoch_migrations.cpp
+void flood_exit(Trial& trial);           // exits.cpp
+void mailboxes(Trial& trial);            // mailboxes.cpp
+void deadlocks(Trial& trial);            // ends.cpp
+void exceptions(Trial& trial);           // ends.cpp
+void dead_letters(Trial& trial);         // ends.cpp
+void destroyed(Trial& trial);            // destroyed.cpp
+void groups(Trial& trial);               // groups.cpp
+void balance_rounds(Trial& trial);       // balance.cpp
+void balance_barrier(Trial& trial);      // balance_barrier.cpp
+void balance_rotate(Trial& trial);       // balance.cpp
 void balance_first_round(Trial& trial);  // balance.cpp
-void balance_periodic(Trial& trial);  // balance.cpp
-void balance_epochs(Trial& trial);    // balance_epochs.cpp
+void balance_periodic(Trial& trial);     // balance.cpp
+void balance_epochs(Trial& trial);       // balance_epochs.cpp
 
 struct Scenario {
   std::string_view name;
