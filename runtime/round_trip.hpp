@@ -111,7 +111,13 @@ template <class T>
   const std::vector<std::byte> bytes = to_bytes(value);
   Reader read(bytes);
   T copy{};
-  read(copy);
+  try {
+    read(copy);
+  } catch (const Error& error) {
+    return text(plain_name(name_of_type<T>),
+                ": serialize() reads more bytes than it writes: ",
+                error.what());
+  }
   if (read.remaining() != 0)
     return text(plain_name(name_of_type<T>),
                 ": serialize() reads ",

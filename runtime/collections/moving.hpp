@@ -136,10 +136,8 @@ void ArrayOf<Index>::bury(Indexed& element) {
 
 template <class Index>
 void ArrayOf<Index>::on_died(const Died& died) {
-  if (Record& record = table_.at(died.index);
-      record.state() != IndexState::here &&
-      record.version().incarnation <= died.version.incarnation)
-    record.set(IndexState::dead, died.from, died.version);
+  // It is the last life that this home knows of: the home grants the next only once this has come.
+  table_.at(died.index).set(IndexState::dead, died.from, died.version);
   send_to_collection<&buried_arrives, Traffic::location>(*this, died.from, Buried{died.index});
   reroute(unpark(died.index, Parked::waiting));
 }

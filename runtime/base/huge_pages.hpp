@@ -1,0 +1,42 @@
+// Memory for large tables that are read at random: from a few MiB on it asks the system for huge
+// pages, so that a look-up does not also miss the translation of its address.
+#pragma once
+
+#include <cstddef>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace tess {
+
+template <class T>
+struct HugePageAllocator {
+  using value_type = T;
+  static constexpr std::size_t page_bytes = std::size_t{2} << 20U;
+
+  HugePageAllocator() = default;
+  template <class Other>
+  HugePageAllocator(const HugePageAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] T* allocate(std::size_t n) {
+    const std::size_t n_bytes = n * sizeof(T);
+    if (n_bytes < 2 * page_bytes) return static_cast<T*>(::operator new(n_bytes));
+    void* const memory = ::operator new(n_bytes, std::align_val_t{page_bytes});
+#if defined(__linux__)
+    (void)madvise(memory, n_bytes, MADV_HUGEPAGE);  // a wish; refused, the memory serves as well
+#endif
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* at, std::size_t n) {
+    if (n * sizeof(T) < 2 * page_bytes) {
+      ::operator delete(at);
+    } else {
+      ::operator delete(at, std::align_val_t{page_bytes});
+    }
+  }
+  friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }
+};
+
+}  // namespace tess
