@@ -2,7 +2,9 @@
 
 #include "m2m/io/read_mesh.hpp"
 #include "m2m/transfer.hpp"
+#include "runtime/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tess::m2m {
@@ -13,6 +15,24 @@ double typical_edge(const TetMesh& mesh) {
   double volume = 0;
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) volume += std::abs(signed_volume(mesh, t));
   return std::cbrt(6 * volume / static_cast<double>(mesh.n_tets()));
+}
+
+/// Refuses voxels so small that a coordinate of either mesh has no 32-bit cell.
+void check_voxel(double voxel, const Problem& problem) {
+  double farthest = 0;
+  for (const Aabb& box : {problem.source_census.bounds, problem.target_census.bounds}) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      farthest = std::max({farthest, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
+  }
+  const double least = farthest * 0x1p-30;
+  if (voxel < least)
+    fail(ErrorCode::bad_argument,
+         "--voxel ",
+         voxel,
+         ": coordinates reach to ",
+         farthest,
+         ", where voxels must be at least ",
+         least);
 }
 
 }  // namespace
@@ -34,6 +54,7 @@ Problem load(const Request& request, const Machine& machine) {
     problem.target_fields.push_back({name, 1, std::vector<double>(problem.target.n_points(), 0.0)});
   }
   problem.voxel = suggest_voxel_size(problem.source, problem.target);
+  if (request.voxel > 0) check_voxel(request.voxel, problem);
   if (request.voxel > 0) problem.voxel = {request.voxel, request.voxel, request.voxel};
 
   TransferReport& report = problem.report;

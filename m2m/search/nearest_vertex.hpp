@@ -6,6 +6,7 @@
 
 #include "m2m/mesh.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
