@@ -280,7 +280,7 @@ class ArrayOf : public Collection {
   const BlockMap block_map_;
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
-  std::uint32_t n_departures_ = 0;  // elements that left or died here: no message counts on one
+  std::uint32_t n_departures_ = 0;      // elements that left or died here: no message counts on one
   std::size_t n_hints_ = 0;             // learnt since they were last forgotten
   Letters pending_, waiting_, graves_;  // what is parked, by the reason (Parked)
   ByIndex<std::uint32_t> n_deaths_;     // of the indices with a grave

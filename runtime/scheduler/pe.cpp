@@ -153,7 +153,9 @@ void Pe::run(Envelope* message) {
   const std::uint32_t charge = message->charge;
   const PeId sender = message->sender;
   message->charge = 0;  // wherever it goes from here
-  of_message_ = Context{nullptr, message->action, message->epoch};
+  // Member by member: a copy of a context that was just written would stall.
+  of_message_.action = message->action;
+  of_message_.epoch = message->epoch;
   try {
     message->action->run(*this, message);
     if (kept_exception_) [[unlikely]]
@@ -167,7 +169,10 @@ void Pe::run(Envelope* message) {
   } catch (...) {
     exception("an exception that is no std::exception", 1);
   }
-  of_message_ = Context{};
+  of_message_.element = nullptr;
+  of_message_.action = nullptr;
+  of_message_.epoch = EpochId{};
+  of_message_.led_by = 0;
   if (charge != 0) [[unlikely]]
     repay(sender, charge);  // before it is processed: the run is not over while credit is due
   if (counted) completion_.hop_processed();
