@@ -83,9 +83,12 @@ Runtime::~Runtime() = default;
 int Runtime::run() {
   Registry::seal();
   if (!machine_.agree(Registry::fingerprint())) {
-    if (machine_.process().value != 0) return 2;  // all found it; one says it
-    fail(ErrorCode::environment,
-         "the processes of this job run different programs: start the same build everywhere");
+    if (machine_.process().value == 0)
+      error_line(
+          "error: the processes of this job run different programs: start the same build "
+          "everywhere");
+    (void)machine_.agree(0);  // a process that leaves ends the others: not before the line is out
+    return 2;
   }
   if (!options_.trace.empty()) require_writable_trace(trace_path());
   machine_.run(*this);
@@ -127,7 +130,8 @@ void Runtime::finish(PeId id) {
 void Runtime::print_statistics(PeId id) {
   Pe& of = pe(id);
   const PeStatistics& s = of.statistics();
-  const double busy = of.meter()->seconds(of.meter()->busy());
+  const double busy = of.meter()->seconds(of.meter()->busy()) +
+                      seconds(machine_.message_cost()) * static_cast<double>(s.messages);
   std::size_t chares = 0;
   for (const Collection* collection : of.collections()) chares += collection->n_local();
   error_line(fmt::format(
