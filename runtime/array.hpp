@@ -71,6 +71,9 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
 
+  /// What the runtime keeps of an element: the user's class may have members of the same names.
+  static Indexed& own(C& element) { return element; }
+
   void take_in(Arrival<C>& arrival) {
     if (arrival.element == nullptr) {
       if constexpr (Migratable<C>) {
@@ -82,13 +85,13 @@ class Array final : public ArrayOf<typename C::Index> {
           arrival.element = make_chare<C>();
           // What its constructor asks for, it had done when it was born.
           this->drop_after_birth();
-          arrival.element->migrate_to_ = PeId{-1};
-          arrival.element->doomed_ = false;
+          own(*arrival.element).migrate_to_ = PeId{-1};
+          own(*arrival.element).doomed_ = false;
         }
-        ar(arrival.element->state_);
+        ar(own(*arrival.element).state_);
         if (ar.template take<bool>()) {
-          arrival.element->balance_.reset(new BalanceRecord);
-          arrival.element->balance_->unpack(ar, this->pe_.start_meter());
+          own(*arrival.element).balance_.reset(new BalanceRecord);
+          own(*arrival.element).balance_->unpack(ar, this->pe_.start_meter());
         }
         [[maybe_unused]] const auto sent = state.last(ar.remaining());
         read_all(
@@ -109,8 +112,9 @@ class Array final : public ArrayOf<typename C::Index> {
 
   static void pack_element(C& element, Writer& ar) {
     if constexpr (Migratable<C>) {
-      ar(element.index_, element.state_, element.balance_ != nullptr);
-      if (element.balance_ != nullptr) element.balance_->pack(ar, current_pe().start_meter());
+      ar(own(element).index_, own(element).state_, own(element).balance_ != nullptr);
+      if (own(element).balance_ != nullptr)
+        own(element).balance_->pack(ar, current_pe().start_meter());
       element.serialize(ar);
     }
   }
@@ -120,7 +124,7 @@ class Array final : public ArrayOf<typename C::Index> {
     BalanceRecord unpacked;
     const BalanceRecord* record = nullptr;
     if (arrival.element != nullptr) {
-      record = arrival.element->balance_.get();
+      record = own(*arrival.element).balance_.get();
     } else {
       Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
       (void)ar.template take<Index>();
@@ -136,16 +140,16 @@ class Array final : public ArrayOf<typename C::Index> {
     if (arrival.element == nullptr) return;
     // The part of the array that it left may be freed: its destructor may ask for array() still.
     Array gone(pe, arrival.collection, Range{});
-    arrival.element->collection_ = &gone;
+    own(*arrival.element).collection_ = &gone;
     delete std::exchange(arrival.element, nullptr);
   }
 
   void resume(Element& element) override {
     if constexpr (ResumesFromSync<C>) {
       C& chare = static_cast<C&>(element);
-      auto* letter = Awakening<C>::make(this->pe_, this->id(), chare.index_);
-      letter->epoch = chare.balance_->sync.epoch;  // counted there since at_sync()
-      letter->led_by = chare.balance_->sync.led_by;
+      auto* letter = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
+      letter->epoch = own(chare).balance_->sync.epoch;  // counted there since at_sync()
+      letter->led_by = own(chare).balance_->sync.led_by;
       this->post(letter);
     } else {
       Base::resume(element);

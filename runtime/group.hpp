@@ -68,7 +68,7 @@ class GroupOf final : public Collection {
   void end() override {
     if constexpr (requires { member_->group_ends(); }) member_->group_ends();
     Collection::end();
-    if (!member_->doomed_) end_member();
+    if (const Element& own = *member_; !own.doomed_) end_member();
   }
   void settle(Element& element) override {
     if (ended()) {

@@ -29,12 +29,13 @@ class Heavy : public tess::Chare<Heavy, tess::Index1> {
   void count(tess::Callback<std::int64_t> done) { done(n_touches_); }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n_touches_, ballast_);
+    ar(n_touches_, state_);
   }
 
  private:
   std::int64_t n_touches_ = 0;
-  std::vector<double> ballast_ = std::vector<double>(125'000);  // 1 MB
+  std::vector<double> state_ =
+      std::vector<double>(125'000);  // 1 MB; the runtime has such a name, too
 };
 
 class Sender : public tess::Group<Sender> {
