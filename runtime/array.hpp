@@ -299,7 +299,7 @@ class ElementProxy {
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
     if constexpr (Bitwise<Index>) {
-      return Callback<T>(target_kind<F, T>, TargetName::of(collection_, index_));
+      return Callback<T>(target_kind<F, T>, std::in_place, collection_, index_);
     } else {
       return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
     }
@@ -411,7 +411,7 @@ class ArrayProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, TargetName::of(id_));
+    return Callback<T>(target_kind<F, T>, std::in_place, id_);
   }
 
   /// The part of the array on this PE: its local elements, for libraries and tests.

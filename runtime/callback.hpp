@@ -12,6 +12,7 @@
 #include <cstring>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -28,13 +29,17 @@ class TargetName {
       long_ = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
     }
   }
-  /// Names made of values that are their bytes; packed as a tuple of them would be.
+  /// Names made of values that are their bytes; packed as a tuple of them would be. They are
+  /// written where they stay: a copy of what was just written would stall.
   template <Bitwise... Values>
-  [[nodiscard]] static TargetName of(const Values&... values) {
-    std::array<std::byte, (sizeof(Values) + ...)> bytes;
-    std::byte* at = bytes.data();
-    ((std::memcpy(at, &values, sizeof values), at += sizeof values), ...);
-    return TargetName(bytes);
+  explicit TargetName(std::in_place_t /*tag*/, const Values&... values)
+      : n_((sizeof(Values) + ... + 0)) {
+    if constexpr ((sizeof(Values) + ... + 0) <= n_short) {
+      std::byte* at = short_.data();
+      ((std::memcpy(at, &values, sizeof values), at += sizeof values), ...);
+    } else {
+      long_ = std::make_shared<const std::vector<std::byte>>(to_bytes(std::tuple(values...)));
+    }
   }
 
   [[nodiscard]] std::span<const std::byte> view() const {
@@ -53,7 +58,8 @@ class TargetName {
 
  private:
   std::size_t n_ = 0;
-  std::array<std::byte, 24> short_{};
+  static constexpr std::size_t n_short = 24;
+  std::array<std::byte, n_short> short_{};
   std::shared_ptr<const std::vector<std::byte>> long_;
 };
 
@@ -70,7 +76,9 @@ class Callback {
   Callback() = default;
   /// For the proxies: `where` is what the kind's function reads.
   Callback(const Kind& kind, const std::vector<std::byte>& where) : kind_(&kind), where_(where) {}
-  Callback(const Kind& kind, TargetName where) : kind_(&kind), where_(std::move(where)) {}
+  template <Bitwise... Values>
+  Callback(const Kind& kind, std::in_place_t tag, const Values&... where)
+      : kind_(&kind), where_(tag, where...) {}
 
   [[nodiscard]] explicit operator bool() const { return kind_ != nullptr; }
   [[nodiscard]] std::span<const std::byte> where() const { return where_.view(); }
