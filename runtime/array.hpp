@@ -397,7 +397,7 @@ class ArrayProxy {
   void broadcast(Args&&... args) const {
     static_assert(check_entry<C, F, Args...>());
     using Arguments = typename EntryTraits<F>::Arguments;
-    start_broadcast(id_, std::make_shared<CallOfAll<C, F>>(Arguments(std::forward<Args>(args)...)));
+    start_broadcast(id_, SharedCall(new CallOfAll<C, F>(Arguments(std::forward<Args>(args)...))));
   }
 
   /// Ends the array: on every PE its elements are destroyed and all that it holds is freed, its

@@ -170,8 +170,8 @@ class CallOfMembers final : public BroadcastCall {
   void pack(Writer& ar) const override { ar(arguments_); }
 
  private:
-  static std::shared_ptr<const BroadcastCall> unpack(Reader& ar) {
-    return std::make_shared<CallOfMembers>(ar.take<Arguments>());
+  static SharedCall unpack(Reader& ar) {
+    return SharedCall(new CallOfMembers(ar.take<Arguments>()));
   }
   static inline const BroadcastKind kind_{name_of_type<CallOfMembers>, &unpack};
   Arguments arguments_;
@@ -251,7 +251,7 @@ class GroupProxy {
     static_assert(check_entry<G, F, Args...>());
     using Arguments = typename EntryTraits<F>::Arguments;
     start_broadcast(id_,
-                    std::make_shared<CallOfMembers<G, F>>(Arguments(std::forward<Args>(args)...)));
+                    SharedCall(new CallOfMembers<G, F>(Arguments(std::forward<Args>(args)...))));
   }
 
   /// Ends the group: on every PE its member is destroyed and all that it holds is freed. What is

@@ -7,22 +7,27 @@
 #include "runtime/messages/registry.hpp"
 #include "runtime/serialize.hpp"
 
-#include <memory>
+#include <boost/smart_ptr/intrusive_ptr.hpp>
+#include <boost/smart_ptr/intrusive_ref_counter.hpp>
 
 namespace tess {
 
 class BroadcastCall;
+/// Shared by the PEs of a process. It counts in place: one block of memory per call, and a count
+/// that the thread sanitizer sees (std::shared_ptr's is changed in a library).
+using SharedCall = boost::intrusive_ptr<const BroadcastCall>;
 class Element;
 class Pe;
 struct Action;
 
 struct BroadcastKind : Registered {
-  using Unpack = std::shared_ptr<const BroadcastCall> (*)(Reader&);
+  using Unpack = SharedCall (*)(Reader&);
   BroadcastKind(std::string_view name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
   Unpack unpack;
 };
 
-class BroadcastCall {
+class BroadcastCall
+    : public boost::intrusive_ref_counter<BroadcastCall, boost::thread_safe_counter> {
  public:
   BroadcastCall() = default;
   BroadcastCall(const BroadcastCall&) = delete;
@@ -41,7 +46,7 @@ class BroadcastCall {
 struct NumberedCall {
   std::uint64_t number = 0;
   EpochId epoch{};
-  std::shared_ptr<const BroadcastCall> call;
+  SharedCall call;
   std::uint32_t n_complete = 0;
 
   /// Its collection has ended: nobody is called. Returns whether the whole broadcast is lost.

@@ -32,7 +32,7 @@ BroadcastLog::BroadcastLog(Pe& pe, Collection& collection)
       collection_(collection),
       children_(SpanningTree(pe.id(), collection.root(), pe.n_pes()).children()) {}
 
-void start_broadcast(CollectionId collection, std::shared_ptr<const BroadcastCall> call) {
+void start_broadcast(CollectionId collection, SharedCall call) {
   Pe& pe = current_pe();
   const EpochId epoch = pe.context().epoch;
   pe.completion().sent(epoch);

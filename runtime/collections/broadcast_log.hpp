@@ -23,7 +23,7 @@ class Collection;
 class Pe;
 
 /// Starts a broadcast from this PE, on which the collection need not be known yet.
-void start_broadcast(CollectionId collection, std::shared_ptr<const BroadcastCall> call);
+void start_broadcast(CollectionId collection, SharedCall call);
 
 class BroadcastLog {
  public:

@@ -226,9 +226,7 @@ class CallOfAll final : public BroadcastCall {
   void pack(Writer& ar) const override { ar(arguments_); }
 
  private:
-  static std::shared_ptr<const BroadcastCall> unpack(Reader& ar) {
-    return std::make_shared<CallOfAll>(ar.take<Arguments>());
-  }
+  static SharedCall unpack(Reader& ar) { return SharedCall(new CallOfAll(ar.take<Arguments>())); }
   static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
   static inline const BroadcastKind kind_{name_of_type<CallOfAll>, &unpack};
   static inline const Action action_{
