@@ -45,9 +45,7 @@ void Owner::end() {
 }
 
 tess::Report report_to(tess::ArrayProxy<Owner> owners, tess::GroupProxy<Station> stations) {
-  return {
-      tess::Callback<tess::Hits>(lesser_owner, tess::TargetName::of(owners.id(), stations.id())),
-      {}};
+  return {tess::Callback<tess::Hits>(lesser_owner, std::in_place, owners.id(), stations.id()), {}};
 }
 
 }  // namespace lb_lab
