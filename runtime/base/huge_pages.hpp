@@ -17,9 +17,10 @@ struct HugePageAllocator {
   static constexpr std::size_t page_bytes = std::size_t{2} << 20U;
 
   HugePageAllocator() = default;
+  // Containers convert allocators without a word.
   template <class Other>
-  HugePageAllocator(const HugePageAllocator<Other>& /*other*/) {
-  }  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  HugePageAllocator(const HugePageAllocator<Other>& /*other*/) {}
 
   [[nodiscard]] T* allocate(std::size_t n) {
     const std::size_t n_bytes = n * sizeof(T);

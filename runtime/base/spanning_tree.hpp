@@ -22,6 +22,7 @@ class SpanningTree {
 
   [[nodiscard]] std::vector<PeId> children() const {
     std::vector<PeId> out;
+    out.reserve(static_cast<std::size_t>(n_children()));
     for (std::int32_t slot = 0; slot < n_children(); ++slot) out.push_back(child(slot));
     return out;
   }

@@ -16,12 +16,12 @@ namespace {
 
 /// Large messages come and go: their memory stays with the process, as glibc would have it after
 /// the first free of a block of 32 MiB. Otherwise each megabyte is 256 page faults, which cost more
-/// than the transfer.
+/// than the transfer. Called before there are threads.
 void keep_freed_memory() {
 #if defined(__GLIBC__)
   constexpr int largest_kept = 32 << 20;
-  mallopt(M_MMAP_THRESHOLD, largest_kept);
-  mallopt(M_TRIM_THRESHOLD, 2 * largest_kept);
+  mallopt(M_MMAP_THRESHOLD, largest_kept);      // NOLINT(concurrency-mt-unsafe)
+  mallopt(M_TRIM_THRESHOLD, 2 * largest_kept);  // NOLINT(concurrency-mt-unsafe)
 #endif
 }
 
