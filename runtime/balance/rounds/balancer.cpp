@@ -17,7 +17,7 @@ struct Attach {
   /// The array has ended, or the exchange has: then the balancer ends, too.
   [[nodiscard]] std::uint64_t drop(Pe& pe) const {
     if (Balancer* member = GroupProxy<Balancer>(balancer).local_or_null(); member != nullptr)
-      member->array_ends();
+      member->cannot_attach();
     pe.completion().processed(epoch);
     return 0;
   }
@@ -89,12 +89,16 @@ void Balancer::attach(Collection& array) {
 
 void Balancer::array_ends() {
   if (array_ended_) return;
-  if (!barrier_is_open_)  // for those that wait until all have attached
-    contribute(
-        sum, std::int64_t{0}, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
   detach();
   array_ended_ = true;
   end_if_over();
+}
+
+void Balancer::cannot_attach() {
+  // The coordinator may wait until all have attached; here the exchange is known, or over, by now.
+  contribute(
+      sum, std::int64_t{0}, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+  array_ends();
 }
 
 void Balancer::group_ends() {

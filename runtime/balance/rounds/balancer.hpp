@@ -62,6 +62,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void group_ends();
   /// The array has ended on this PE, maybe before attach().
   void array_ends();
+  /// The array, or the exchange, ended before attach().
+  void cannot_attach();
   /// On the coordinator: a phase begins, what was measured before is forgotten.
   Task begin_phase();
   /// On the coordinator: a phase is over, without a barrier of the elements.
