@@ -29,26 +29,12 @@ void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
     entries.push_back({entry.action->id(), 0, meter.seconds(entry.ticks), entry.calls});
   std::vector<PackedTraffic> traffic;
   for (const auto& [to, sent] : load.sent) traffic.push_back({to, sent});
-  ar(sync.phase,
-     sync.known,
-     sync.member,
-     sync.next,
-     sync.waits_for,
-     sync.epoch,
-     sync.led_by,
-     size_bytes);
+  ar(sync, size_bytes);
   ar(meter.seconds(load.ticks), load.since, entries, traffic);
 }
 
 void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
-  ar(sync.phase,
-     sync.known,
-     sync.member,
-     sync.next,
-     sync.waits_for,
-     sync.epoch,
-     sync.led_by,
-     size_bytes);
+  ar(sync, size_bytes);
   load.ticks = meter.ticks(ar.take<double>());
   ar(load.since);
   for (const PackedEntry& entry : ar.take<std::vector<PackedEntry>>())
