@@ -47,7 +47,7 @@ struct TransferOptions {
 struct TransferSummary {
   double broad = 0;   ///< seconds: boxes to voxels, candidates to the target's Workers
   double narrow = 0;  ///< seconds: questions and answers
-  double report = 0;  ///< seconds: vertices outside, new values to all who hold them
+  double report = 0;  ///< seconds: vertices outside, new values to all parts that hold them
   Tally tally;        ///< of the target's vertices
 };
 

@@ -83,7 +83,7 @@ int run(int argc, char** argv, Main main) {
 bool charge(std::chrono::nanoseconds work);
 
 /// Ends the run on all PEs; no user code runs afterwards. The greatest code that any PE gives is
-/// the exit code: 0 … 255, for no other reaches who started the program.
+/// the exit code: 0 … 255; the system passes no other on.
 void exit(int code);
 
 /// Writes the parts to standard output in one piece.

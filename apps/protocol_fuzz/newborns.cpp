@@ -398,8 +398,8 @@ Task Governor::play(ArrayProxy<Cell> cells, int round) {
   }
 }
 
-/// Between rounds in epochs nothing is under way: a reduction by messages is of exactly those who
-/// are alive.
+/// Between rounds in epochs nothing is under way: a reduction by messages is of exactly those
+/// elements that are alive.
 Task Governor::call_by_name(ArrayProxy<Cell> cells, int round) {
   std::set<Name> alive;
   for (const auto& [name, known] : known_)

@@ -49,7 +49,7 @@ struct NumberedCall {
   SharedCall call;
   std::uint32_t n_complete = 0;
 
-  /// Its collection has ended: nobody is called. Returns whether the whole broadcast is lost.
+  /// Its collection has ended: no element is called. Returns whether the whole broadcast is lost.
   std::uint64_t drop(Pe& pe) const;
 
   template <class Ar>

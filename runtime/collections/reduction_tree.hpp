@@ -123,8 +123,9 @@ class ReductionTree {
     std::uint32_t number = 0;
     std::uint64_t n = 0;
     std::int64_t change = 0;
-    bool late = false;        // to the root, outside the tree
-    std::uint32_t joins = 0;  // late: who leaves the membership of `number` joins there; 0: nobody
+    bool late = false;  // to the root, outside the tree
+    // Of a late report: the element that leaves the membership of `number` joins there; 0: none.
+    std::uint32_t joins = 0;
     Cause cause;
     PartialBox value;
     std::vector<EpochShare> shares;

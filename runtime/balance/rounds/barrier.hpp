@@ -25,7 +25,7 @@ class Barrier {
 
   /// Balancing starts here: all elements present are members from round 0 on.
   void attach(Collection& array);
-  /// Lets go of the array: nobody is waited for or resumed any more.
+  /// Lets go of the array: no element is waited for or resumed any more.
   void detach() { array_ = nullptr; }
   /// All members of round 0 have been found, on all PEs.
   void begin();

@@ -33,7 +33,7 @@ struct PeReport {
   double background = 0;  ///< seconds busy outside of these elements
 };
 
-/// Reports in PE order. Parcels to elements that nobody reports are left out; loads that are not
+/// Reports in PE order. Parcels to elements without a report are left out; loads that are not
 /// known are taken to be the mean of the others.
 [[nodiscard]] Snapshot snapshot_of(const std::vector<PeReport>& reports,
                                    const BalanceOptions& options);
