@@ -30,6 +30,7 @@ constexpr std::array known{
              true},
     Scenario{"tour", "messages find an element that visits every PE", &tour},
     Scenario{"epochs", "an epoch ends after all that it caused, and it ends", &epochs},
+    Scenario{"pauses", "the run is not over while an epoch's report is due", &pauses},
     Scenario{
         "epoch_migrations", "an epoch ends after the migrations that it caused", &epoch_migrations},
     Scenario{"flood_exit", "exit in mid flood: the greatest code, nothing leaks", &flood_exit},

@@ -20,6 +20,7 @@ void newborns(Trial& trial);             // newborns.cpp
 void refinement(Trial& trial);           // newborns.cpp
 void tour(Trial& trial);                 // tour.cpp
 void epochs(Trial& trial);               // epochs.cpp
+void pauses(Trial& trial);               // pauses.cpp
 void epoch_migrations(Trial& trial);     // epoch_migrations.cpp
 void flood_exit(Trial& trial);           // exits.cpp
 void mailboxes(Trial& trial);            // mailboxes.cpp

@@ -21,7 +21,7 @@ struct Edge {
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// All arrays have one entry an element; `position` may be empty instead, where nobody gave any,
+/// All arrays have one entry an element; `position` may be empty instead, if no element gave one,
 /// and `measured`, where all are.
 struct Elements {
   std::vector<ElementKey> key;

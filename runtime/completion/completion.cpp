@@ -79,8 +79,13 @@ EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
 void Completion::close(EpochId epoch) {
   coordinated_.at(epoch).closed = true;
   find_own(epoch);
-  // What was checked before does not count; the check of an empty body is due, too.
-  tallies_.at(epoch).reported = Counters{~std::uint64_t{0}, ~std::uint64_t{0}};
+  check_later(epoch);
+}
+
+void Completion::check_later(EpochId epoch) {
+  Tally& tally = *find(epoch);
+  tally.reported = Counters{~std::uint64_t{0}, ~std::uint64_t{0}};  // unlike any sum
+  list(epoch, tally);
 }
 
 bool Completion::report_epochs() {
@@ -95,7 +100,7 @@ bool Completion::report_epochs() {
     forget_last();  // each time: reporting one epoch may have counted for the next of this list
     any = report(epoch, at->second) || any;
   }
-  return any;
+  return any || !changed_.empty();
 }
 
 bool Completion::is_over(EpochId epoch) const {
@@ -204,7 +209,7 @@ void Completion::echo(Relay& relay) {
   Coordinated& of = coordinated_.at(epoch);
   of.wave_runs = false;
   if (relay.sum.sent != of.processed_before_wave) {
-    if (of.again) check(epoch, find(epoch)->sum());
+    if (of.again) check_later(epoch);
     return;
   }
   if (epoch.value == 0) {

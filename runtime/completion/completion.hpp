@@ -92,11 +92,13 @@ class Completion {
   void close(EpochId epoch);
 
   /// Reports what changed of the scoped epochs, and answers reports. True if anything was sent or
-  /// done.
+  /// done, or is to be reported still.
   bool report_epochs();
   /// True if there is something of the run (epoch 0) to report or to answer.
   [[nodiscard]] bool run_changed() const { return run_.owed != 0 || run_.sum() != run_.reported; }
-  /// Reports and answers for the run. True if anything was sent or done.
+  /// Reports and answers for the run, when report_epochs() has nothing more to do: a report of an
+  /// epoch is sent on account of no message, so the run's counters do not show that it is due. True
+  /// if anything was sent or done.
   bool report_run() { return report(EpochId{}, run_); }
 
   /// One line for each epoch that this PE opened and that is not done.
@@ -161,6 +163,9 @@ class Completion {
   /// True if anything was sent or done. The tally may be gone afterwards.
   bool report(EpochId epoch, Tally& tally);
   void check(EpochId epoch, Counters sum);
+  /// On the coordinator: checks when this PE runs dry, whether or not a counter has changed by
+  /// then.
+  void check_later(EpochId epoch);
   void echo(Relay& relay);
   void end(EpochId epoch);
   [[nodiscard]] Counters reading(EpochId epoch) const;

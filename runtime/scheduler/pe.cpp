@@ -257,10 +257,14 @@ bool Pe::idle() {
     meter_->idle();
   messages_since_report_ = 0;
   bool busy = completion_.report_epochs();
-  // Not at the first gap: a PE that is idle between two messages of a ping-pong would report each
-  // time. Until then it claims to be busy, for the machine may let an idle PE sleep for good.
-  if (completion_.run_changed()) {
-    busy = ++idle_calls_ < patience_ || completion_.report_run() || busy;
+  // Of the run only when all is said of the epochs: their reports are sent by no message, so the
+  // run is over only if none is due. And not at the first gap: a PE that is idle between two
+  // messages of a ping-pong would report each time. Until then it claims to be busy, for the
+  // machine may let an idle PE sleep for good.
+  if (busy) {
+    ++idle_calls_;
+  } else if (completion_.run_changed()) {
+    busy = ++idle_calls_ < patience_ || completion_.report_run();
   } else {
     pool_.flush();
   }
