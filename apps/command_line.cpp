@@ -67,15 +67,12 @@ template Option CommandLine::option(const std::string&, std::int32_t&, const std
 template Option CommandLine::option(const std::string&, std::uint64_t&, const std::string&);
 template Option CommandLine::option(const std::string&, double&, const std::string&);
 template Option CommandLine::option(const std::string&, std::string&, const std::string&);
-template Option CommandLine::option(const std::string&,
-                                    std::optional<std::int32_t>&,
+template Option CommandLine::option(const std::string&, std::optional<std::int32_t>&,
                                     const std::string&);
-template Option CommandLine::option(const std::string&,
-                                    std::vector<std::int32_t>&,
+template Option CommandLine::option(const std::string&, std::vector<std::int32_t>&,
                                     const std::string&);
 template Option CommandLine::option(const std::string&, std::vector<double>&, const std::string&);
-template Option CommandLine::option(const std::string&,
-                                    std::vector<std::string>&,
+template Option CommandLine::option(const std::string&, std::vector<std::string>&,
                                     const std::string&);
 
 }  // namespace apps

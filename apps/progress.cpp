@@ -6,8 +6,7 @@
 
 namespace apps {
 
-Progress::Progress(std::FILE* terminal,
-                   std::chrono::milliseconds first,
+Progress::Progress(std::FILE* terminal, std::chrono::milliseconds first,
                    std::chrono::milliseconds next)
     : terminal_(terminal) {
   if (terminal == nullptr || ::isatty(::fileno(terminal)) == 0) return;

@@ -16,8 +16,7 @@ namespace apps {
 class Progress {
  public:
   /// Shows nothing if `terminal` is none, or null.
-  explicit Progress(std::FILE* terminal,
-                    std::chrono::milliseconds first = std::chrono::seconds(1),
+  explicit Progress(std::FILE* terminal, std::chrono::milliseconds first = std::chrono::seconds(1),
                     std::chrono::milliseconds next = std::chrono::milliseconds(250));
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

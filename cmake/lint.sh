@@ -7,14 +7,14 @@ cd "$(dirname "$0")/.."
 mapfile -t sources < <(git ls-files -co --exclude-standard '*.hpp' '*.cpp')
 case "${1:-}" in
   --fix)
-    clang-format -i "${sources[@]}"
+    clang-format-16 -i "${sources[@]}"
     ;;
   --tidy)
     shift
     exec bash cmake/tidy.sh "$@"
     ;;
   "")
-    clang-format --dry-run -Werror "${sources[@]}"
+    clang-format-16 --dry-run -Werror "${sources[@]}"
     echo "lint: ${#sources[@]} sources are formatted"
     ;;
   *)

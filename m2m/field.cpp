@@ -45,39 +45,19 @@ Field sample(const TetMesh& mesh, const std::string& name, const Formula& formul
     field.values[v] = formula(mesh.points[v]);
     if (!std::isfinite(field.values[v])) {
       const Point& p = mesh.points[v];
-      fail(ErrorCode::bad_value,
-           "field ",
-           name,
-           " is ",
-           field.values[v],
-           " at vertex ",
-           v,
-           " of ",
-           mesh.name,
-           " (",
-           p[0],
-           ", ",
-           p[1],
-           ", ",
-           p[2],
+      fail(ErrorCode::bad_value, "field ", name, " is ", field.values[v], " at vertex ", v, " of ",
+           mesh.name, " (", p[0], ", ", p[1], ", ", p[2],
            "); choose a formula that is finite there");
     }
   }
   return field;
 }
 
-ErrorNorms error_norms(const TetMesh& mesh,
-                       std::span<const double> values,
-                       std::span<const double> truth,
-                       const std::vector<bool>& counts) {
+ErrorNorms error_norms(const TetMesh& mesh, std::span<const double> values,
+                       std::span<const double> truth, const std::vector<bool>& counts) {
   TESS_CHECK(values.size() == mesh.n_points() && truth.size() == mesh.n_points() &&
                  (counts.empty() || counts.size() == mesh.n_points()),
-             "expected ",
-             mesh.n_points(),
-             " values, got ",
-             values.size(),
-             " and ",
-             truth.size());
+             "expected ", mesh.n_points(), " values, got ", values.size(), " and ", truth.size());
   std::vector<double> mass(mesh.n_points(), 0.0);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
     const double quarter = std::abs(signed_volume(mesh, t)) / 4;

@@ -44,8 +44,7 @@ struct ErrorNorms {
 
 /// Norms of values - truth on the mesh that holds the values. `values`, `truth`: one number a
 /// vertex. `counts`: which vertices count; empty: all of them.
-[[nodiscard]] ErrorNorms error_norms(const TetMesh& mesh,
-                                     std::span<const double> values,
+[[nodiscard]] ErrorNorms error_norms(const TetMesh& mesh, std::span<const double> values,
                                      std::span<const double> truth,
                                      const std::vector<bool>& counts = {});
 

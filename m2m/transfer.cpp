@@ -6,15 +6,10 @@
 #include <cmath>
 
 namespace tess::m2m {
-Task transfer(DistributedMesh source,
-              DistributedMesh target,
-              TransferOptions options,
+Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
               TransferSummary* summary) {
-  TESS_CHECK(source.n_components == target.n_components,
-             "the source has ",
-             source.n_components,
-             " components a vertex, the target ",
-             target.n_components);
+  TESS_CHECK(source.n_components == target.n_components, "the source has ", source.n_components,
+             " components a vertex, the target ", target.n_components);
   Pe& pe = current_pe();
   const auto enter = [&options](const char* phase) {
     if (options.on_phase) options.on_phase(phase);
@@ -59,11 +54,8 @@ Point suggest_voxel_size(const TetMesh& source, const TetMesh& target) {
   double longest = 0, farthest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     longest = std::max(longest, box.hi[axis] - box.lo[axis]);
-    farthest = std::max({farthest,
-                         std::abs(box.lo[axis]),
-                         std::abs(box.hi[axis]),
-                         std::abs(other.lo[axis]),
-                         std::abs(other.hi[axis])});
+    farthest = std::max({farthest, std::abs(box.lo[axis]), std::abs(box.hi[axis]),
+                         std::abs(other.lo[axis]), std::abs(other.hi[axis])});
   }
   for (std::size_t axis = 0; axis < 3; ++axis)
     volume *= std::max((box.hi[axis] - box.lo[axis]) / longest,

@@ -53,9 +53,7 @@ struct TransferSummary {
 
 /// Moves all fields of `source` to `target`; awaited, it is done when every target vertex has its
 /// value. `summary` may be null. Both have equally many components.
-Task transfer(DistributedMesh source,
-              DistributedMesh target,
-              TransferOptions options,
+Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
               TransferSummary* summary);
 
 /// A voxel size for a transfer between these meshes: about 100 source tetrahedra a voxel (measured:

@@ -13,42 +13,22 @@ void validate_groups(const TetMesh& mesh) {
   std::size_t n_in_blocks = 0;
   for (const Block& block : mesh.blocks) n_in_blocks += block.n_tets;
   if (!mesh.blocks.empty() && n_in_blocks != mesh.n_tets())
-    fail(ErrorCode::bad_mesh,
-         mesh.name,
-         ": its blocks have ",
-         n_in_blocks,
-         " of ",
-         mesh.n_tets(),
+    fail(ErrorCode::bad_mesh, mesh.name, ": its blocks have ", n_in_blocks, " of ", mesh.n_tets(),
          " tetrahedra; give all, or no blocks");
   for (const SideSet& set : mesh.side_sets) {
     for (const Side& side : set.entries) {
       if (side.tet < 0 || side.tet >= static_cast<GlobalId>(mesh.n_tets()) || side.side < 1 ||
           side.side > 4)
-        fail(ErrorCode::bad_mesh,
-             mesh.name,
-             ": side set ",
-             set.id,
-             " names side ",
-             side.side,
-             " of tetrahedron ",
-             side.tet,
-             " (counted from 0) of ",
-             mesh.n_tets(),
+        fail(ErrorCode::bad_mesh, mesh.name, ": side set ", set.id, " names side ", side.side,
+             " of tetrahedron ", side.tet, " (counted from 0) of ", mesh.n_tets(),
              "; write the mesh again");
     }
   }
   for (const NodeSet& set : mesh.node_sets) {
     for (const VertexId v : set.entries) {
       if (v < 0 || static_cast<std::size_t>(v) >= mesh.n_points())
-        fail(ErrorCode::bad_mesh,
-             mesh.name,
-             ": node set ",
-             set.id,
-             " names vertex ",
-             v,
-             " (counted from 0) of ",
-             mesh.n_points(),
-             "; write the mesh again");
+        fail(ErrorCode::bad_mesh, mesh.name, ": node set ", set.id, " names vertex ", v,
+             " (counted from 0) of ", mesh.n_points(), "; write the mesh again");
     }
   }
 }
@@ -82,25 +62,13 @@ class Collapse {
   /// Throws where they are more than a tenth.
   void refuse(const TetMesh& mesh) const {
     if (n_ <= mesh.n_tets() / 10) return;
-    const std::string where = text(mesh.name,
-                                   ": ",
-                                   n_,
-                                   " of ",
-                                   mesh.n_tets(),
-                                   " tetrahedra have collapsed: the first is ",
-                                   first_.longest);
+    const std::string where = text(mesh.name, ": ", n_, " of ", mesh.n_tets(),
+                                   " tetrahedra have collapsed: the first is ", first_.longest);
     if (first_.rounded)
-      fail(ErrorCode::bad_mesh,
-           where,
-           " long at coordinates of ",
-           first_.largest,
-           ", where numbers lie ",
-           first_.largest * ulp,
+      fail(ErrorCode::bad_mesh, where, " long at coordinates of ", first_.largest,
+           ", where numbers lie ", first_.largest * ulp,
            " apart; shift the mesh towards the origin before it is rounded");
-    fail(ErrorCode::bad_mesh,
-         where,
-         " long, and lengths below ",
-         least_edge,
+    fail(ErrorCode::bad_mesh, where, " long, and lengths below ", least_edge,
          " have no volume in floating point; rescale the mesh");
   }
 
@@ -122,18 +90,12 @@ MeshCensus validate(const TetMesh& mesh) {
   const std::size_t n = mesh.n_points();
   if (mesh.tets.empty()) {
     const std::string others = skipped_text(mesh);
-    fail(ErrorCode::bad_mesh,
-         mesh.name,
-         ": has no tetrahedra",
-         others.empty() ? "" : " (but " + others + ")",
-         "; give a volume mesh of TET4 elements");
+    fail(ErrorCode::bad_mesh, mesh.name, ": has no tetrahedra",
+         others.empty() ? "" : " (but " + others + ")", "; give a volume mesh of TET4 elements");
   }
   validate_groups(mesh);
   if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
-    fail(ErrorCode::bad_mesh,
-         mesh.name,
-         ": has ",
-         n,
+    fail(ErrorCode::bad_mesh, mesh.name, ": has ", n,
          " vertices; at most 2147483647 fit in one mesh, split it");
   }
   constexpr double largest = 1e100;  // beyond, volumes (cubes of lengths) leave the range of double
@@ -141,14 +103,7 @@ MeshCensus validate(const TetMesh& mesh) {
     const Point& p = mesh.points[v];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(p[axis]) || std::abs(p[axis]) > largest) {
-        fail(ErrorCode::bad_mesh,
-             mesh.name,
-             ": vertex ",
-             v,
-             " has ",
-             "xyz"[axis],
-             " = ",
-             p[axis],
+        fail(ErrorCode::bad_mesh, mesh.name, ": vertex ", v, " has ", "xyz"[axis], " = ", p[axis],
              "; coordinates must be finite and within 1e100: repair or rescale the mesh");
       }
     }
@@ -159,15 +114,8 @@ MeshCensus validate(const TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
     for (const VertexId v : mesh.tets[t]) {
       if (v < 0 || static_cast<std::size_t>(v) >= n) {
-        fail(ErrorCode::bad_mesh,
-             mesh.name,
-             ": tetrahedron ",
-             t,
-             " names vertex ",
-             v,
-             " (counted from 0) of ",
-             n,
-             " vertices; write the mesh again");
+        fail(ErrorCode::bad_mesh, mesh.name, ": tetrahedron ", t, " names vertex ", v,
+             " (counted from 0) of ", n, " vertices; write the mesh again");
       }
       used[static_cast<std::size_t>(v)] = 1;
     }
@@ -178,8 +126,7 @@ MeshCensus validate(const TetMesh& mesh) {
   }
   collapse.refuse(mesh);
   if (census.n_flat == mesh.n_tets())
-    fail(ErrorCode::bad_mesh,
-         mesh.name,
+    fail(ErrorCode::bad_mesh, mesh.name,
          ": no tetrahedron has a volume; give a mesh in three dimensions, with more digits");
   census.n_unused = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
   census.bounds = bounds(mesh);

@@ -95,8 +95,7 @@ class Array final : public ArrayOf<typename C::Index> {
         }
         [[maybe_unused]] const auto sent = state.last(ar.remaining());
         read_all(
-            ar,
-            [&] { return this->name() + index_text(index); },
+            ar, [&] { return this->name() + index_text(index); },
             [&arrival](Reader& rest) {
               arrival.element->serialize(rest);
               return true;
@@ -169,26 +168,21 @@ class Array final : public ArrayOf<typename C::Index> {
     return count.n_bytes();
   }
 
-  [[nodiscard]] bool migratable() const override {
-    return Migratable<C>;
-  }
+  [[nodiscard]] bool migratable() const override { return Migratable<C>; }
 
  protected:
   Indexed* construct_default() override {
     if constexpr (std::is_default_constructible_v<C>) {
       return make_chare<C>();
     } else {
-      TESS_CHECK(
-          false, this->name(), " has no default constructor: it cannot be created on demand");
+      TESS_CHECK(false, this->name(),
+                 " has no default constructor: it cannot be created on demand");
       return nullptr;
     }
   }
-  void destroy(Indexed& element) override {
-    delete &static_cast<C&>(element);
-  }
+  void destroy(Indexed& element) override { delete &static_cast<C&>(element); }
   void ship(Indexed& element, PeId to) override {
-    TESS_CHECK(Migratable<C>,
-               this->name(),
+    TESS_CHECK(Migratable<C>, this->name(),
                " cannot migrate: it needs a default constructor and serialize()");
     Pe& pe = this->pe_;
     auto* arrival = pe.stamp(new Arrival<C>());
@@ -308,9 +302,7 @@ class ElementProxy {
  private:
   [[nodiscard]] Array<C>& branch(Pe& pe) const {
     Collection* collection = pe.find(collection_);
-    TESS_CHECK(collection != nullptr,
-               "the array of this proxy is not known on ",
-               pe.id(),
+    TESS_CHECK(collection != nullptr, "the array of this proxy is not known on ", pe.id(),
                ": it was created by a message that has not arrived");
     return *static_cast<Array<C>*>(collection);
   }
@@ -340,8 +332,8 @@ class ElementProxy {
                   "the chare has no constructor that takes these arguments");
     Pe& pe = current_pe();
     check_exists(pe, where);
-    auto* letter = Construction<C, std::decay_t<Args>...>::make(
-        pe, collection_, index_, std::forward<Args>(args)...);
+    auto* letter = Construction<C, std::decay_t<Args>...>::make(pe, collection_, index_,
+                                                                std::forward<Args>(args)...);
     letter->demand = demand;
     letter->ask = true;
     letter->asker = where;
@@ -417,10 +409,8 @@ class ArrayProxy {
   /// The part of the array on this PE: its local elements, for libraries and tests.
   [[nodiscard]] Array<C>& here() const {
     Collection* collection = current_pe().find(id_);
-    TESS_CHECK(collection != nullptr,
-               "the array of this proxy ",
-               current_pe().ended(id_) ? "was destroyed" : "is not known yet",
-               " on ",
+    TESS_CHECK(collection != nullptr, "the array of this proxy ",
+               current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
                current_pe().id());
     return *static_cast<Array<C>*>(collection);
   }
@@ -473,11 +463,8 @@ void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
   if constexpr (Coordinates<typename C::Index>) {
-    TESS_CHECK(range.n_axes == 0 || range.n_axes == n_axes_of<typename C::Index>,
-               "a range of ",
-               range.n_axes,
-               " axes for an index of ",
-               n_axes_of<typename C::Index>);
+    TESS_CHECK(range.n_axes == 0 || range.n_axes == n_axes_of<typename C::Index>, "a range of ",
+               range.n_axes, " axes for an index of ", n_axes_of<typename C::Index>);
   } else {
     TESS_CHECK(range.n_axes == 0,
                "an array with this type of index starts sparse: create<C>(tess::sparse)");

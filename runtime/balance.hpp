@@ -66,8 +66,7 @@ BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options
 /// The same by the user's own strategy: Assignment(const Snapshot&), of which what may not be moved
 /// is left where it is.
 template <class C>
-BalancerProxy start_balancing(ArrayProxy<C> array,
-                              const BalanceOptions& options,
+BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options,
                               balance::Strategy strategy) {
   return BalancerProxy(balance::start(array.id(), options, std::move(strategy)));
 }

@@ -15,9 +15,7 @@ class ArrayProxy;
 
 /// A chare that can wait for its balancer.
 template <class C>
-concept ResumesFromSync = requires(C& chare) {
-  chare.resume_from_sync();
-};
+concept ResumesFromSync = requires(C& chare) { chare.resume_from_sync(); };
 
 template <class Derived, class IndexType = Index1>
 class Chare : public IndexedElement<IndexType> {

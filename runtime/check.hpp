@@ -8,9 +8,7 @@
 namespace tess {
 
 /// Prints the failure with the context of this thread and ends the job with exit code 1.
-[[noreturn]] void check_failed(const char* condition,
-                               const char* file,
-                               int line,
+[[noreturn]] void check_failed(const char* condition, const char* file, int line,
                                const std::string& message);
 
 /// Who describes the context of this thread; the scheduler installs it. May be null.

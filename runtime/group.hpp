@@ -76,9 +76,7 @@ class GroupOf final : public Collection {
       free_later(*this);
       return;
     }
-    TESS_CHECK(element.migrate_to_.value < 0 && !element.doomed_,
-               "members of ",
-               name(),
+    TESS_CHECK(element.migrate_to_.value < 0 && !element.doomed_, "members of ", name(),
                " neither migrate nor end");
   }
   [[nodiscard]] bool migratable() const override { return false; }
@@ -237,10 +235,8 @@ class GroupProxy {
   /// The member on this PE.
   [[nodiscard]] G& local() const {
     G* member = local_or_null();
-    TESS_CHECK(member != nullptr,
-               "this group ",
-               current_pe().ended(id_) ? "was destroyed" : "is not known yet",
-               " on ",
+    TESS_CHECK(member != nullptr, "this group ",
+               current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
                current_pe().id());
     return *member;
   }

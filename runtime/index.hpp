@@ -145,9 +145,7 @@ inline constexpr Range sparse{};
 /// Coordinates of an index that a Range can enumerate.
 template <class Index>
 concept Coordinates = Bitwise<Index> && std::is_aggregate_v<Index> && sizeof(Index) % 4 == 0 &&
-                      sizeof(Index) <= 24 && requires(Index i) {
-  i.x;
-};
+                      sizeof(Index) <= 24 && requires(Index i) { i.x; };
 
 template <Coordinates Index>
 inline constexpr std::int32_t n_axes_of = static_cast<std::int32_t>(sizeof(Index) / 4);

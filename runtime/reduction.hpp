@@ -23,15 +23,14 @@ concept Listable = requires(T a) {
   a.begin();
   a.size();
   a[0];
-}
-&&!std::is_convertible_v<T, std::string_view>;
+} && !std::is_convertible_v<T, std::string_view>;
 
 /// Applies an operation to numbers, or element by element to vectors and arrays of one length.
 template <class T, class Op>
 T elementwise(T a, const T& b, const Op& op) {
   if constexpr (Listable<T>) {
-    TESS_CHECK(
-        a.size() == b.size(), "a reduction over lists of ", a.size(), " and ", b.size(), " values");
+    TESS_CHECK(a.size() == b.size(), "a reduction over lists of ", a.size(), " and ", b.size(),
+               " values");
     for (std::size_t i = 0; i < a.size(); ++i) a[i] = elementwise(a[i], b[i], op);
     return a;
   } else {
@@ -51,15 +50,15 @@ struct Sum {
 struct Min {
   template <class T>
   T operator()(T a, const T& b) const {
-    return detail::elementwise(
-        std::move(a), b, [](const auto& x, const auto& y) { return y < x ? y : x; });
+    return detail::elementwise(std::move(a), b,
+                               [](const auto& x, const auto& y) { return y < x ? y : x; });
   }
 };
 struct Max {
   template <class T>
   T operator()(T a, const T& b) const {
-    return detail::elementwise(
-        std::move(a), b, [](const auto& x, const auto& y) { return x < y ? y : x; });
+    return detail::elementwise(std::move(a), b,
+                               [](const auto& x, const auto& y) { return x < y ? y : x; });
   }
 };
 struct LogicalAnd {
@@ -129,14 +128,13 @@ class OrderedPartial final : public Partial {
   [[nodiscard]] const PartialKind& kind() const override { return kind_; }
   void merge(Partial&& other) override {
     auto& more = static_cast<OrderedPartial&>(other).values_;
-    values_.insert(
-        values_.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    values_.insert(values_.end(), std::make_move_iterator(more.begin()),
+                   std::make_move_iterator(more.end()));
   }
   void pack(Writer& ar) const override { ar(values_, target_); }
   void complete(Pe& /*pe*/) override {
-    std::sort(values_.begin(), values_.end(), [](const auto& a, const auto& b) {
-      return a.first < b.first;
-    });
+    std::sort(values_.begin(), values_.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
     T whole = std::move(values_.front().second);
     for (std::size_t i = 1; i < values_.size(); ++i)
       whole = Op()(std::move(whole), values_[i].second);

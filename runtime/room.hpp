@@ -33,9 +33,10 @@ class [[nodiscard]] RoomAwait {
 }
 /// The same for a message to an element, or to a member of a group: array[index], group[pe].
 template <class Proxy>
-[[nodiscard]] RoomAwait room(const Proxy& to) requires requires {
-  to.next_pe();
+[[nodiscard]] RoomAwait room(const Proxy& to)
+  requires requires { to.next_pe(); }
+{
+  return RoomAwait(to.next_pe());
 }
-{ return RoomAwait(to.next_pe()); }
 
 }  // namespace tess

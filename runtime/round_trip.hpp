@@ -63,18 +63,9 @@ template <class T>
   const auto before = detail::members_of(original), after = detail::members_of(copy);
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (i < after.size() && detail::same_bytes(before[i].bytes, after[i].bytes)) continue;
-    return text(plain_name(name_of_type<T>),
-                ": member ",
-                i + 1,
-                " of ",
-                before.size(),
-                " (",
-                before[i].type,
-                ") does not come back as it was sent: ",
-                before[i].bytes.size(),
-                " bytes before, ",
-                i < after.size() ? after[i].bytes.size() : 0,
-                " after");
+    return text(plain_name(name_of_type<T>), ": member ", i + 1, " of ", before.size(), " (",
+                before[i].type, ") does not come back as it was sent: ", before[i].bytes.size(),
+                " bytes before, ", i < after.size() ? after[i].bytes.size() : 0, " after");
   }
   return {};
 }
@@ -87,20 +78,12 @@ template <class T>
   for (std::size_t i = 0; i < members.size(); ++i) {
     const auto mine = sent.subspan(at, std::min(members[i].bytes.size(), sent.size() - at));
     if (!detail::same_bytes({mine.begin(), mine.end()}, members[i].bytes))
-      return text(plain_name(name_of_type<T>),
-                  ": member ",
-                  i + 1,
-                  " of ",
-                  members.size(),
-                  " (",
-                  members[i].type,
-                  ") does not come back as it was sent");
+      return text(plain_name(name_of_type<T>), ": member ", i + 1, " of ", members.size(), " (",
+                  members[i].type, ") does not come back as it was sent");
     at += mine.size();
   }
   if (at != sent.size())
-    return text(plain_name(name_of_type<T>),
-                ": serialize() writes ",
-                sent.size() - at,
+    return text(plain_name(name_of_type<T>), ": serialize() writes ", sent.size() - at,
                 " bytes less after it has read than before");
   return {};
 }
@@ -115,13 +98,10 @@ template <class T>
     read(copy);
   } catch (const Error& error) {
     return text(plain_name(name_of_type<T>),
-                ": serialize() reads more bytes than it writes: ",
-                error.what());
+                ": serialize() reads more bytes than it writes: ", error.what());
   }
   if (read.remaining() != 0)
-    return text(plain_name(name_of_type<T>),
-                ": serialize() reads ",
-                read.remaining(),
+    return text(plain_name(name_of_type<T>), ": serialize() reads ", read.remaining(),
                 " bytes less than it writes");
   return difference(value, copy);
 }

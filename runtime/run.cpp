@@ -18,8 +18,8 @@ std::int32_t whole_number(std::string_view option, std::string_view value, std::
   std::int32_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (error != std::errc() || end != value.data() + value.size() || number < least)
-    fail(
-        ErrorCode::bad_argument, option, ": ", value, " is not a whole number of at least ", least);
+    fail(ErrorCode::bad_argument, option, ": ", value, " is not a whole number of at least ",
+         least);
   return number;
 }
 
@@ -35,19 +35,14 @@ std::size_t memory_size(std::string_view option, std::string_view value) {
                                     : -1;
   constexpr std::size_t most = std::size_t{1} << 40U;
   if (error != std::errc() || shift < 0 || number == 0 || number > most >> shift)
-    fail(ErrorCode::bad_argument,
-         option,
-         ": ",
-         value,
+    fail(ErrorCode::bad_argument, option, ": ", value,
          " is no size of 1 byte to 1024 GiB: write 64MiB (KiB, MiB, GiB, or bytes)");
   return number << shift;
 }
 
 void print_error(const char* program, const Error& error) {
   const char* slash = std::strrchr(program, '/');
-  std::fprintf(stderr,
-               "%s: error: %s\n",
-               slash != nullptr ? slash + 1 : program,
+  std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program,
                one_line(error.what()).c_str());
   std::fflush(stderr);
 }

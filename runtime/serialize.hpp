@@ -45,16 +45,11 @@ class Reader;
 namespace serialization {
 
 template <class T>
-concept HasSerialize = requires(T& value, Writer& ar) {
-  value.serialize(ar);
-};
+concept HasSerialize = requires(T& value, Writer& ar) { value.serialize(ar); };
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <class T>
-concept TupleLike = requires {
-  std::tuple_size<T>::value;
-}
-&&!std::is_aggregate_v<T>;
+concept TupleLike = requires { std::tuple_size<T>::value; } && !std::is_aggregate_v<T>;
 template <class T>
 concept Resizable = requires(T& c, std::size_t n) {
   c.resize(n);
@@ -79,9 +74,7 @@ template <class T>
 struct IsVector<std::vector<T>> : std::bool_constant<!std::is_same_v<T, bool>> {};
 /// What it gives to an archive are its own members, never a temporary: they may be attached.
 template <class T>
-concept GivesMembers = requires {
-  typename T::GivesMembers;
-};
+concept GivesMembers = requires { typename T::GivesMembers; };
 template <class T>
 struct IsOptional : std::false_type {};
 template <class T>
@@ -311,12 +304,7 @@ class Reader {
   void get(T& value);
   void need(std::size_t n) const {
     if (n > remaining())
-      fail(ErrorCode::bad_value,
-           "message ends early: ",
-           n,
-           " bytes wanted at byte ",
-           at_,
-           " of ",
+      fail(ErrorCode::bad_value, "message ends early: ", n, " bytes wanted at byte ", at_, " of ",
            in_.size());
   }
   std::size_t length(std::size_t least_bytes_each) {
@@ -324,11 +312,7 @@ class Reader {
   }
   std::size_t checked_length(std::uint64_t n, std::size_t least_bytes_each) const {
     if (least_bytes_each != 0 && n > remaining() / least_bytes_each)
-      fail(ErrorCode::bad_value,
-           "message ends early: ",
-           n,
-           " elements announced, ",
-           remaining(),
+      fail(ErrorCode::bad_value, "message ends early: ", n, " elements announced, ", remaining(),
            " bytes left");
     return n;
   }
@@ -420,15 +404,11 @@ void Reader::get(T& value) {
   } else if constexpr (IsVariant<T>::value) {
     const auto which = take<std::uint64_t>();
     if (which >= std::variant_size_v<T>)
-      fail(ErrorCode::bad_value,
-           "message holds alternative ",
-           which,
-           " of a variant of ",
+      fail(ErrorCode::bad_value, "message holds alternative ", which, " of a variant of ",
            std::variant_size_v<T>);
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       ((which == I ? get(value.template emplace<I>()) : void()), ...);
-    }
-    (std::make_index_sequence<std::variant_size_v<T>>());
+    }(std::make_index_sequence<std::variant_size_v<T>>());
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
     if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, Buffer>)) {

@@ -63,11 +63,8 @@ void TaskAccount::unpin(Element& element) {
 void suspend(Task::Handle task, std::function<std::string()> waits_for) {
   TaskAccount& account = task.promise().account;
   account.hold();
-  account.entry = {account.context.element,
-                   account.context.action,
-                   account.context.epoch,
-                   std::move(waits_for),
-                   task.address()};
+  account.entry = {account.context.element, account.context.action, account.context.epoch,
+                   std::move(waits_for), task.address()};
   account.pe->suspended().insert(account.entry);
 }
 

@@ -45,9 +45,7 @@ bool Bench::wants(std::string_view row) const {
   return std::find(wanted_.begin(), wanted_.end(), row) != wanted_.end();
 }
 
-void Bench::row(std::string_view name,
-                const Samples& samples,
-                std::string_view unit,
+void Bench::row(std::string_view name, const Samples& samples, std::string_view unit,
                 double limit) {
   if (!speaks_ || !wants(name)) return;
   rows_.push_back(make_row(name, samples, unit, limit));

@@ -54,17 +54,8 @@ void check_exact(const Field& field) {
         const double truth = torus_distance(g.centre(i, j, k));
         const double wanted = std::clamp(truth, -field.thickness, field.thickness);
         const auto found = static_cast<double>(field.distance[g.index(i, j, k)]);
-        TESS_CHECK(std::abs(found - wanted) < cut_off,
-                   "distance ",
-                   found,
-                   " at voxel ",
-                   i,
-                   ", ",
-                   j,
-                   ", ",
-                   k,
-                   ", not ",
-                   wanted);
+        TESS_CHECK(std::abs(found - wanted) < cut_off, "distance ", found, " at voxel ", i, ", ", j,
+                   ", ", k, ", not ", wanted);
       }
 }
 
@@ -91,9 +82,8 @@ void exact_rows(const Bench& bench) {
     const Grid grid = bench.grid(n);
     const ExactOptions options{Sides::one, Content::distance_and_normal, band * grid.cell, {}};
     check_exact(build_exact(bench.torus, grid, options));
-    timed(bench, fmt::format("exact field {}^3 of 3 cells", n), openvdb, [&] {
-      return build_exact(bench.torus, grid, options);
-    });
+    timed(bench, fmt::format("exact field {}^3 of 3 cells", n), openvdb,
+          [&] { return build_exact(bench.torus, grid, options); });
     if (!OpenVdbField::build(bench.torus, grid, band)) continue;
     timed(bench, fmt::format("OpenVDB level set {}^3 of 3 cells", n), 0, [&] {
       auto made = OpenVdbField::build(bench.torus, grid, band);
@@ -110,9 +100,8 @@ void exact_rows(const Bench& bench) {
 void damaged_row(const Bench& bench, const std::string& what, const Surface& surface) {
   const Grid grid = bench.grid(60);
   const ExactOptions options{Sides::one, Content::distance, band * grid.cell, {}};
-  const Field field = timed(bench, "exact field 60^3 of 3 cells of " + what, 0, [&] {
-    return build_exact(surface, grid, options);
-  });
+  const Field field = timed(bench, "exact field 60^3 of 3 cells of " + what, 0,
+                            [&] { return build_exact(surface, grid, options); });
   const Bvh tree(surface);
   std::mt19937 random(1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -122,21 +111,14 @@ void damaged_row(const Bench& bench, const std::string& what, const Surface& sur
     const int i = voxel(0), j = voxel(1), k = voxel(2);
     const double w = tree.winding_number(grid.centre(i, j, k), 0);
     TESS_CHECK(std::abs(w - 0.5) < 0.01 || (field.distance[grid.index(i, j, k)] < 0) == (w > 0.5),
-               "sign at voxel ",
-               i,
-               ", ",
-               j,
-               ", ",
-               k,
-               " with winding number ",
-               w);
+               "sign at voxel ", i, ", ", j, ", ", k, " with winding number ", w);
   }
 }
 
 void other_rows(const Bench& bench) {
   const Grid grid = bench.grid(60);
-  check_exact(timed(
-      bench, "exact field 60^3 of all voxels", 0, [&] { return build_exact(bench.torus, grid); }));
+  check_exact(timed(bench, "exact field 60^3 of all voxels", 0,
+                    [&] { return build_exact(bench.torus, grid); }));
   Surface open = bench.torus;
   open.triangles.resize(open.triangles.size() - 6000);
   damaged_row(bench, "an open mesh", open);
@@ -178,8 +160,8 @@ void look_up_row(const Bench& bench, const std::string& name, std::size_t n, con
 
 void compressed_rows(const Bench& bench, int n) {
   const Grid grid = bench.grid(n);
-  const Field flat = build_exact(
-      bench.torus, grid, {Sides::one, Content::distance_and_normal, band * grid.cell, {}});
+  const Field flat = build_exact(bench.torus, grid,
+                                 {Sides::one, Content::distance_and_normal, band * grid.cell, {}});
   const ErrorBound bound{0.05 * grid.cell, 2 * std::numbers::pi / 180};
   const CompressedField field =
       timed(bench, fmt::format("compression {}^3", n), 0, [&] { return compress(flat, bound); });
@@ -190,33 +172,23 @@ void compressed_rows(const Bench& bench, int n) {
   };
   kilobytes("memory flat", flat.bytes(), 0);
   kilobytes("memory compressed", field.bytes(), 0.2e-3 * static_cast<double>(flat.bytes()));
-  tess::print(
-      fmt::format("# compressed {}^3: asked for {:.3f} cells and {:.2f} degrees, measured {:.3f} "
-                  "and {:.2f}\n",
-                  n,
-                  bound.distance / grid.cell,
-                  bound.angle * 180 / std::numbers::pi,
-                  field.measured.distance / grid.cell,
-                  field.measured.angle * 180 / std::numbers::pi));
+  tess::print(fmt::format(
+      "# compressed {}^3: asked for {:.3f} cells and {:.2f} degrees, measured {:.3f} "
+      "and {:.2f}\n",
+      n, bound.distance / grid.cell, bound.angle * 180 / std::numbers::pi,
+      field.measured.distance / grid.cell, field.measured.angle * 180 / std::numbers::pi));
   const std::size_t count = 1'000'000;
   const Cloud cloud(count);
   std::vector<float> expected(count), found(count), nx(count), ny(count), nz(count);
-  look_up_row(bench, fmt::format("nearest distance flat {}^3", n), count, [&] {
-    nearest_distance(flat, cloud.points(), expected);
-  });
-  look_up_row(bench, fmt::format("nearest distance compressed {}^3", n), count, [&] {
-    nearest_distance(field, cloud.points(), found);
-  });
+  look_up_row(bench, fmt::format("nearest distance flat {}^3", n), count,
+              [&] { nearest_distance(flat, cloud.points(), expected); });
+  look_up_row(bench, fmt::format("nearest distance compressed {}^3", n), count,
+              [&] { nearest_distance(field, cloud.points(), found); });
   const auto allowed = static_cast<float>(bound.distance * (1 + 1e-5));
   for (std::size_t p = 0; p < count; ++p)
     TESS_CHECK(expected[p] == out_of_reach ? found[p] == out_of_reach
                                            : std::abs(found[p] - expected[p]) <= allowed,
-               "compressed distance ",
-               found[p],
-               " of point ",
-               p,
-               ", flat ",
-               expected[p]);
+               "compressed distance ", found[p], " of point ", p, ", flat ", expected[p]);
   look_up_row(bench, fmt::format("nearest distance and normal compressed {}^3", n), count, [&] {
     nearest(field, cloud.points(), found, {nx, ny, nz});
   });

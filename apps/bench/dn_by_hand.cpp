@@ -36,8 +36,7 @@ struct Nearest {
         per_cell(static_cast<float>(1 / field.grid.cell)) {}
 
   [[nodiscard]] F3 grid(D3 x) const {
-    return {to_float(x.x - origin.x) * per_cell,
-            to_float(x.y - origin.y) * per_cell,
+    return {to_float(x.x - origin.x) * per_cell, to_float(x.y - origin.y) * per_cell,
             to_float(x.z - origin.z) * per_cell};
   }
   [[nodiscard]] Voxel operator()(D3 x) const { return voxel_of(sampler.n, grid(x)); }
@@ -52,8 +51,7 @@ struct Nearest {
 void gravity_by_hand(const ParticleSpan& all, Vec3 g) {
   const Vec3 dv = step * g, half_dv = 0.5 * dv;
   in_vectors(all, [=](D3& x, D3& v) {
-    x = {x.x + step * (v.x + half_dv.x),
-         x.y + step * (v.y + half_dv.y),
+    x = {x.x + step * (v.x + half_dv.x), x.y + step * (v.y + half_dv.y),
          x.z + step * (v.z + half_dv.z)};
     v = {v.x + dv.x, v.y + dv.y, v.z + dv.z};
   });

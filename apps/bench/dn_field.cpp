@@ -107,8 +107,8 @@ class Bench {
     return stepped(rules, field_, steps_a_call);
   }
   [[nodiscard]] static Run stepped(const Rules& rules, const Field& field, int steps_a_call) {
-    return [met = Object{&field, {}}, stepper = make_stepper(rules, step), steps_a_call](
-               Particles& particles) {
+    return [met = Object{&field, {}}, stepper = make_stepper(rules, step),
+            steps_a_call](Particles& particles) {
       for (int i = 0; i < n_steps; i += steps_a_call)
         stepper.run(particles.span(), {&met, 1}, i * step, steps_a_call);
     };
@@ -139,12 +139,8 @@ class Bench {
     }
   }
 
-  void bounce(const std::string& name,
-              Particles& from,
-              const Rules& rules,
-              double depth,
-              double reference,
-              int steps_a_call = n_steps) {
+  void bounce(const std::string& name, Particles& from, const Rules& rules, double depth,
+              double reference, int steps_a_call = n_steps) {
     if (!wanted(name)) return;
     Measured found = measured(options_.repeat, from, {stepped(rules, steps_a_call)}).front();
     require(count_nonfinite(found.end.span()) == 0, name + ", not finite");
@@ -188,11 +184,8 @@ class Bench {
   }
 
   /// A float's rounding can choose the voxel beside it, so that a few may differ by more.
-  void hand_and_loop(const std::string& name,
-                     const Particles& from,
-                     const Run& by_hand,
-                     const Rules& rules,
-                     double tolerance) {
+  void hand_and_loop(const std::string& name, const Particles& from, const Run& by_hand,
+                     const Rules& rules, double tolerance) {
     if (!wanted(name)) return;
     const auto found = measured(3 * options_.repeat, from, {by_hand, stepped(rules)});
     std::size_t different = 0;
@@ -217,10 +210,8 @@ class Bench {
     Rules explosion;
     explosion.explosions = {Explosion{{}, 0.5, 2, 0, 1}};
     hand_and_loop(
-        "dn explosion",
-        spread_,
-        [&](Particles& p) { explosion_by_hand(p.span(), explosion.explosions.front()); },
-        explosion,
+        "dn explosion", spread_,
+        [&](Particles& p) { explosion_by_hand(p.span(), explosion.explosions.front()); }, explosion,
         1e-6);
     Rules drag, flow, spring;
     drag.look_up = flow.look_up = spring.look_up = LookUp::nearest;
@@ -230,29 +221,17 @@ class Bench {
     for (const Particles* from : {&spread_, &near_}) {
       const std::string where = from == &spread_ ? "; spread" : "; near";
       hand_and_loop(
-          "dn surface drag" + where,
-          *from,
-          [&](Particles& p) { surface_drag_by_hand(p.span(), field_, 1, 2 * cell()); },
-          drag,
-          1e-5);
+          "dn surface drag" + where, *from,
+          [&](Particles& p) { surface_drag_by_hand(p.span(), field_, 1, 2 * cell()); }, drag, 1e-5);
       hand_and_loop(
-          "dn impact" + where,
-          *from,
-          [&](Particles& p) { impact_by_hand(p.span(), field_); },
-          impact(LookUp::nearest),
-          1e-5);
+          "dn impact" + where, *from, [&](Particles& p) { impact_by_hand(p.span(), field_); },
+          impact(LookUp::nearest), 1e-5);
       hand_and_loop(
-          "dn surface flow" + where,
-          *from,
-          [&](Particles& p) { flow_by_hand(p.span(), field_, *flow.surface_flow); },
-          flow,
-          1e-5);
+          "dn surface flow" + where, *from,
+          [&](Particles& p) { flow_by_hand(p.span(), field_, *flow.surface_flow); }, flow, 1e-5);
       hand_and_loop(
-          "dn spring" + where,
-          *from,
-          [&](Particles& p) { spring_by_hand(p.span(), field_, *spring.spring); },
-          spring,
-          1e-4);
+          "dn spring" + where, *from,
+          [&](Particles& p) { spring_by_hand(p.span(), field_, *spring.spring); }, spring, 1e-4);
     }
   }
 

@@ -14,15 +14,9 @@ namespace bench {
 namespace {
 
 const std::vector<Shape>& all_shapes() {
-  static const std::vector<Shape> all{message_shape(),
-                                      creation_shape(),
-                                      collectives_shape(),
-                                      migration_shape(),
-                                      one_way_shape(),
-                                      work_shape(),
-                                      balance_shape(),
-                                      balance_round_shape(),
-                                      measuring_shape()};
+  static const std::vector<Shape> all{message_shape(),   creation_shape(),      collectives_shape(),
+                                      migration_shape(), one_way_shape(),       work_shape(),
+                                      balance_shape(),   balance_round_shape(), measuring_shape()};
   return all;
 }
 
@@ -68,9 +62,8 @@ std::vector<std::string> chosen(const Bench& bench, const std::vector<std::strin
 }
 
 [[nodiscard]] bool any_wanted(const Bench& bench, const Shape& shape) {
-  return std::any_of(shape.rows.begin(), shape.rows.end(), [&bench](const RowText& row) {
-    return bench.wants(row.name);
-  });
+  return std::any_of(shape.rows.begin(), shape.rows.end(),
+                     [&bench](const RowText& row) { return bench.wants(row.name); });
 }
 
 void list(const Bench& bench) {

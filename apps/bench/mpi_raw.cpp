@@ -9,15 +9,15 @@ namespace {
 
 void send(std::vector<std::byte>& bytes, int to) {
   MPI_Request request = MPI_REQUEST_NULL;
-  MPI_Isend(
-      bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD, &request);
+  MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD,
+            &request);
   MPI_Wait(&request, MPI_STATUS_IGNORE);
 }
 
 void receive(std::vector<std::byte>& bytes, int from) {
   MPI_Request request = MPI_REQUEST_NULL;
-  MPI_Irecv(
-      bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, from, 0, MPI_COMM_WORLD, &request);
+  MPI_Irecv(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, from, 0, MPI_COMM_WORLD,
+            &request);
   MPI_Wait(&request, MPI_STATUS_IGNORE);
 }
 

@@ -15,8 +15,7 @@ struct OpenVdbField::Library {
 };
 
 std::optional<OpenVdbField> OpenVdbField::build(const tess::dn::Surface& surface,
-                                                const tess::dn::Grid& grid,
-                                                double half_width) {
+                                                const tess::dn::Grid& grid, double half_width) {
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   openvdb::initialize();
   std::vector<openvdb::Vec3s> points;
@@ -36,8 +35,7 @@ std::size_t OpenVdbField::n_voxels() const {
 
 namespace {
 template <class Sampler>
-void sample(const openvdb::FloatGrid& grid,
-            const tess::dn::Points& points,
+void sample(const openvdb::FloatGrid& grid, const tess::dn::Points& points,
             std::span<float> distance) {
   const auto accessor = grid.getConstAccessor();
   const openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, Sampler> sampler(
@@ -47,8 +45,7 @@ void sample(const openvdb::FloatGrid& grid,
 }
 }  // namespace
 
-void OpenVdbField::look_up(tess::dn::LookUp kind,
-                           const tess::dn::Points& points,
+void OpenVdbField::look_up(tess::dn::LookUp kind, const tess::dn::Points& points,
                            std::span<float> distance) const {
   if (kind == tess::dn::LookUp::trilinear)
     sample<openvdb::tools::BoxSampler>(*library_->grid, points, distance);
@@ -66,8 +63,7 @@ std::optional<OpenVdbField> OpenVdbField::build(const tess::dn::Surface& /*surfa
 std::size_t OpenVdbField::n_voxels() const {
   return 0;
 }
-void OpenVdbField::look_up(tess::dn::LookUp /*kind*/,
-                           const tess::dn::Points& /*points*/,
+void OpenVdbField::look_up(tess::dn::LookUp /*kind*/, const tess::dn::Points& /*points*/,
                            std::span<float> /*distance*/) const {}
 #endif
 

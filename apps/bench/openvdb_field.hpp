@@ -23,8 +23,7 @@ class OpenVdbField {
   [[nodiscard]] std::size_t n_voxels() const;
 
   /// Distances by the nearest voxel or trilinear, cut off at the band.
-  void look_up(tess::dn::LookUp kind,
-               const tess::dn::Points& points,
+  void look_up(tess::dn::LookUp kind, const tess::dn::Points& points,
                std::span<float> distance) const;
 
  private:

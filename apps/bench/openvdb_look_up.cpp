@@ -12,8 +12,8 @@ namespace bench {
 
 using namespace tess::dn;
 
-void look_up_beside_openvdb(
-    const Report& report, const Surface& surface, const Grid& grid, double half_width, int repeat) {
+void look_up_beside_openvdb(const Report& report, const Surface& surface, const Grid& grid,
+                            double half_width, int repeat) {
   const auto theirs = OpenVdbField::build(surface, grid, half_width);
   if (!theirs) return;
   const Field ours =
@@ -50,21 +50,14 @@ void look_up_beside_openvdb(
     for (std::size_t p = 0; p < count; ++p) {
       if (std::fabs(our_distance[p]) > inner) continue;
       ++compared;
-      TESS_CHECK(std::fabs(our_distance[p] - their_distance[p]) < allowed,
-                 name,
-                 " distance ",
-                 our_distance[p],
-                 " at point ",
-                 p,
-                 ", OpenVDB's ",
-                 their_distance[p]);
+      TESS_CHECK(std::fabs(our_distance[p] - their_distance[p]) < allowed, name, " distance ",
+                 our_distance[p], " at point ", p, ", OpenVDB's ", their_distance[p]);
     }
     TESS_CHECK(compared > count / 100, "only ", compared, " points near the surface");
-    const auto row =
-        [&, n = grid.n[0], what = name](
-            const char* whose, const Samples& samples, const char* unit, double reference) {
-          report.row(fmt::format("{} distance {}^3{}", what, n, whose), samples, unit, reference);
-        };
+    const auto row = [&, n = grid.n[0], what = name](const char* whose, const Samples& samples,
+                                                     const char* unit, double reference) {
+      report.row(fmt::format("{} distance {}^3{}", what, n, whose), samples, unit, reference);
+    };
     row("; all over the grid", our_time, "ns", 0);
     row(" by OpenVDB", their_time, "ns", 0);
     row(" against OpenVDB", percent, "%", 25);

@@ -10,10 +10,7 @@ namespace bench {
 
 /// Nearest and trilinear distances of points all over `grid`, in bands of `half_width` cells. The
 /// fastest of each is held against the other: 25 % is what is allowed.
-void look_up_beside_openvdb(const Report& report,
-                            const tess::dn::Surface& surface,
-                            const tess::dn::Grid& grid,
-                            double half_width,
-                            int repeat);
+void look_up_beside_openvdb(const Report& report, const tess::dn::Surface& surface,
+                            const tess::dn::Grid& grid, double half_width, int repeat);
 
 }  // namespace bench

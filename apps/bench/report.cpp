@@ -38,12 +38,8 @@ double Samples::spread() const {
 }
 
 Row make_row(std::string_view name, const Samples& samples, std::string_view unit, double limit) {
-  return {std::string(name),
-          samples.median(),
-          std::string(unit),
-          samples.least(),
-          samples.spread(),
-          limit};
+  return {std::string(name), samples.median(), std::string(unit),
+          samples.least(),   samples.spread(), limit};
 }
 
 std::string csv_header() {
@@ -53,18 +49,9 @@ std::string csv_header() {
 std::string csv_line(const Row& row, const Origin& origin) {
   const std::string limit =
       row.limit == 0 ? "," : fmt::format("{},{:.3f}", shown(row.limit), row.median / row.limit);
-  return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n",
-                     row.name,
-                     shown(row.median),
-                     row.unit,
-                     shown(row.least),
-                     row.spread,
-                     limit,
-                     origin.pes,
-                     origin.ranks,
-                     origin.machine,
-                     build_preset,
-                     build_commit);
+  return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n", row.name, shown(row.median),
+                     row.unit, shown(row.least), row.spread, limit, origin.pes, origin.ranks,
+                     origin.machine, build_preset, build_commit);
 }
 
 std::string json_text(const std::vector<Row>& rows, const Origin& origin) {
@@ -72,24 +59,13 @@ std::string json_text(const std::vector<Row>& rows, const Origin& origin) {
   for (const Row& row : rows) {
     const std::string limit = row.limit == 0 ? "\"limit\": null, \"ratio\": null"
                                              : fmt::format("\"limit\": {:.6g}, \"ratio\": {:.4f}",
-                                                           row.limit,
-                                                           row.median / row.limit);
+                                                           row.limit, row.median / row.limit);
     out += fmt::format(
         "{}\n  {{\"name\": \"{}\", \"median\": {:.6g}, \"unit\": \"{}\", \"least\": {:.6g}, "
         "\"spread\": {:.4f}, {}, \"pes\": {}, \"ranks\": {}, \"machine\": \"{}\", \"preset\": "
         "\"{}\", \"commit\": \"{}\"}}",
-        &row == rows.data() ? "" : ",",
-        row.name,
-        row.median,
-        row.unit,
-        row.least,
-        row.spread,
-        limit,
-        origin.pes,
-        origin.ranks,
-        origin.machine,
-        build_preset,
-        build_commit);
+        &row == rows.data() ? "" : ",", row.name, row.median, row.unit, row.least, row.spread,
+        limit, origin.pes, origin.ranks, origin.machine, build_preset, build_commit);
   }
   return out + "\n]}\n";
 }
@@ -97,9 +73,7 @@ std::string json_text(const std::vector<Row>& rows, const Origin& origin) {
 void Report::header() const {
   tess::print(csv_header());
 }
-void Report::row(std::string_view name,
-                 const Samples& samples,
-                 std::string_view unit,
+void Report::row(std::string_view name, const Samples& samples, std::string_view unit,
                  double limit) const {
   tess::print(csv_line(make_row(name, samples, unit, limit), origin_));
 }

@@ -44,9 +44,7 @@ struct Row {
   double spread = 0;
   double limit = 0;  ///< what the machine allows at best, in the same unit; 0: not known
 };
-[[nodiscard]] Row make_row(std::string_view name,
-                           const Samples& samples,
-                           std::string_view unit,
+[[nodiscard]] Row make_row(std::string_view name, const Samples& samples, std::string_view unit,
                            double limit = 0);
 
 /// Where rows were measured.
@@ -69,9 +67,7 @@ class Report {
  public:
   explicit Report(const std::string& machine) : origin_{machine} {}
   void header() const;
-  void row(std::string_view name,
-           const Samples& samples,
-           std::string_view unit,
+  void row(std::string_view name, const Samples& samples, std::string_view unit,
            double limit = 0) const;
 
  private:

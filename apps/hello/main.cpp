@@ -11,6 +11,6 @@ class Hello : public tess::Chare<Hello, tess::Index1> {
 };
 
 int main(int argc, char** argv) {  // the lambda runs on PE 0; run() returns at quiescence
-  return tess::run(
-      argc, argv, [] { tess::create<Hello>(tess::range(8))[{0}].send<&Hello::greet>(0); });
+  return tess::run(argc, argv,
+                   [] { tess::create<Hello>(tess::range(8))[{0}].send<&Hello::greet>(0); });
 }

@@ -17,11 +17,10 @@ namespace lb_lab {
 /// Starts balancing, inside an epoch of the caller. Both references outlive the run.
 template <class C>
 [[nodiscard]] tess::BalancerProxy start_balancing(tess::ArrayProxy<C> array,
-                                                  const Experiment& experiment,
-                                                  Outcome& outcome) {
+                                                  const Experiment& experiment, Outcome& outcome) {
   if (experiment.keep == Keep::nothing) return tess::start_balancing(array, experiment.balance);
-  return tess::start_balancing(
-      array, experiment.balance, noting(experiment.balance, outcome.phases));
+  return tess::start_balancing(array, experiment.balance,
+                               noting(experiment.balance, outcome.phases));
 }
 
 }  // namespace lb_lab

@@ -19,8 +19,7 @@ tess::Task start_and_wait(tess::ArrayProxy<Worker> workers, Outcome& outcome) {
   outcome.seconds = tess::seconds(pe.now() - began);
 }
 
-tess::Task run_cells(const Experiment& experiment,
-                     tess::GroupProxy<Station> stations,
+tess::Task run_cells(const Experiment& experiment, tess::GroupProxy<Station> stations,
                      Outcome& outcome) {
   tess::ArrayProxy<Worker> workers;
   tess::BalancerProxy balancer;
@@ -35,10 +34,7 @@ tess::Task run_cells(const Experiment& experiment,
 
 std::string describe_cells(const Problem& p) {
   return fmt::format(
-      "{} x {} cells of {} bytes; {}",
-      p.domain.width,
-      p.domain.height,
-      p.cell_bytes,
+      "{} x {} cells of {} bytes; {}", p.domain.width, p.domain.height, p.cell_bytes,
       workload_of(p).traffic == Traffic::silent
           ? "elements are independent: no messages between them"
           : fmt::format("edges and {} bytes to each neighbour an iteration", p.message_bytes));
@@ -46,7 +42,7 @@ std::string describe_cells(const Problem& p) {
 
 }  // namespace
 
-const Kind cells_kind{
-    &serial_answer_of_cells, &total_seconds_of_cells, &describe_cells, &run_cells};
+const Kind cells_kind{&serial_answer_of_cells, &total_seconds_of_cells, &describe_cells,
+                      &run_cells};
 
 }  // namespace lb_lab

@@ -16,8 +16,7 @@ std::int32_t first_of(std::int32_t part, std::int32_t n_parts, std::int32_t n_ce
 Block Domain::block(std::int32_t element) const {
   const std::int32_t column = element % columns, row = element / columns;
   const Cell first{first_of(column, columns, width), first_of(row, rows, height)};
-  return {first,
-          first_of(column + 1, columns, width) - first.x,
+  return {first, first_of(column + 1, columns, width) - first.x,
           first_of(row + 1, rows, height) - first.y};
 }
 
@@ -61,13 +60,8 @@ Domain cut(Domain domain, std::int32_t n_elements) {
     best.columns = columns;
   }
   if (shortest == std::numeric_limits<std::int64_t>::max())
-    tess::fail(tess::ErrorCode::bad_argument,
-               "--per-pe: ",
-               domain.width,
-               " x ",
-               domain.height,
-               " cells cannot be cut into ",
-               n_elements,
+    tess::fail(tess::ErrorCode::bad_argument, "--per-pe: ", domain.width, " x ", domain.height,
+               " cells cannot be cut into ", n_elements,
                " blocks; give divisors of the largest count");
   return best;
 }

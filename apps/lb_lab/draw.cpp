@@ -11,12 +11,8 @@ constexpr std::size_t most_rows = 32;     // PEs of a timeline
 constexpr std::size_t most_points = 160;  // of a curve: as many as one sees
 
 /// A PE's time in the drawn iterations: its work, rounds on top, idle between.
-void draw_pe(std::size_t pe,
-             const PeRecord& record,
-             const std::vector<Interval>& rounds,
-             double began,
-             double end,
-             plot::Timeline& timeline) {
+void draw_pe(std::size_t pe, const PeRecord& record, const std::vector<Interval>& rounds,
+             double began, double end, plot::Timeline& timeline) {
   const auto bar = [&](double from, double to, plot::Activity activity) {
     if (from < to) timeline.bars.push_back({pe, from - began, to - began, activity});
   };
@@ -62,10 +58,7 @@ plot::Timeline timeline_of(const Outcome& outcome, const Row& row) {
   plot::Timeline timeline;
   const std::size_t n = std::min(most_rows, outcome.records.size());
   timeline.title = fmt::format(
-      "{}, {} chares a PE, {}: the first iterations{}",
-      row.workload,
-      row.per_pe,
-      row.strategy,
+      "{}, {} chares a PE, {}: the first iterations{}", row.workload, row.per_pe, row.strategy,
       n < outcome.records.size() ? fmt::format(", {} of {} PEs", n, outcome.records.size()) : "");
   const std::vector<std::vector<Interval>> rounds = balancing_times(outcome);
   double end = outcome.began;
@@ -98,11 +91,10 @@ void Drawings::write(const std::string& directory) const {
       .x_label = "chares a PE",
       .y_label = "ms an iteration",
       .x_log = true};
-  plot::Chart balance{
-      .title =
-          fmt::format("{} on {} PEs, {} chares a PE", workload_, best.row.n_pes, best.row.per_pe),
-      .x_label = "iteration",
-      .y_label = "max/average"};
+  plot::Chart balance{.title = fmt::format("{} on {} PEs, {} chares a PE", workload_,
+                                           best.row.n_pes, best.row.per_pe),
+                      .x_label = "iteration",
+                      .y_label = "max/average"};
   std::map<std::string, std::size_t> at;
   const Run* drawn = nullptr;  // the fastest that was balanced at the best cut
   for (const Run& run : runs_) {

@@ -35,9 +35,7 @@ tess::Task run(const Experiment& experiment, Outcome& outcome);
 
 /// max/average of PE time over the iterations [first, last): the sums over the iterations of the
 /// slowest PE, and of all by their speeds.
-[[nodiscard]] double imbalance(const Outcome& outcome,
-                               const Plan& plan,
-                               std::int32_t first,
+[[nodiscard]] double imbalance(const Outcome& outcome, const Plan& plan, std::int32_t first,
                                std::int32_t last);
 
 /// Seconds that the run would take if work were a fluid: measured work over all speeds.

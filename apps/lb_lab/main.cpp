@@ -50,8 +50,8 @@ void add_options(apps::CommandLine& line, Settings& s) {
   line.option("--json", s.json, "write the rows as JSON");
   line.option("--plot", s.plot, "write SVG plots into a directory");
   line.option("--save-snapshot", s.snapshots, "write what strategies were shown into a directory");
-  line.option(
-      "--replay", s.replay, "run the strategies on saved snapshots (vt's LBDatafile) instead");
+  line.option("--replay", s.replay,
+              "run the strategies on saved snapshots (vt's LBDatafile) instead");
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
   line.option("--fold", s.fold, "how another number of PEs is filled: block, modulo");

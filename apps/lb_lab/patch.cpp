@@ -76,9 +76,7 @@ std::uint64_t Patch::answer(const Problem& problem) const {
   std::size_t cell = 0;
   for (std::int32_t y = 0; y < block_.height; ++y)
     for (std::int32_t x = 0; x < block_.width; ++x, ++cell)
-      sum += answer_of(problem,
-                       {block_.first.x + x, block_.first.y + y},
-                       now_[at(x, y)],
+      sum += answer_of(problem, {block_.first.x + x, block_.first.y + y}, now_[at(x, y)],
                        tess::hash_bytes(cargo_.data() + cell * n_words, 8 * n_words));
   return sum;
 }

@@ -22,20 +22,14 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
   snapshot = tess::balance::fold(std::move(snapshot), n_pes, tess::balance::parse_fold(s.fold));
   if (s.speeds.empty()) return snapshot;
   if (s.speeds.size() != n_pes)
-    tess::fail(tess::ErrorCode::bad_argument,
-               "--speed: ",
-               s.speeds.size(),
-               " speeds for a replay on ",
-               n_pes,
-               " PEs; give one a PE");
+    tess::fail(tess::ErrorCode::bad_argument, "--speed: ", s.speeds.size(),
+               " speeds for a replay on ", n_pes, " PEs; give one a PE");
   snapshot.pes.speed = s.speeds;
   tess::balance::validate(snapshot);
   return snapshot;
 }
 
-std::string row(std::uint64_t phase,
-                const Snapshot& snapshot,
-                const std::string& name,
+std::string row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
                 std::uint64_t seed) {
   const tess::balance::Strategy strategy = tess::balance::make_strategy(name, seed);
   const auto began = std::chrono::steady_clock::now();
@@ -44,16 +38,9 @@ std::string row(std::uint64_t phase,
   const tess::balance::Metrics before = measure(snapshot, snapshot.elements.pe);
   const tess::balance::Metrics after = measure(snapshot, wanted);
   return fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f}\n",
-                     phase,
-                     snapshot.pes.size(),
-                     snapshot.elements.size(),
-                     name,
-                     before.max_over_average,
-                     after.max_over_average,
-                     after.n_moves,
-                     after.moved_bytes,
-                     after.external_bytes,
-                     took.count());
+                     phase, snapshot.pes.size(), snapshot.elements.size(), name,
+                     before.max_over_average, after.max_over_average, after.n_moves,
+                     after.moved_bytes, after.external_bytes, took.count());
 }
 
 }  // namespace
@@ -63,16 +50,8 @@ std::string replay(const Settings& s) {
   std::vector<std::string> names = s.strategies;
   if (std::ranges::count(names, "all") > 0) names = tess::balance::strategy_names();
   std::string out = fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12}\n",
-                                "phase",
-                                "PEs",
-                                "elements",
-                                "strategy",
-                                "before",
-                                "predicted",
-                                "moves",
-                                "bytes",
-                                "external bytes",
-                                "strategy ms");
+                                "phase", "PEs", "elements", "strategy", "before", "predicted",
+                                "moves", "bytes", "external bytes", "strategy ms");
   for (tess::balance::Phase& phase : tess::balance::read_lb_datafiles(s.replay)) {
     const Snapshot snapshot = prepared(s, std::move(phase.snapshot));
     for (const std::string& name : names) out += row(phase.id, snapshot, name, s.seed);

@@ -46,35 +46,20 @@ nlohmann::ordered_json json_of(const Row& row) {
 }  // namespace
 
 void print_head() {
-  tess::print_text(fmt::format(fmt::runtime(line),
-                               "workload",
-                               "per_pe",
-                               "strategy",
-                               "seconds",
-                               "ms/iter",
-                               "ideal",
-                               "before",
-                               "after",
-                               "moves",
-                               "KiB",
-                               "balance ms",
+  tess::print_text(fmt::format(fmt::runtime(line), "workload", "per_pe", "strategy", "seconds",
+                               "ms/iter", "ideal", "before", "after", "moves", "KiB", "balance ms",
                                "gain"));
 }
 
 void print_row(const Row& row) {
-  tess::print_text(fmt::format(fmt::runtime(line),
-                               row.workload,
-                               row.per_pe,
-                               row.strategy,
-                               fmt::format("{:.4f}", row.seconds_total),
-                               fmt::format("{:.3f}", 1e3 * row.seconds_total / row.n_iterations),
-                               fmt::format("{:.1f}%", 100 * row.ideal_seconds / row.seconds_total),
-                               fmt::format("{:.3f}", row.imbalance_before),
-                               fmt::format("{:.3f}", row.imbalance_after),
-                               row.n_moves,
-                               fmt::format("{:.0f}", static_cast<double>(row.moved_bytes) / 1024),
-                               fmt::format("{:.3f}", 1e3 * row.balance_seconds),
-                               fmt::format("{:.1f}%", 100 * row.gain)));
+  tess::print_text(fmt::format(
+      fmt::runtime(line), row.workload, row.per_pe, row.strategy,
+      fmt::format("{:.4f}", row.seconds_total),
+      fmt::format("{:.3f}", 1e3 * row.seconds_total / row.n_iterations),
+      fmt::format("{:.1f}%", 100 * row.ideal_seconds / row.seconds_total),
+      fmt::format("{:.3f}", row.imbalance_before), fmt::format("{:.3f}", row.imbalance_after),
+      row.n_moves, fmt::format("{:.0f}", static_cast<double>(row.moved_bytes) / 1024),
+      fmt::format("{:.3f}", 1e3 * row.balance_seconds), fmt::format("{:.1f}%", 100 * row.gain)));
 }
 
 void print_best(const Sweep& sweep) {
@@ -82,23 +67,15 @@ void print_best(const Sweep& sweep) {
     const Row& row = best_of(sweep, workload);
     tess::print_text(
         fmt::format("best of {}: {} chares a PE under {}, {:.4f} s, gain {:.1f} % over none\n",
-                    workload,
-                    row.per_pe,
-                    row.strategy,
-                    row.seconds_total,
-                    100 * row.gain));
+                    workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain));
   }
 }
 
 void write_json(const std::string& path, const Sweep& sweep) {
   const Settings& s = sweep.settings;
   nlohmann::ordered_json root = {
-      {"machine", sweep.machine},
-      {"grain", s.grain},
-      {"period", s.period},
-      {"when", s.when},
-      {"prediction", s.prediction},
-      {"seed", s.seed},
+      {"machine", sweep.machine}, {"grain", s.grain},           {"period", s.period},
+      {"when", s.when},           {"prediction", s.prediction}, {"seed", s.seed},
   };
   root["rows"] = nlohmann::ordered_json::array();
   root["ideal_seconds"] = nlohmann::ordered_json::array();
@@ -131,12 +108,8 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
     double speed = n_pes;
     if (!s.speeds.empty()) speed = 0;
     for (const double one : s.speeds) speed += one;
-    out += fmt::format("{}: {}; {:.4g} s of work, {:.4g} s at best on {} PEs\n",
-                       name,
-                       workload_of(p).kind->describe(p),
-                       total,
-                       total / speed,
-                       n_pes);
+    out += fmt::format("{}: {}; {:.4g} s of work, {:.4g} s at best on {} PEs\n", name,
+                       workload_of(p).kind->describe(p), total, total / speed, n_pes);
   }
   out += fmt::format("{} runs of {} iterations",
                      s.workloads.size() * s.per_pe.size() * s.strategies.size() *
@@ -145,8 +118,7 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   out += s.when == "periodic"
              ? fmt::format(", a round about every {} iterations beside the work, no barrier\n",
                            s.period)
-             : fmt::format(", a barrier every {} iterations{}\n",
-                           s.period,
+             : fmt::format(", a barrier every {} iterations{}\n", s.period,
                            s.when == "automatic" ? ", a round where it is worth its cost" : "");
   out += "none: no balancer is made, no load measured, no barrier\n";
   if (s.plot.empty()) out += "left out: intervals for timelines (--plot)\n";
@@ -162,8 +134,8 @@ void save_snapshots(const std::string& directory, const Row& row, const Outcome&
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    tess::fail(
-        tess::ErrorCode::environment, "--save-snapshot: ", folder.string(), ": ", error.message());
+    tess::fail(tess::ErrorCode::environment, "--save-snapshot: ", folder.string(), ": ",
+               error.message());
   for (std::int32_t pe = 0; pe < row.n_pes; ++pe)
     plot::write_file((folder / fmt::format("data.{}.json", pe)).string(),
                      tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe}));

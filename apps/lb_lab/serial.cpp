@@ -24,14 +24,9 @@ std::uint64_t serial_answer_of_cells(const Problem& p) {
   each([&](Cell cell, std::uint64_t i) { now[i] = workload.first(p, cell); });
   for (std::int32_t t = 0; t < p.n_iterations; ++t) {
     each([&](Cell c, std::uint64_t i) {
-      next[i] = workload.next(p,
-                              c,
-                              t,
-                              {now[i],
-                               state(c.x - 1, c.y),
-                               state(c.x + 1, c.y),
-                               state(c.x, c.y - 1),
-                               state(c.x, c.y + 1)});
+      next[i] = workload.next(p, c, t,
+                              {now[i], state(c.x - 1, c.y), state(c.x + 1, c.y),
+                               state(c.x, c.y - 1), state(c.x, c.y + 1)});
     });
     std::swap(now, next);
   }

@@ -43,8 +43,7 @@ void complete(Settings& settings, std::int32_t n_pes);
 [[nodiscard]] tess::BalanceWhen parse_when(std::string_view value);
 
 /// A workload with these settings, before it is cut.
-[[nodiscard]] Problem problem_of(const Settings& settings,
-                                 std::uint32_t workload,
+[[nodiscard]] Problem problem_of(const Settings& settings, std::uint32_t workload,
                                  std::int32_t n_pes);
 
 }  // namespace lb_lab

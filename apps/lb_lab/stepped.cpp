@@ -4,10 +4,8 @@
 
 namespace lb_lab {
 
-tess::Task run_stepped(const Experiment& experiment,
-                       tess::GroupProxy<Station> stations,
-                       Stepped& workload,
-                       Outcome& outcome) {
+tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> stations,
+                       Stepped& workload, Outcome& outcome) {
   const Plan& plan = experiment.plan;
   const std::int32_t n = plan.problem.n_iterations;
   tess::Pe& pe = tess::current_pe();

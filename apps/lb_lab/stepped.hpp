@@ -27,9 +27,7 @@ class Stepped {
 };
 
 /// Runs it, and fills the outcome but for the records.
-tess::Task run_stepped(const Experiment& experiment,
-                       tess::GroupProxy<Station> stations,
-                       Stepped& workload,
-                       Outcome& outcome);
+tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> stations,
+                       Stepped& workload, Outcome& outcome);
 
 }  // namespace lb_lab

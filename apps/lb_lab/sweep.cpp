@@ -9,9 +9,7 @@
 namespace lb_lab {
 namespace {
 
-Experiment experiment_of(const Settings& s,
-                         const Problem& problem,
-                         const std::string& strategy,
+Experiment experiment_of(const Settings& s, const Problem& problem, const std::string& strategy,
                          double steps_a_second) {
   Experiment e;
   e.plan.problem = problem;
@@ -63,11 +61,7 @@ void check(Sweep& sweep, const Row& row, std::uint64_t serial) {
   if (row.answer == serial || !sweep.wrong.empty()) return;
   sweep.wrong = fmt::format(
       "{} with {} chares a PE under {}: the answer is {:016x}, computed serially it is {:016x}",
-      row.workload,
-      row.per_pe,
-      row.strategy,
-      row.answer,
-      serial);
+      row.workload, row.per_pe, row.strategy, row.answer, serial);
 }
 
 tess::Task run_fastest(const Experiment& experiment, std::int32_t repeat, Outcome& best) {

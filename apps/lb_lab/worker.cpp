@@ -20,9 +20,7 @@ std::size_t Worker::send_edges() {
     const std::int32_t to = problem.domain.neighbour(index().x, side);
     if (to < 0) continue;
     ++n;
-    array()[{to}].send<&Worker::receive>(Edge{iteration_,
-                                              opposite(side),
-                                              patch_.edge(side),
+    array()[{to}].send<&Worker::receive>(Edge{iteration_, opposite(side), patch_.edge(side),
                                               std::vector<std::uint8_t>(problem.message_bytes)});
   }
   return n;

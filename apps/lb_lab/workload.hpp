@@ -65,15 +65,12 @@ struct Workload {
 [[nodiscard]] std::uint32_t find_workload(std::string_view name);
 
 /// Seconds at speed 1 of a block in an iteration.
-[[nodiscard]] double block_seconds(const Problem& problem,
-                                   const Block& block,
+[[nodiscard]] double block_seconds(const Problem& problem, const Block& block,
                                    std::int32_t iteration);
 
 /// Part of the answer: of one cell, of its state after the last iteration, and of what it carried.
 /// The answer is the sum over all cells.
-[[nodiscard]] std::uint64_t answer_of(const Problem& problem,
-                                      Cell cell,
-                                      std::uint64_t state,
+[[nodiscard]] std::uint64_t answer_of(const Problem& problem, Cell cell, std::uint64_t state,
                                       std::uint64_t carried);
 
 /// What a cell carries along: `cell_bytes` / 8 words from its number, and their hash.

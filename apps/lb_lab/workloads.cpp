@@ -156,11 +156,7 @@ const std::vector<Workload>& workloads() {
     }
     result.push_back({"stencil",
                       "diffusion on a plane; a disc with four sub-steps circles once a run",
-                      Shape::plane,
-                      Traffic::neighbours,
-                      refined_work,
-                      warm,
-                      diffuse});
+                      Shape::plane, Traffic::neighbours, refined_work, warm, diffuse});
     result.push_back({.name = "collision",
                       .what = "boxes in clusters that drift: their voxels are balanced",
                       .shape = Shape::plane,
@@ -180,8 +176,8 @@ std::uint32_t find_workload(std::string_view name) {
     if (workloads()[i].name == name) return i;
     names += (i > 0 ? ", " : "") + workloads()[i].name;
   }
-  tess::fail(
-      tess::ErrorCode::bad_argument, "--workload: there is no ", name, "; choose of all, ", names);
+  tess::fail(tess::ErrorCode::bad_argument, "--workload: there is no ", name, "; choose of all, ",
+             names);
 }
 
 double block_seconds(const Problem& p, const Block& block, std::int32_t t) {

@@ -22,9 +22,7 @@ std::string explain(const Problem& problem, Output output) {
   out += mesh_line("source", problem.source, problem.source_census);
   out += mesh_line("target", problem.target, problem.target_census);
   const std::size_t n_fields = problem.source_fields.size();
-  out += fmt::format("  {} {} of one component{}\n",
-                     n_fields,
-                     n_fields == 1 ? "field" : "fields",
+  out += fmt::format("  {} {} of one component{}\n", n_fields, n_fields == 1 ? "field" : "fields",
                      n_fields == 1 ? "" : ", side by side: one search for all");
   if (r.chares > 1)
     out += fmt::format("  Zoltan, to cut each mesh into {} chares on {} PEs\n", r.chares, r.pes);

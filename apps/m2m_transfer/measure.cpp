@@ -32,8 +32,7 @@ void judge(Problem& problem) {
   for (std::size_t f = 0; f < problem.truth.size(); ++f) {
     const Field& truth = problem.truth[f];
     const std::vector<double>& values = problem.target_fields[f].values;
-    report.fields.push_back({truth.name,
-                             error_norms(problem.target, values, truth.values),
+    report.fields.push_back({truth.name, error_norms(problem.target, values, truth.values),
                              error_norms(problem.target, values, truth.values, found)});
     hash = result_hash(values, hash);
   }

@@ -45,9 +45,7 @@ struct Polygon {
   }
 };
 
-Polygon cut(const TetMesh& mesh,
-            const Tet& tet,
-            std::span<const double> values,
+Polygon cut(const TetMesh& mesh, const Tet& tet, std::span<const double> values,
             const Plane& plane) {
   std::array<VertexId, 4> below{}, above{};
   std::size_t n_below = 0, n_above = 0;
@@ -64,8 +62,7 @@ Polygon cut(const TetMesh& mesh,
     const double t = (plane.at - p[plane.across]) / (q[plane.across] - p[plane.across]);
     const auto mix = [t](double a, double b) { return a + t * (b - a); };
     polygon.corners[polygon.n++] = {
-        mix(p[plane.right], q[plane.right]),
-        mix(p[plane.up], q[plane.up]),
+        mix(p[plane.right], q[plane.right]), mix(p[plane.up], q[plane.up]),
         mix(values[static_cast<std::size_t>(low)], values[static_cast<std::size_t>(high)])};
   };
   if (n_below == 2) {  // round the quadrilateral
@@ -112,11 +109,8 @@ std::string escaped(const std::string& text) {
 constexpr double panel = 480, margin = 30;
 
 /// One panel of the picture, with its colours explained below.
-void draw(std::string& out,
-          const TetMesh& mesh,
-          std::span<const double> values,
-          const std::string& title,
-          double left) {
+void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
+          const std::string& title, double left) {
   const Aabb box = bounds(mesh);
   const Plane plane = plane_through(box);
   const double scale = panel / std::max(box.hi[plane.right] - box.lo[plane.right],
@@ -135,34 +129,24 @@ void draw(std::string& out,
     const double at = greatest > least ? (polygon.value() - least) / (greatest - least) : 0;
     std::string& path = paths[static_cast<std::size_t>(at * (n_colours - 1) + 0.5)];
     for (std::size_t i = 0; i < polygon.n; ++i)
-      fmt::format_to(std::back_inserter(path),
-                     "{}{:.1f} {:.1f}",
-                     i == 0 ? 'M' : 'L',
+      fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L',
                      left + (polygon.corners[i].x - box.lo[plane.right]) * scale,
                      margin + panel - (polygon.corners[i].y - box.lo[plane.up]) * scale);
     path += 'Z';
   }
   for (std::size_t level = 0; level < n_colours; ++level) {
     if (!paths[level].empty())
-      out += fmt::format(
-          "<path fill=\"{0}\" stroke=\"{0}\" d=\"{1}\"/>\n", colour(level), paths[level]);
+      out += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" d=\"{1}\"/>\n", colour(level),
+                         paths[level]);
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"10\" fill=\"{}\"/>\n",
-                       left + panel * static_cast<double>(level) / n_colours,
-                       margin + panel + 10,
-                       panel / n_colours + 0.5,
-                       colour(level));
+                       left + panel * static_cast<double>(level) / n_colours, margin + panel + 10,
+                       panel / n_colours + 0.5, colour(level));
   }
-  out += fmt::format("<text x=\"{}\" y=\"{}\">{}, {} = {:.4g}</text>\n",
-                     left,
-                     margin - 10,
-                     escaped(title),
-                     "xyz"[plane.across],
-                     plane.at);
+  out += fmt::format("<text x=\"{}\" y=\"{}\">{}, {} = {:.4g}</text>\n", left, margin - 10,
+                     escaped(title), "xyz"[plane.across], plane.at);
   out += fmt::format("<text x=\"{}\" y=\"{}\">{:.4g}</text>\n", left, margin + panel + 36, least);
-  out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n",
-                     left + panel,
-                     margin + panel + 36,
-                     greatest);
+  out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", left + panel,
+                     margin + panel + 36, greatest);
 }
 
 }  // namespace
@@ -177,8 +161,7 @@ std::string picture(const Problem& problem) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
       "font-size=\"14\" stroke-width=\"0.5\">\n<rect width=\"100%\" height=\"100%\" "
       "fill=\"white\"/>\n",
-      2 * panel + 3 * margin,
-      panel + 2 * margin + 20);
+      2 * panel + 3 * margin, panel + 2 * margin + 20);
   out += "<g stroke-linejoin=\"round\">\n";
   draw(out, problem.target, field.values, field.name, margin);
   draw(out, problem.target, error, "|error| of " + field.name, 2 * margin + panel);

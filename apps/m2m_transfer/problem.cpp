@@ -26,13 +26,8 @@ void check_voxel(double voxel, const Problem& problem) {
   }
   const double least = farthest * 0x1p-30;
   if (voxel < least)
-    fail(ErrorCode::bad_argument,
-         "--voxel ",
-         voxel,
-         ": coordinates reach to ",
-         farthest,
-         ", where voxels must be at least ",
-         least);
+    fail(ErrorCode::bad_argument, "--voxel ", voxel, ": coordinates reach to ", farthest,
+         ", where voxels must be at least ", least);
 }
 
 }  // namespace

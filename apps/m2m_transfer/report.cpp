@@ -54,12 +54,9 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair.update(norms_of(r.fields.front().norms));
   pair["found"] = found_of(r.fields.front().found);
   pair["candidates"] = r.n_candidates;
-  pair["seconds"] = {{"read", r.seconds.read},
-                     {"setup", r.seconds.setup},
-                     {"broad", r.seconds.broad},
-                     {"narrow", r.seconds.narrow},
-                     {"report", r.seconds.report},
-                     {"transfer", r.seconds.transfer()}};
+  pair["seconds"] = {{"read", r.seconds.read},     {"setup", r.seconds.setup},
+                     {"broad", r.seconds.broad},   {"narrow", r.seconds.narrow},
+                     {"report", r.seconds.report}, {"transfer", r.seconds.transfer()}};
   pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
   pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
   pair["bytes_sent"] = r.footprint.bytes_sent;
@@ -95,27 +92,18 @@ std::string table(const TransferReport& r) {
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
   if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
   if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
-  line("found",
-       fmt::format("{} inside, {} boundary, {} snapped, {} outside",
-                   r.counts[0],
-                   r.counts[1],
-                   r.counts[2],
-                   r.counts[3]));
+  line("found", fmt::format("{} inside, {} boundary, {} snapped, {} outside", r.counts[0],
+                            r.counts[1], r.counts[2], r.counts[3]));
   line("candidates",
-       fmt::format("{} ({:.2f} a vertex)",
-                   r.n_candidates,
+       fmt::format("{} ({:.2f} a vertex)", r.n_candidates,
                    static_cast<double>(r.n_candidates) / static_cast<double>(r.targets)));
   const auto errors = [&](const std::string& title, auto&& norms_of_field) {
-    out += fmt::format(
-        "  {:<26} {:>11} {:>11} {:>11} {:>11}\n", title, "L2", "relative", "RMS", "Linf");
+    out += fmt::format("  {:<26} {:>11} {:>11} {:>11} {:>11}\n", title, "L2", "relative", "RMS",
+                       "Linf");
     for (const FieldError& field : r.fields) {
       const ErrorNorms norms = norms_of_field(field);
-      out += fmt::format("  {:<26} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}\n",
-                         field.name,
-                         norms.l2,
-                         norms.l2_relative,
-                         norms.rms,
-                         norms.linf);
+      out += fmt::format("  {:<26} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}\n", field.name, norms.l2,
+                         norms.l2_relative, norms.rms, norms.linf);
     }
   };
   const std::size_t n_found = r.fields.front().found.n_vertices;
@@ -126,24 +114,14 @@ std::string table(const TransferReport& r) {
          [](const FieldError& f) { return f.norms; });
   line("worst at",
        fmt::format("({:.4g}, {:.4g}, {:.4g})", r.worst_at[0], r.worst_at[1], r.worst_at[2]));
-  out += fmt::format("  {:<12} {:>11} {:>11} {:>11} {:>11} {:>11}\n",
-                     "seconds",
-                     "setup",
-                     "broad",
-                     "narrow",
-                     "report",
-                     "transfer");
-  out += fmt::format("  {:<12} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f}\n",
-                     "",
-                     r.seconds.setup,
-                     r.seconds.broad,
-                     r.seconds.narrow,
-                     r.seconds.report,
+  out += fmt::format("  {:<12} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "seconds", "setup", "broad",
+                     "narrow", "report", "transfer");
+  out += fmt::format("  {:<12} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f}\n", "",
+                     r.seconds.setup, r.seconds.broad, r.seconds.narrow, r.seconds.report,
                      r.seconds.transfer());
   line("memory",
        fmt::format("{:.1f} MB peak over {} {}, {:.1f} MB the greatest; {:.3f} MB sent between them",
-                   megabytes(r.footprint.peak_memory_bytes),
-                   r.processes,
+                   megabytes(r.footprint.peak_memory_bytes), r.processes,
                    r.processes == 1 ? "process" : "processes",
                    megabytes(r.footprint.greatest_peak_memory_bytes),
                    megabytes(r.footprint.bytes_sent)));

@@ -72,12 +72,8 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
   if (sources.size() == 1) sources.resize(n, sources.front());
   if (targets.size() == 1) targets.resize(n, targets.front());
   if (sources.size() != targets.size())
-    fail(ErrorCode::bad_argument,
-         "--study: ",
-         sources.size(),
-         " source meshes and ",
-         targets.size(),
-         " target meshes: give as many of both, or one of one kind");
+    fail(ErrorCode::bad_argument, "--study: ", sources.size(), " source meshes and ",
+         targets.size(), " target meshes: give as many of both, or one of one kind");
   std::vector<Request> requests;
   for (const std::string& policy : policies) {
     (void)parse_policy(policy);

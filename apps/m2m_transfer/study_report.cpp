@@ -85,9 +85,7 @@ std::string table(const Study& study) {
   const TransferReport& any = study.reports.front();
   std::string out =
       fmt::format("study of {} transfers, each the fastest of {}\n  machine      {}\n",
-                  study.reports.size(),
-                  study.repeat,
-                  any.machine);
+                  study.reports.size(), study.repeat, any.machine);
   std::size_t wide = 6;
   for (const TransferReport& r : study.reports)
     wide = std::max({wide, r.source.size(), r.target.size()});
@@ -95,43 +93,19 @@ std::string table(const Study& study) {
   Text to(out);
   fmt::format_to(to,
                  "  {:<{}} {:<{}} {:>9} {:>9} {:>9} {:>8}  {:<10} {:>11} {:>11} {:>11} {:>11}{}\n",
-                 "source",
-                 wide,
-                 "target",
-                 wide,
-                 "edge",
-                 "setup",
-                 "transfer",
-                 "outside",
-                 "field",
-                 "L2",
-                 "Linf",
-                 "L2 found",
-                 "Linf found",
-                 policies ? "  policy" : "");
+                 "source", wide, "target", wide, "edge", "setup", "transfer", "outside", "field",
+                 "L2", "Linf", "L2 found", "Linf found", policies ? "  policy" : "");
   for (const TransferReport& r : study.reports) {
     for (const FieldError& field : r.fields) {
       const bool first = &field == &r.fields.front();
       if (first)
-        fmt::format_to(to,
-                       "  {:<{}} {:<{}} {:>9.4g} {:>9.4f} {:>9.4f} {:>8}",
-                       r.source,
-                       wide,
-                       r.target,
-                       wide,
-                       r.source_edge,
-                       r.seconds.setup,
-                       r.seconds.transfer(),
+        fmt::format_to(to, "  {:<{}} {:<{}} {:>9.4g} {:>9.4f} {:>9.4f} {:>8}", r.source, wide,
+                       r.target, wide, r.source_edge, r.seconds.setup, r.seconds.transfer(),
                        r.counts[3]);
       else
         fmt::format_to(to, "{:{}}", "", 2 * wide + 42);
-      fmt::format_to(to,
-                     "  {:<10} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}{}\n",
-                     field.name,
-                     field.norms.l2,
-                     field.norms.linf,
-                     field.found.l2,
-                     field.found.linf,
+      fmt::format_to(to, "  {:<10} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}{}\n", field.name,
+                     field.norms.l2, field.norms.linf, field.found.l2, field.found.linf,
                      policies ? "  " + r.policy : std::string());
     }
   }
@@ -141,23 +115,14 @@ std::string table(const Study& study) {
   fmt::format_to(to,
                  "fitted powers (over all): error ~ edge^p, error ~ seconds^q\n  {:<22} {:>8} "
                  "{:>8} {:>10} {:>10}\n",
-                 "field",
-                 "p(L2)",
-                 "p(Linf)",
-                 "q(L2)",
-                 "q(Linf)");
+                 "field", "p(L2)", "p(Linf)", "q(L2)", "q(Linf)");
   for (const Trend& t : trends(study)) {
     const std::string name = t.field + (policies ? ", " + t.policy : std::string());
     if (t.exact)
       fmt::format_to(to, "  {:<22} exact: relative L2 below 1e-12 everywhere\n", name);
     else
-      fmt::format_to(to,
-                     "  {:<22} {:>8} {:>8} {:>10} {:>10}\n",
-                     name,
-                     power(t.l2_of_edge),
-                     power(t.linf_of_edge),
-                     power(t.l2_of_seconds),
-                     power(t.linf_of_seconds));
+      fmt::format_to(to, "  {:<22} {:>8} {:>8} {:>10} {:>10}\n", name, power(t.l2_of_edge),
+                     power(t.linf_of_edge), power(t.l2_of_seconds), power(t.linf_of_seconds));
   }
   return out;
 }
@@ -191,35 +156,14 @@ std::string csv(const Study& study) {
       fmt::format_to(Text(out),
                      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}"
                      ",{},{},{:016x}\n",
-                     plot::csv_field(r.source),
-                     plot::csv_field(r.target),
-                     plot::csv_field(r.policy),
-                     plot::csv_field(field.name),
-                     r.source_edge,
-                     r.source_tets,
-                     r.targets,
-                     r.counts[0],
-                     r.counts[1],
-                     r.counts[2],
-                     r.counts[3],
-                     field.norms.l2,
-                     field.norms.l2_relative,
-                     field.norms.rms,
-                     field.norms.linf,
-                     field.found.l2,
-                     field.found.l2_relative,
-                     field.found.rms,
-                     field.found.linf,
-                     r.n_candidates,
-                     r.seconds.setup,
-                     r.seconds.broad,
-                     r.seconds.narrow,
-                     r.seconds.report,
-                     r.seconds.transfer(),
-                     r.footprint.bytes_sent,
-                     r.pes,
-                     r.processes,
-                     r.result_hash);
+                     plot::csv_field(r.source), plot::csv_field(r.target),
+                     plot::csv_field(r.policy), plot::csv_field(field.name), r.source_edge,
+                     r.source_tets, r.targets, r.counts[0], r.counts[1], r.counts[2], r.counts[3],
+                     field.norms.l2, field.norms.l2_relative, field.norms.rms, field.norms.linf,
+                     field.found.l2, field.found.l2_relative, field.found.rms, field.found.linf,
+                     r.n_candidates, r.seconds.setup, r.seconds.broad, r.seconds.narrow,
+                     r.seconds.report, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
+                     r.processes, r.result_hash);
   return out;
 }
 
@@ -227,12 +171,8 @@ void prepare_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder, error))
-    fail(ErrorCode::environment,
-         "--study ",
-         folder,
-         ": is no folder and cannot be made one (",
-         error.message(),
-         "); meshes come before --study");
+    fail(ErrorCode::environment, "--study ", folder, ": is no folder and cannot be made one (",
+         error.message(), "); meshes come before --study");
 }
 
 std::string write(const Study& study, const std::string& folder) {
@@ -241,8 +181,7 @@ std::string write(const Study& study, const std::string& folder) {
   plot::write_file(stem + "study.json", json(study));
   bool drawn = plot::write_svg(stem + "error_time.svg", chart_of(study, Against::seconds));
   drawn = plot::write_svg(stem + "error_edge.svg", chart_of(study, Against::edge)) && drawn;
-  return fmt::format("written: {}study.csv, study.json, error_time and error_edge as {}\n",
-                     stem,
+  return fmt::format("written: {}study.csv, study.json, error_time and error_edge as {}\n", stem,
                      drawn ? "svg and csv" : "csv");
 }
 

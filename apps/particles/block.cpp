@@ -21,8 +21,7 @@ double cpu_seconds() {
 bool explodes_within(const Scene& scene, const Stretch& stretch) {
   const double begin = (stretch.first - 1) * scene.dt,
                end = (stretch.first + stretch.n_steps + 1) * scene.dt;
-  return std::any_of(scene.rules.explosions.begin(),
-                     scene.rules.explosions.end(),
+  return std::any_of(scene.rules.explosions.begin(), scene.rules.explosions.end(),
                      [=](const tess::dn::Explosion& explosion) {
                        return explosion.start < end && explosion.start + explosion.duration > begin;
                      });
@@ -94,9 +93,7 @@ void Block::advance(std::size_t species, const Stretch& stretch, Station& statio
   station.spent(cpu_seconds() - begin);
 }
 
-void Block::advance_audited(Flock& flock,
-                            std::size_t species,
-                            const Stretch& stretch,
+void Block::advance_audited(Flock& flock, std::size_t species, const Stretch& stretch,
                             Station& station) {
   const Stage& stage = station.stage();
   const double dt = stage.scene.dt;

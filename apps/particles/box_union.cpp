@@ -28,13 +28,8 @@ class Cells {
       n_cells *= static_cast<double>(at.size());
     }
     if (n_cells > most)
-      tess::fail(tess::ErrorCode::bad_value,
-                 boxes.size(),
-                 " boxes cut one another into ",
-                 n_cells,
-                 " cells, above ",
-                 most,
-                 "; join some of them, or give a file of the surface");
+      tess::fail(tess::ErrorCode::bad_value, boxes.size(), " boxes cut one another into ", n_cells,
+                 " cells, above ", most, "; join some of them, or give a file of the surface");
     filled_.assign(static_cast<std::size_t>(n_cells), 0);
     for (const Bounds& box : boxes) {
       const Cell low = cell_of(box.low), high = cell_of(box.high);

@@ -51,9 +51,8 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
     for (std::size_t i = 0; i < stage.fields.size(); ++i)
       save_field(stage.fields[i].field(), (in / field_file_name(i)).string());
   if (const auto& slice = scene.outputs.slice)
-    plot::write_file(
-        (in / "field.svg").string(),
-        slice_svg(flat_field(stage.fields[slice->object]), scene.outputs.axis, slice->at));
+    plot::write_file((in / "field.svg").string(), slice_svg(flat_field(stage.fields[slice->object]),
+                                                            scene.outputs.axis, slice->at));
   if (result.trajectories.empty()) return;
   write_series(folder, result.trajectories, scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));
@@ -93,8 +92,7 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
 int drive(tess::Setup& setup, const DriverOptions& options) {
   if (!options.resolutions.empty() && !options.study)
     tess::fail(
-        tess::ErrorCode::bad_argument,
-        "--resolutions ",
+        tess::ErrorCode::bad_argument, "--resolutions ",
         fmt::format("{}", fmt::join(options.resolutions, ",")),
         ": is for a study; add --study, or leave it out (a scene has objects[i].resolution)");
   Problem problem{options, read_scene(options.scene), {}};
@@ -111,8 +109,7 @@ int drive(tess::Setup& setup, const DriverOptions& options) {
   const tess::Machine& machine = *setup.machine;
   problem.report = {machine.describe(), machine.n_pes(), machine.n_processes(), options.run};
   if (options.study && problem.scene.objects.empty())
-    tess::fail(tess::ErrorCode::bad_value,
-               options.scene,
+    tess::fail(tess::ErrorCode::bad_value, options.scene,
                ": objects: is empty; --study needs an object to bounce off");
   check_memory(problem.scene, machine.n_processes());
   prepare_outputs(problem.scene, options);

@@ -35,9 +35,7 @@ Hit first_hit(const Surface& surface, Vec3 start, Vec3 along) {
 
 }  // namespace
 
-std::vector<Bounce> exact_bounces(const Surface& surface,
-                                  std::size_t n,
-                                  double from,
+std::vector<Bounce> exact_bounces(const Surface& surface, std::size_t n, double from,
                                   std::uint64_t seed) {
   constexpr double steepest = std::numbers::pi / 3;
   tess::Random random(seed);

@@ -21,16 +21,12 @@ struct Bounce {
 /// `from` at up to 60 degrees off the normal, in one way for a seed. A way that meets another
 /// triangle on the front side first bounces there; those that come from behind are left out, so
 /// there may be fewer than n.
-[[nodiscard]] std::vector<Bounce> exact_bounces(const tess::dn::Surface& surface,
-                                                std::size_t n,
-                                                double from,
-                                                std::uint64_t seed);
+[[nodiscard]] std::vector<Bounce> exact_bounces(const tess::dn::Surface& surface, std::size_t n,
+                                                double from, std::uint64_t seed);
 
 /// Where a bounce happened, by its two straight ways: begun at start, ended at `place` with
 /// `velocity` after `time`. The time at which the ways come closest.
-[[nodiscard]] double bounce_time(const Bounce& bounce,
-                                 tess::dn::Vec3 place,
-                                 tess::dn::Vec3 velocity,
-                                 double time);
+[[nodiscard]] double bounce_time(const Bounce& bounce, tess::dn::Vec3 place,
+                                 tess::dn::Vec3 velocity, double time);
 
 }  // namespace particles

@@ -43,8 +43,8 @@ Flight exact_drag(const Bvh& tree, const Flight& start, const SurfaceDrag& drag,
   return {start.position + way * along, speed * along};
 }
 
-Flight exact_flow(
-    const Bvh& tree, const Flight& start, const SurfaceFlow& flow, double time, int n_steps) {
+Flight exact_flow(const Bvh& tree, const Flight& start, const SurfaceFlow& flow, double time,
+                  int n_steps) {
   Flight now = start;
   const double step = time / n_steps;
   for (int i = 0; i < n_steps; ++i) {

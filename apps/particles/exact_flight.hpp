@@ -14,16 +14,11 @@ struct Flight {
 };
 
 /// After `time`, slowed down by the drag, which is linear, nearer than its threshold.
-[[nodiscard]] Flight exact_drag(const tess::dn::Bvh& tree,
-                                const Flight& start,
-                                const tess::dn::SurfaceDrag& drag,
-                                double time);
+[[nodiscard]] Flight exact_drag(const tess::dn::Bvh& tree, const Flight& start,
+                                const tess::dn::SurfaceDrag& drag, double time);
 
 /// After `time`, turned by the flow; its error falls with the square of n_steps.
-[[nodiscard]] Flight exact_flow(const tess::dn::Bvh& tree,
-                                const Flight& start,
-                                const tess::dn::SurfaceFlow& flow,
-                                double time,
-                                int n_steps);
+[[nodiscard]] Flight exact_flow(const tess::dn::Bvh& tree, const Flight& start,
+                                const tess::dn::SurfaceFlow& flow, double time, int n_steps);
 
 }  // namespace particles

@@ -10,8 +10,7 @@ namespace particles {
 namespace {
 
 // In the order of BalanceWhen.
-constexpr std::array when_texts{"a round at each exchange of particles",
-                                "rounds beside the work",
+constexpr std::array when_texts{"a round at each exchange of particles", "rounds beside the work",
                                 "a round at an exchange of particles where it is worth it"};
 
 /// "rules, the picture (outputs.slice)", or nothing.
@@ -35,20 +34,16 @@ std::string explanation_of_fields(const Scene& scene, const DriverOptions& optio
   };
   const bool any = !scene.objects.empty(), asked = any && needs_field(scene.rules);
   line("distances", who_asks(scene, asked));
-  line("normals",
-       who_asks(scene,
-                asked && needed_content(scene.rules) == tess::dn::Content::distance_and_normal));
+  line("normals", who_asks(scene, asked && needed_content(scene.rules) ==
+                                               tess::dn::Content::distance_and_normal));
   if (any && builds_fields(scene)) {
     const auto n_read =
-        std::count_if(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
-          return !object.field.empty();
-        });
+        std::count_if(scene.objects.begin(), scene.objects.end(),
+                      [](const SceneObject& object) { return !object.field.empty(); });
     out += fmt::format("  fields: {} built, {} read from files\n",
-                       scene.objects.size() - static_cast<std::size_t>(n_read),
-                       n_read);
+                       scene.objects.size() - static_cast<std::size_t>(n_read), n_read);
     out += scene.compression ? fmt::format("  compression: used, within {} cells and {} degrees\n",
-                                           scene.compression->cells,
-                                           scene.compression->degrees)
+                                           scene.compression->cells, scene.compression->degrees)
                              : "  compression: left out, flat fields\n";
     if (!scene.compression && !options.json.empty())
       out += "  compressed copies: made after the run, for their size in the --json file\n";
@@ -72,21 +67,17 @@ std::string explanation(const Scene& scene, const DriverOptions& options) {
   for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
   out += explanation_of_fields(scene, options);
   const auto count = [&scene](bool (tess::dn::Frame::*holds)() const) {
-    return std::count_if(scene.objects.begin(),
-                         scene.objects.end(),
+    return std::count_if(scene.objects.begin(), scene.objects.end(),
                          [holds](const SceneObject& object) { return (object.frame.*holds)(); });
   };
-  out += fmt::format("  objects: {}, of which {} move, {} of these grow\n",
-                     scene.objects.size(),
-                     count(&tess::dn::Frame::is_moving),
-                     count(&tess::dn::Frame::is_growing));
+  out += fmt::format("  objects: {}, of which {} move, {} of these grow\n", scene.objects.size(),
+                     count(&tess::dn::Frame::is_moving), count(&tess::dn::Frame::is_growing));
   const std::size_t n_species = species_of(scene).size();
   out += fmt::format("  step loops: {}, one for each mass\n", n_species);
   out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"
                            : "  looking at each step for particles that tunnel: left out\n";
   const auto& balance = options.run.balance;
-  out += balance ? fmt::format("  balancer: used, {}, {}\n",
-                               balance->strategy,
+  out += balance ? fmt::format("  balancer: used, {}, {}\n", balance->strategy,
                                when_texts[static_cast<std::size_t>(balance->when)])
                  : "  balancer: left out, blocks stay and no load is measured\n";
   if (scene.outputs.trajectories == 0) out += "  trajectories: left out\n";

@@ -42,8 +42,7 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
     field_ = load_field(object.field);
     if (content == Content::distance_and_normal && field_.normal.empty())
       tess::fail(
-          tess::ErrorCode::bad_file,
-          object.field,
+          tess::ErrorCode::bad_file, object.field,
           ": holds no normals, which rules, pictures or files of this scene ask for; take one that "
           "outputs.fields wrote");
     return;

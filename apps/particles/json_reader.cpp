@@ -50,10 +50,7 @@ json parse(const std::string& text, const std::string& name) {
     const bool opens =
         event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
     if (opens && depth >= deepest)
-      fail(ErrorCode::bad_file,
-           name,
-           ": is nested deeper than ",
-           deepest,
+      fail(ErrorCode::bad_file, name, ": is nested deeper than ", deepest,
            " lists and objects, and no key needs that; close them");
     if (event == json::parse_event_t::object_start) open.emplace_back();
     if (event == json::parse_event_t::object_end) open.pop_back();
@@ -173,12 +170,8 @@ Keys Node::keys(std::initializer_list<std::string_view> known) const {
   if (!at(value_).is_object()) refuse("is not an object with the keys " + listed(known));
   for (const auto& [key, value] : at(value_).items())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      fail(ErrorCode::bad_value,
-           file_,
-           ": ",
-           below(place_, shown_text(key)),
-           ": unknown key; allowed here: ",
-           listed(known));
+      fail(ErrorCode::bad_value, file_, ": ", below(place_, shown_text(key)),
+           ": unknown key; allowed here: ", listed(known));
   return Keys(*this);
 }
 
@@ -192,11 +185,7 @@ Node Keys::operator[](std::string_view key) const {
 
 Node Keys::need(std::string_view key, std::string_view what) const {
   if (!has(key))
-    fail(ErrorCode::bad_value,
-         node_.file_,
-         ": ",
-         below(node_.place_, key),
-         ": is missing; give ",
+    fail(ErrorCode::bad_value, node_.file_, ": ", below(node_.place_, key), ": is missing; give ",
          what);
   return (*this)[key];
 }

@@ -24,29 +24,25 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");
   line.option("--steps", options.steps, "steps instead of the scene's").between(0, 1'000'000'000);
   line.option("--json", options.json, "write the result as JSON");
-  line.option(
-      "--out", options.out, "folder for trajectories, pictures, files of fields and the study");
+  line.option("--out", options.out,
+              "folder for trajectories, pictures, files of fields and the study");
   line.flag("--explain", options.explain, "say what this scene uses and what it left out");
-  line.flag(
-      "--study", options.study, "error against run time of every choice, on the first object");
-  line.option("--resolutions",
-              options.resolutions,
+  line.flag("--study", options.study,
+            "error against run time of every choice, on the first object");
+  line.option("--resolutions", options.resolutions,
               "voxels an axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
               "16,32,64)")
       .separated_by(',')
       .between(4, 1024);
-  line.flag("--compressed",
-            options.compressed,
+  line.flag("--compressed", options.compressed,
             "steps look up in compressed fields (as the scene's key compression)");
   std::string balance;
-  line.option("--balance",
-              balance,
+  line.option("--balance", balance,
               "blocks migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
               "strategies: " +
                   fmt::format("{}", fmt::join(tess::balance::strategy_names(), ", ")));
   bool stability = false;
-  line.flag("--stability",
-            stability,
+  line.flag("--stability", stability,
             "stiff and extreme cases of every rule; exit code 1 if one fails. Needs no SCENE");
   bool help_scene = false;
   line.flag("--help-scene", help_scene, "describe the keys of a scene file");

@@ -21,18 +21,8 @@ class Needs {
   void add(double bytes, const std::string& place, const Value& value, const char* what) {
     wanted_ += bytes;
     if (wanted_ <= there_) return;
-    tess::fail(tess::ErrorCode::environment,
-               scene_.name,
-               ": ",
-               place,
-               ": ",
-               value,
-               " ",
-               what,
-               " ",
-               wanted_ / 1e9,
-               " GB large, and this process may have ",
-               there_ / 1e9,
+    tess::fail(tess::ErrorCode::environment, scene_.name, ": ", place, ": ", value, " ", what, " ",
+               wanted_ / 1e9, " GB large, and this process may have ", there_ / 1e9,
                " GB; ask for less");
   }
 
@@ -44,8 +34,7 @@ class Needs {
       const double bytes_per_voxel = blurs ? tess::dn::bytes_per_voxel_blurring : 8;
       add(bytes_per_voxel * static_cast<double>(object.grid.size()),
           tess::text("objects[", i, "].", object.field.empty() ? "resolution" : "field"),
-          object.grid.n[0],
-          "voxels along an axis make the fields");
+          object.grid.n[0], "voxels along an axis make the fields");
     }
   }
 
@@ -73,20 +62,15 @@ void check_memory(const Scene& scene, int n_processes) {
   const Outputs& outputs = scene.outputs;
   Needs needs(scene);
   needs.add_fields();
-  needs.add(bytes_per_particle * n / n_processes,
-            "emitters",
-            scene.n_particles(),
+  needs.add(bytes_per_particle * n / n_processes, "emitters", scene.n_particles(),
             n_processes == 1 ? "particles make the run"
                              : "particles, shared by the processes, make the run");
-  needs.add(n_times(scene, outputs.statistics) * sizeof(Measured),
-            "outputs.statistics",
-            outputs.statistics,
-            "(a row every so many steps) makes the run");
+  needs.add(n_times(scene, outputs.statistics) * sizeof(Measured), "outputs.statistics",
+            outputs.statistics, "(a row every so many steps) makes the run");
   if (outputs.trajectories > 0)
     needs.add(n_times(scene, outputs.trajectories) * bytes_per_sample *
                   std::min(n, static_cast<double>(outputs.traced)),
-              "outputs.trajectories",
-              outputs.trajectories,
+              "outputs.trajectories", outputs.trajectories,
               "(positions every so many steps) makes the run");
 }
 

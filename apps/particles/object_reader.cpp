@@ -40,15 +40,14 @@ Frame read_transform(const Node& node) {
 
 /// Grid, thickness and blur from how fast the particles are and how fine the object is. Where
 /// impacts are swept, two cells do if a whole step is too much for a field.
-void choose(
-    const Node& node, const Bounds& box, double dt, const Rules& rules, SceneObject& object) {
+void choose(const Node& node, const Bounds& box, double dt, const Rules& rules,
+            SceneObject& object) {
   constexpr std::size_t most_voxels = std::size_t{512} * 512 * 512;
   const Keys keys = node.keys({"max_speed", "detail"});
   const Demand demand{
       keys.need("max_speed", "the largest speed relative to the surface").number(positive) /
           object.frame.scale,
-      dt,
-      keys.need("detail", "the size of the smallest feature").number(positive)};
+      dt, keys.need("detail", "the size of the smallest feature").number(positive)};
   const auto plan = [&](Coverage coverage) {
     const FieldPlan chosen = choose_plan(box, demand, coverage, most_voxels);
     object.grid = chosen.grid, object.thickness = chosen.thickness, object.blur = chosen.blur;
@@ -86,8 +85,7 @@ void give_field(const Keys& keys, const Node& node, const Bounds& box, SceneObje
   }
   if (object.thickness < 2 * object.grid.cell)
     (keys.has("thickness") ? keys["thickness"] : node)
-        .refuse(tess::text("is thinner than two cells of ",
-                           object.grid.cell,
+        .refuse(tess::text("is thinner than two cells of ", object.grid.cell,
                            "; raise the thickness or the resolution"));
   if (keys.has("blur")) object.blur = read_blur(keys["blur"], object.method);
 }
@@ -112,20 +110,10 @@ std::uint64_t read_field(const Keys& keys, const std::string& folder, SceneObjec
 
 }  // namespace
 
-SceneObject read_object(const Node& node,
-                        const std::string& folder,
-                        double dt,
+SceneObject read_object(const Node& node, const std::string& folder, double dt,
                         const Rules& rules) {
-  const Keys keys = node.keys({"shape",
-                               "field",
-                               "resolution",
-                               "thickness",
-                               "method",
-                               "sides",
-                               "blur",
-                               "transform",
-                               "motion",
-                               "choose"});
+  const Keys keys = node.keys({"shape", "field", "resolution", "thickness", "method", "sides",
+                               "blur", "transform", "motion", "choose"});
   SceneObject object;
   const Node shape = keys.need("shape", "one of sphere, box, boxes, torus, cylinder, plate, file");
   object.surface = read_shape(shape, folder, object.name);

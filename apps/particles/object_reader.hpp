@@ -10,9 +10,7 @@ namespace particles {
 
 /// `folder`: where relative paths of files start. The step and the rules say what a field has to
 /// do. Throws tess::Error for what is wrong.
-[[nodiscard]] SceneObject read_object(const Node& node,
-                                      const std::string& folder,
-                                      double dt,
+[[nodiscard]] SceneObject read_object(const Node& node, const std::string& folder, double dt,
                                       const tess::dn::Rules& rules);
 
 }  // namespace particles

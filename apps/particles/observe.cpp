@@ -31,11 +31,8 @@ double least_distance(const std::vector<Object>& objects, Vec3 p) {
 
 }  // namespace
 
-void measure(const Stage& stage,
-             const std::vector<Object>& objects,
-             const Flock& flock,
-             std::size_t species,
-             Measured& into) {
+void measure(const Stage& stage, const std::vector<Object>& objects, const Flock& flock,
+             std::size_t species, Measured& into) {
   const double mass = stage.masses[species];
   const auto& gravity = stage.scene.rules.gravity;
   const Vec3 down = gravity ? gravity->acceleration : Vec3{};
@@ -69,11 +66,9 @@ void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into) {
       into.push_back({flock.ids[p], flock.motion.position(p), flock.motion.velocity(p)});
 }
 
-void note_tunnelled(const Stage& stage,
-                    const std::vector<Object>& at_begin,
+void note_tunnelled(const Stage& stage, const std::vector<Object>& at_begin,
                     const tess::dn::Particles& before,
-                    std::span<const tess::dn::Waypoint> waypoints,
-                    Flock& flock) {
+                    std::span<const tess::dn::Waypoint> waypoints, Flock& flock) {
   const double depth = greatest_depth(stage.scene.rules);
   std::vector<tess::dn::Leg> legs;
   for (std::size_t o = 0; o < at_begin.size(); ++o) {

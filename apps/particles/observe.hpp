@@ -11,11 +11,8 @@
 namespace particles {
 
 /// Adds what the particles of a species show, the objects standing as given.
-void measure(const Stage& stage,
-             const std::vector<tess::dn::Object>& objects,
-             const Flock& flock,
-             std::size_t species,
-             Measured& into);
+void measure(const Stage& stage, const std::vector<tess::dn::Object>& objects, const Flock& flock,
+             std::size_t species, Measured& into);
 
 /// Appends the traced particles of the flock.
 void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into);
@@ -25,11 +22,9 @@ void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into);
 
 /// Marks particles whose last step, from `before` over `waypoints` to where they are, went through
 /// a surface of the objects, which are as when it began.
-void note_tunnelled(const Stage& stage,
-                    const std::vector<tess::dn::Object>& at_begin,
+void note_tunnelled(const Stage& stage, const std::vector<tess::dn::Object>& at_begin,
                     const tess::dn::Particles& before,
-                    std::span<const tess::dn::Waypoint> waypoints,
-                    Flock& flock);
+                    std::span<const tess::dn::Waypoint> waypoints, Flock& flock);
 
 /// Marks particles that began outside of an object and now are deep below its surface.
 /// Fewer than note_tunnelled() finds, who looks at every step, but at no cost while steps run.

@@ -14,14 +14,8 @@ namespace fs = std::filesystem;
 
 void require_in_folder(const std::string& folder, const fs::path& file) {
   if (const std::string why = plot::hindrance(file); !why.empty())
-    tess::fail(tess::ErrorCode::environment,
-               "--out ",
-               folder,
-               ": ",
-               file.string(),
-               " cannot be written: ",
-               why,
-               "; move that away, or give another folder");
+    tess::fail(tess::ErrorCode::environment, "--out ", folder, ": ", file.string(),
+               " cannot be written: ", why, "; move that away, or give another folder");
 }
 
 /// Files that are there already and whose names begin so will be written again.

@@ -34,9 +34,7 @@ struct Audited {
 /// - of one side with thin walls, which have no place so deep: where it leaves the body
 ///   through a triangle that looks the opposite way from the one it came in by, in this step or
 ///   before, or crosses an open sheet of it.
-[[nodiscard]] Mark mark_after(Mark mark,
-                              const Audited& audited,
-                              tess::dn::Vec3 from,
+[[nodiscard]] Mark mark_after(Mark mark, const Audited& audited, tess::dn::Vec3 from,
                               tess::dn::Vec3 to);
 
 }  // namespace particles

@@ -26,8 +26,7 @@ class Canvas {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
         "width=\"{0:.0f}\" "
         "height=\"{1:.0f}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-        pixels,
-        height * scale_);
+        pixels, height * scale_);
   }
   [[nodiscard]] double x(double right) const { return (right - left_) * scale_; }
   [[nodiscard]] double y(double up) const { return (top_ - up) * scale_; }
@@ -39,12 +38,9 @@ class Canvas {
   /// Boxes of one fill are one path.
   void box(double right, double up, double width, double height, const std::string& fill) {
     const double overlap = 0.2;  // else their seams show
-    boxes_[fill] += fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}",
-                                x(right),
-                                y(up + height),
-                                width * scale_ + overlap,
-                                height * scale_ + overlap,
-                                -width * scale_ - overlap);
+    boxes_[fill] +=
+        fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}", x(right), y(up + height),
+                    width * scale_ + overlap, height * scale_ + overlap, -width * scale_ - overlap);
   }
   [[nodiscard]] std::string done() {
     flush();
@@ -78,13 +74,8 @@ void draw_arrow(Canvas& canvas, double right, double up, double along, double ac
                tip_y = canvas.y(up + across);
   canvas.raw(fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x, y, tip_x, tip_y));
   const double dx = 0.3 * (tip_x - x), dy = 0.3 * (tip_y - y);
-  canvas.raw(fmt::format("l{:.1f} {:.1f}m{:.1f} {:.1f}l{:.1f} {:.1f}",
-                         -dx - dy / 2,
-                         -dy + dx / 2,
-                         dx + dy / 2,
-                         dy - dx / 2,
-                         -dx + dy / 2,
-                         -dy - dx / 2));
+  canvas.raw(fmt::format("l{:.1f} {:.1f}m{:.1f} {:.1f}l{:.1f} {:.1f}", -dx - dy / 2, -dy + dx / 2,
+                         dx + dy / 2, dy - dx / 2, -dx + dy / 2, -dy - dx / 2));
 }
 
 /// The shadow of a surface as rows of a raster: row -> pairs of first and last filled column.
@@ -136,9 +127,7 @@ class Shadow {
         if (i == first) continue;
         canvas.box(left_ + cell_ * static_cast<double>(first),
                    bottom_ + cell_ * static_cast<double>(row),
-                   cell_ * static_cast<double>(i - first),
-                   cell_,
-                   "#bbb");
+                   cell_ * static_cast<double>(i - first), cell_, "#bbb");
       }
   }
   /// Its edge, not where the window cuts it.
@@ -175,13 +164,9 @@ std::string slice_svg(const Field& field, int axis, double at) {
   const auto count = [&](int of) { return grid.n[static_cast<std::size_t>(of)]; };
   const double layer = std::round((at - component(grid.origin, axis)) / grid.cell);
   if (!(layer >= 0 && layer < count(axis)))
-    tess::fail(tess::ErrorCode::bad_value,
-               "outputs.slice.at: ",
-               at,
-               " is outside of the field, which reaches from ",
-               component(grid.origin, axis),
-               " to ",
-               component(grid.origin, axis) + grid.cell * (count(axis) - 1));
+    tess::fail(tess::ErrorCode::bad_value, "outputs.slice.at: ", at,
+               " is outside of the field, which reaches from ", component(grid.origin, axis),
+               " to ", component(grid.origin, axis) + grid.cell * (count(axis) - 1));
   const auto index = [&](int i, int j) {
     std::array<int, 3> voxel{};
     voxel[static_cast<std::size_t>(axis)] = static_cast<int>(layer);
@@ -200,11 +185,8 @@ std::string slice_svg(const Field& field, int axis, double at) {
       while (i < count(view.right) &&
              shade(static_cast<double>(field.distance[index(i, j)]), field.thickness) == fill)
         ++i;
-      canvas.box(left + grid.cell * first,
-                 bottom + grid.cell * j,
-                 grid.cell * (i - first),
-                 grid.cell,
-                 fill);
+      canvas.box(left + grid.cell * first, bottom + grid.cell * j, grid.cell * (i - first),
+                 grid.cell, fill);
     }
   if (field.normal.empty()) return canvas.done();
   constexpr int arrows = 20;
@@ -216,11 +198,8 @@ std::string slice_svg(const Field& field, int axis, double at) {
       const Vec3 normal{n.x, n.y, n.z};
       const double length = 0.8 * stride * grid.cell;
       if (normal == Vec3{}) continue;
-      draw_arrow(canvas,
-                 left + grid.cell * (i + 0.5),
-                 bottom + grid.cell * (j + 0.5),
-                 length * component(normal, view.right),
-                 length * component(normal, view.up));
+      draw_arrow(canvas, left + grid.cell * (i + 0.5), bottom + grid.cell * (j + 0.5),
+                 length * component(normal, view.right), length * component(normal, view.up));
     }
   canvas.raw("\"/>\n");
   return canvas.done();
@@ -270,10 +249,8 @@ std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots
       Path& path = paths[sample.id];
       const bool seen = right > 0 && right < width && up > 0 && up < height;
       if (seen)
-        path.drawn += fmt::format("{}{:.1f} {:.1f}",
-                                  path.goes_on ? "L" : "M",
-                                  canvas.x(right + left - margin),
-                                  canvas.y(up + bottom - margin));
+        path.drawn += fmt::format("{}{:.1f} {:.1f}", path.goes_on ? "L" : "M",
+                                  canvas.x(right + left - margin), canvas.y(up + bottom - margin));
       path.goes_on = seen;
     }
   canvas.raw("<g fill=\"none\" stroke=\"#04a\" stroke-width=\"0.8\" stroke-opacity=\"0.7\">\n");

@@ -59,17 +59,8 @@ std::string row_text(const Row& row, double dt) {
   const Measured& m = row.measured;
   return fmt::format(
       "  {:>9} {:>10.4g} {:>9} {:>7} {:>13.6e} {:>13.6e} {:>10.4g} {:>10} {:>8} {:>9} {:>9}\n",
-      row.step,
-      row.step * dt,
-      m.particles,
-      m.blocks,
-      m.kinetic.total(),
-      m.energy(),
-      m.fastest,
-      distance_text(m.nearest),
-      m.inside,
-      m.tunnelled,
-      m.nonfinite);
+      row.step, row.step * dt, m.particles, m.blocks, m.kinetic.total(), m.energy(), m.fastest,
+      distance_text(m.nearest), m.inside, m.tunnelled, m.nonfinite);
 }
 
 nlohmann::ordered_json json_of(const Row& row, double dt) {
@@ -123,8 +114,8 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
 
 std::string table(const Scene& scene, const RunResult& result, const Report& report) {
   const FieldCost fields = total(result.fields);
-  std::string out = fmt::format(
-      "{}: {} particles, {} steps of {}\n", scene.name, scene.n_particles(), scene.steps, scene.dt);
+  std::string out = fmt::format("{}: {} particles, {} steps of {}\n", scene.name,
+                                scene.n_particles(), scene.steps, scene.dt);
   const auto line = [&out](const char* name, const std::string& value) {
     out += fmt::format("  {:<10} {}\n", name, value);
   };
@@ -132,9 +123,7 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
   if (!result.fields.empty())
     line("fields",
          fmt::format("{} of method {}, {} cells, {:.3f} MB{}, made in {:.3f} s",
-                     result.fields.size(),
-                     method_of(scene),
-                     fields.cells,
+                     result.fields.size(), method_of(scene), fields.cells,
                      static_cast<double>(fields.bytes) / 1e6,
                      scene.compression ? fmt::format(" compressed to {:.3f} MB",
                                                      static_cast<double>(fields.bytes_used) / 1e6)
@@ -146,41 +135,24 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
     if (!scene.rules.impact || object.walls.least >= needed) continue;
     line("thin",
          fmt::format("{} % of objects[{}] is thinner than {:.3g}: particles may pass there",
-                     share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1",
-                     i,
-                     needed));
+                     share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1", i, needed));
   }
-  line("blocks",
-       fmt::format(
-           "of {:.4g}, particles change them every {} steps", result.block, result.exchange));
+  line("blocks", fmt::format("of {:.4g}, particles change them every {} steps", result.block,
+                             result.exchange));
   out += fmt::format("  {:>9} {:>10} {:>9} {:>7} {:>13} {:>13} {:>10} {:>10} {:>8} {:>9} {:>9}\n",
-                     "step",
-                     "time",
-                     "particles",
-                     "blocks",
-                     "kinetic",
-                     "energy",
-                     "fastest",
-                     "nearest",
-                     "inside",
-                     "tunnelled",
-                     "nonfinite");
+                     "step", "time", "particles", "blocks", "kinetic", "energy", "fastest",
+                     "nearest", "inside", "tunnelled", "nonfinite");
   for (const Row& row : result.rows) out += row_text(row, scene.dt);
   line("time",
        fmt::format("{:.4f} s, {:.3f} ns a particle and step, {:.3f} ns of it in the rules{}",
-                   result.seconds,
-                   per_particle_step(scene, result.seconds),
+                   result.seconds, per_particle_step(scene, result.seconds),
                    per_particle_step(scene, result.loop_seconds),
                    result.audited ? "; each step looked at" : ""));
   if (const auto& balance = report.run.balance) {
     const Balanced of(result.rounds);
     line("balance",
-         fmt::format("{}: {} rounds moved {} blocks, {:.3f} MB, in {:.4f} s",
-                     balance->strategy,
-                     of.rounds,
-                     of.moves,
-                     static_cast<double>(of.bytes) / 1e6,
-                     of.seconds));
+         fmt::format("{}: {} rounds moved {} blocks, {:.3f} MB, in {:.4f} s", balance->strategy,
+                     of.rounds, of.moves, static_cast<double>(of.bytes) / 1e6, of.seconds));
   }
   line("result", fmt::format("{:016x}", result.rows.back().measured.hash));
   return out;

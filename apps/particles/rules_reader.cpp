@@ -61,15 +61,8 @@ Explosion read_explosion(const Node& node) {
 }  // namespace
 
 Rules read_rules(const Node& node) {
-  const Keys keys = node.keys({"look_up",
-                               "spring",
-                               "impact",
-                               "surface_drag",
-                               "surface_flow",
-                               "gravity",
-                               "wind",
-                               "air_drag",
-                               "explosions"});
+  const Keys keys = node.keys({"look_up", "spring", "impact", "surface_drag", "surface_flow",
+                               "gravity", "wind", "air_drag", "explosions"});
   Rules rules;
   if (keys.has("look_up"))
     rules.look_up = static_cast<LookUp>(keys["look_up"].word({"nearest", "tangent", "trilinear"}));

@@ -33,14 +33,12 @@ tess::dn::Rules for_mass(tess::dn::Rules rules, double mass) {
 void compress_fields(Scene& scene) {
   if (!scene.compression) scene.compression.emplace();
   if (scene.outputs.fields)
-    tess::fail(tess::ErrorCode::bad_value,
-               scene.name,
+    tess::fail(tess::ErrorCode::bad_value, scene.name,
                ": outputs.fields: true, and the fields are compressed; files hold what was built, "
                "leave out one of the two");
   if (needs_field(scene.rules) && scene.rules.look_up == tess::dn::LookUp::trilinear)
     tess::fail(
-        tess::ErrorCode::bad_value,
-        scene.name,
+        tess::ErrorCode::bad_value, scene.name,
         ": rules.look_up: trilinear cannot ask compressed fields; choose nearest or tangent, "
         "or leave out the compression");
 }

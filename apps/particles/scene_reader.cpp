@@ -56,16 +56,8 @@ void read_region(const Keys& keys, std::string_view kind, std::size_t n_objects,
 }
 
 Emitter read_emitter(const Node& node, std::size_t n_objects) {
-  const Keys keys = node.keys({"count",
-                               "box",
-                               "sphere",
-                               "lattice",
-                               "surface",
-                               "velocity",
-                               "spread",
-                               "outward",
-                               "mass",
-                               "seed"});
+  const Keys keys = node.keys({"count", "box", "sphere", "lattice", "surface", "velocity", "spread",
+                               "outward", "mass", "seed"});
   Emitter emitter;
   const std::string_view kind = keys.one_of({"box", "sphere", "lattice", "surface"});
   read_region(keys, kind, n_objects, emitter);
@@ -144,18 +136,8 @@ void check_units(const Scene& scene, const std::string& file) {
     const SceneObject& object = scene.objects[i];
     const auto check = [&](double value, const char* what) {
       if (value >= least && value <= largest) return;
-      tess::fail(tess::ErrorCode::bad_value,
-                 file,
-                 ": objects[",
-                 i,
-                 "]: ",
-                 what,
-                 " is ",
-                 value,
-                 ", not within ",
-                 least,
-                 " … ",
-                 largest,
+      tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i, "]: ", what, " is ", value,
+                 ", not within ", least, " … ", largest,
                  ", in which fields can be reckoned; choose other units");
     };
     check(object.grid.cell, "a cell of its field");
@@ -175,16 +157,9 @@ void check_offset(const Scene& scene, const std::string& file) {
     const double cell = object.grid.cell * least_scale(scene, object),
                  reach = furthest(scene, object);
     if (cell >= positions_a_cell * unit * reach) continue;
-    tess::fail(tess::ErrorCode::bad_value,
-               file,
-               ": objects[",
-               i,
-               "]: a cell of its field is ",
-               cell,
-               " wide in the world, and positions ",
-               reach,
-               " from the origin, where it gets, are ",
-               unit * reach,
+    tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i, "]: a cell of its field is ",
+               cell, " wide in the world, and positions ", reach,
+               " from the origin, where it gets, are ", unit * reach,
                " apart; move the scene to the origin, or choose a coarser field");
   }
 }
@@ -193,18 +168,9 @@ void check_magnitude(const Scene& scene, const std::string& file) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const double reach = furthest(scene, scene.objects[i]);
     if (reach <= largest_number) continue;
-    tess::fail(tess::ErrorCode::bad_value,
-               file,
-               ": objects[",
-               i,
-               "]: by its shape, transform and motion it reaches ",
-               reach,
-               " from the origin in ",
-               scene.steps,
-               " steps of ",
-               scene.dt,
-               ", beyond ",
-               largest_number,
+    tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i,
+               "]: by its shape, transform and motion it reaches ", reach, " from the origin in ",
+               scene.steps, " steps of ", scene.dt, ", beyond ", largest_number,
                ", the largest that can be reckoned with; choose other units, or a slower motion");
   }
 }
@@ -224,19 +190,11 @@ void check_walls(const Scene& scene, const std::string& file) {
         list[static_cast<std::size_t>(std::min(let_through, static_cast<double>(list.size() - 1)))];
     const double shrink = (wall + kept_off(scene, object)) / (needed + kept_off(scene, object));
     const double resolution = std::ceil((object.grid.n[0] - 1) / shrink) + 1;
-    tess::fail(tess::ErrorCode::bad_value,
-               file,
-               ": objects[",
-               i,
-               "].shape: ",
-               100 * thin,
-               " % of its surface is an open sheet, or a wall thinner than ",
-               needed,
-               ", which a field of ",
-               object.grid.n[0],
+    tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i, "].shape: ", 100 * thin,
+               " % of its surface is an open sheet, or a wall thinner than ", needed,
+               ", which a field of ", object.grid.n[0],
                " voxels needs; particles would pass it: take ",
-               object.field.empty() ? "" : "a field of ",
-               "sides two",
+               object.field.empty() ? "" : "a field of ", "sides two",
                object.method == tess::dn::Method::normals ? " and another method" : "",
                shrink > 0 && resolution <= 1024
                    ? tess::text(", or a resolution of ", resolution, " or more")
@@ -260,41 +218,20 @@ void check_rules(const Scene& scene, const std::string& file) {
     const tess::dn::Frame& frame = object.frame;
     const double least = least_scale(scene, object);
     if (!(least > 0))
-      tess::fail(tess::ErrorCode::bad_value,
-                 file,
-                 ": objects[",
-                 i,
-                 "].motion.scale: ",
-                 frame.scale_rate,
-                 " a second takes the scale from ",
-                 frame.scale,
-                 " to ",
-                 least,
-                 " in ",
-                 scene.steps,
-                 " steps of ",
-                 scene.dt,
+      tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i,
+                 "].motion.scale: ", frame.scale_rate, " a second takes the scale from ",
+                 frame.scale, " to ", least, " in ", scene.steps, " steps of ", scene.dt,
                  "; it must stay above 0");
     const double covered = object.thickness * least,
-                 within = least * tess::dn::covered(object.thickness,
-                                                    object.grid.cell,
-                                                    object.sides,
-                                                    look_up_of(scene.rules));
+                 within = least * tess::dn::covered(object.thickness, object.grid.cell,
+                                                    object.sides, look_up_of(scene.rules));
     if (reach > within)
-      tess::fail(tess::ErrorCode::bad_value,
-                 file,
-                 ": objects[",
-                 i,
-                 "].thickness: ",
-                 object.thickness,
-                 " times scale ",
-                 least,
+      tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i,
+                 "].thickness: ", object.thickness, " times scale ", least,
                  within < covered
                      ? tess::text(", less ", covered - within, " that a sheet keeps off,")
                      : "",
-                 " is below the distance ",
-                 reach,
-                 " at which a rule begins to act");
+                 " is below the distance ", reach, " at which a rule begins to act");
     if (sweeps || !needs_field(scene.rules)) continue;
     const double extent = norm(bounds(object.surface).size());
     const double surface = norm(frame.velocity) +
@@ -305,33 +242,16 @@ void check_rules(const Scene& scene, const std::string& file) {
       const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
                            std::abs(emitter.outward) + surface;
       if (speed * scene.dt > covered)
-        tess::fail(tess::ErrorCode::bad_value,
-                   file,
-                   ": emitters[",
-                   e,
-                   "]: speed ",
-                   speed,
-                   " times dt ",
-                   scene.dt,
-                   " passes the field of objects[",
-                   i,
-                   "], ",
-                   covered,
+        tess::fail(tess::ErrorCode::bad_value, file, ": emitters[", e, "]: speed ", speed,
+                   " times dt ", scene.dt, " passes the field of objects[", i, "], ", covered,
                    " thick, in one step; use impact with sweep, a thicker field or a shorter step");
     }
   }
 }
 
 Scene read(const JsonFile& file, const std::string& name) {
-  const Keys keys = file.root().keys({"dt",
-                                      "steps",
-                                      "block",
-                                      "exchange",
-                                      "compression",
-                                      "objects",
-                                      "emitters",
-                                      "rules",
-                                      "outputs"});
+  const Keys keys = file.root().keys({"dt", "steps", "block", "exchange", "compression", "objects",
+                                      "emitters", "rules", "outputs"});
   constexpr int most = static_cast<int>(most_steps);
   Scene scene;
   scene.name = name;

@@ -60,14 +60,8 @@ void check_magnitude(const Surface& surface) {
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     for (const double at : {surface.vertices[v].x, surface.vertices[v].y, surface.vertices[v].z})
       if (!(std::abs(at) <= largest_number))
-        tess::fail(tess::ErrorCode::bad_mesh,
-                   "vertex ",
-                   v,
-                   " has the coordinate ",
-                   at,
-                   ", beyond ±",
-                   largest_number,
-                   "; choose other units");
+        tess::fail(tess::ErrorCode::bad_mesh, "vertex ", v, " has the coordinate ", at,
+                   ", beyond ±", largest_number, "; choose other units");
 }
 
 /// Whatever is wrong with the file is told with the key that names it.
@@ -127,8 +121,7 @@ Surface read_shape(const Node& node, const std::string& folder, std::string& nam
     int sides = 64;
     cylinder.read("sides", sides, 3, most_rings);
     return make_cylinder(cylinder.need("radius", "the radius").number(positive),
-                         cylinder.need("half_height", "half the height").number(positive),
-                         sides);
+                         cylinder.need("half_height", "half the height").number(positive), sides);
   }
   const Keys torus = of.keys({"major", "minor", "n"});
   int n = 64;

@@ -13,8 +13,7 @@ namespace particles {
 
 /// `folder`: where a relative path of an OBJ file starts; `name` becomes the kind of shape, or the
 /// file. Throws tess::Error for what is wrong.
-[[nodiscard]] tess::dn::Surface read_shape(const Node& node,
-                                           const std::string& folder,
+[[nodiscard]] tess::dn::Surface read_shape(const Node& node, const std::string& folder,
                                            std::string& name);
 
 }  // namespace particles

@@ -132,8 +132,8 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
       tess::Future<std::vector<Sample>> samples;
       stations.broadcast<&Station::give_samples>(samples.callback());
       std::vector<Sample> all = co_await samples;
-      std::sort(
-          all.begin(), all.end(), [](const Sample& a, const Sample& b) { return a.id < b.id; });
+      std::sort(all.begin(), all.end(),
+                [](const Sample& a, const Sample& b) { return a.id < b.id; });
       result.trajectories.push_back({step, std::move(all)});
     }
     if (step == scene.steps) break;

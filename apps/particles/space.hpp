@@ -22,8 +22,7 @@ struct Space {
   }
 
   [[nodiscard]] tess::Index3 block_of(tess::dn::Vec3 p) const {
-    return {on_axis(p.x, first.x, last.x),
-            on_axis(p.y, first.y, last.y),
+    return {on_axis(p.x, first.x, last.x), on_axis(p.y, first.y, last.y),
             on_axis(p.z, first.z, last.z)};
   }
   /// The half-open box of a block: its low corner included.

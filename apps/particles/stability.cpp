@@ -15,25 +15,13 @@ bool print_stability(bool speaks) {
     name_width = std::max(name_width, row.name.size());
     parameter_width = std::max(parameter_width, row.parameter.size());
   }
-  std::string out = fmt::format("{:<{}}  {:<{}} {:>11} {:>11} {:>11}\n",
-                                "case",
-                                name_width,
-                                "parameter",
-                                parameter_width,
-                                "value",
-                                "met",
-                                "tolerance");
+  std::string out = fmt::format("{:<{}}  {:<{}} {:>11} {:>11} {:>11}\n", "case", name_width,
+                                "parameter", parameter_width, "value", "met", "tolerance");
   std::size_t n_failed = 0;
   for (const auto& row : rows) {
     n_failed += static_cast<std::size_t>(!row.ok);
-    out += fmt::format("{:<{}}  {:<{}} {:>11.4g} {:>11.3e} {:>11.3e}{}\n",
-                       row.name,
-                       name_width,
-                       row.parameter,
-                       parameter_width,
-                       row.value,
-                       row.met,
-                       row.tolerance,
+    out += fmt::format("{:<{}}  {:<{}} {:>11.4g} {:>11.3e} {:>11.3e}{}\n", row.name, name_width,
+                       row.parameter, parameter_width, row.value, row.met, row.tolerance,
                        row.ok ? "" : "  FAILED");
   }
   out += fmt::format("{} cases, {} failed\n", rows.size(), n_failed);

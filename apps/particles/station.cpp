@@ -34,12 +34,8 @@ void Station::make(std::size_t field, const Action& action) {
   } catch (const tess::Error& error) {
     tess::fail(error.code(), scene.name, ": objects[", field, "]: ", error.what());
   } catch (const std::bad_alloc&) {
-    tess::fail(tess::ErrorCode::environment,
-               scene.name,
-               ": objects[",
-               field,
-               "]: memory does not hold a field of ",
-               scene.objects[field].grid.n[0],
+    tess::fail(tess::ErrorCode::environment, scene.name, ": objects[", field,
+               "]: memory does not hold a field of ", scene.objects[field].grid.n[0],
                "³ voxels; lower its resolution");
   }
 }

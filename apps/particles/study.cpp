@@ -44,13 +44,9 @@ double look_up_ns(const Crowd& of, const Ask& ask) {
 }
 
 /// Nearest look-ups of a flat and a compressed field, by themselves.
-void study_memory(const Subject& subject,
-                  const StudyOptions& options,
-                  const BuiltField& built,
-                  const CompressedField& compressed,
-                  double seconds_of_compression,
-                  const Samples& samples,
-                  std::vector<StudyRow>& rows) {
+void study_memory(const Subject& subject, const StudyOptions& options, const BuiltField& built,
+                  const CompressedField& compressed, double seconds_of_compression,
+                  const Samples& samples, std::vector<StudyRow>& rows) {
   const Crowd crowded(subject, options.n_timed);
   StudyRow row;
   row.part = "memory";
@@ -66,15 +62,11 @@ void study_memory(const Subject& subject,
     row.ns = look_up_ns(crowded, ask);
     rows.push_back(row);
   };
-  measure("flat",
-          built.field.bytes(),
-          built.seconds,
+  measure("flat", built.field.bytes(), built.seconds,
           [&](const Points& points, const Answers& answers) {
             look_up(built.field, LookUp::nearest, points, answers);
           });
-  measure("compressed",
-          compressed.bytes(),
-          seconds_of_compression,
+  measure("compressed", compressed.bytes(), seconds_of_compression,
           [&](const Points& points, const Answers& answers) {
             nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
           });
@@ -84,12 +76,8 @@ constexpr double step_of_fields = 0.1;
 
 /// Swept impacts in a field as it is stored; errors of distance and normal for flat ones, whose
 /// look-ups of all kinds stand by themselves.
-void study_look_ups(const Subject& subject,
-                    const StudyOptions& options,
-                    const Object& object,
-                    const Samples& samples,
-                    StudyRow row,
-                    std::vector<StudyRow>& rows) {
+void study_look_ups(const Subject& subject, const StudyOptions& options, const Object& object,
+                    const Samples& samples, StudyRow row, std::vector<StudyRow>& rows) {
   for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
     if (object.compressed != nullptr && kind == LookUp::trilinear) continue;
     row.look_up = name_of(kind);
@@ -97,17 +85,14 @@ void study_look_ups(const Subject& subject,
     if (object.compressed == nullptr)
       compare([&](const Points& points,
                   const Answers& answers) { look_up(*object.field, kind, points, answers); },
-              samples,
-              row);
+              samples, row);
     bounce(object, rules, step_of_fields * subject.thickness, subject, row);
     row.ns = ns_of(&object, rules, subject, options.n_timed);
     rows.push_back(row);
   }
 }
 
-void now_at(const StudyOptions& options,
-            const char* phase,
-            std::size_t part = 0,
+void now_at(const StudyOptions& options, const char* phase, std::size_t part = 0,
             std::size_t n_parts = 0) {
   if (options.progress == nullptr) return;
   options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
@@ -115,9 +100,7 @@ void now_at(const StudyOptions& options,
 }
 
 /// Rows of fields, and of memory apart.
-void study_fields(const Subject& subject,
-                  const StudyOptions& options,
-                  std::vector<StudyRow>& rows,
+void study_fields(const Subject& subject, const StudyOptions& options, std::vector<StudyRow>& rows,
                   std::vector<StudyRow>& memory) {
   const Samples samples = samples_of(subject, options.n_samples);
   const std::size_t n_fields = 3 * options.resolutions.size();
@@ -167,9 +150,7 @@ double tree_ns(const Subject& subject, std::size_t n, double reach) {
 
 /// The paper's table 1: what collision costs, beside a tree of boxes that finds the closest
 /// triangle of each particle.
-void study_cost(const Subject& subject,
-                const BuiltField& built,
-                const StudyOptions& options,
+void study_cost(const Subject& subject, const BuiltField& built, const StudyOptions& options,
                 std::vector<StudyRow>& rows) {
   const std::size_t first = rows.size();
   StudyRow row;
@@ -215,18 +196,15 @@ void study_cost(const Subject& subject,
 
 std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options) {
   if (scene.objects.empty())
-    tess::fail(tess::ErrorCode::bad_value,
-               scene.name,
+    tess::fail(tess::ErrorCode::bad_value, scene.name,
                ": objects: is empty; --study needs an object to bounce off");
   const SceneObject& object = scene.objects.front();
   const Subject subject{
-      object,
-      Bvh(object.surface),
+      object, Bvh(object.surface),
       exact_bounces(object.surface, options.n_bounces, 0.8 * object.thickness, 11),
       object.thickness};
   if (subject.bounces.empty())
-    tess::fail(tess::ErrorCode::bad_mesh,
-               scene.name,
+    tess::fail(tess::ErrorCode::bad_mesh, scene.name,
                ": objects[0].shape: no triangle can be met from its front; turn the triangles");
   std::vector<StudyRow> rows, memory;
   study_fields(subject, options, rows, memory);

@@ -60,8 +60,8 @@ void compare(const Ask& ask, const Samples& samples, StudyRow& row) {
       in_degrees * std::sqrt(angles / static_cast<double>(std::max<std::size_t>(n_normals, 1)));
 }
 
-void bounce(
-    const Object& object, const Rules& rules, double dt, const Subject& subject, StudyRow& row) {
+void bounce(const Object& object, const Rules& rules, double dt, const Subject& subject,
+            StudyRow& row) {
   Particles particles;
   for (const Bounce& b : subject.bounces) particles.push_back(b.start, b.velocity);
   const std::array objects{object};
@@ -127,11 +127,8 @@ Particles crowd(const Subject& subject, std::size_t n) {
 namespace {
 
 /// Nanoseconds a particle and step of n_steps steps of dt from one crowd, fastest of three.
-double ns_of_steps(const Object* object,
-                   const Stepper& stepper,
-                   int n_steps,
-                   const Subject& subject,
-                   std::size_t n) {
+double ns_of_steps(const Object* object, const Stepper& stepper, int n_steps,
+                   const Subject& subject, std::size_t n) {
   const Particles start = crowd(subject, n);
   std::vector<Object> objects;
   if (object != nullptr) objects.push_back(*object);
@@ -155,8 +152,8 @@ double ns_of(const Object* object, const Rules& rules, const Subject& subject, s
   return ns_of_steps(object, make_stepper(rules, dt), n_steps, subject, n);
 }
 
-double ns_of_step(
-    const Object& object, const Rules& rules, double dt, const Subject& subject, std::size_t n) {
+double ns_of_step(const Object& object, const Rules& rules, double dt, const Subject& subject,
+                  std::size_t n) {
   return ns_of_steps(&object, make_stepper(rules, dt), 1, subject, n);
 }
 

@@ -38,28 +38,20 @@ using Ask = std::function<void(const tess::dn::Points&, const tess::dn::Answers&
 void compare(const Ask& ask, const Samples& samples, StudyRow& row);
 
 /// Lets all bounces happen step by step, and compares each with the exact one.
-void bounce(const tess::dn::Object& object,
-            const tess::dn::Rules& rules,
-            double dt,
-            const Subject& subject,
-            StudyRow& row);
+void bounce(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
+            const Subject& subject, StudyRow& row);
 
 /// Particles near the surface with velocities of 1 in all directions.
 [[nodiscard]] tess::dn::Particles crowd(const Subject& subject, std::size_t n);
 
 /// Nanoseconds a particle and step of a crowd of n; `object` may be null. Fastest of three, of
 /// steps so short that the crowd stays where it is.
-[[nodiscard]] double ns_of(const tess::dn::Object* object,
-                           const tess::dn::Rules& rules,
-                           const Subject& subject,
-                           std::size_t n);
+[[nodiscard]] double ns_of(const tess::dn::Object* object, const tess::dn::Rules& rules,
+                           const Subject& subject, std::size_t n);
 
 /// The same of one step of `dt`, from one crowd each time.
-[[nodiscard]] double ns_of_step(const tess::dn::Object& object,
-                                const tess::dn::Rules& rules,
-                                double dt,
-                                const Subject& subject,
-                                std::size_t n);
+[[nodiscard]] double ns_of_step(const tess::dn::Object& object, const tess::dn::Rules& rules,
+                                double dt, const Subject& subject, std::size_t n);
 
 /// The fastest of three.
 [[nodiscard]] double fastest_seconds(const std::function<void()>& work);

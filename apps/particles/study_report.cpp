@@ -37,11 +37,8 @@ std::string order(const std::vector<StudyRow>& rows, const StudyRow& row) {
                      std::log(from->distance_error / row.distance_error) / std::log(finer));
 }
 
-void draw(const std::string& path,
-          plot::Chart chart,
-          const std::vector<StudyRow>& rows,
-          const char* part,
-          std::string (*name)(const StudyRow&),
+void draw(const std::string& path, plot::Chart chart, const std::vector<StudyRow>& rows,
+          const char* part, std::string (*name)(const StudyRow&),
           plot::Point (*point)(const StudyRow&)) {
   std::map<std::string, std::size_t> known;
   for (const StudyRow& row : rows) {
@@ -62,29 +59,12 @@ std::string study_table(const std::vector<StudyRow>& rows) {
       "{:<6} {:>5} {:<9} {:<10} {:<9} {:<29} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} {:>9} "
       "{:>7} "
       "{:>9} {:>8} {:>8}\n",
-      "study",
-      "n",
-      "method",
-      "stored",
-      "look-up",
-      "rule",
-      "step",
-      "build s",
-      "MB",
-      "distance",
-      "order",
-      "max",
-      "normal",
-      "depth",
-      "place",
-      "angle",
-      "lost",
-      "ns",
-      "of tree");
+      "study", "n", "method", "stored", "look-up", "rule", "step", "build s", "MB", "distance",
+      "order", "max", "normal", "depth", "place", "angle", "lost", "ns", "of tree");
   for (const StudyRow& row : rows) {
     if (!row.note.empty()) {
-      out += fmt::format(
-          "{:<6} {:>5} {:<9} refused: {}\n", row.part, row.resolution, row.method, row.note);
+      out += fmt::format("{:<6} {:>5} {:<9} refused: {}\n", row.part, row.resolution, row.method,
+                         row.note);
       continue;
     }
     const std::string lost = row.lost < 0 ? "-" : fmt::format("{}/{}", row.lost, row.bounces);
@@ -92,24 +72,14 @@ std::string study_table(const std::vector<StudyRow>& rows) {
         "{:<6} {:>5} {:<9} {:<10} {:<9} {:<29} {:>5} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>9} "
         "{:>9} "
         "{:>7} {:>9} {:>8} {:>8}\n",
-        row.part,
-        row.resolution,
-        row.method,
-        row.stored.empty() ? "-" : row.stored,
-        row.look_up.empty() ? "-" : row.look_up,
-        row.rule,
-        cell(row.step, "{:.3g}"),
+        row.part, row.resolution, row.method, row.stored.empty() ? "-" : row.stored,
+        row.look_up.empty() ? "-" : row.look_up, row.rule, cell(row.step, "{:.3g}"),
         cell(row.build_seconds, "{:.3f}"),
         row.bytes == 0 ? "-" : fmt::format("{:.3f}", static_cast<double>(row.bytes) / 1e6),
-        cell(row.distance_error, "{:.2e}"),
-        row.part == "field" ? order(rows, row) : "-",
-        cell(row.distance_error_max, "{:.2e}"),
-        cell(row.normal_error, "{:.3f}"),
-        cell(row.penetration, "{:.2e}"),
-        cell(row.place_error, "{:.2e}"),
-        cell(row.angle_error, "{:.3f}"),
-        lost,
-        cell(row.ns, "{:.3f}"),
+        cell(row.distance_error, "{:.2e}"), row.part == "field" ? order(rows, row) : "-",
+        cell(row.distance_error_max, "{:.2e}"), cell(row.normal_error, "{:.3f}"),
+        cell(row.penetration, "{:.2e}"), cell(row.place_error, "{:.2e}"),
+        cell(row.angle_error, "{:.3f}"), lost, cell(row.ns, "{:.3f}"),
         cell(row.relative, "{:.4f}"));
   }
   out +=
@@ -128,42 +98,25 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
     return value < 0 ? std::string() : fmt::format("{}", value);
   };
   for (const StudyRow& row : rows)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                       row.part,
-                       row.resolution,
-                       row.method,
-                       row.stored,
-                       row.look_up,
-                       plot::csv_field(row.rule),
-                       number(row.step),
-                       number(row.build_seconds),
-                       row.bytes,
-                       number(row.distance_error),
-                       number(row.distance_error_max),
-                       number(row.normal_error),
-                       number(row.penetration),
-                       number(row.place_error),
-                       number(row.angle_error),
-                       row.lost < 0 ? "" : cell(row.lost),
-                       row.bounces < 0 ? "" : cell(row.bounces),
-                       number(row.ns),
-                       number(row.relative),
-                       plot::csv_field(row.note));
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.part,
+                       row.resolution, row.method, row.stored, row.look_up,
+                       plot::csv_field(row.rule), number(row.step), number(row.build_seconds),
+                       row.bytes, number(row.distance_error), number(row.distance_error_max),
+                       number(row.normal_error), number(row.penetration), number(row.place_error),
+                       number(row.angle_error), row.lost < 0 ? "" : cell(row.lost),
+                       row.bounces < 0 ? "" : cell(row.bounces), number(row.ns),
+                       number(row.relative), plot::csv_field(row.note));
   return out;
 }
 
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows) {
   const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
   plot::write_file(in("study.csv"), study_csv(rows));
-  const auto draw_fields = [&](const char* name,
-                               plot::Chart chart,
+  const auto draw_fields = [&](const char* name, plot::Chart chart,
                                plot::Point (*point)(const StudyRow&)) {
     chart.y_log = true;
     draw(
-        in(name),
-        std::move(chart),
-        rows,
-        "field",
+        in(name), std::move(chart), rows, "field",
         [](const StudyRow& row) {
           return row.method + ", " + (row.stored == "flat" ? "" : row.stored + ", ") + row.look_up;
         },
@@ -200,9 +153,7 @@ void write_study(const std::string& folder, const std::vector<StudyRow>& rows) {
        .y_label = "RMS error of the place",
        .x_log = true,
        .y_log = true},
-      rows,
-      "rule",
-      [](const StudyRow& row) { return row.rule; },
+      rows, "rule", [](const StudyRow& row) { return row.rule; },
       [](const StudyRow& row) {
         return plot::Point{row.step, row.place_error};
       });

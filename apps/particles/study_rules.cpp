@@ -36,12 +36,8 @@ Rules flow_alone(double thickness) {
 }
 
 /// Flights of the same time as the exact ones, in steps of dt.
-void compare_flights(const Object& object,
-                     const Rules& rules,
-                     double dt,
-                     double time,
-                     const std::vector<Flight>& starts,
-                     const std::vector<Flight>& exact,
+void compare_flights(const Object& object, const Rules& rules, double dt, double time,
+                     const std::vector<Flight>& starts, const std::vector<Flight>& exact,
                      StudyRow& row) {
   Particles particles;
   for (const Flight& start : starts) particles.push_back(start.position, start.velocity);
@@ -76,9 +72,7 @@ Rules impact_alone(LookUp look_up, Sweep sweep) {
   return rules;
 }
 
-void study_rules(const Subject& subject,
-                 const StudyOptions& options,
-                 const BuiltField& built,
+void study_rules(const Subject& subject, const StudyOptions& options, const BuiltField& built,
                  std::vector<StudyRow>& rows) {
   constexpr std::array steps{0.02, 0.1, 0.5, 2.0};
   constexpr std::size_t most_flights = 100;

@@ -15,9 +15,7 @@ namespace particles {
 [[nodiscard]] tess::dn::Rules impact_alone(tess::dn::LookUp look_up, tess::dn::Sweep sweep);
 
 /// Rows of all rules and steps in the object's own field.
-void study_rules(const Subject& subject,
-                 const StudyOptions& options,
-                 const BuiltField& built,
+void study_rules(const Subject& subject, const StudyOptions& options, const BuiltField& built,
                  std::vector<StudyRow>& rows);
 
 }  // namespace particles

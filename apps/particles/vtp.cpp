@@ -43,11 +43,7 @@ std::string vtp(const Snapshot& snapshot) {
       "format=\"ascii\">\n{4}</DataArray>\n"
       "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n{5}</DataArray>\n</Verts>\n"
       "</Piece>\n</PolyData>\n</VTKFile>\n",
-      n,
-      ids,
-      vectors(snapshot, &Sample::velocity),
-      vectors(snapshot, &Sample::position),
-      vertices,
+      n, ids, vectors(snapshot, &Sample::velocity), vectors(snapshot, &Sample::position), vertices,
       offsets);
 }
 
@@ -56,18 +52,15 @@ void write_series(const std::string& folder, const std::vector<Snapshot>& snapsh
   std::error_code error;
   std::filesystem::create_directories(pieces, error);
   if (error)
-    tess::fail(tess::ErrorCode::environment,
-               "--out ",
-               pieces.string(),
-               ": cannot be made: ",
-               error.message());
+    tess::fail(tess::ErrorCode::environment, "--out ", pieces.string(),
+               ": cannot be made: ", error.message());
   std::string series =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
   for (const Snapshot& snapshot : snapshots) {
     const std::string name = fmt::format("step_{:09}.vtp", snapshot.step);
     plot::write_file((pieces / name).string(), vtp(snapshot));
-    series += fmt::format(
-        "<DataSet timestep=\"{}\" file=\"trajectories/{}\"/>\n", snapshot.step * dt, name);
+    series += fmt::format("<DataSet timestep=\"{}\" file=\"trajectories/{}\"/>\n",
+                          snapshot.step * dt, name);
   }
   plot::write_file((std::filesystem::path(folder) / "trajectories.pvd").string(),
                    series + "</Collection>\n</VTKFile>\n");

@@ -47,8 +47,8 @@ std::string_view with(Style style) {
 }
 
 /// Told apart by people who do not see all colours (Okabe and Ito 2008), and by their marks.
-constexpr std::array colours{
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999"};
+constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                             "#e69f00", "#56b4e9", "#000000", "#999999"};
 
 /// The points of each series as a block of data, then one plot command that names the blocks: no
 /// file name and no text of ours stands where gnuplot would interpret it.
@@ -89,8 +89,8 @@ std::string script(const Chart& chart) {
       out += "notitle ";
     else
       fmt::format_to(to, "title {} ", gnuplot_string(series.name));
-    fmt::format_to(
-        to, "with {} linecolor rgb '{}'", with(series.style), colours[i % colours.size()]);
+    fmt::format_to(to, "with {} linecolor rgb '{}'", with(series.style),
+                   colours[i % colours.size()]);
     if (series.style == Style::lines_points || series.style == Style::points)
       fmt::format_to(to, " pointtype {} pointsize 0.7", 1 + i % 13);
   }
@@ -114,26 +114,19 @@ bool write_svg(const std::string& path, const Chart& chart) {
     fmt::print(stderr,
                "plot: {}: {} points of {} are not drawn (not finite, or not positive on a "
                "logarithmic axis)\n",
-               path,
-               left_out,
-               data);
+               path, left_out, data);
   const Drawing drawing = draw_with_gnuplot(script(chart));
   if (drawing.missing) {
     fmt::print(
         stderr,
         "plot: {}: not drawn, gnuplot is not installed (package gnuplot-nox); the data is in "
         "{}\n",
-        path,
-        data);
+        path, data);
     return false;
   }
   if (!drawing.error.empty())
-    tess::fail(tess::ErrorCode::environment,
-               path,
-               ": gnuplot could not draw it (",
-               drawing.error,
-               "); the data is in ",
-               data);
+    tess::fail(tess::ErrorCode::environment, path, ": gnuplot could not draw it (", drawing.error,
+               "); the data is in ", data);
   write_file(path, drawing.svg);
   return true;
 }

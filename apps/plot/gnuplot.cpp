@@ -16,12 +16,8 @@ namespace plot {
 namespace {
 
 [[noreturn]] void refuse(const char* call, int error) {
-  tess::fail(tess::ErrorCode::environment,
-             "gnuplot: ",
-             call,
-             " failed (",
-             std::generic_category().message(error),
-             ")");
+  tess::fail(tess::ErrorCode::environment, "gnuplot: ", call, " failed (",
+             std::generic_category().message(error), ")");
 }
 
 /// A file without a name, gone when closed.

@@ -53,17 +53,8 @@ void check(const Timeline& timeline) {
     const Bar& bar = timeline.bars[i];
     const bool finite = std::isfinite(bar.begin) && std::isfinite(bar.end);
     if (bar.row >= timeline.rows.size() || !finite || bar.end < bar.begin)
-      tess::fail(tess::ErrorCode::bad_value,
-                 "bar ",
-                 i,
-                 " of the timeline: row ",
-                 bar.row,
-                 " of ",
-                 timeline.rows.size(),
-                 " from ",
-                 bar.begin,
-                 " to ",
-                 bar.end,
+      tess::fail(tess::ErrorCode::bad_value, "bar ", i, " of the timeline: row ", bar.row, " of ",
+                 timeline.rows.size(), " from ", bar.begin, " to ", bar.end,
                  ": rows count from 0, times are finite and in order");
   }
 }
@@ -71,12 +62,8 @@ void check(const Timeline& timeline) {
 std::string csv(const Timeline& timeline) {
   std::string out = "row,begin,end,activity\n";
   for (const Bar& bar : timeline.bars)
-    fmt::format_to(Text(out),
-                   "{},{},{},{}\n",
-                   csv_field(timeline.rows[bar.row]),
-                   bar.begin,
-                   bar.end,
-                   look(bar.activity).name);
+    fmt::format_to(Text(out), "{},{},{},{}\n", csv_field(timeline.rows[bar.row]), bar.begin,
+                   bar.end, look(bar.activity).name);
   return out;
 }
 
@@ -95,13 +82,12 @@ std::string svg(const Timeline& timeline) {
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\">\n<style>",
-      width,
-      base + bottom);
+      width, base + bottom);
   Text to(out);
   for (const Look& each : looks) fmt::format_to(to, ".{}{{fill:{}}}", each.name, each.colour);
   fmt::format_to(to, "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n");
-  fmt::format_to(
-      to, "<text x=\"{}\" y=\"20\" font-size=\"14\">{}</text>\n", left, xml_text(timeline.title));
+  fmt::format_to(to, "<text x=\"{}\" y=\"20\" font-size=\"14\">{}</text>\n", left,
+                 xml_text(timeline.title));
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double at = left + 110.0 * static_cast<double>(i);
     fmt::format_to(to, "<circle class=\"{}\" cx=\"{}\" cy=\"40\" r=\"5\"/>", looks[i].name, at + 5);
@@ -110,19 +96,15 @@ std::string svg(const Timeline& timeline) {
   // Rows too thin for a name each are named now and then.
   const auto every = static_cast<std::size_t>(std::ceil(14 / pitch));
   for (std::size_t row = 0; row < n_rows; row += every)
-    fmt::format_to(to,
-                   "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
-                   left - 6,
+    fmt::format_to(to, "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", left - 6,
                    top + pitch * (static_cast<double>(row) + 0.5) + 4,
                    xml_text(timeline.rows[row]));
   for (const Bar& bar : timeline.bars)
     fmt::format_to(to,
                    "<rect class=\"{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" "
                    "height=\"{:.1f}\"/>\n",
-                   look(bar.activity).name,
-                   x(bar.begin),
-                   top + pitch * static_cast<double>(bar.row),
-                   x(bar.end) - x(bar.begin),
+                   look(bar.activity).name, x(bar.begin),
+                   top + pitch * static_cast<double>(bar.row), x(bar.end) - x(bar.begin),
                    pitch * 0.85);
   if (last > first) {
     const Unit unit = unit_of(span);
@@ -131,16 +113,10 @@ std::string svg(const Timeline& timeline) {
       fmt::format_to(to,
                      "<path d=\"M{0:.2f} {1}v5\" stroke=\"black\"/><text x=\"{0:.2f}\" y=\"{2}\" "
                      "text-anchor=\"middle\">{3:.6g}</text>\n",
-                     x(first + tick),
-                     base,
-                     base + 18,
-                     tick / unit.seconds);
+                     x(first + tick), base, base + 18, tick / unit.seconds);
     }
-    fmt::format_to(to,
-                   "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n",
-                   width - right,
-                   base + 34,
-                   unit.name);
+    fmt::format_to(to, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", width - right,
+                   base + 34, unit.name);
   }
   out += "</svg>\n";
   return out;

@@ -36,12 +36,7 @@ std::string hindrance(const fs::path& file) {
 void require_writable(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   if (const std::string why = hindrance(path); !why.empty())
-    tess::fail(tess::ErrorCode::environment,
-               option,
-               " ",
-               path,
-               ": cannot be written: ",
-               why,
+    tess::fail(tess::ErrorCode::environment, option, " ", path, ": cannot be written: ", why,
                "; give the path of a file in a folder that can be written");
 }
 
@@ -55,9 +50,7 @@ void write_file(const std::string& path, std::string_view content) {
     error = errno;
   }
   if (!whole)
-    tess::fail(tess::ErrorCode::environment,
-               path,
-               ": cannot be written (",
+    tess::fail(tess::ErrorCode::environment, path, ": cannot be written (",
                std::generic_category().message(error),
                "); check that its folder exists and has room");
 }
@@ -68,13 +61,8 @@ void make_folder(const std::string& option, const fs::path& path) {
   fs::create_directories(path, error);
   const std::string why = error ? error.message() : denial(path, W_OK | X_OK);
   if (!why.empty())
-    tess::fail(tess::ErrorCode::environment,
-               option,
-               ": ",
-               path.string(),
-               " cannot be made a folder to write to: ",
-               why,
-               "; give another");
+    tess::fail(tess::ErrorCode::environment, option, ": ", path.string(),
+               " cannot be made a folder to write to: ", why, "; give another");
 }
 
 std::string data_path(const std::string& svg_path) {

@@ -121,14 +121,8 @@ class Rotor : public Chare<Rotor, Index1> {
     ++round_;
     const int n_pes = current_pe().n_pes();
     const int expected = (first_ + round_ + n_pes) % n_pes;
-    trial->expect(current_pe().id().value == expected,
-                  element_text(*this),
-                  " is on ",
-                  current_pe().id(),
-                  " after round ",
-                  round_,
-                  ", not on PE ",
-                  expected);
+    trial->expect(current_pe().id().value == expected, element_text(*this), " is on ",
+                  current_pe().id(), " after round ", round_, ", not on PE ", expected);
     if (round_ < n_rounds) {
       at_sync();
     } else {
@@ -193,15 +187,8 @@ class LoadsShown {
       const double phase = 1e-9 * static_cast<double>(Toiler::nanoseconds_of_part(x)) *
                            static_cast<double>(Toiler::n_parts);
       const double load = s.elements.load[i];
-      trial_.expect(load >= 0.99 * phase && (!exactly_ || load <= 1.1 * phase),
-                    "round ",
-                    n_rounds_,
-                    ": the load of Toiler[",
-                    x,
-                    "] is shown as ",
-                    load,
-                    " s, it did ",
-                    phase);
+      trial_.expect(load >= 0.99 * phase && (!exactly_ || load <= 1.1 * phase), "round ", n_rounds_,
+                    ": the load of Toiler[", x, "] is shown as ", load, " s, it did ", phase);
     }
     ++n_rounds_;
     return to;
@@ -264,17 +251,10 @@ void balance_rounds(Trial& trial) {
   });
   std::map<std::pair<int, int>, int> expected;
   for (int i = 0; i < n; ++i) l.expect_life(expected, i, 1);
-  trial.expect(l.phases_run == expected,
-               l.phases_run.size(),
-               " lives ran, ",
-               expected.size(),
-               " were to, or in other phases; strategy ",
-               options.strategy);
-  trial.expect(l.n_collected == l.n_contributed,
-               l.n_contributed,
-               " contributions were made, ",
-               l.n_collected,
-               " arrived");
+  trial.expect(l.phases_run == expected, l.phases_run.size(), " lives ran, ", expected.size(),
+               " were to, or in other phases; strategy ", options.strategy);
+  trial.expect(l.n_collected == l.n_contributed, l.n_contributed, " contributions were made, ",
+               l.n_collected, " arrived");
 }
 
 void balance_rotate(Trial& trial) {
@@ -324,10 +304,8 @@ void balance_periodic(Trial& trial) {
     start_balancing(runners, options);
     for (int i = 0; i < n_runs; ++i) runners[{i % n}].send<&Runner::hop>(n_hops);
   });
-  trial.expect(Runner::n_hops == std::int64_t{n_runs} * (n_hops + 1),
-               Runner::n_hops.load(),
-               " hops of ",
-               n_runs * (n_hops + 1));
+  trial.expect(Runner::n_hops == std::int64_t{n_runs} * (n_hops + 1), Runner::n_hops.load(),
+               " hops of ", n_runs * (n_hops + 1));
 }
 
 }  // namespace tess::fuzz

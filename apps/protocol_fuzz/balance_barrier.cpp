@@ -28,15 +28,9 @@ class Marcher : public Chare<Marcher, Index1> {
     wanders_ = n_moves > 0;
   }
   void resume_from_sync() {
-    trial->expect(reached[static_cast<std::size_t>(phase_)] == n,
-                  element_text(*this),
-                  " is past barrier ",
-                  phase_,
-                  ", which ",
-                  reached[static_cast<std::size_t>(phase_)].load(),
-                  " of ",
-                  n,
-                  " have reached");
+    trial->expect(reached[static_cast<std::size_t>(phase_)] == n, element_text(*this),
+                  " is past barrier ", phase_, ", which ",
+                  reached[static_cast<std::size_t>(phase_)].load(), " of ", n, " have reached");
     if (++phase_ <= n_phases) reach();
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }

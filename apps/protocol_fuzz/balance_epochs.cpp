@@ -71,12 +71,8 @@ void Citizen::live(std::int32_t phase) {
   }
   const Pe& pe = current_pe();
   if (town.rotates && was_on_.value >= 0)
-    town.trial.expect(pe.id().value == (was_on_.value + 1) % pe.n_pes(),
-                      element_text(*this),
-                      " was on ",
-                      was_on_,
-                      " before the round, and is on ",
-                      pe.id());
+    town.trial.expect(pe.id().value == (was_on_.value + 1) % pe.n_pes(), element_text(*this),
+                      " was on ", was_on_, " before the round, and is on ", pe.id());
   was_on_ = pe.id();
   charge(std::chrono::microseconds(1 + me % 5));
   if (town.bears(me, phase))
@@ -101,10 +97,7 @@ Task live_all(Town& town, BalanceOptions options) {
   }
   if (options.when == BalanceWhen::at_sync)
     town.trial.expect(balancer.history().size() == static_cast<std::size_t>(town.n_phases),
-                      balancer.history().size(),
-                      " rounds for ",
-                      town.n_phases,
-                      " phases");
+                      balancer.history().size(), " rounds for ", town.n_phases, " phases");
 }
 
 }  // namespace
@@ -129,12 +122,8 @@ void balance_epochs(Trial& trial) {
   trial.run_clean([&] { return live_all(town, options); });
   PhasesOf expected;
   for (std::int32_t i = 0; i < town.n_first; ++i) town.expect_life(expected, i, 0);
-  trial.expect(town.lived == expected,
-               town.lived.size(),
-               " elements lived, ",
-               expected.size(),
-               " were to, or in other phases; strategy ",
-               options.strategy);
+  trial.expect(town.lived == expected, town.lived.size(), " elements lived, ", expected.size(),
+               " were to, or in other phases; strategy ", options.strategy);
 }
 
 }  // namespace tess::fuzz

@@ -119,16 +119,12 @@ void broadcasts(Trial& trial) {
   const auto at_end = [&](int index) {
     return std::find(here.ended.begin(), here.ended.end(), index) == here.ended.end();
   };
-  const auto first = std::find_if(
-      here.lists.begin(), here.lists.end(), [](const auto& one) { return one.first == 0; });
+  const auto first = std::find_if(here.lists.begin(), here.lists.end(),
+                                  [](const auto& one) { return one.first == 0; });
   if (first == here.lists.end()) return trial.expect(false, "element 0 told nothing");
   const std::vector<int> all = first->second;
-  trial.expect(all.size() == static_cast<std::size_t>(n_each * trial.n_pes()),
-               "element 0 met ",
-               all.size(),
-               " of ",
-               n_each * trial.n_pes(),
-               " broadcasts");
+  trial.expect(all.size() == static_cast<std::size_t>(n_each * trial.n_pes()), "element 0 met ",
+               all.size(), " of ", n_each * trial.n_pes(), " broadcasts");
   for (const auto& [index, met] : here.lists) {
     const auto begin = met.empty() ? all.end() : std::find(all.begin(), all.end(), met.front());
     const bool in_order = static_cast<std::size_t>(all.end() - begin) >= met.size() &&
@@ -137,9 +133,7 @@ void broadcasts(Trial& trial) {
     if (index < here.n_first && !met.empty())
       trial.expect(begin == all.begin(), "element ", index, " missed the first broadcasts");
     if (at_end(index) && in_order)
-      trial.expect(static_cast<std::size_t>(all.end() - begin) == met.size(),
-                   "element ",
-                   index,
+      trial.expect(static_cast<std::size_t>(all.end() - begin) == met.size(), "element ", index,
                    " missed the last broadcasts");
   }
   const auto n_lives = static_cast<std::size_t>(here.n_first + here.n_born);

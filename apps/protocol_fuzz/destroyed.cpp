@@ -117,9 +117,7 @@ class Clerk : public Group<Clerk> {
   void add(int /*sum*/) {}
   void check_end(CollectionId array) {
     remains->trial.expect(current_pe().ended(array) && current_pe().find(array) == nullptr,
-                          "the epoch of the end is done, but ",
-                          pe(),
-                          " still has the array");
+                          "the epoch of the end is done, but ", pe(), " still has the array");
   }
   void count_collections() {
     const std::lock_guard lock(remains->mutex);
@@ -243,8 +241,8 @@ Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
   Random random(seed);
   const PeId other{
       static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
-  const Errand errand{
-      clerks, static_cast<int>(random.below(1000)), static_cast<int>(random.below(12))};
+  const Errand errand{clerks, static_cast<int>(random.below(1000)),
+                      static_cast<int>(random.below(12))};
   ArrayProxy<Mayfly> flies;
   bool is_balanced = false;
   const auto make = [&] {
@@ -288,10 +286,8 @@ Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
   const std::lock_guard lock(remains->mutex);
   remains->over[flies.id()] = true;
   // What a balancer moves is on no epoch of the user's: it may arrive, and end, later.
-  remains->trial.expect(is_balanced || remains->alive[flies.id()] == 0,
-                        remains->alive[flies.id()],
-                        " elements outlive their array, way ",
-                        how);
+  remains->trial.expect(is_balanced || remains->alive[flies.id()] == 0, remains->alive[flies.id()],
+                        " elements outlive their array, way ", how);
 }
 
 Task all_lives(GroupProxy<Clerk> clerks, int n_lives, std::uint64_t seed) {
@@ -331,13 +327,8 @@ void destroyed(Trial& trial) {
   }
   if (const std::size_t at = ending.report.find("tessera: "); at != std::string::npos)
     n_dead = std::atoi(ending.report.c_str() + at + 9);
-  trial.expect(n_dead >= n_lost && n_dead <= n_lost + here.n_broadcasts,
-               n_lost,
-               " messages were lost, ",
-               n_dead,
-               " counted, of ",
-               here.n_broadcasts,
-               " broadcasts");
+  trial.expect(n_dead >= n_lost && n_dead <= n_lost + here.n_broadcasts, n_lost,
+               " messages were lost, ", n_dead, " counted, of ", here.n_broadcasts, " broadcasts");
 }
 
 }  // namespace tess::fuzz

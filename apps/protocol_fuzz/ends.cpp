@@ -75,18 +75,13 @@ class Patient : public Chare<Patient, Index1> {
 };
 
 /// A run is to end with this code and name these things.
-void expect_end(Trial& trial,
-                const Ending& ending,
-                int code,
+void expect_end(Trial& trial, const Ending& ending, int code,
                 std::initializer_list<std::string> names) {
-  trial.expect(
-      ending.exit_code == code, "exit code ", ending.exit_code, " not ", code, ": ", ending.report);
+  trial.expect(ending.exit_code == code, "exit code ", ending.exit_code, " not ", code, ": ",
+               ending.report);
   for (const std::string& name : names)
-    trial.expect(ending.report.find(name) != std::string::npos,
-                 "the report does not name ",
-                 name,
-                 ": ",
-                 ending.report);
+    trial.expect(ending.report.find(name) != std::string::npos, "the report does not name ", name,
+                 ": ", ending.report);
 }
 
 }  // namespace
@@ -103,9 +98,7 @@ void deadlocks(Trial& trial) {
     }
     case 1: {
       const Ending ending = trial.run([&] { patients()[{n + i}].send<&Patient::nothing>(); });
-      expect_end(trial,
-                 ending,
-                 1,
+      expect_end(trial, ending, 1,
                  {"deadlock", text("Patient[", n + i, "]"), "Patient::nothing", "not exist"});
       break;
     }
@@ -116,9 +109,7 @@ void deadlocks(Trial& trial) {
     }
     case 3: {
       const Ending ending = trial.run([&] { patients()[{i}].send<&Patient::read_inside>(); });
-      expect_end(trial,
-                 ending,
-                 1,
+      expect_end(trial, ending, 1,
                  {"deadlock", element, "Patient::read_inside", "epoch", "Patient::read"});
       break;
     }
@@ -143,46 +134,37 @@ void exceptions(Trial& trial) {
   };
   switch (trial.draw(0, 7)) {
     case 0:
-      expect_end(trial,
-                 run([](auto&, auto patient) { patient.template send<&Patient::fail>(); }),
-                 1,
-                 {"the fever of an entry method", element, "Patient::fail", "on PE"});
+      expect_end(trial, run([](auto&, auto patient) { patient.template send<&Patient::fail>(); }),
+                 1, {"the fever of an entry method", element, "Patient::fail", "on PE"});
       break;
     case 1:
-      expect_end(
-          trial,
-          run([i](auto& patients, auto) { patients.template broadcast<&Patient::fail_in>(i); }),
-          1,
-          {"the fever of an entry method", element, "Patient::fail_in", "on PE"});
+      expect_end(trial, run([i](auto& patients, auto) {
+                   patients.template broadcast<&Patient::fail_in>(i);
+                 }),
+                 1, {"the fever of an entry method", element, "Patient::fail_in", "on PE"});
       break;
     case 2:
       expect_end(trial,
-                 run([](auto&, auto patient) { patient.template send<&Patient::fail_later>(); }),
-                 1,
+                 run([](auto&, auto patient) { patient.template send<&Patient::fail_later>(); }), 1,
                  {"the fever of a coroutine", element, "Patient::fail_later", "on PE"});
       break;
     case 3:
       expect_end(trial,
-                 run([](auto&, auto patient) { patient.template send<&Patient::fail_deep>(); }),
-                 1,
+                 run([](auto&, auto patient) { patient.template send<&Patient::fail_deep>(); }), 1,
                  {"the fever of a task", element, "Patient::fail_deep", "on PE"});
       break;
     case 4:
       expect_end(trial,
                  run([](auto&, auto patient) { patient.template send<&Patient::fail_in_epoch>(); }),
-                 1,
-                 {"the fever of an epoch's body", element, "Patient::fail_in_epoch", "on PE"});
+                 1, {"the fever of an epoch's body", element, "Patient::fail_in_epoch", "on PE"});
       break;
     case 5:
       expect_end(trial,
-                 run([](auto&, auto patient) { patient.template send<&Patient::bad_input>(); }),
-                 2,
+                 run([](auto&, auto patient) { patient.template send<&Patient::bad_input>(); }), 2,
                  {"error: the dose is -1; give a positive one"});
       break;
     case 6:
-      expect_end(trial,
-                 run([n](auto& patients, auto) { patients[{n}].insert(1); }),
-                 1,
+      expect_end(trial, run([n](auto& patients, auto) { patients[{n}].insert(1); }), 1,
                  {"stillborn", "on PE"});
       break;
     default: {

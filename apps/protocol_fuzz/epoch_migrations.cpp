@@ -51,12 +51,8 @@ void check_places() {
   const std::lock_guard lock(places->mutex);
   for (const auto& [index, pe] : places->wanted) {
     const auto at = places->seen.find(index);
-    places->trial.expect(at != places->seen.end() && at->second == pe,
-                         "element ",
-                         index,
-                         " was sent to ",
-                         pe,
-                         " but is ",
+    places->trial.expect(at != places->seen.end() && at->second == pe, "element ", index,
+                         " was sent to ", pe, " but is ",
                          at == places->seen.end() ? text("nowhere") : text("on ", at->second));
   }
   places->trial.expect(places->seen.size() == places->wanted.size(),

@@ -90,8 +90,8 @@ class Branch : public Chare<Branch, Index1> {
   }
   /// A broadcast: all elements give to one reduction, its result is a call of this element again.
   void gather(Twig twig) {
-    contribute(
-        sum, std::array<std::int64_t, 2>{1, twig.epoch}, array()[{0}].target<&Branch::gathered>());
+    contribute(sum, std::array<std::int64_t, 2>{1, twig.epoch},
+               array()[{0}].target<&Branch::gathered>());
     Random random(mix(twig.seed ^ static_cast<std::uint64_t>(index().x)));
     wander(random);
     done(twig.epoch);
@@ -191,11 +191,8 @@ void epochs(Trial& trial) {
   ledger = &here;
   const Twig root{0, trial.draw(1, 60), trial.random()()};
   trial.run_clean([&]() -> Task { return drive(root); });
-  trial.expect(here.n_returned == static_cast<int>(here.due.size()),
-               here.n_returned,
-               " of ",
-               here.due.size(),
-               " epochs returned");
+  trial.expect(here.n_returned == static_cast<int>(here.due.size()), here.n_returned, " of ",
+               here.due.size(), " epochs returned");
 }
 
 }  // namespace tess::fuzz

@@ -137,11 +137,8 @@ void flood_exit(Trial& trial) {
     }
   });
   if (here.greatest_code >= 0) {
-    trial.expect(ending.exit_code == here.greatest_code,
-                 "exit code ",
-                 ending.exit_code,
-                 ", the greatest given is ",
-                 here.greatest_code);
+    trial.expect(ending.exit_code == here.greatest_code, "exit code ", ending.exit_code,
+                 ", the greatest given is ", here.greatest_code);
     trial.expect(ending.report.empty(), ending.report);
   } else {
     trial.expect(ending.exit_code == 1, "no exit, no deadlock, but ", ending.exit_code);

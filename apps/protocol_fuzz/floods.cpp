@@ -75,8 +75,8 @@ class Basin : public Group<Basin> {
   void fall(Freight freight) {
     (void)charge(std::chrono::milliseconds(1));  // slower than what comes
     if (freight.packed)
-      deluge->holds(
-          freight.sender, current_pe().machine().process_of(pe()), freight.n_bytes(), false);
+      deluge->holds(freight.sender, current_pe().machine().process_of(pe()), freight.n_bytes(),
+                    false);
     for (const double value : freight.values)
       deluge->trial.expect(value == 2.5, "a value was garbled on its way");
     ++deluge->n_arrived;
@@ -90,20 +90,16 @@ Task flood_twice(Deluge& here) {
   const int each = here.n_messages * here.trial.n_pes();
   for (int round = 1; round <= 2; ++round) {
     co_await epoch([&] { basins.broadcast<&Basin::pour>(); });
-    here.trial.expect(here.n_arrived == round * each,
-                      "an epoch ended after ",
-                      here.n_arrived.load(),
-                      " of ",
-                      round * each,
-                      " messages");
+    here.trial.expect(here.n_arrived == round * each, "an epoch ended after ",
+                      here.n_arrived.load(), " of ", round * each, " messages");
   }
 }
 
 }  // namespace
 
 void floods(Trial& trial) {
-  Deluge here{
-      trial, trial.draw(0, 40), trial.draw(1, 100), trial.draw(0, 1) != 0, trial.random()()};
+  Deluge here{trial, trial.draw(0, 40), trial.draw(1, 100), trial.draw(0, 1) != 0,
+              trial.random()()};
   deluge = &here;
   trial.run_clean([&here] { return flood_twice(here); });
 }

@@ -36,8 +36,7 @@ class Member : public Group<Member> {
   }
   void play(int round) {
     if (round % 2 == 0) {
-      contribute(in_order(concatenate),
-                 std::vector<std::string>{text(word_, pe().value)},
+      contribute(in_order(concatenate), std::vector<std::string>{text(word_, pe().value)},
                  group()[PeId{round % current_pe().n_pes()}].target<&Member::ordered>());
     } else {
       contribute(sum, pe().value, group()[PeId{0}].target<&Member::summed>());
@@ -105,9 +104,7 @@ void groups(Trial& trial) {
   const int n_calls = std::accumulate(here.n_calls.begin(), here.n_calls.end(), 0);
   trial.expect(n_calls == n + n * (n_hops + 1), n_calls, " calls of ", n + n * (n_hops + 1));
   trial.expect(here.n_ordered == (here.n_rounds + 1) / 2 && here.n_results == here.n_rounds / 2,
-               here.n_ordered + here.n_results,
-               " results of ",
-               here.n_rounds);
+               here.n_ordered + here.n_results, " results of ", here.n_rounds);
   trial.expect(here.n_made == n * n + n, here.n_made, " calls of the second group");
 }
 

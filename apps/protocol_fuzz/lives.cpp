@@ -24,8 +24,8 @@ struct Population {
     const std::lock_guard lock(mutex);
     return n_agents_done == trial.n_pes() &&
            n_sent == n_ended + std::accumulate(delivered.begin(), delivered.end(), 0) +
-                         static_cast<int>(std::accumulate(
-                             dead_letters.begin(), dead_letters.end(), std::uint64_t{0}));
+                         static_cast<int>(std::accumulate(dead_letters.begin(), dead_letters.end(),
+                                                          std::uint64_t{0}));
   }
 };
 Population* population = nullptr;
@@ -195,8 +195,7 @@ void lives(Trial& trial) {
       std::accumulate(here.dead_letters.begin(), here.dead_letters.end(), std::uint64_t{0});
   const std::string dead =
       n_dead == 0 ? ""
-                  : text("tessera: ",
-                         n_dead,
+                  : text("tessera: ", n_dead,
                          " messages to elements that had been destroyed were not delivered\n");
   trial.expect(ending.report == dead, "the report is not that of ", n_dead, ": ", ending.report);
   trial.expect(mode == 0 || n_dead == 0, "dead letters in an array that has none: ", n_dead);

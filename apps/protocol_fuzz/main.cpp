@@ -73,8 +73,8 @@ struct Job {
 };
 
 bool passes(const Job& job, const Scenario& scenario, std::uint64_t seed, std::int32_t n_pes) {
-  repeat = fmt::format(
-      "protocol_fuzz --scenario {} --seeds {}:{} --pes {}", scenario.name, seed, seed, n_pes);
+  repeat = fmt::format("protocol_fuzz --scenario {} --seeds {}:{} --pes {}", scenario.name, seed,
+                       seed, n_pes);
   if (job.first) {
     n_pes *= job.n_processes();
     repeat = fmt::format("mpirun -n {} {}", job.n_processes(), repeat);
@@ -95,8 +95,7 @@ int fuzz(int argc, char** argv) {
   apps::CommandLine line("Protocol scenarios on the simulated machine in adversarial order");
   line.option("--scenario", name, "a scenario, or all");
   line.option("--seeds", given_seeds, "FROM:TO, both included");
-  line.option("--pes",
-              n_pes,
+  line.option("--pes", n_pes,
               "PEs (default: 1, 2, 3, 4, 7 or 8 by the seed; of each process: 1, 2 or 3)")
       .between(1, 4096);
   std::string scenarios = "Scenarios:\n";
@@ -105,9 +104,7 @@ int fuzz(int argc, char** argv) {
   if (!line.parse(argc, argv, scenarios)) return 0;
   const Seeds seeds = parse_seeds(given_seeds);
   if (name != "all" && !tess::fuzz::scenario(name).in_jobs && tess::under_mpirun())
-    tess::fail(tess::ErrorCode::bad_argument,
-               "--scenario: ",
-               name,
+    tess::fail(tess::ErrorCode::bad_argument, "--scenario: ", name,
                " needs the memory of one process; without mpirun it runs on a simulated machine");
   Job job;
   if (tess::under_mpirun()) job.first = tess::fuzz::make_job_machine(1);
@@ -124,8 +121,7 @@ int fuzz(int argc, char** argv) {
     }
   }
   if (job.speaks() || n_failed != 0)
-    std::printf("%llu passed, %llu failed\n",
-                static_cast<unsigned long long>(n_passed),
+    std::printf("%llu passed, %llu failed\n", static_cast<unsigned long long>(n_passed),
                 static_cast<unsigned long long>(n_failed));
   return n_failed == 0 ? 0 : 1;
 }

@@ -158,13 +158,8 @@ void insert_cell(const ArrayProxy<Cell>& cells, Name name, int floor) {
 
 Task Cell::step(Order order) {
   const int round = order.round;
-  nursery->trial.expect(last_round_ < 0 || last_round_ + 1 == round,
-                        "element ",
-                        index(),
-                        " meets round ",
-                        round,
-                        " after ",
-                        last_round_);
+  nursery->trial.expect(last_round_ < 0 || last_round_ + 1 == round, "element ", index(),
+                        " meets round ", round, " after ", last_round_);
   if (first_round_ < 0) first_round_ = round;
   const auto fate = nursery->fate(round, index(), may_end_);
   last_round_ = round;
@@ -216,8 +211,7 @@ void Cell::give_all(const Order& order) {
   may_end_ = born_;
   const Entry entry{index(), first_round_, floor_, may_end_, children_};
   for (int part = 0; part < nursery->n_parts; ++part)
-    contribute(JoinShares{},
-               Share{order.round, order.round, part, part, {entry}},
+    contribute(JoinShares{}, Share{order.round, order.round, part, part, {entry}},
                order.targets.empty() ? array().target<&Cell::stepped>()
                                      : order.targets[static_cast<std::size_t>(part)]);
   Random random = nursery->draws(order.round, index(), 4);
@@ -306,38 +300,18 @@ void Governor::depopulate(const ArrayProxy<Cell>& cells, Random& random) {
 
 void Governor::judge_new(int round, const Entry& entry) {
   Trial& trial = nursery->trial;
-  trial.expect(entry.first_round == round,
-               "element ",
-               entry.name,
-               " met round ",
-               entry.first_round,
-               " first and is in no result before ",
-               round);
-  trial.expect(entry.floor <= round,
-               "element ",
-               entry.name,
-               " meets round ",
-               round,
-               ", whose result was awaited before it was born in ",
-               entry.floor);
+  trial.expect(entry.first_round == round, "element ", entry.name, " met round ", entry.first_round,
+               " first and is in no result before ", round);
+  trial.expect(entry.floor <= round, "element ", entry.name, " meets round ", round,
+               ", whose result was awaited before it was born in ", entry.floor);
 }
 
 void Governor::judge(int round, int part, const Share& share) {
   Trial& trial = nursery->trial;
   trial.expect(share.first_round == round && share.last_round == round &&
                    share.first_part == part && share.last_part == part,
-               "round ",
-               round,
-               " part ",
-               part,
-               " has contributions of rounds ",
-               share.first_round,
-               " … ",
-               share.last_round,
-               ", parts ",
-               share.first_part,
-               " … ",
-               share.last_part);
+               "round ", round, " part ", part, " has contributions of rounds ", share.first_round,
+               " … ", share.last_round, ", parts ", share.first_part, " … ", share.last_part);
   std::set<Name> members;
   for (const Entry& entry : share.entries) {
     trial.expect(members.insert(entry.name).second, entry.name, " gives twice to ", round);
@@ -347,15 +321,8 @@ void Governor::judge(int round, int part, const Share& share) {
   for (const auto& [name, known] : known_) {
     const bool ends = nursery->fate(round, name, known.may_end) == Nursery::Fate::ends;
     const bool expected = (known.first_round >= 0 || known.due) && !ends && !known.told_to_end;
-    trial.expect(!expected || members.contains(name),
-                 "round ",
-                 round,
-                 " part ",
-                 part,
-                 " is complete without element ",
-                 name,
-                 ", which met round ",
-                 known.first_round,
+    trial.expect(!expected || members.contains(name), "round ", round, " part ", part,
+                 " is complete without element ", name, ", which met round ", known.first_round,
                  " first");
     trial.expect(!ends || !members.contains(name), name, " gives after its end in ", round);
   }
@@ -409,13 +376,8 @@ Task Governor::call_by_name(ArrayProxy<Cell> cells, int round) {
   const Share share = co_await here;
   std::set<Name> members;
   for (const Entry& entry : share.entries) members.insert(entry.name);
-  nursery->trial.expect(members == alive && share.entries.size() == alive.size(),
-                        "after round ",
-                        round,
-                        ": ",
-                        share.entries.size(),
-                        " of ",
-                        alive.size(),
+  nursery->trial.expect(members == alive && share.entries.size() == alive.size(), "after round ",
+                        round, ": ", share.entries.size(), " of ", alive.size(),
                         " elements in a reduction by messages");
 }
 
@@ -466,8 +428,7 @@ void run_nursery(Trial& trial, const Nursery& here) {
   // An element that is told to end in the middle of a step may leave messages to itself.
   trial.expect(ending.report.empty() ||
                    (here.death_chance > 0 && ending.report.find("destroyed") != std::string::npos),
-               "report: ",
-               ending.report);
+               "report: ", ending.report);
 }
 
 }  // namespace

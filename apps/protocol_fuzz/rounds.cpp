@@ -41,11 +41,8 @@ struct Records {
 
   void give(int round, int index) {
     const std::lock_guard lock(mutex);
-    trial.expect(given[static_cast<std::size_t>(round)].insert(index).second,
-                 "element ",
-                 index,
-                 " contributes twice to ",
-                 round);
+    trial.expect(given[static_cast<std::size_t>(round)].insert(index).second, "element ", index,
+                 " contributes twice to ", round);
   }
   [[nodiscard]] Random draws(int round, int index, int what) const {
     return Random(mix(seed ^ mix(static_cast<std::uint64_t>(round * 1000003 + index * 7 + what))));
@@ -98,21 +95,15 @@ class Judge : public Group<Judge> {
   void tally(Tally tally) {
     const auto given = take(round_);
     std::sort(tally.members.begin(), tally.members.end());
-    records->trial.expect(std::vector<int>(given.begin(), given.end()) == tally.members,
-                          "round ",
-                          round_,
-                          ": the members of the result are not those that contributed");
+    records->trial.expect(std::vector<int>(given.begin(), given.end()) == tally.members, "round ",
+                          round_, ": the members of the result are not those that contributed");
     records->trial.expect(tally.n == static_cast<std::int64_t>(given.size()), "round ", round_);
     next();
   }
   void ordered(std::vector<std::int32_t> members) {
     const auto given = take(round_);
-    records->trial.expect(std::vector<int>(given.begin(), given.end()) == members,
-                          "round ",
-                          round_,
-                          ": not the contributions in order, but ",
-                          members.size(),
-                          " of ",
+    records->trial.expect(std::vector<int>(given.begin(), given.end()) == members, "round ", round_,
+                          ": not the contributions in order, but ", members.size(), " of ",
                           given.size());
     next();
   }
@@ -129,12 +120,7 @@ class Judge : public Group<Judge> {
   void extremes(std::array<std::int64_t, 2> greatest) {
     const auto given = take(round_);
     records->trial.expect(greatest[0] == *given.rbegin() && -greatest[1] == *given.begin(),
-                          "round ",
-                          round_,
-                          ": extremes ",
-                          -greatest[1],
-                          " … ",
-                          greatest[0]);
+                          "round ", round_, ": extremes ", -greatest[1], " … ", greatest[0]);
     next();
   }
   void agreed(bool all) {
@@ -156,11 +142,8 @@ class Judge : public Group<Judge> {
     for (int i = 0; i < records->n_first; ++i) {
       const auto end = records->ended.find(i);
       records->trial.expect(
-          (end != records->ended.end() && end->second <= round) || given.contains(i),
-          "round ",
-          round,
-          " is complete without element ",
-          i);
+          (end != records->ended.end() && end->second <= round) || given.contains(i), "round ",
+          round, " is complete without element ", i);
     }
     return given;
   }
@@ -173,13 +156,8 @@ class Judge : public Group<Judge> {
 };
 
 void Player::play(int round) {
-  records->trial.expect(last_round_ < 0 || last_round_ + 1 == round,
-                        "element ",
-                        index().x,
-                        " meets round ",
-                        round,
-                        " after ",
-                        last_round_);
+  records->trial.expect(last_round_ < 0 || last_round_ + 1 == round, "element ", index().x,
+                        " meets round ", round, " after ", last_round_);
   last_round_ = round;
   Random random = records->draws(round, index().x, 0);
   if (index().x != 0 && born_ && random.chance(records->death_chance)) {
@@ -226,13 +204,8 @@ void Player::born(Birth birth) {
 
 void Player::give(int round) {
   const int me = index().x;
-  records->trial.expect(static_cast<int>(next_reduction()) == round,
-                        "element ",
-                        me,
-                        " is at reduction ",
-                        next_reduction(),
-                        " in round ",
-                        round);
+  records->trial.expect(static_cast<int>(next_reduction()) == round, "element ", me,
+                        " is at reduction ", next_reduction(), " in round ", round);
   records->give(round, me);
   const auto judge = records->judge[PeId{0}];
   const double value = records->value(round, me);
@@ -241,8 +214,8 @@ void Player::give(int round) {
       contribute(AddTallies{}, Tally{1, me, {me}}, judge.target<&Judge::tally>());
       break;
     case 1:
-      contribute(
-          in_order(concatenate), std::vector<std::int32_t>{me}, judge.target<&Judge::ordered>());
+      contribute(in_order(concatenate), std::vector<std::int32_t>{me},
+                 judge.target<&Judge::ordered>());
       break;
     case 2:
       contribute(in_order(sum), value, judge.target<&Judge::summed>());

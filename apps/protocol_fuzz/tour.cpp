@@ -79,8 +79,8 @@ void tour(Trial& trial) {
   });
   trial.expect(here.n_finished == n, here.n_finished, " of ", n, " tours ended");
   for (std::size_t i = 0; i < here.delivered.size(); ++i)
-    trial.expect(
-        here.delivered[i] == 1, "message ", i, " was delivered ", here.delivered[i], " times");
+    trial.expect(here.delivered[i] == 1, "message ", i, " was delivered ", here.delivered[i],
+                 " times");
 }
 
 }  // namespace tess::fuzz

@@ -20,8 +20,8 @@ std::int32_t pes_of_seed(std::uint64_t seed) {
 std::unique_ptr<Machine> make_job_machine(std::int32_t pes_per_process) {
   int argc = 0;
   char** argv = nullptr;
-  return make_mpi_machine(
-      argc, argv, MpiOptions{.pes_per_process = pes_per_process, .pinning = Pinning::none});
+  return make_mpi_machine(argc, argv,
+                          MpiOptions{.pes_per_process = pes_per_process, .pinning = Pinning::none});
 }
 
 Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_processes)

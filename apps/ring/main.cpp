@@ -20,11 +20,8 @@ class Station : public tess::Chare<Station, tess::Index1> {
     ++n_visits_;
     token.sum += index().x;
     if (--token.hops_left == 0) {
-      TESS_CHECK(token.sum == token.expected,
-                 "a message met stations that add up to ",
-                 token.sum,
-                 " instead of ",
-                 token.expected);
+      TESS_CHECK(token.sum == token.expected, "a message met stations that add up to ", token.sum,
+                 " instead of ", token.expected);
       return;
     }
     const auto next = static_cast<std::int32_t>((index().x + 1) % array().size());
@@ -68,10 +65,7 @@ tess::Task go_round(Options options) {
   const std::int64_t n_hops = token.hops_left * options.messages;
   TESS_CHECK(n_visits == n_hops, n_visits, " visits were counted, not ", n_hops);
   tess::print(fmt::format("{} hops over {} stations: {:.6f} s, {:.3f} us a hop; each met once\n",
-                          n_hops,
-                          n,
-                          seconds,
-                          seconds * 1e6 / static_cast<double>(n_hops)));
+                          n_hops, n, seconds, seconds * 1e6 / static_cast<double>(n_hops)));
 }
 
 }  // namespace

@@ -19,10 +19,7 @@ struct Grid {
     return static_cast<std::int32_t>(std::int64_t{problem.size} * block / n_blocks);
   }
   [[nodiscard]] Tile tile(tess::Index2 at) const {
-    return {problem,
-            first(at.x),
-            first(at.y),
-            first(at.x + 1) - first(at.x),
+    return {problem, first(at.x), first(at.y), first(at.x + 1) - first(at.x),
             first(at.y + 1) - first(at.y)};
   }
   /// The sides that have a neighbour, and the neighbour.

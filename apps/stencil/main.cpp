@@ -68,17 +68,10 @@ tess::Task relax(Grid grid) {
   tess::print(fmt::format(
       "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us a block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",
-      grid.problem.size,
-      grid.n_blocks,
-      grid.n_steps,
-      seconds,
-      seconds * 1e6 / grid.n_steps / grid.n_blocks / grid.n_blocks,
-      outcome.from_iterate,
-      outcome.from_solution,
-      outcome.hash));
-  TESS_CHECK(outcome.from_iterate < 1e-12,
-             "the values are ",
-             outcome.from_iterate,
+      grid.problem.size, grid.n_blocks, grid.n_steps, seconds,
+      seconds * 1e6 / grid.n_steps / grid.n_blocks / grid.n_blocks, outcome.from_iterate,
+      outcome.from_solution, outcome.hash));
+  TESS_CHECK(outcome.from_iterate < 1e-12, "the values are ", outcome.from_iterate,
              " away from the Jacobi iterate");
 }
 
@@ -94,12 +87,8 @@ int main(int argc, char** argv) {
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
     if (!line.parse(argc, argv)) return 0;
     if (grid.n_blocks > grid.problem.size)
-      tess::fail(tess::ErrorCode::bad_argument,
-                 "--blocks: ",
-                 grid.n_blocks,
-                 " blocks on an axis of ",
-                 grid.problem.size,
-                 " points: give at most one a point");
+      tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,
+                 " blocks on an axis of ", grid.problem.size, " points: give at most one a point");
     return tess::run(setup, [&] { return stencil::relax(grid); });
   });
 }

@@ -10,13 +10,12 @@
 namespace stencil {
 
 Outcome Combine::operator()(const Outcome& a, const Outcome& b) const {
-  return {std::max(a.from_iterate, b.from_iterate),
-          std::max(a.from_solution, b.from_solution),
+  return {std::max(a.from_iterate, b.from_iterate), std::max(a.from_solution, b.from_solution),
           a.hash + b.hash};
 }
 
-Tile::Tile(
-    const Problem& problem, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height)
+Tile::Tile(const Problem& problem, std::int32_t x, std::int32_t y, std::int32_t width,
+           std::int32_t height)
     : problem_(problem), x_(x), y_(y), width_(width), height_(height) {
   values_.resize(at(width, height) + 1);
   source_.resize(values_.size());

@@ -29,10 +29,7 @@ class Tile {
  public:
   Tile() = default;
   /// Zeros; the tile's first interior point is (x, y) of the problem's grid.
-  Tile(const Problem& problem,
-       std::int32_t x,
-       std::int32_t y,
-       std::int32_t width,
+  Tile(const Problem& problem, std::int32_t x, std::int32_t y, std::int32_t width,
        std::int32_t height);
 
   /// The outermost values on a side, in the order of growing coordinate.

@@ -86,8 +86,8 @@ void Column::advance() {
 void Column::run_task() {
   const std::int64_t step = inputs_.step();
   if (!inputs_.right()) [[unlikely]] {
-    fail(fmt::format(
-        "step {}, point {}: an input is not the output of its dependence", step, index().x));
+    fail(fmt::format("step {}, point {}: an input is not the output of its dependence", step,
+                     index().x));
     return;
   }
   ++count_.n_tasks;

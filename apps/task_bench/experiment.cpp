@@ -74,8 +74,7 @@ void Bench::check(std::size_t graph, const Count& count) const {
   std::fprintf(stderr,
                "task_bench: wrong answer: %s ran %llu tasks with %llu inputs, the graph has %llu "
                "and %llu\n",
-               name_of(graphs_[graph].type).c_str(),
-               static_cast<unsigned long long>(count.n_tasks),
+               name_of(graphs_[graph].type).c_str(), static_cast<unsigned long long>(count.n_tasks),
                static_cast<unsigned long long>(count.n_inputs),
                static_cast<unsigned long long>(expected.n_tasks),
                static_cast<unsigned long long>(expected.n_dependences));
@@ -135,14 +134,13 @@ tess::Task Bench::measure_all(Result* result) {
     result->rows.push_back(row);
   }
   for (const tess::BalancerProxy& balancer : balancers_)
-    result->rounds.insert(
-        result->rounds.end(), balancer.history().begin(), balancer.history().end());
+    result->rounds.insert(result->rounds.end(), balancer.history().begin(),
+                          balancer.history().end());
 }
 
 }  // namespace
 
-tess::Task run_all(const Settings& settings,
-                   void (*tell)(const Settings&, const Result&),
+tess::Task run_all(const Settings& settings, void (*tell)(const Settings&, const Result&),
                    std::vector<Result>& results) {
   for (const std::vector<Graph>& graphs : cases(settings)) {
     Bench bench(settings, graphs);

@@ -20,8 +20,7 @@ struct Result {
 
 /// Runs all cases, on PE 0, and reports each through `tell`. Ends the run with exit code 1 where
 /// the columns did not run what the graphs have.
-tess::Task run_all(const Settings& settings,
-                   void (*tell)(const Settings&, const Result&),
+tess::Task run_all(const Settings& settings, void (*tell)(const Settings&, const Result&),
                    std::vector<Result>& results);
 
 }  // namespace task_bench

@@ -49,9 +49,7 @@ Window window_of_inputs(const Graph& g) {
   return {g.radix / 2, (g.radix - 1) / 2};
 }
 
-std::vector<std::int64_t> spread_points(const Graph& g,
-                                        std::int32_t set,
-                                        std::int32_t point,
+std::vector<std::int64_t> spread_points(const Graph& g, std::int32_t set, std::int32_t point,
                                         std::int64_t direction) {
   std::vector<std::int64_t> points;
   for (std::int64_t i = 0; i < g.radix; ++i) {
@@ -64,17 +62,9 @@ std::vector<std::int64_t> spread_points(const Graph& g,
 }  // namespace
 
 const std::vector<std::string>& type_names() {
-  static const std::vector<std::string> names{"trivial",
-                                              "no_comm",
-                                              "stencil_1d",
-                                              "stencil_1d_periodic",
-                                              "dom",
-                                              "tree",
-                                              "fft",
-                                              "all_to_all",
-                                              "nearest",
-                                              "spread",
-                                              "random_nearest"};
+  static const std::vector<std::string> names{
+      "trivial",    "no_comm", "stencil_1d", "stencil_1d_periodic", "dom", "tree", "fft",
+      "all_to_all", "nearest", "spread",     "random_nearest"};
   return names;
 }
 
@@ -86,9 +76,8 @@ Type parse_type(std::string_view name) {
   const auto& names = type_names();
   const auto at = std::ranges::find(names, name);
   if (at == names.end())
-    tess::fail(
-        tess::ErrorCode::bad_argument,
-        fmt::format("-type: there is no {}; choose one of {}", name, fmt::join(names, ", ")));
+    tess::fail(tess::ErrorCode::bad_argument, fmt::format("-type: there is no {}; choose one of {}",
+                                                          name, fmt::join(names, ", ")));
   return static_cast<Type>(at - names.begin());
 }
 
@@ -227,11 +216,8 @@ void validate(const Graph& g) {
     // Later dependence sets would come round to the points of the first.
     const std::int32_t most = (g.width + g.radix - 1) / g.radix;
     if (g.period > most)
-      refuse(fmt::format("-period {}: at most {} for spread with -width {} and -radix {}",
-                         g.period,
-                         most,
-                         g.width,
-                         g.radix));
+      refuse(fmt::format("-period {}: at most {} for spread with -width {} and -radix {}", g.period,
+                         most, g.width, g.radix));
   }
   validate(g.kernel);
 }

@@ -71,12 +71,10 @@ struct Points {
 
 /// The points whose outputs a point needs; ascending. Those without a task at the step before are
 /// among them.
-[[nodiscard]] std::vector<std::int32_t> dependences(const Graph& graph,
-                                                    std::int32_t set,
+[[nodiscard]] std::vector<std::int32_t> dependences(const Graph& graph, std::int32_t set,
                                                     std::int32_t point);
 /// The points that need the output of a point: the inverse of dependences().
-[[nodiscard]] std::vector<std::int32_t> dependents(const Graph& graph,
-                                                   std::int32_t set,
+[[nodiscard]] std::vector<std::int32_t> dependents(const Graph& graph, std::int32_t set,
                                                    std::int32_t point);
 
 /// What a whole graph comes to.

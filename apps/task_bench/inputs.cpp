@@ -61,10 +61,7 @@ std::string Inputs::complaint(const Output& output) const {
   return fmt::format(
       "point {} got an output of (step {}, point {}) when its next step was {}: it "
       "does not depend on it, or has it already",
-      point_,
-      output.step,
-      output.point,
-      first_);
+      point_, output.step, output.point, first_);
 }
 
 }  // namespace task_bench

@@ -91,19 +91,8 @@ class Inputs {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(graph_,
-       point_,
-       n_steps_,
-       n_sets_,
-       varies_,
-       sets_,
-       n_places_,
-       first_,
-       set_,
-       n_needed_,
-       needs_itself_,
-       slots_,
-       counts_);
+    ar(graph_, point_, n_steps_, n_sets_, varies_, sets_, n_places_, first_, set_, n_needed_,
+       needs_itself_, slots_, counts_);
   }
 
  private:

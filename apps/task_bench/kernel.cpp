@@ -36,9 +36,7 @@ void compute(std::int64_t iterations) {
 }
 
 /// In each iteration the first half of a sample is copied onto its second.
-void copy_samples(const Kernel& kernel,
-                  std::int64_t iterations,
-                  std::int64_t step,
+void copy_samples(const Kernel& kernel, std::int64_t iterations, std::int64_t step,
                   std::span<std::byte> scratch) {
   const std::size_t sample = scratch.size() / static_cast<std::size_t>(kernel.samples);
   std::int64_t at = step * iterations % kernel.samples;
@@ -53,8 +51,8 @@ void copy_samples(const Kernel& kernel,
 }  // namespace
 
 const std::vector<std::string>& kernel_names() {
-  static const std::vector<std::string> names{
-      "empty", "busy_wait", "memory_bound", "compute_bound", "load_imbalance"};
+  static const std::vector<std::string> names{"empty", "busy_wait", "memory_bound", "compute_bound",
+                                              "load_imbalance"};
   return names;
 }
 
@@ -72,9 +70,7 @@ KernelType parse_kernel(std::string_view name) {
   return static_cast<KernelType>(at - names.begin());
 }
 
-std::int64_t iterations_of(const Kernel& kernel,
-                           std::int32_t graph,
-                           std::int64_t step,
+std::int64_t iterations_of(const Kernel& kernel, std::int32_t graph, std::int64_t step,
                            std::int32_t point) {
   if (kernel.type != KernelType::load_imbalance) return kernel.iterations;
   std::uint64_t hash = tess::mix(0x696d62 ^ static_cast<std::uint64_t>(graph));
@@ -84,9 +80,7 @@ std::int64_t iterations_of(const Kernel& kernel,
                       static_cast<double>(kernel.iterations));
 }
 
-void execute(const Kernel& kernel,
-             std::int64_t iterations,
-             std::int64_t step,
+void execute(const Kernel& kernel, std::int64_t iterations, std::int64_t step,
              std::span<std::byte> scratch) {
   switch (kernel.type) {
     case KernelType::empty:
@@ -143,9 +137,7 @@ void validate(const Kernel& kernel) {
     tess::fail(tess::ErrorCode::bad_argument,
                fmt::format("-scratch {}: memory_bound needs at least {}, 16 for each of its {} "
                            "samples (-sample)",
-                           kernel.scratch_bytes,
-                           16 * kernel.samples,
-                           kernel.samples));
+                           kernel.scratch_bytes, 16 * kernel.samples, kernel.samples));
   if (kernel.type != KernelType::load_imbalance && (kernel.imbalance > 0 || kernel.persistent))
     tess::fail(tess::ErrorCode::bad_argument,
                fmt::format("-imbalance: {} has none; choose -kernel load_imbalance",

@@ -36,15 +36,11 @@ struct Kernel {
 };
 
 /// The iterations of one task.
-[[nodiscard]] std::int64_t iterations_of(const Kernel& kernel,
-                                         std::int32_t graph,
-                                         std::int64_t step,
-                                         std::int32_t point);
+[[nodiscard]] std::int64_t iterations_of(const Kernel& kernel, std::int32_t graph,
+                                         std::int64_t step, std::int32_t point);
 
 /// Runs so many iterations at a step. `scratch`: scratch_bytes of the point's own.
-void execute(const Kernel& kernel,
-             std::int64_t iterations,
-             std::int64_t step,
+void execute(const Kernel& kernel, std::int64_t iterations, std::int64_t step,
              std::span<std::byte> scratch);
 
 /// The nanoseconds that so many iterations take on the simulated machine: 4 an iteration, and bytes
@@ -55,8 +51,7 @@ void execute(const Kernel& kernel,
 [[nodiscard]] double calibrate(const Kernel& kernel, std::int64_t iterations);
 
 /// As Task Bench counts them.
-[[nodiscard]] std::uint64_t flops(const Kernel& kernel,
-                                  std::uint64_t n_tasks,
+[[nodiscard]] std::uint64_t flops(const Kernel& kernel, std::uint64_t n_tasks,
                                   std::uint64_t n_iterations);
 [[nodiscard]] std::uint64_t bytes(const Kernel& kernel, std::uint64_t n_iterations);
 

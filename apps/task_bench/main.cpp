@@ -23,9 +23,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   plot::require_writable("--json", settings->json);
   plot::require_writable("--csv", settings->csv);
   if (!settings->plot.empty() && plot::data_path(settings->plot) == settings->csv)
-    tess::fail(tess::ErrorCode::bad_argument,
-               "--csv ",
-               settings->csv,
+    tess::fail(tess::ErrorCode::bad_argument, "--csv ", settings->csv,
                ": the data of --plot goes there; choose another name");
   plot::require_writable("--plot", settings->plot);
   if (settings->explain && setup.machine->process() == tess::ProcessId{0})
@@ -37,6 +35,6 @@ int start(tess::Setup& setup, int argc, char** argv) {
 }  // namespace task_bench
 
 int main(int argc, char** argv) {
-  return tess::guarded(
-      argc, argv, [&](tess::Setup& setup) { return task_bench::start(setup, argc, argv); });
+  return tess::guarded(argc, argv,
+                       [&](tess::Setup& setup) { return task_bench::start(setup, argc, argv); });
 }

@@ -67,8 +67,7 @@ std::optional<Metg> MetgSearch::found() const {
   if (low == nullptr) return Metg{high->grain_seconds, wall(*high), true};
   const double share = (half - low->efficiency) / (high->efficiency - low->efficiency);
   return Metg{between(low->grain_seconds, high->grain_seconds, share),
-              between(wall(*low), wall(*high), share),
-              false};
+              between(wall(*low), wall(*high), share), false};
 }
 
 std::vector<Row> MetgSearch::rows() const {

@@ -34,25 +34,15 @@ void print_run(const Result& result) {
       "Elapsed Time {:e} seconds\nFLOP/s {:e}\nB/s {:e}\n"
       "PEs {} on {} ranks\nTask Granularity {} us (elapsed x PEs / tasks), kernel {} us\n"
       "Efficiency {:.4f} (kernels / (elapsed x PEs)); every input was checked\n",
-      row.n_tasks,
-      row.n_dependences,
-      n_flops,
-      n_bytes,
-      row.seconds,
-      static_cast<double>(n_flops) / row.seconds,
-      static_cast<double>(n_bytes) / row.seconds,
-      row.pes,
-      row.ranks,
-      microseconds(row.seconds * row.pes / tasks),
-      microseconds(row.grain_seconds),
-      row.efficiency);
+      row.n_tasks, row.n_dependences, n_flops, n_bytes, row.seconds,
+      static_cast<double>(n_flops) / row.seconds, static_cast<double>(n_bytes) / row.seconds,
+      row.pes, row.ranks, microseconds(row.seconds * row.pes / tasks),
+      microseconds(row.grain_seconds), row.efficiency);
   if (!result.rounds.empty()) {
     std::size_t n_moved = 0;
     for (const tess::balance::Round& round : result.rounds) n_moved += round.n_moved;
     text += fmt::format("Balance Rounds {}, {} columns moved, max/average {:.3f} -> {:.3f}\n",
-                        result.rounds.size(),
-                        n_moved,
-                        result.rounds.front().before,
+                        result.rounds.size(), n_moved, result.rounds.front().before,
                         result.rounds.back().before);
   }
   tess::print_text(text);
@@ -63,16 +53,8 @@ void print_run(const Result& result) {
 void print_head(const Settings& settings, const tess::Machine& machine) {
   tess::print_text(machine.describe() + "\n");
   if (!settings.metg) return;
-  tess::print_text(fmt::format(fmt::runtime(metg_line),
-                               "type",
-                               "kernel",
-                               "width",
-                               "steps",
-                               "PEs",
-                               "ranks",
-                               "METG us",
-                               "wall us",
-                               "grains"));
+  tess::print_text(fmt::format(fmt::runtime(metg_line), "type", "kernel", "width", "steps", "PEs",
+                               "ranks", "METG us", "wall us", "grains"));
 }
 
 void print_result(const Settings& settings, const Result& result) {
@@ -83,16 +65,10 @@ void print_result(const Settings& settings, const Result& result) {
   const Row& row = result.rows.front();
   const auto& metg = result.metg;
   const char* below = metg && metg->below ? "<" : "";
-  tess::print_text(fmt::format(fmt::runtime(metg_line),
-                               row.type,
-                               row.kernel,
-                               row.width,
-                               row.steps,
-                               row.pes,
-                               row.ranks,
-                               metg ? below + microseconds(metg->grain_seconds) : "none",
-                               metg ? below + microseconds(metg->wall_seconds) : "none",
-                               result.rows.size()));
+  tess::print_text(
+      fmt::format(fmt::runtime(metg_line), row.type, row.kernel, row.width, row.steps, row.pes,
+                  row.ranks, metg ? below + microseconds(metg->grain_seconds) : "none",
+                  metg ? below + microseconds(metg->wall_seconds) : "none", result.rows.size()));
 }
 
 std::string explain(const Settings& settings) {
@@ -101,11 +77,8 @@ std::string explain(const Settings& settings) {
     for (const Graph& g : graphs) {
       const Totals all = totals(g);
       text += fmt::format("{}: {} tasks, {} dependences of {} bytes, {} dependence sets; ",
-                          name_of(g.type),
-                          all.n_tasks,
-                          all.n_dependences,
-                          (g.output_bytes + 15) / 16 * 16,
-                          n_sets(g));
+                          name_of(g.type), all.n_tasks, all.n_dependences,
+                          (g.output_bytes + 15) / 16 * 16, n_sets(g));
       text += g.type == Type::dom || g.type == Type::tree
                   ? "points come and go\n"
                   : "all points at every step: none is looked up\n";
@@ -117,8 +90,7 @@ std::string explain(const Settings& settings) {
   return text;
 }
 
-void write_json(const std::string& path,
-                const std::vector<Result>& results,
+void write_json(const std::string& path, const std::vector<Result>& results,
                 const std::string& machine) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Result& result : results) {
@@ -131,16 +103,11 @@ void write_json(const std::string& path,
                       {"tasks", row.n_tasks},
                       {"dependences", row.n_dependences},
                       {"efficiency", rounded(row.efficiency)}});
-    nlohmann::ordered_json one = {{"type", first.type},
-                                  {"kernel", first.kernel},
-                                  {"width", first.width},
-                                  {"steps", first.steps},
-                                  {"pes", first.pes},
-                                  {"ranks", first.ranks},
-                                  {"metg_us", nullptr},
-                                  {"metg_wall_us", nullptr},
-                                  {"metg_is_upper_bound", false},
-                                  {"rows", std::move(rows)}};
+    nlohmann::ordered_json one = {
+        {"type", first.type},     {"kernel", first.kernel},  {"width", first.width},
+        {"steps", first.steps},   {"pes", first.pes},        {"ranks", first.ranks},
+        {"metg_us", nullptr},     {"metg_wall_us", nullptr}, {"metg_is_upper_bound", false},
+        {"rows", std::move(rows)}};
     if (result.metg) {
       one["metg_us"] = rounded(1e6 * result.metg->grain_seconds);
       one["metg_wall_us"] = rounded(1e6 * result.metg->wall_seconds);
@@ -158,19 +125,9 @@ void write_csv(const std::string& path, const std::vector<Result>& results) {
       "efficiency\n";
   for (const Result& result : results)
     for (const Row& row : result.rows)
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n",
-                          row.type,
-                          row.kernel,
-                          row.width,
-                          row.steps,
-                          row.pes,
-                          row.ranks,
-                          row.iterations,
-                          row.n_tasks,
-                          row.n_dependences,
-                          1e6 * row.grain_seconds,
-                          row.seconds,
-                          row.efficiency);
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", row.type, row.kernel,
+                          row.width, row.steps, row.pes, row.ranks, row.iterations, row.n_tasks,
+                          row.n_dependences, 1e6 * row.grain_seconds, row.seconds, row.efficiency);
   plot::write_file(path, text);
 }
 

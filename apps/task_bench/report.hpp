@@ -15,8 +15,7 @@ void print_head(const Settings& settings, const tess::Machine& machine);
 /// What a case uses, and what it does without.
 [[nodiscard]] std::string explain(const Settings& settings);
 
-void write_json(const std::string& path,
-                const std::vector<Result>& results,
+void write_json(const std::string& path, const std::vector<Result>& results,
                 const std::string& machine);
 void write_csv(const std::string& path, const std::vector<Result>& results);
 /// Efficiency against the grain, one line per case.

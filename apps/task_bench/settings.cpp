@@ -52,9 +52,7 @@ Load balancing:
   -h, --help       this text
 
 {})",
-      fmt::join(type_names(), ", "),
-      fmt::join(kernel_names(), ", "),
-      tess::options_help());
+      fmt::join(type_names(), ", "), fmt::join(kernel_names(), ", "), tess::options_help());
 }
 
 template <class T>

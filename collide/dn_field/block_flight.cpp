@@ -24,8 +24,8 @@ double speed_gained(const Run& run, std::span<const VelocityChanges> changes) {
 
 /// Whether to take the near ones apart for the next `ahead` of `left` steps. The costs are
 /// nanoseconds a particle, measured roughly: they decide how fast the result is there, never which.
-bool screening_pays(
-    const Stepper::Plan& plan, std::size_t near, std::size_t all, int ahead, int left) {
+bool screening_pays(const Stepper::Plan& plan, std::size_t near, std::size_t all, int ahead,
+                    int left) {
   if (near == all) return false;
   constexpr double to_screen = 2.4, to_pack = 2, first_look_up = 4, free_step = 0.3;
   const double near_step = (plan.rules.spring || plan.rules.surface_flow ? 8 : 2) +
@@ -54,18 +54,14 @@ void BlockFlight::new_particles(std::size_t count) {
 }
 
 /// `closest_` is what the look-up before found of these particles.
-void BlockFlight::look_up_all(const Run& run,
-                              std::span<const Placed> objects,
-                              const ParticleSpan& particles,
-                              Closest& closest) const {
+void BlockFlight::look_up_all(const Run& run, std::span<const Placed> objects,
+                              const ParticleSpan& particles, Closest& closest) const {
   if (run.setting == Setting::general) clear(closest, particles.count);
   for (const Placed& object : objects) run.look_up(object, particles, *closest_, closest);
 }
 
 /// The rules of the surface, for particles that may feel it.
-void BlockFlight::meet_surface(const Run& run,
-                               const Moments& moments,
-                               int step,
+void BlockFlight::meet_surface(const Run& run, const Moments& moments, int step,
                                const ParticleSpan& particles) {
   const Stepper::Plan& plan = run.plan;
   const auto& objects = moments.objects_at(step);
@@ -108,9 +104,7 @@ void BlockFlight::meet_surface(const Run& run,
   std::swap(closest_, after_);
 }
 
-void BlockFlight::step_near(const Run& run,
-                            const Moments& moments,
-                            int step,
+void BlockFlight::step_near(const Run& run, const Moments& moments, int step,
                             const ParticleSpan& particles) {
   const VelocityChanges& changes = moments.changes_at(step);
   if (!changes.none()) change_velocities(changes, particles);
@@ -125,18 +119,15 @@ void BlockFlight::number_in_block() {
   sort_by_particle(scratch_.waypoints);
 }
 
-bool BlockFlight::screen_for(
-    const Run& run, const Moments& moments, int from, int to, const ParticleSpan& particles) {
+bool BlockFlight::screen_for(const Run& run, const Moments& moments, int from, int to,
+                             const ParticleSpan& particles) {
   const Stepper::Plan& plan = run.plan;
-  screen(moments.objects_at(from),
-         plan.rules.look_up,
-         plan.sweep,
+  screen(moments.objects_at(from), plan.rules.look_up, plan.sweep,
          {static_cast<float>(moments.run(from, run).reach),
           static_cast<float>((to - from) * plan.step),
           static_cast<float>(speed_gained(run, moments.changes_in(from, to))),
           to - from > 1 || plan.rules.spring.has_value()},
-         particles,
-         near_);
+         particles, near_);
   return screening_pays(plan, near_.count, particles.count, to - from, moments.n_steps() - from);
 }
 

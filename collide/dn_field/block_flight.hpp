@@ -20,19 +20,15 @@ class BlockFlight {
  private:
   void new_particles(std::size_t count);
   void number_in_block();
-  void look_up_all(const Run& run,
-                   std::span<const Placed> objects,
-                   const ParticleSpan& particles,
+  void look_up_all(const Run& run, std::span<const Placed> objects, const ParticleSpan& particles,
                    Closest& closest) const;
-  void meet_surface(const Run& run,
-                    const Moments& moments,
-                    int step,
+  void meet_surface(const Run& run, const Moments& moments, int step,
                     const ParticleSpan& particles);
   void step_near(const Run& run, const Moments& moments, int step, const ParticleSpan& particles);
   /// Lists who of `particles` may be near in the steps from `from` on, before `to`; whether it pays
   /// to take them apart.
-  [[nodiscard]] bool screen_for(
-      const Run& run, const Moments& moments, int from, int to, const ParticleSpan& particles);
+  [[nodiscard]] bool screen_for(const Run& run, const Moments& moments, int from, int to,
+                                const ParticleSpan& particles);
 
   Closest first_, second_;
   Closest *closest_ = &first_, *after_ = &second_;  // at the step's start and end

@@ -30,12 +30,8 @@ std::vector<Tap> kernel(int radius) {
 
 }  // namespace
 
-void blur_layers(const Grid& grid,
-                 int radius,
-                 std::span<const float> before,
-                 std::span<float> after,
-                 int first,
-                 int last) {
+void blur_layers(const Grid& grid, int radius, std::span<const float> before,
+                 std::span<float> after, int first, int last) {
   const auto nx = static_cast<std::ptrdiff_t>(grid.n[0]);
   const int low = std::max(0, first - radius), high = std::min(grid.n[2], last + radius);
   const auto row = [&](int j, int k) { return grid.index(0, j, k); };

@@ -24,21 +24,16 @@ std::uint32_t code_of(float x, float y, float z) {
       direction({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
 }
 
-void require_met(const Surface& surface,
-                 const Grid& grid,
+void require_met(const Surface& surface, const Grid& grid,
                  const std::vector<SurfaceVoxel>& voxels) {
   if (!voxels.empty()) return;
   const auto corner = [](Vec3 p) { return text("(", p.x, ", ", p.y, ", ", p.z, ")"); };
   const Bounds box = bounds(surface);
   fail(ErrorCode::bad_argument,
        "no voxel of the grid meets the surface, which the blurred methods start from: voxels from ",
-       corner(grid.origin),
-       " to ",
-       corner(grid.centre(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1)),
-       ", surface from ",
-       corner(box.low),
-       " to ",
-       corner(box.high),
+       corner(grid.origin), " to ",
+       corner(grid.centre(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1)), ", surface from ",
+       corner(box.low), " to ", corner(box.high),
        "; put the grid around the surface, or take the exact method");
 }
 
@@ -75,8 +70,7 @@ Blur blur_of(const Grid& grid, const BlurredOptions& options) {
 
 }  // namespace
 
-BlurredBuilder::BlurredBuilder(const Surface& surface,
-                               const Grid& grid,
+BlurredBuilder::BlurredBuilder(const Surface& surface, const Grid& grid,
                                const BlurredOptions& options)
     : BlurredBuilder(checked(surface, grid, options), options, grid) {
   field_.surface = fingerprint(surface);  // as given, whatever was turned
@@ -132,23 +126,13 @@ void BlurredBuilder::require_body() const {
   if (static_cast<double>(thin) <= thin_share * static_cast<double>(voxels_.size())) return;
   const double disagreeing = disagreeing_share(welded(surface_));
   if (disagreeing > flipped_share)
-    fail(ErrorCode::bad_argument,
-         "the orientation of triangles disagrees at ",
-         100 * disagreeing,
-         " % of the edges between two, and ",
-         thin,
-         " of ",
-         voxels_.size(),
+    fail(ErrorCode::bad_argument, "the orientation of triangles disagrees at ", 100 * disagreeing,
+         " % of the edges between two, and ", thin, " of ", voxels_.size(),
          " voxels of the surface have no inside behind them; the normals method needs triangles "
          "that agree which side is out: orient them, or take a two-sided field by the potential or "
          "the exact method");
-  fail(ErrorCode::bad_argument,
-       "the object is of near-zero thickness in ",
-       thin,
-       " of ",
-       voxels_.size(),
-       " voxels of its surface, with cells of ",
-       field_.grid.cell,
+  fail(ErrorCode::bad_argument, "the object is of near-zero thickness in ", thin, " of ",
+       voxels_.size(), " voxels of its surface, with cells of ", field_.grid.cell,
        "; the normals method fails there: take the potential or the exact method, or a higher "
        "resolution");
 }
@@ -158,12 +142,8 @@ void BlurredBuilder::blur(int round, int first, int last) {
   auto& after = values_[static_cast<std::size_t>((round + 1) % 2)];
   const bool restores = round < blur_.rounds;
   for (std::size_t part = 0; part < before.size(); ++part) {
-    blur_layers(field_.grid,
-                restores ? blur_.radius : smoothing_radius,
-                before[part],
-                after[part],
-                first,
-                last);
+    blur_layers(field_.grid, restores ? blur_.radius : smoothing_radius, before[part], after[part],
+                first, last);
     if (!restores) continue;
     for (const SurfaceVoxel& v : voxels_in(first, last)) after[part][v.at] = seed(v, part);
   }

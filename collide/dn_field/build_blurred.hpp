@@ -83,8 +83,7 @@ class BlurredBuilder {
 /// Builds the field of `surface` on `grid`. On a sphere of 14 cells radius normals are within
 /// 6° of the exact ones (mean 1°), by the potential within 22° (mean 3°). Throws as BlurredBuilder
 /// does.
-[[nodiscard]] Field build_blurred(const Surface& surface,
-                                  const Grid& grid,
+[[nodiscard]] Field build_blurred(const Surface& surface, const Grid& grid,
                                   const BlurredOptions& options);
 
 }  // namespace tess::dn

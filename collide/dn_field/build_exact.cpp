@@ -15,8 +15,7 @@ constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are asked 
 constexpr double just_beyond = 1 + 1e-9;
 
 /// None where the field has two sides, after all that must be refused was refused.
-std::optional<OutwardSurface> outward_of(const Surface& surface,
-                                         const Grid& grid,
+std::optional<OutwardSurface> outward_of(const Surface& surface, const Grid& grid,
                                          const ExactOptions& options) {
   validate(surface);
   require_thick(grid, options.thickness);
@@ -42,9 +41,7 @@ struct ExactBuilder::Shelf {
 
 Slab slab_of(Field& field, int first, int last) {
   const auto begin = field.grid.index(0, 0, first), size = field.grid.index(0, 0, last) - begin;
-  return {first,
-          last,
-          std::span(field.distance).subspan(begin, size),
+  return {first, last, std::span(field.distance).subspan(begin, size),
           field.normal.empty() ? std::span<std::uint32_t>{}
                                : std::span(field.normal).subspan(begin, size)};
 }
@@ -52,10 +49,8 @@ Slab slab_of(Field& field, int first, int last) {
 ExactBuilder::ExactBuilder(const Surface& surface, const Grid& grid, ExactOptions options)
     : ExactBuilder(surface, outward_of(surface, grid, options), grid, options) {}
 
-ExactBuilder::ExactBuilder(const Surface& surface,
-                           const std::optional<OutwardSurface>& outward,
-                           const Grid& grid,
-                           ExactOptions options)
+ExactBuilder::ExactBuilder(const Surface& surface, const std::optional<OutwardSurface>& outward,
+                           const Grid& grid, ExactOptions options)
     : grid_(grid),
       surface_(fingerprint(surface)),
       options_(std::move(options)),
@@ -128,8 +123,8 @@ double ExactBuilder::build_shelf(const Slab& slab, int first, int last) const {
     for (int ti = 0; ti < grid_.n[0]; ti += query_edge) {
       Bounds tile;
       tile.extend(grid_.centre(ti, tj, shelf.block_first));
-      tile.extend(grid_.centre(
-          ti + query_edge - 1, tj + query_edge - 1, shelf.block_first + block_edge - 1));
+      tile.extend(grid_.centre(ti + query_edge - 1, tj + query_edge - 1,
+                               shelf.block_first + block_edge - 1));
       if (!tree_.may_reach(tile, limit2)) continue;
       for (int j = tj; j < up_to(tj, query_edge, grid_.n[1]); j += block_edge)
         for (int i = ti; i < up_to(ti, query_edge, grid_.n[0]); i += block_edge)
@@ -144,15 +139,8 @@ BuiltSlab ExactBuilder::build(const Slab& slab) const {
   TESS_CHECK(slab.first >= 0 && slab.last <= grid_.n[2] && slab.first <= slab.last &&
                  slab.distance.size() == grid_.index(0, 0, slab.last - slab.first) &&
                  (slab.normal.empty() || slab.normal.size() == slab.distance.size()),
-             "slab of layers ",
-             slab.first,
-             " to ",
-             slab.last,
-             " of ",
-             grid_.n[2],
-             " with room for ",
-             slab.distance.size(),
-             " distances");
+             "slab of layers ", slab.first, " to ", slab.last, " of ", grid_.n[2],
+             " with room for ", slab.distance.size(), " distances");
   BuiltSlab built{slab.first, slab.last, 0, 0};
   for (int k = slab.first; k < slab.last;) {
     const int next = std::min(k - k % block_edge + block_edge, slab.last);

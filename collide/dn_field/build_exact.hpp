@@ -68,10 +68,8 @@ class ExactBuilder {
  private:
   struct Shelf;  // up to four layers
   /// `outward`: of `surface`, for one-sided fields.
-  ExactBuilder(const Surface& surface,
-               const std::optional<OutwardSurface>& outward,
-               const Grid& grid,
-               ExactOptions options);
+  ExactBuilder(const Surface& surface, const std::optional<OutwardSurface>& outward,
+               const Grid& grid, ExactOptions options);
   void fill_block(int i, int j, const Shelf& shelf) const;
   double build_shelf(const Slab& slab, int first, int last) const;
 
@@ -85,8 +83,7 @@ class ExactBuilder {
 /// Builds the field of `surface` on `grid`. Normals point along the gradient of the distance, and
 /// are those of the closest triangle within a thousandth of a cell from the surface. Throws as
 /// ExactBuilder does.
-[[nodiscard]] Field build_exact(const Surface& surface,
-                                const Grid& grid,
+[[nodiscard]] Field build_exact(const Surface& surface, const Grid& grid,
                                 const ExactOptions& options = {});
 
 }  // namespace tess::dn

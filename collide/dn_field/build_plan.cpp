@@ -21,20 +21,13 @@ Blur choose_blur(const Grid& grid, double thickness) {
 
 void require_blur(const Blur& blur) {
   if (blur.radius < min_radius || blur.radius > max_radius)
-    fail(ErrorCode::bad_argument,
-         "blur of radius ",
-         blur.radius,
-         " voxels; it must be ",
-         min_radius,
-         " to ",
-         max_radius);
+    fail(ErrorCode::bad_argument, "blur of radius ", blur.radius, " voxels; it must be ",
+         min_radius, " to ", max_radius);
   if (blur.rounds < 1)
     fail(ErrorCode::bad_argument, "blur of ", blur.rounds, " rounds; it takes at least one");
 }
 
-FieldPlan choose_plan(const Bounds& box,
-                      const Demand& demand,
-                      Coverage coverage,
+FieldPlan choose_plan(const Bounds& box, const Demand& demand, Coverage coverage,
                       std::size_t max_voxels) {
   Demand asked = demand;
   if (coverage == Coverage::swept) asked.max_speed = 0;

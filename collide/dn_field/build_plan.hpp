@@ -30,9 +30,7 @@ struct FieldPlan {
 
 /// Resolution from the smallest feature, thickness from speed × step (two cells, where look-ups are
 /// swept), blur from both. Throws Error(bad_argument) where more than `max_voxels` would be needed.
-[[nodiscard]] FieldPlan choose_plan(const Bounds& box,
-                                    const Demand& demand,
-                                    Coverage coverage,
+[[nodiscard]] FieldPlan choose_plan(const Bounds& box, const Demand& demand, Coverage coverage,
                                     std::size_t max_voxels);
 
 /// Throws Error(bad_argument) where a given thickness is passed in one step and look-ups are not

@@ -90,9 +90,7 @@ bool Inside::decide_voxel(Vec3 p, int winding) const {
   return tree_.winding_number(p, 0) > 0.5;
 }
 
-void Inside::decide(const Tile& tile,
-                    int first,
-                    std::span<const std::int16_t> winding,
+void Inside::decide(const Tile& tile, int first, std::span<const std::int16_t> winding,
                     std::span<std::uint8_t> inside) const {
   const std::array<int, 3>&low = tile.low, &high = tile.high;
   const auto each = [&](const auto& visit) {
@@ -120,12 +118,9 @@ void Inside::decide(const Tile& tile,
     for (int j = low[1]; j < high[1]; j += half)
       for (int i = low[0]; i < high[0]; i += half)
         decide({{i, j, k},
-                {std::min(i + half, high[0]),
-                 std::min(j + half, high[1]),
+                {std::min(i + half, high[0]), std::min(j + half, high[1]),
                  std::min(k + half, high[2])}},
-               first,
-               winding,
-               inside);
+               first, winding, inside);
 }
 
 void Inside::layers(int first, int last, std::span<std::uint8_t> inside) const {
@@ -142,12 +137,9 @@ void Inside::layers(int first, int last, std::span<std::uint8_t> inside) const {
       for (int j = 0; j < grid_.n[1]; j += tile_edge)
         for (int i = 0; i < grid_.n[0]; i += tile_edge)
           decide({{i, j, k},
-                  {std::min(i + tile_edge, grid_.n[0]),
-                   std::min(j + tile_edge, grid_.n[1]),
+                  {std::min(i + tile_edge, grid_.n[0]), std::min(j + tile_edge, grid_.n[1]),
                    std::min(k + tile_edge, last)}},
-                 first,
-                 winding,
-                 inside);
+                 first, winding, inside);
   }
   for (int k = first; k < last; ++k)
     for (int j = 0; j < grid_.n[1]; ++j)

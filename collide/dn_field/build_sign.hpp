@@ -33,9 +33,7 @@ class Inside {
   struct Tile {
     std::array<int, 3> low, high;  // voxels, high not included
   };
-  void decide(const Tile& tile,
-              int first,
-              std::span<const std::int16_t> winding,
+  void decide(const Tile& tile, int first, std::span<const std::int16_t> winding,
               std::span<std::uint8_t> inside) const;
   /// What the lines' count is above the winding number of the surface.
   [[nodiscard]] WindingEstimate excess(Vec3 p, double radius, double accuracy) const;

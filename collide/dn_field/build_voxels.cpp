@@ -55,8 +55,8 @@ std::vector<SurfaceVoxel> surface_voxels(const Surface& surface, const Grid& gri
         }
   }
   // In the order of the grid, triangles of a voxel in their own order: sums do not depend on how.
-  std::stable_sort(
-      found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<SurfaceVoxel> voxels;
   for (const auto& [at, normal] : found) {
     if (voxels.empty() || voxels.back().at != at) voxels.push_back({at, {}});

@@ -71,9 +71,7 @@ Bvh::Bvh(const Surface& surface) {
     Centroid* const begin = all.data();
     const std::uint32_t middle = range.first + (range.last - range.first) / 2;
     const std::size_t axis = widest_axis(begin + range.first, begin + range.last);
-    std::nth_element(begin + range.first,
-                     begin + middle,
-                     begin + range.last,
+    std::nth_element(begin + range.first, begin + middle, begin + range.last,
                      [axis](const Centroid& a, const Centroid& b) {
                        return a.at[axis] < b.at[axis] ||
                               (a.at[axis] == b.at[axis] && a.triangle < b.triangle);
@@ -191,9 +189,7 @@ Layers nearer_layers(const PointBlock& block, const Bounds& box) {
   return layers;
 }
 
-void offer(PointBlock& block,
-           const Layers& layers,
-           const PreparedTriangle& candidate,
+void offer(PointBlock& block, const Layers& layers, const PreparedTriangle& candidate,
            std::uint64_t place) {
   const PreparedTriangle t = candidate;  // a copy that the block's stores cannot change
   for (std::size_t layer = 0; layer < layers.size(); ++layer) {

@@ -13,8 +13,8 @@ constexpr std::int32_t unknown = -1;
 /// sample() of both for particle p and its neighbours; fetches from the field for those alone that
 /// have changed their voxel since `last`. The others get what they would have got.
 template <LookUp Kind>
-Sample sample_again(
-    const Sampler& field, F3 g, const Closest& last, Closest& closest, std::size_t p) {
+Sample sample_again(const Sampler& field, F3 g, const Closest& last, Closest& closest,
+                    std::size_t p) {
   const Voxel voxel = voxel_of(field.n, g);
   const I key = voxel.in ? position(field, voxel) : I{} + unknown;
   const I changed = ~voxel.in | (key != load<I>(last.voxel + p));
@@ -57,8 +57,7 @@ F taken_by_growth(const Placed& object, F free, I in, F distance) {
 
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Storage How>
 void pass(const Placed& __restrict object,  // which no store can change
-          const ParticleSpan& __restrict particles,
-          [[maybe_unused]] const Closest& last,
+          const ParticleSpan& __restrict particles, [[maybe_unused]] const Closest& last,
           Closest& closest) {
   const auto field = sampler_in<How>(object);
   const Vec3 c = object.centre;

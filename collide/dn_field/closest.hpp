@@ -71,15 +71,13 @@ enum class Storage : std::uint32_t { flat, compressed };
 
 /// Writes `closest`; `last`, which may be the same, is what the look-up before found of these
 /// particles: it saves time and changes nothing.
-using ClosestPass = void (*)(const Placed&,
-                             const ParticleSpan&,
-                             const Closest& last,
+using ClosestPass = void (*)(const Placed&, const ParticleSpan&, const Closest& last,
                              Closest& closest);
 
 /// The pass for one object; `general` passes keep what is closer and start from clear().
 /// Compressed fields have no trilinear one.
-[[nodiscard]] ClosestPass closest_pass(
-    LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage);
+[[nodiscard]] ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep,
+                                       Storage storage);
 
 /// To be called where lanes get other particles: no voxel is known.
 void forget(Closest& closest, std::size_t count);

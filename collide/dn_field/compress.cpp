@@ -74,10 +74,8 @@ void Compressor::gather(std::array<int, 3> low, int s) {
       for (int i = low[0]; i < std::min(low[0] + edge, grid.n[0]); ++i) {
         const std::size_t at = grid.index(i, j, k);
         const std::uint32_t code = field_.normal.empty() ? no_normal : field_.normal[at];
-        voxels_.push_back({static_cast<double>(field_.distance[at]),
-                           to_vec3(decode_normal(code)),
-                           code,
-                           half * static_cast<float>(2 * (i - low[0]) - in_cell),
+        voxels_.push_back({static_cast<double>(field_.distance[at]), to_vec3(decode_normal(code)),
+                           code, half * static_cast<float>(2 * (i - low[0]) - in_cell),
                            half * static_cast<float>(2 * (j - low[1]) - in_cell),
                            half * static_cast<float>(2 * (k - low[2]) - in_cell)});
       }
@@ -210,13 +208,8 @@ std::optional<CompressedField> Compressor::run() {
         if (first != n_entries) continue;
         n_entries += static_cast<std::uint32_t>(entries.size());
         if (n_entries >= (1U << 28U))
-          fail(ErrorCode::bad_argument,
-               "more than 2^28 entries in a compressed field of ",
-               grid.n[0],
-               " × ",
-               grid.n[1],
-               " × ",
-               grid.n[2],
+          fail(ErrorCode::bad_argument, "more than 2^28 entries in a compressed field of ",
+               grid.n[0], " × ", grid.n[1], " × ", grid.n[2],
                " voxels; raise the error bound or lower the resolution");
         for (const Entry& e : entries) {
           made.entry.push_back(e.low);
@@ -253,21 +246,11 @@ CompressedField smaller_of(std::optional<CompressedField> a, CompressedField b) 
 
 CompressedField compress(const Field& field, const ErrorBound& bound, int block_shift) {
   if (!(bound.distance >= 0) || !(bound.angle >= 0))
-    fail(ErrorCode::bad_argument,
-         "error bound of distance ",
-         bound.distance,
-         " and angle ",
-         bound.angle,
-         "; neither may be negative or NaN");
+    fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",
+         bound.angle, "; neither may be negative or NaN");
   if (block_shift != 0 && (block_shift < min_shift || block_shift > max_shift))
-    fail(ErrorCode::bad_argument,
-         "blocks of 2^",
-         block_shift,
-         " voxels; the exponent must be ",
-         min_shift,
-         " to ",
-         max_shift,
-         ", or 0 for the best");
+    fail(ErrorCode::bad_argument, "blocks of 2^", block_shift, " voxels; the exponent must be ",
+         min_shift, " to ", max_shift, ", or 0 for the best");
   std::optional<CompressedField> best;
   const int first = block_shift == 0 ? min_shift : block_shift;
   const int last = block_shift == 0 ? max_shift - 1 : block_shift;
@@ -277,8 +260,7 @@ CompressedField compress(const Field& field, const ErrorBound& bound, int block_
     if (!made) made = Compressor(field, bound, {true, 0, 0}, shift).run();
     if (!made)
       fail(ErrorCode::bad_value,
-           "a voxel's distance is not finite, or beyond the field's thickness of ",
-           field.thickness,
+           "a voxel's distance is not finite, or beyond the field's thickness of ", field.thickness,
            "; build the field again");
     best = smaller_of(std::move(best), std::move(*made));
   }

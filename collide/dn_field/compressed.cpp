@@ -30,12 +30,8 @@ struct FieldReader {
 };
 
 template <bool wide, Want want>
-void read_planes(const CompressedField& field,
-                 const Points& points,
-                 float* __restrict distance,
-                 float* __restrict out_x,
-                 float* __restrict out_y,
-                 float* __restrict out_z) {
+void read_planes(const CompressedField& field, const Points& points, float* __restrict distance,
+                 float* __restrict out_x, float* __restrict out_y, float* __restrict out_z) {
   const FieldReader r(field);
   const EntryDecoder decoder(field.layout);
   const std::uint32_t* __restrict const block = field.block.data();
@@ -80,24 +76,19 @@ void read_planes(const CompressedField& field,
 
 void check_sizes(const Points& points, std::size_t count) {
   TESS_CHECK(points.x.size() == count && points.y.size() == count && points.z.size() == count,
-             "expected ",
-             count,
-             " coordinates on each axis");
+             "expected ", count, " coordinates on each axis");
   TESS_CHECK(count < (std::size_t{1} << 31U), "points are numbered in 31 bits");
 }
 
 void check_normals(const CompressedField& field, const NormalColumns& normal, std::size_t count) {
   TESS_CHECK(normal.x.size() == count && normal.y.size() == count && normal.z.size() == count,
-             "expected room for ",
-             count,
-             " normals");
+             "expected room for ", count, " normals");
   TESS_CHECK(field.content == Content::distance_and_normal, "a field of distances has no normals");
 }
 
 }  // namespace
 
-void nearest_distance(const CompressedField& field,
-                      const Points& points,
+void nearest_distance(const CompressedField& field, const Points& points,
                       std::span<float> distance) {
   check_sizes(points, distance.size());
   const auto run =
@@ -105,8 +96,7 @@ void nearest_distance(const CompressedField& field,
   run(field, points, distance.data(), nullptr, nullptr, nullptr);
 }
 
-void nearest_normal(const CompressedField& field,
-                    const Points& points,
+void nearest_normal(const CompressedField& field, const Points& points,
                     const NormalColumns& normal) {
   check_sizes(points, points.x.size());
   check_normals(field, normal, points.x.size());
@@ -115,9 +105,7 @@ void nearest_normal(const CompressedField& field,
   run(field, points, nullptr, normal.x.data(), normal.y.data(), normal.z.data());
 }
 
-void nearest(const CompressedField& field,
-             const Points& points,
-             std::span<float> distance,
+void nearest(const CompressedField& field, const Points& points, std::span<float> distance,
              const NormalColumns& normal) {
   check_sizes(points, distance.size());
   check_normals(field, normal, distance.size());

@@ -53,8 +53,7 @@ struct CompressedField {
 /// Compresses `field` so that every voxel meets `bound`, and measures it on all voxels, with the
 /// look-up's own arithmetic. block_shift 2 to 4, or 0: the one that takes least memory. Throws
 /// Error(bad_argument) for a bound that is negative or NaN, or another block_shift.
-[[nodiscard]] CompressedField compress(const Field& field,
-                                       const ErrorBound& bound,
+[[nodiscard]] CompressedField compress(const Field& field, const ErrorBound& bound,
                                        int block_shift = 0);
 
 /// The flat field that look-ups of `field` see, with the jump of its own distances.
@@ -72,20 +71,16 @@ struct NormalColumns {
 };
 
 /// As nearest_distance() of a flat field, within the bound.
-void nearest_distance(const CompressedField& field,
-                      const Points& points,
+void nearest_distance(const CompressedField& field, const Points& points,
                       std::span<float> distance);
 
 /// The normal of the nearest voxel; zero outside the grid and for NaN points. The field must have
 /// content distance_and_normal.
-void nearest_normal(const CompressedField& field,
-                    const Points& points,
+void nearest_normal(const CompressedField& field, const Points& points,
                     const NormalColumns& normal);
 
 /// Both.
-void nearest(const CompressedField& field,
-             const Points& points,
-             std::span<float> distance,
+void nearest(const CompressedField& field, const Points& points, std::span<float> distance,
              const NormalColumns& normal);
 
 }  // namespace tess::dn

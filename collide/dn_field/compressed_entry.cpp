@@ -14,8 +14,8 @@ std::uint32_t narrow_normal(const EntryDecoder& decoder, Vec3 normal) {
     u = folded;
   }
   const auto low = [&](double t) {
-    return std::clamp(
-        static_cast<int>(std::floor((t + 1) * decoder.middle)), 0, 2 * decoder.middle - 1);
+    return std::clamp(static_cast<int>(std::floor((t + 1) * decoder.middle)), 0,
+                      2 * decoder.middle - 1);
   };
   std::uint32_t best = 0;
   double closest = -2;

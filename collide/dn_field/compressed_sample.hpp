@@ -82,7 +82,8 @@ inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
 /// The nearest and the tangent look-up. An entry's normal is that of all its voxels, so the tangent
 /// one carries its plane on; both need the normal.
 template <LookUp Kind, Ask Asked>
-requires(Kind != LookUp::trilinear) inline Sample sample(const PlaneSampler& field, F3 g) {
+  requires(Kind != LookUp::trilinear)
+inline Sample sample(const PlaneSampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
   const Stored plane = planes_at(field, voxel);
   const Stored stored{plane.distance, only(voxel.in, plane.normal)};

@@ -41,8 +41,9 @@ void each_of_grid(Pass& pass, Grid& grid) {
 }
 
 template <class Pass>
-void each_member(Pass& pass, auto& field) requires
-    std::same_as<std::remove_const_t<std::remove_reference_t<decltype(field)>>, Field> {
+void each_member(Pass& pass, auto& field)
+  requires std::same_as<std::remove_const_t<std::remove_reference_t<decltype(field)>>, Field>
+{
   each_of_grid(pass, field.grid);
   pass.number(field.method), pass.number(field.sides), pass.number(field.thickness);
   pass.number(field.jump), pass.number(field.surface);
@@ -50,8 +51,10 @@ void each_member(Pass& pass, auto& field) requires
 }
 
 template <class Pass>
-void each_member(Pass& pass, auto& field) requires
-    std::same_as<std::remove_const_t<std::remove_reference_t<decltype(field)>>, CompressedField> {
+void each_member(Pass& pass, auto& field)
+  requires std::same_as<std::remove_const_t<std::remove_reference_t<decltype(field)>>,
+                        CompressedField>
+{
   each_of_grid(pass, field.grid);
   pass.number(field.method), pass.number(field.sides), pass.number(field.content);
   pass.number(field.thickness), pass.number(field.block_shift);
@@ -110,9 +113,7 @@ void save(const auto& field, Kind kind, const std::string& path) {
   if (!file || error) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
-    fail(ErrorCode::environment,
-         path,
-         ": cannot be written (",
+    fail(ErrorCode::environment, path, ": cannot be written (",
          error ? error.message() : "opening or writing failed",
          "); is the folder there, writable "
          "and not full?");
@@ -144,19 +145,11 @@ class FileReader {
     }
     const std::uint64_t body = size - sizeof(head);
     if (body != head.body_bytes)
-      refuse(text(body < head.body_bytes ? "truncated" : "longer than it says",
-                  ": ",
-                  body,
-                  " bytes behind its head, not ",
-                  head.body_bytes));
+      refuse(text(body < head.body_bytes ? "truncated" : "longer than it says", ": ", body,
+                  " bytes behind its head, not ", head.body_bytes));
     if (const double there = usable_memory(); static_cast<double>(body) > there)
-      fail(ErrorCode::environment,
-           path_,
-           ": holds ",
-           static_cast<double>(body) / 1e9,
-           " GB, and this process may have ",
-           there / 1e9,
-           " GB");
+      fail(ErrorCode::environment, path_, ": holds ", static_cast<double>(body) / 1e9,
+           " GB, and this process may have ", there / 1e9, " GB");
     left_ = head.body_bytes;
     expected_ = head.checksum;
     checksum_.add(bytes_of(head).first(checked_head_bytes));
@@ -204,20 +197,14 @@ void require(bool condition, const FileReader& reader, const char* what) {
   if (!condition) reader.refuse(text("holds a field that cannot be: ", what));
 }
 
-void require_sound(const FileReader& reader,
-                   const Grid& grid,
-                   Method method,
-                   Sides sides,
-                   double thickness,
-                   float jump) {
+void require_sound(const FileReader& reader, const Grid& grid, Method method, Sides sides,
+                   double thickness, float jump) {
   constexpr int most = 1 << 20;  // voxels along an axis: their number fits
   for (const int n : grid.n)
     require(n > 0 && n <= most, reader, "a grid without voxels, or of too many");
-  require(grid.cell > 0 && std::isfinite(grid.cell) && is_finite(grid.origin),
-          reader,
+  require(grid.cell > 0 && std::isfinite(grid.cell) && is_finite(grid.origin), reader,
           "cells or an origin that are not finite");
-  require(thickness > 0 && std::isfinite(thickness),
-          reader,
+  require(thickness > 0 && std::isfinite(thickness), reader,
           "a thickness that is not positive and finite");
   require(method <= Method::potential && sides <= Sides::two, reader, "an unknown method or side");
   require(jump >= 0, reader, "a jump that is negative or NaN");
@@ -229,21 +216,18 @@ void require_sound(const FileReader& reader, const CompressedField& field) {
   require(e >= 0 && e <= 4, reader, "blocks of another size");
   std::size_t n_blocks = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    require(field.n_blocks[a] == (field.grid.n[a] + (1 << e) - 1) >> e,
-            reader,
+    require(field.n_blocks[a] == (field.grid.n[a] + (1 << e) - 1) >> e, reader,
             "blocks that do not cover the grid");
     n_blocks *= static_cast<std::size_t>(field.n_blocks[a]);
   }
   require(field.block.size() == n_blocks, reader, "another number of blocks");
   require(field.content <= Content::distance_and_normal, reader, "unknown content");
   require(field.layout.wide || (field.layout.normal_bits >= 1 && field.layout.normal_bits <= 15),
-          reader,
-          "entries of another layout");
+          reader, "entries of another layout");
   const std::size_t n_entries = field.entry.size() / (field.layout.wide ? 2 : 1);
   for (const std::uint32_t head : field.block) {
     const int s = static_cast<int>(head & 7U);
-    require(s <= e && (head >> 3U) + (std::size_t{1} << (3 * (e - s))) <= n_entries,
-            reader,
+    require(s <= e && (head >> 3U) + (std::size_t{1} << (3 * (e - s))) <= n_entries, reader,
             "a block without entries");
   }
 }
@@ -274,8 +258,7 @@ Field read_field(std::istream& file, const std::string& name) {
   auto field = read<Field>(reader, Kind::flat);
   require(field.distance.size() == field.grid.size() &&
               (field.normal.empty() || field.normal.size() == field.grid.size()),
-          reader,
-          "another number of voxels");
+          reader, "another number of voxels");
   return field;
 }
 

@@ -44,10 +44,8 @@ inline D3 turned_to_surface(const FlowConstants& c, D3 w, D3 n, L where) {
   const D axis2 = dot(axis, axis);
   where = settled(where & (axis2 > 1e-12 * w2) & (w2 > 1e-200) & (w2 < 1e200));
   const D scale = scale_to_one(w2), rate = alpha < 0.0 ? all(c.turn_in) : all(c.turn_out);
-  const F turn = half_turn(to_float(rate * scale),
-                           to_float(alpha * scale),
-                           to_float(w2 * scale * scale),
-                           to_float(axis2 * scale * scale));
+  const F turn = half_turn(to_float(rate * scale), to_float(alpha * scale),
+                           to_float(w2 * scale * scale), to_float(axis2 * scale * scale));
   const D g = to_double(turn) * scale, t2 = g * g * axis2, per = 1.0 / (1.0 + t2);
   const D of_w = fma(2.0 * g, alpha, 1.0 - t2) * per, of_n = -2.0 * g * w2 * per;
   return select(where, fma(of_w, w, of_n * n), w);

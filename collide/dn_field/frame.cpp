@@ -15,8 +15,7 @@ std::array<Vec3, 3> rotation(Vec3 v) {
   const double angle = norm(v), cosine = std::cos(angle), sine = std::sin(angle);
   const Vec3 axis = direction(v);
   if (axis == Vec3{}) return Frame{}.axes;
-  return {turned({1, 0, 0}, axis, cosine, sine),
-          turned({0, 1, 0}, axis, cosine, sine),
+  return {turned({1, 0, 0}, axis, cosine, sine), turned({0, 1, 0}, axis, cosine, sine),
           turned({0, 0, 1}, axis, cosine, sine)};
 }
 
@@ -37,13 +36,7 @@ Frame frame_from(const std::array<Vec3, 3>& columns, Vec3 translation) {
   constexpr double tolerance = 1e-6;  // files hold six or more digits
   for (const Vec3 c : {columns[0], columns[1], columns[2], translation})
     if (!is_finite(c))
-      fail(ErrorCode::bad_value,
-           "transform holds (",
-           c.x,
-           ", ",
-           c.y,
-           ", ",
-           c.z,
+      fail(ErrorCode::bad_value, "transform holds (", c.x, ", ", c.y, ", ", c.z,
            "); all entries must be finite");
   const double scale = norm(columns[0]);
   if (!(scale > 0) || !(norm(columns[1]) > 0) || !(norm(columns[2]) > 0))
@@ -54,20 +47,10 @@ Frame frame_from(const std::array<Vec3, 3>& columns, Vec3 translation) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 c = columns[i], next = columns[(i + 1) % 3];
     if (std::abs(norm(c) - scale) > tolerance * scale)
-      fail(ErrorCode::bad_value,
-           "transform scales axis ",
-           i,
-           " by ",
-           norm(c),
-           " and axis 0 by ",
-           scale,
-           "; only uniform scale is possible");
+      fail(ErrorCode::bad_value, "transform scales axis ", i, " by ", norm(c), " and axis 0 by ",
+           scale, "; only uniform scale is possible");
     if (std::abs(dot(c, next)) > tolerance * scale * scale)
-      fail(ErrorCode::bad_value,
-           "transform has shear between axes ",
-           i,
-           " and ",
-           (i + 1) % 3,
+      fail(ErrorCode::bad_value, "transform has shear between axes ", i, " and ", (i + 1) % 3,
            "; apply it to the mesh instead");
     frame.axes[i] = (1 / norm(c)) * c;
   }

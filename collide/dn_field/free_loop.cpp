@@ -15,8 +15,7 @@ void fly_one(const FlightConstants& c, D3& x, D3& v) {
 }
 
 template <Flight Flies>
-void fly(const FlightConstants& constants,
-         const ParticleSpan& span,
+void fly(const FlightConstants& constants, const ParticleSpan& span,
          std::span<const VelocityChanges> changes) {
   const FlightConstants c = constants;  // copies, which no store to a particle can change
   const ParticleSpan particles = span;

@@ -11,8 +11,7 @@ namespace tess::dn {
 
 /// As many steps as `changes` has. Where it has nothing to say, each vector of particles is taken
 /// through all of them without a store between.
-using FreeLoop = void (*)(const FlightConstants&,
-                          const ParticleSpan&,
+using FreeLoop = void (*)(const FlightConstants&, const ParticleSpan&,
                           std::span<const VelocityChanges> changes);
 
 /// Of particles that fly as `flight` says, but far from all surfaces.

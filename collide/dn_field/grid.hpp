@@ -27,8 +27,8 @@ struct Grid {
   /// Of a number: (i, j, k).
   [[nodiscard]] std::array<int, 3> voxel(std::size_t at) const {
     const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
-    return {
-        static_cast<int>(at % nx), static_cast<int>(at / nx % ny), static_cast<int>(at / nx / ny)};
+    return {static_cast<int>(at % nx), static_cast<int>(at / nx % ny),
+            static_cast<int>(at / nx / ny)};
   }
   [[nodiscard]] Vec3 centre(int i, int j, int k) const {
     return origin + cell * Vec3{1.0 * i, 1.0 * j, 1.0 * k};

@@ -206,8 +206,8 @@ struct Two {
 using Half = std::int64_t __attribute__((vector_size(32)));
 inline Half gather_four(const std::uint32_t* table, __m128i at) {
   const __m256i zero = _mm256_setzero_si256(), every = _mm256_cmpeq_epi64(zero, zero);
-  return (Half)_mm256_mask_i32gather_epi64(
-      zero, reinterpret_cast<const long long*>(table), at, every, 4);
+  return (Half)_mm256_mask_i32gather_epi64(zero, reinterpret_cast<const long long*>(table), at,
+                                           every, 4);
 }
 #endif
 inline Two<I> gather_two(const std::uint32_t* table, I at) {

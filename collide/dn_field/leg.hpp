@@ -15,10 +15,7 @@ struct Leg {
 
 /// Fills `legs` with particle p's way through a step, in the order of time. waypoints: those of all
 /// particles, as Stepper::run_once() tells them.
-inline void find_legs(std::size_t p,
-                      Vec3 from,
-                      std::span<const Waypoint> waypoints,
-                      Vec3 to,
+inline void find_legs(std::size_t p, Vec3 from, std::span<const Waypoint> waypoints, Vec3 to,
                       std::vector<Leg>& legs) {
   legs.assign(1, {0, 1, from, to});
   for (const Waypoint& bend : std::ranges::equal_range(waypoints, p, {}, &Waypoint::particle)) {

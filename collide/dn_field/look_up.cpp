@@ -63,25 +63,17 @@ void answer(const Field& field, const Points& points, const Answers& answers) {
 
 void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers) {
   const std::size_t count = points.x.size();
-  TESS_CHECK(points.y.size() == count && points.z.size() == count,
-             "expected ",
-             count,
+  TESS_CHECK(points.y.size() == count && points.z.size() == count, "expected ", count,
              " coordinates on each axis");
-  TESS_CHECK(answers.distance.empty() || answers.distance.size() == count,
-             "expected room for ",
-             count,
-             " distances");
+  TESS_CHECK(answers.distance.empty() || answers.distance.size() == count, "expected room for ",
+             count, " distances");
   for (const auto& normal : {answers.nx, answers.ny, answers.nz})
     TESS_CHECK(normal.size() == answers.nx.size() && (normal.empty() || normal.size() == count),
-               "expected room for ",
-               count,
-               " normals on each axis, or none");
+               "expected room for ", count, " normals on each axis, or none");
   TESS_CHECK(field.grid.size() < (std::size_t{1} << 31U), "voxels are numbered in 32 bits");
   if (count == 0 || (answers.distance.empty() && answers.nx.empty())) return;
   if ((!answers.nx.empty() || kind == LookUp::tangent) && field.normal.empty())
-    fail(ErrorCode::bad_argument,
-         "normals are asked of a field of ",
-         field.grid.size(),
+    fail(ErrorCode::bad_argument, "normals are asked of a field of ", field.grid.size(),
          " voxels that stores none; build it with distance and normal");
   if (kind == LookUp::nearest) answer<LookUp::nearest>(field, points, answers);
   if (kind == LookUp::tangent) answer<LookUp::tangent>(field, points, answers);

@@ -34,11 +34,9 @@ Run run_of(const Stepper::Plan& plan, std::span<const Object> objects) {
   const bool simple =
       objects.size() == 1 && !objects[0].frame.is_moving() && !objects[0].frame.is_turned();
   run.setting = simple || !plan.looks_up ? Setting::one_at_rest : Setting::general;
-  run.look_up = closest_pass(plan.rules.look_up,
-                             plan.asked,
-                             simple ? Setting::one_at_rest : Setting::general,
-                             plan.sweep,
-                             storage_of(objects));
+  run.look_up =
+      closest_pass(plan.rules.look_up, plan.asked, simple ? Setting::one_at_rest : Setting::general,
+                   plan.sweep, storage_of(objects));
   run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
   set_lengths(run, objects);
   for (const Object& object : objects)

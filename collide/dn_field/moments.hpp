@@ -50,9 +50,7 @@ struct Moments {
 };
 
 /// n_steps from `first` steps after time 0 on. The objects are left where they stand after them.
-[[nodiscard]] Moments moments_of(const Run& run,
-                                 std::vector<Object>& objects,
-                                 double first,
+[[nodiscard]] Moments moments_of(const Run& run, std::vector<Object>& objects, double first,
                                  int n_steps);
 
 }  // namespace tess::dn

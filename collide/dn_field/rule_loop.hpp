@@ -12,9 +12,7 @@ using RuleLoop = void (*)(const RuleConstants&, const ParticleSpan&, const Close
 namespace lanes {
 
 template <Flight Flies, Impacts Hits, Springs Springy, Setting Where>
-void rule_loop(const RuleConstants& constants,
-               const ParticleSpan& span,
-               const Closest& closest,
+void rule_loop(const RuleConstants& constants, const ParticleSpan& span, const Closest& closest,
                Scratch& scratch) {
   using Step = RuleStep<Flies, Hits, Springy, Where>;
   // Copies, which no store to a particle can change.

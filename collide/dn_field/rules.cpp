@@ -25,14 +25,7 @@ void positive(std::string_view key, double value, std::string_view remedy) {
 
 void finite(std::string_view key, Vec3 value) {
   if (!is_finite(value))
-    fail(ErrorCode::bad_value,
-         key,
-         " is (",
-         value.x,
-         ", ",
-         value.y,
-         ", ",
-         value.z,
+    fail(ErrorCode::bad_value, key, " is (", value.x, ", ", value.y, ", ", value.z,
          "); give three finite numbers");
 }
 
@@ -44,20 +37,15 @@ void validate(const Spring& spring) {
   finite("spring.reach", spring.reach);
   const double critical = 2 * std::sqrt(spring.stiffness);
   if (!(spring.damping <= 0.999 * critical))
-    fail(ErrorCode::bad_value,
-         "spring.damping is ",
-         spring.damping,
-         "; stay below 0.999 × critical (2 √stiffness = ",
-         critical,
+    fail(ErrorCode::bad_value, "spring.damping is ", spring.damping,
+         "; stay below 0.999 × critical (2 √stiffness = ", critical,
          "), or use impact with restitution 0");
 }
 
 void validate(const Impact& impact) {
   finite("impact.restitution", impact.restitution);
   if (impact.restitution < 0 || impact.restitution > 1)
-    fail(ErrorCode::bad_value,
-         "impact.restitution is ",
-         impact.restitution,
+    fail(ErrorCode::bad_value, "impact.restitution is ", impact.restitution,
          "; give 0 (slides) to 1 (no loss), more would make energy");
   not_negative("impact.threshold", impact.threshold, "give the particles' radius, zero or more");
 }

@@ -20,12 +20,8 @@ struct Sampler {
 
 inline Sampler sampler_of(const Field& field) {
   const Grid& g = field.grid;
-  return {field.distance.data(),
-          field.normal.data(),
-          static_cast<float>(g.cell),
-          g.n[0],
-          g.n[0] * g.n[1],
-          {g.n[0], g.n[1], g.n[2]}};
+  return {field.distance.data(), field.normal.data(),     static_cast<float>(g.cell), g.n[0],
+          g.n[0] * g.n[1],       {g.n[0], g.n[1], g.n[2]}};
 }
 
 /// Which answers a loop computes; a loop for one holds no trace of the other.
@@ -79,9 +75,7 @@ inline Voxel voxel_from_corner(const int (&n)[3], F3 h) {
   const auto nx = static_cast<float>(n[0]), ny = static_cast<float>(n[1]),
              nz = static_cast<float>(n[2]);
   const I in = (h.x >= 0.0F) & (h.x < nx) & (h.y >= 0.0F) & (h.y < ny) & (h.z >= 0.0F) & (h.z < nz);
-  return {in,
-          __builtin_convertvector(only(in, h.x), I),
-          __builtin_convertvector(only(in, h.y), I),
+  return {in, __builtin_convertvector(only(in, h.x), I), __builtin_convertvector(only(in, h.y), I),
           __builtin_convertvector(only(in, h.z), I)};
 }
 inline Voxel voxel_of(const int (&n)[3], F3 g) {
@@ -95,8 +89,7 @@ inline I position(const Sampler& field, const Voxel& voxel) {
 
 /// From the voxel's centre to the point.
 inline F3 offset(const Voxel& voxel, F3 g) {
-  return {g.x - __builtin_convertvector(voxel.i, F),
-          g.y - __builtin_convertvector(voxel.j, F),
+  return {g.x - __builtin_convertvector(voxel.i, F), g.y - __builtin_convertvector(voxel.j, F),
           g.z - __builtin_convertvector(voxel.k, F)};
 }
 
@@ -117,9 +110,7 @@ inline Stored read(const Sampler& field, const Voxel& voxel) {
 }
 
 /// Distance and normal as by read() where `changed`, else `before`, which is what it would read.
-inline Stored read_changed(const Sampler& field,
-                           const Voxel& voxel,
-                           I changed,
+inline Stored read_changed(const Sampler& field, const Voxel& voxel, I changed,
                            const Stored& before) {
   const I at = position(field, voxel);
   const F3 normal = only(voxel.in, unit(decode(gather(field.normal, at, changed))));
@@ -141,13 +132,15 @@ inline Sample answer(float cell, const Voxel& voxel, const Stored& stored, F3 g)
 }
 
 template <LookUp Kind, Ask Asked>
-requires(Kind != LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
+  requires(Kind != LookUp::trilinear)
+inline Sample sample(const Sampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
   return answer<Kind, Asked>(field.cell, voxel, read<Kind, Asked>(field, voxel), g);
 }
 
 template <LookUp Kind, Ask Asked>
-requires(Kind == LookUp::trilinear) inline Sample sample(const Sampler& field, F3 g) {
+  requires(Kind == LookUp::trilinear)
+inline Sample sample(const Sampler& field, F3 g) {
   const auto nx = static_cast<float>(field.n[0] - 1), ny = static_cast<float>(field.n[1] - 1),
              nz = static_cast<float>(field.n[2] - 1);
   const I in =

@@ -73,12 +73,8 @@ RoomTo choose(const Placed& object) {
 
 }  // namespace
 
-void screen(std::span<const Placed> objects,
-            LookUp kind,
-            Sweep sweep,
-            Reach reach,
-            const ParticleSpan& block,
-            Near& near) {
+void screen(std::span<const Placed> objects, LookUp kind, Sweep sweep, Reach reach,
+            const ParticleSpan& block, Near& near) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Placed& object = objects[i];
     // Nearest is this voxel's value, the tangent leaves it by half a diagonal, trilinear blends it

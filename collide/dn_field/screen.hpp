@@ -33,12 +33,8 @@ struct Reach {
 };
 
 /// Lists who may be near within `reach.time` from now; a NaN may.
-void screen(std::span<const Placed> objects,
-            LookUp kind,
-            Sweep sweep,
-            Reach reach,
-            const ParticleSpan& block,
-            Near& near);
+void screen(std::span<const Placed> objects, LookUp kind, Sweep sweep, Reach reach,
+            const ParticleSpan& block, Near& near);
 
 /// Copies the listed particles.
 void pack(const ParticleSpan& block, Near& near);

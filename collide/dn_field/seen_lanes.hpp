@@ -92,8 +92,7 @@ inline Bend bend_of(const Placed& object, const Pose& pose, D3 x, D3 way) {
   const bool shrinks = object.growth < 0;
   const D more = (shrinks ? 2.0 : 1.0) * per, grows = std::abs(object.growth) * more,
           turns = static_cast<double>(object.spin) + grows;
-  return {more * (through + turns * r),
-          more * (turns * through),
+  return {more * (through + turns * r), more * (turns * through),
           more * turns * (2.0 * through + (turns + grows) * r),
           shrinks ? pose.size() * (-0.5 / object.growth) : all(HUGE_VAL)};
 }

@@ -5,8 +5,8 @@
 namespace tess::dn {
 namespace {
 
-void add_quad(
-    Surface& surface, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+void add_quad(Surface& surface, std::uint32_t a, std::uint32_t b, std::uint32_t c,
+              std::uint32_t d) {
   if (a != b && b != c && a != c) surface.triangles.push_back({a, b, c});
   if (a != c && c != d && a != d) surface.triangles.push_back({a, c, d});
 }
@@ -16,8 +16,7 @@ void add_quad(
 Surface make_box(Vec3 half) {
   Surface box;
   for (unsigned i = 0; i < 8; ++i)
-    box.vertices.push_back({(i & 1U) != 0 ? half.x : -half.x,
-                            (i & 2U) != 0 ? half.y : -half.y,
+    box.vertices.push_back({(i & 1U) != 0 ? half.x : -half.x, (i & 2U) != 0 ? half.y : -half.y,
                             (i & 4U) != 0 ? half.z : -half.z});
   add_quad(box, 0, 2, 3, 1);
   add_quad(box, 4, 5, 7, 6);

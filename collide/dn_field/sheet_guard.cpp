@@ -184,9 +184,7 @@ class Guard {
 };
 
 /// Who of the particles p, p + 1, … went further than was known to be free.
-lanes::L may_cross(const SheetScene& scene,
-                   const Start& start,
-                   const ParticleSpan& particles,
+lanes::L may_cross(const SheetScene& scene, const Start& start, const ParticleSpan& particles,
                    std::size_t p) {
   using namespace lanes;
   if (!scene.knows_free) return ~L{};
@@ -199,9 +197,7 @@ lanes::L may_cross(const SheetScene& scene,
 
 }  // namespace
 
-Moved keep_off_sheets(const SheetScene& scene,
-                      const Start& start,
-                      std::vector<Waypoint>& waypoints,
+Moved keep_off_sheets(const SheetScene& scene, const Start& start, std::vector<Waypoint>& waypoints,
                       const ParticleSpan& particles) {
   constexpr double never = HUGE_VAL;  // a part of the step that is not reached
   Guard guard(scene);

@@ -24,9 +24,7 @@ struct SheetScene {
 /// Who crossed a triangle of a sheet is put back to its own side and reflected, with no more energy
 /// than at the start. `waypoints`: by particle and time; leaves out those
 /// that who was put elsewhere did not reach.
-Moved keep_off_sheets(const SheetScene& scene,
-                      const Start& start,
-                      std::vector<Waypoint>& waypoints,
+Moved keep_off_sheets(const SheetScene& scene, const Start& start, std::vector<Waypoint>& waypoints,
                       const ParticleSpan& particles);
 
 }  // namespace tess::dn

@@ -17,11 +17,8 @@ struct Account {
   L over;    // who has more
 };
 
-Account account(const SpringLimit& limit,
-                const SpringConstants& spring,
-                const Closest& after,
-                const ParticleSpan& particles,
-                std::size_t p) {
+Account account(const SpringLimit& limit, const SpringConstants& spring, const Closest& after,
+                const ParticleSpan& particles, std::size_t p) {
   Account a{};
   a.depth = spring.reach - to_double(load<F>(after.distance + p));
   if (limit.setting == Setting::general) a.u = surface_velocities(limit.before, p);
@@ -74,8 +71,8 @@ Moved SpringLimit::put_back(const Closest& after, const ParticleSpan& particles)
     moved = Moved::some;
     const D3 taken_along = fma(all(constants.step), a.u, start.places(p));
     set_places(particles, p, select(deeper, taken_along, places(particles, p)));
-    set_velocities(
-        particles, p, select(deeper, a.u + (a.u - start.velocities(p)), velocities(particles, p)));
+    set_velocities(particles, p,
+                   select(deeper, a.u + (a.u - start.velocities(p)), velocities(particles, p)));
   }
   return moved;
 }

@@ -30,11 +30,8 @@ void spring(Rows& rows) {
       const double height = leaving * (n_steps * step - start / speed - contact);
       const char* name = ratio > 0 ? "spring, half damped" : "spring";
       rows.add(name, "k dt²/m", stiffness, std::abs(end.velocity.z - leaving) / speed, 2e-6);
-      rows.add(std::string(name) + ": place",
-               "k dt²/m",
-               stiffness,
-               std::abs(end.position.z - height),
-               2e-5);
+      rows.add(std::string(name) + ": place", "k dt²/m", stiffness,
+               std::abs(end.position.z - height), 2e-5);
     }
   }
 }
@@ -63,11 +60,8 @@ void drag(Rows& rows) {
     Rules quadratic;
     quadratic.air_drag = AirDrag{rate, DragLaw::quadratic};
     end = flown(quadratic, 1, n_steps, {}, {{}, {speed, 0, 0}});
-    rows.add("quadratic air drag",
-             "c |v| dt",
-             rate * speed,
-             std::abs(end.velocity.x / speed * (1 + rate * speed * n_steps) - 1),
-             1e-12);
+    rows.add("quadratic air drag", "c |v| dt", rate * speed,
+             std::abs(end.velocity.x / speed * (1 + rate * speed * n_steps) - 1), 1e-12);
   }
 }
 
@@ -116,22 +110,16 @@ void bounces(Rows& rows) {
       const double energy = now.position.z + 0.5 * dot(now.velocity, now.velocity);
       most = std::max(most, energy), least = std::min(least, energy);
     }
-    rows.add(
-        "bounces, restitution 1: gain", "dt √(g/h)", step * std::sqrt(2.0), most / 0.5 - 1, 1e-6);
+    rows.add("bounces, restitution 1: gain", "dt √(g/h)", step * std::sqrt(2.0), most / 0.5 - 1,
+             1e-6);
     if (step < 0.05)
-      rows.add("bounces, restitution 1: loss",
-               "dt √(g/h)",
-               step * std::sqrt(2.0),
-               1 - least / 0.5,
+      rows.add("bounces, restitution 1: loss", "dt √(g/h)", step * std::sqrt(2.0), 1 - least / 0.5,
                1e-6);
     rules.impact->restitution = 0;
     now =
         flown(rules, step, static_cast<int>(std::ceil(3 / step)), {&object, 1}, {{0, 0, 0.5}, {}});
-    rows.add("impact, restitution 0: at rest",
-             "dt √(g/h)",
-             step * std::sqrt(2.0),
-             std::abs(now.position.z) + norm(now.velocity),
-             2e-6);
+    rows.add("impact, restitution 0: at rest", "dt √(g/h)", step * std::sqrt(2.0),
+             std::abs(now.position.z) + norm(now.velocity), 2e-6);
   }
   // Restitution e: at rest (v0/g)(1 + e)/(1 - e) after the fall began. Bounces shorter than a step
   // are cut off: the last 2 v/g.
@@ -147,14 +135,14 @@ void bounces(Rows& rows) {
     now = flown(rules, step, 1, {&object, 1}, now);
     if (std::abs(now.velocity.z) > 1e-9) moved = (i + 1) * step;
   }
-  rows.add(
-      "impact, restitution 0.7: time to rest", "dt", step, std::abs(moved - at_rest), 20 * step);
+  rows.add("impact, restitution 0.7: time to rest", "dt", step, std::abs(moved - at_rest),
+           20 * step);
 }
 
 }  // namespace
 
-Particle flown(
-    const Rules& rules, double step, int n_steps, std::span<const Object> objects, Particle start) {
+Particle flown(const Rules& rules, double step, int n_steps, std::span<const Object> objects,
+               Particle start) {
   Particles particles;
   particles.push_back(start.position, start.velocity);
   make_stepper(rules, step).run(particles.span(), objects, 0, n_steps);

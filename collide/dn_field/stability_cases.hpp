@@ -23,8 +23,8 @@ struct Rows {
 struct Particle {
   Vec3 position, velocity;
 };
-[[nodiscard]] Particle flown(
-    const Rules& rules, double step, int n_steps, std::span<const Object> objects, Particle start);
+[[nodiscard]] Particle flown(const Rules& rules, double step, int n_steps,
+                             std::span<const Object> objects, Particle start);
 
 /// Springs, drags, surface flow, impacts: against closed forms.
 void stiff_rules(Rows& rows);

@@ -71,18 +71,12 @@ void corners(Rows& rows) {
   const Object object{&room, {}};
   for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
     for (const double speed : {0.1, 3.0, 100.0}) {
-      const Particle end = flown(impact(1, Sweep::on, look_up),
-                                 0.05,
-                                 2000,
-                                 {&object, 1},
+      const Particle end = flown(impact(1, Sweep::on, look_up), 0.05, 2000, {&object, 1},
                                  {{0.1, 0.2, 0.3}, speed * direction({1, 1, 1})});
       const Vec3 a = end.position;
       const double outside = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}) - half;
       rows.add("corners: |v|", "speed", speed, total_speed_error(end, speed), 1e-11);
-      rows.add("corners: outside",
-               "speed",
-               speed,
-               outside,
+      rows.add("corners: outside", "speed", speed, outside,
                look_up == LookUp::tangent ? 1e-6 : 0.87 * room.grid.cell);
     }
 }
@@ -95,11 +89,8 @@ void moving_walls(Rows& rows) {
       object.frame.velocity = {0, 0, speed};
       const Particle end =
           flown(impact(restitution, Sweep::on), 0.2 / speed, 4, {&object, 1}, {{0, 0, 0.5}, {}});
-      rows.add("moving plate",
-               "restitution",
-               restitution,
-               std::abs(end.velocity.z / ((1 + restitution) * speed) - 1),
-               1e-12);
+      rows.add("moving plate", "restitution", restitution,
+               std::abs(end.velocity.z / ((1 + restitution) * speed) - 1), 1e-12);
     }
   // A disc that spins in its plane gives nothing.
   for (const double spin : {1e-3, 1.0, 1e3, 1e6}) {
@@ -117,11 +108,8 @@ void moving_walls(Rows& rows) {
     const Particle end =
         flown(impact(1, Sweep::on), 0.1, 50, {&object, 1}, {{1.5, 0.1, 0.05}, {-1, 0, 0}});
     const double excess = norm(end.velocity) - 1 - 2 * 0.6 * 1.12 * spin;
-    rows.add("spinning ball: excess of |v|",
-             "spin × dt",
-             0.1 * spin,
-             is_finite(end.position) ? excess : HUGE_VAL,
-             1e-9);
+    rows.add("spinning ball: excess of |v|", "spin × dt", 0.1 * spin,
+             is_finite(end.position) ? excess : HUGE_VAL, 1e-9);
   }
 }
 
@@ -134,11 +122,8 @@ void approaching_walls(Rows& rows) {
     object.frame.position = {0, 0, -thicknesses};
     object.frame.velocity = {0, 0, 2 * thicknesses};
     const Particle end = flown(impact(1, Sweep::on), 1, 1, {&object, 1}, {{0.1, 0.2, 0.5}, {}});
-    rows.add("plate from beyond",
-             "u dt/thickness",
-             thicknesses,
-             std::abs(end.velocity.z / (4 * thicknesses) - 1),
-             1e-9);
+    rows.add("plate from beyond", "u dt/thickness", thicknesses,
+             std::abs(end.velocity.z / (4 * thicknesses) - 1), 1e-9);
   }
   const Field ball = sphere_field(cube_grid(2, 33), 0.5);
   for (const double growth : {1e-3, 1e-1, 1.0, 1e2, 1e6}) {
@@ -152,10 +137,10 @@ void approaching_walls(Rows& rows) {
   for (const int n_steps : {1, 10, 1000}) {
     Object object{&ball, {}};
     object.frame.scale_rate = -(1 - 1e-6);
-    const Particle end = flown(
-        impact(1, Sweep::on), 1.0 / n_steps, n_steps, {&object, 1}, {{1.5, 0, 0}, {-2, 0, 0}});
-    rows.add(
-        "ball that shrinks to 1e-6", "steps", n_steps, norm(end.velocity - Vec3{1, 0, 0}), 1e-4);
+    const Particle end = flown(impact(1, Sweep::on), 1.0 / n_steps, n_steps, {&object, 1},
+                               {{1.5, 0, 0}, {-2, 0, 0}});
+    rows.add("ball that shrinks to 1e-6", "steps", n_steps, norm(end.velocity - Vec3{1, 0, 0}),
+             1e-4);
   }
 }
 
@@ -183,16 +168,13 @@ void taken_along(Rows& rows) {
       const double step = 0.01;
       std::vector<Object> objects{{&room, {}}};
       objects[0].frame.angular_velocity = angle / step * direction({2, -1, 3});
-      const Particle end = flown(
-          impact(0.7, Sweep::on), step, 50, objects, {{}, speed / step * direction({1, 2, -2})});
+      const Particle end = flown(impact(0.7, Sweep::on), step, 50, objects,
+                                 {{}, speed / step * direction({1, 2, -2})});
       advance(objects, step, 50);
       const Vec3 seen = objects[0].frame.to_object(end.position);
       const double out = std::max({std::abs(seen.x), std::abs(seen.y), std::abs(seen.z)}) - wall;
-      rows.add("spinning room: cells out of it",
-               "radians a step",
-               angle,
-               is_finite(seen) ? out / room.grid.cell : HUGE_VAL,
-               1);
+      rows.add("spinning room: cells out of it", "radians a step", angle,
+               is_finite(seen) ? out / room.grid.cell : HUGE_VAL, 1);
     }
 }
 
@@ -210,15 +192,9 @@ void slope(Rows& rows) {
       rules.surface_drag = SurfaceDrag{rate, 0.1, DragLaw::linear};
       const int n_steps = 1'000'000;
       const Particle end = flown(rules, 1e-3, n_steps, {&object, 1}, {{-0.5, 0, 0.25}, {}});
-      rows.add("rest on a slope: distance",
-               "steps",
-               n_steps,
-               std::abs(dot(end.position, normal)),
+      rows.add("rest on a slope: distance", "steps", n_steps, std::abs(dot(end.position, normal)),
                1e-3 * 2 / 16);
-      rows.add("rest on a slope: speed",
-               "steps",
-               n_steps,
-               std::abs(norm(end.velocity) / creep - 1),
+      rows.add("rest on a slope: speed", "steps", n_steps, std::abs(norm(end.velocity) / creep - 1),
                1e-3);
     }
 }

@@ -43,11 +43,8 @@ void scales(Rows& rows) {
     const Particle end =
         flown(bouncing(), 0.05, 20, {&scaled, 1}, {scale * start.position, scale * start.velocity});
     rows.add("scale", "scale", scale, norm((1 / scale) * end.position - plain.position), 1e-5);
-    rows.add("scale: |v|",
-             "scale",
-             scale,
-             std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1),
-             1e-13);
+    rows.add("scale: |v|", "scale", scale,
+             std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1), 1e-13);
   }
   for (const double offset : {1e3, 1e6, 1e9}) {
     const Vec3 shift = offset * Vec3{1, -1, 1};
@@ -55,16 +52,10 @@ void scales(Rows& rows) {
     shifted.frame.position = shift;
     const Particle end =
         flown(bouncing(), 0.05, 20, {&shifted, 1}, {shift + start.position, start.velocity});
-    rows.add("offset",
-             "offset",
-             offset,
-             norm(end.position - shift - plain.position),
+    rows.add("offset", "offset", offset, norm(end.position - shift - plain.position),
              1e-5 + 1e-14 * offset);
-    rows.add("offset: |v|",
-             "offset",
-             offset,
-             std::abs(norm(end.velocity) / norm(start.velocity) - 1),
-             1e-13);
+    rows.add("offset: |v|", "offset", offset,
+             std::abs(norm(end.velocity) / norm(start.velocity) - 1), 1e-13);
   }
 }
 

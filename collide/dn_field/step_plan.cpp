@@ -59,8 +59,7 @@ RuleConstants constants_of(const Rules& rules, double step) {
     c.threshold = rules.impact->threshold;
   }
   if (rules.surface_flow) {
-    c.flow = {rules.surface_flow->alpha_in * step,
-              rules.surface_flow->alpha_out * step,
+    c.flow = {rules.surface_flow->alpha_in * step, rules.surface_flow->alpha_out * step,
               rules.surface_flow->distance};
   }
   if (rules.spring) {

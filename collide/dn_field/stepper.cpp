@@ -26,13 +26,8 @@ class Rest {
     for_each([](double& room, double& particle) { particle = room; });
   }
   [[nodiscard]] ParticleSpan span() {
-    return {room_[0].data(),
-            room_[1].data(),
-            room_[2].data(),
-            room_[3].data(),
-            room_[4].data(),
-            room_[5].data(),
-            lanes::width};
+    return {room_[0].data(), room_[1].data(), room_[2].data(), room_[3].data(),
+            room_[4].data(), room_[5].data(), lanes::width};
   }
 
  private:
@@ -49,25 +44,19 @@ class Rest {
 
 }  // namespace
 
-void Stepper::run(ParticleSpan particles,
-                  std::span<const Object> objects,
-                  double time,
+void Stepper::run(ParticleSpan particles, std::span<const Object> objects, double time,
                   int n_steps) const {
   run(particles, objects, time, n_steps, nullptr);
 }
 
-std::vector<Waypoint> Stepper::run_once(ParticleSpan particles,
-                                        std::span<const Object> objects,
+std::vector<Waypoint> Stepper::run_once(ParticleSpan particles, std::span<const Object> objects,
                                         double time) const {
   std::vector<Waypoint> waypoints;
   run(particles, objects, time, 1, &waypoints);
   return waypoints;
 }
 
-void Stepper::run(ParticleSpan particles,
-                  std::span<const Object> objects,
-                  double time,
-                  int n_steps,
+void Stepper::run(ParticleSpan particles, std::span<const Object> objects, double time, int n_steps,
                   std::vector<Waypoint>* waypoints) const {
   const Plan& plan = *plan_;
   const Run run = run_of(plan, objects);

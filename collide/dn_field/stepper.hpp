@@ -57,26 +57,20 @@ class Stepper {
   /// hundred at a time through all the steps, so that they stay in the cache: many steps a call are
   /// faster than one. Particles that are not finite stay so and touch no others. `objects` must
   /// have passed validate().
-  void run(ParticleSpan particles,
-           std::span<const Object> objects,
-           double time,
+  void run(ParticleSpan particles, std::span<const Object> objects, double time,
            int n_steps = 1) const;
 
   /// One such step. Tells the bounces, in the order of particles and of time, of those that went
   /// further than was known to be free; the others' ways are straight but for half a voxel.
   [[nodiscard]] std::vector<Waypoint> run_once(ParticleSpan particles,
-                                               std::span<const Object> objects,
-                                               double time) const;
+                                               std::span<const Object> objects, double time) const;
 
   struct Plan;  ///< constants and loops of a scene; in step_plan.hpp
 
  private:
   friend Stepper make_stepper(const Rules& rules, double step);
   explicit Stepper(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {}
-  void run(ParticleSpan particles,
-           std::span<const Object> objects,
-           double time,
-           int n_steps,
+  void run(ParticleSpan particles, std::span<const Object> objects, double time, int n_steps,
            std::vector<Waypoint>* waypoints) const;
   std::shared_ptr<const Plan> plan_;
 };

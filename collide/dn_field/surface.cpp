@@ -25,12 +25,7 @@ std::uint32_t face_vertex(const char*& at, std::size_t n_vertices, const std::st
   const auto count = static_cast<long long>(n_vertices);
   const long long index = written < 0 ? count + written : written - 1;
   if (index < 0 || index >= count)
-    fail(ErrorCode::bad_file,
-         place,
-         ": face names vertex ",
-         written,
-         ", but ",
-         n_vertices,
+    fail(ErrorCode::bad_file, place, ": face names vertex ", written, ", but ", n_vertices,
          " stand before it");
   return static_cast<std::uint32_t>(index);
 }
@@ -69,41 +64,24 @@ void validate(const Surface& surface) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (const auto v : surface.triangles[t]) {
       if (v >= surface.vertices.size())
-        fail(ErrorCode::bad_mesh,
-             "triangle ",
-             t,
-             " names vertex ",
-             v,
-             " of ",
+        fail(ErrorCode::bad_mesh, "triangle ", t, " names vertex ", v, " of ",
              surface.vertices.size());
       const Vec3 p = surface.vertices[v];
       if (!is_finite(p))
-        fail(ErrorCode::bad_mesh,
-             "vertex ",
-             v,
-             " of triangle ",
-             t,
-             " is (",
-             p.x,
-             ", ",
-             p.y,
-             ", ",
-             p.z,
-             "); remove it or give it a finite position");
+        fail(ErrorCode::bad_mesh, "vertex ", v, " of triangle ", t, " is (", p.x, ", ", p.y, ", ",
+             p.z, "); remove it or give it a finite position");
     }
   const Vec3 size = bounds(surface).size();
   if (!(norm(size) > 0) || !is_finite(size))
-    fail(
-        ErrorCode::bad_mesh, "surface has extent ", norm(size), "; it must be positive and finite");
+    fail(ErrorCode::bad_mesh, "surface has extent ", norm(size),
+         "; it must be positive and finite");
   const auto has_area = [&](std::size_t t) {
     const auto [a, b, c] = surface.corners(t);
     return norm(cross(b - a, c - a)) > 0;
   };
   const auto numbers = std::views::iota(std::size_t{0}, surface.triangles.size());
   if (std::ranges::none_of(numbers, has_area))
-    fail(ErrorCode::bad_mesh,
-         "all ",
-         surface.triangles.size(),
+    fail(ErrorCode::bad_mesh, "all ", surface.triangles.size(),
          " triangles are without area; a field needs a surface");
 }
 

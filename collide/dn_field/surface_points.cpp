@@ -15,18 +15,14 @@ std::vector<double> area_sums(const Surface& surface) {
   return sums;
 }
 
-SurfacePoint point_on(const Surface& surface,
-                      const std::vector<double>& sums,
-                      double first,
-                      double second,
-                      double third) {
+SurfacePoint point_on(const Surface& surface, const std::vector<double>& sums, double first,
+                      double second, double third) {
   const auto found = std::upper_bound(sums.begin(), sums.end() - 1, first * sums.back());
   const auto triangle = static_cast<std::uint32_t>(found - sums.begin());
   const auto [a, b, c] = surface.corners(triangle);
   const double root = std::sqrt(second);
   return {(1 - root) * a + (root * (1 - third)) * b + (root * third) * c,
-          direction(cross(b - a, c - a)),
-          triangle};
+          direction(cross(b - a, c - a)), triangle};
 }
 
 }  // namespace tess::dn

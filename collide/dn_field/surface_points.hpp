@@ -16,10 +16,7 @@ struct SurfacePoint {
 
 /// The point of three numbers within [0, 1): the first chooses a triangle by its area, the others a
 /// point of it. `sums`: area_sums(surface), not empty.
-[[nodiscard]] SurfacePoint point_on(const Surface& surface,
-                                    const std::vector<double>& sums,
-                                    double first,
-                                    double second,
-                                    double third);
+[[nodiscard]] SurfacePoint point_on(const Surface& surface, const std::vector<double>& sums,
+                                    double first, double second, double third);
 
 }  // namespace tess::dn

@@ -75,10 +75,8 @@ struct Contact {
   D too_deep{}, object{};  ///< its number
 };
 Contact select(L mask, const Contact& a, const Contact& b) {
-  return {mask ? a.at : b.at,
-          select(mask, a.normal, b.normal),
-          select(mask, a.surface_velocity, b.surface_velocity),
-          mask ? a.too_deep : b.too_deep,
+  return {mask ? a.at : b.at, select(mask, a.normal, b.normal),
+          select(mask, a.surface_velocity, b.surface_velocity), mask ? a.too_deep : b.too_deep,
           mask ? a.object : b.object};
 }
 
@@ -144,9 +142,7 @@ Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D
   const D at = s + only(touches, met);
   const Pose then(object, ways.begin + at);
   const D3 n = then.now(here.normal);
-  return {touches ? at : all(never),
-          n,
-          then.surface_velocity(ways.at(at), all(c.threshold) * n),
+  return {touches ? at : all(never), n, then.surface_velocity(ways.at(at), all(c.threshold) * n),
           max(c.threshold - c.slack - here.distance * then.size(), D{}),
           all(static_cast<double>(o))};
 }
@@ -187,8 +183,8 @@ L finite(D3 v) {
 
 /// Who touches an object at the fraction f of the step, at x, and flies by `slides` along it: goes
 /// with it to the step's end.
-void take_along(
-    const Scene& scene, const Contact& contact, L touches, D f, D3& x, D3 slides, D3& velocity) {
+void take_along(const Scene& scene, const Contact& contact, L touches, D f, D3& x, D3 slides,
+                D3& velocity) {
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const Pose now(scene.objects[o], f), last(scene.objects[o], all(1.0));
     const L on = touches & (contact.object == static_cast<double>(o));
@@ -199,9 +195,7 @@ void take_along(
 }
 
 /// As many as a vector holds, or fewer.
-void trace_vector(const Scene& scene,
-                  std::span<const Untraced> from,
-                  const ParticleSpan& particles,
+void trace_vector(const Scene& scene, std::span<const Untraced> from, const ParticleSpan& particles,
                   Scratch& scratch) {
   const RuleConstants& c = scene.constants;
   const auto lane = [&](Vec3 Untraced::*what) {
@@ -269,11 +263,8 @@ void trace_vector(const Scene& scene,
 
 }  // namespace
 
-void trace(const RuleConstants& c,
-           std::span<const Placed> objects,
-           LookUp kind,
-           const ParticleSpan& particles,
-           Scratch& scratch) {
+void trace(const RuleConstants& c, std::span<const Placed> objects, LookUp kind,
+           const ParticleSpan& particles, Scratch& scratch) {
   const std::span<const Untraced> from = scratch.untraced;
   for (std::size_t first = 0; first < from.size(); first += width) {
     const std::size_t count = std::min<std::size_t>(width, from.size() - first);

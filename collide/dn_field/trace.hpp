@@ -14,10 +14,7 @@ namespace tess::dn {
 /// particle. What has more bounces, in a crevice, is taken along by the last surface until the next
 /// step. Adds to scratch.energy[particle] twice the work that the flight's acceleration did beyond
 /// that on the straight way, and writes waypoints where they are kept.
-void trace(const RuleConstants& constants,
-           std::span<const Placed> objects,
-           LookUp kind,
-           const ParticleSpan& particles,
-           Scratch& scratch);
+void trace(const RuleConstants& constants, std::span<const Placed> objects, LookUp kind,
+           const ParticleSpan& particles, Scratch& scratch);
 
 }  // namespace tess::dn

@@ -27,11 +27,8 @@ void change_velocities(const VelocityChanges& changes, const ParticleSpan& span)
   }
 }
 
-void drag_quadratic(double rate_step,
-                    double threshold,
-                    Setting setting,
-                    const ParticleSpan& particles,
-                    const Closest& closest) {
+void drag_quadratic(double rate_step, double threshold, Setting setting,
+                    const ParticleSpan& particles, const Closest& closest) {
   for (std::size_t p = 0; p < particles.count; p += width) {
     const L near = to_double(load<F>(closest.distance + p)) < threshold;
     if (!any(near)) continue;
@@ -42,9 +39,7 @@ void drag_quadratic(double rate_step,
   }
 }
 
-void turn_to_surface(const FlowConstants& flow,
-                     Setting setting,
-                     const ParticleSpan& particles,
+void turn_to_surface(const FlowConstants& flow, Setting setting, const ParticleSpan& particles,
                      const Closest& closest) {
   if (setting == Setting::general)
     flow_loop<Setting::general>(flow, particles, closest);

@@ -12,16 +12,11 @@ namespace tess::dn {
 void change_velocities(const VelocityChanges& changes, const ParticleSpan& particles);
 
 /// Quadratic drag in distance < threshold, toward the surface's velocity.
-void drag_quadratic(double rate_step,
-                    double threshold,
-                    Setting setting,
-                    const ParticleSpan& particles,
-                    const Closest& closest);
+void drag_quadratic(double rate_step, double threshold, Setting setting,
+                    const ParticleSpan& particles, const Closest& closest);
 
 /// The surface flow of the particles in its reach.
-void turn_to_surface(const FlowConstants& flow,
-                     Setting setting,
-                     const ParticleSpan& particles,
+void turn_to_surface(const FlowConstants& flow, Setting setting, const ParticleSpan& particles,
                      const Closest& closest);
 
 }  // namespace tess::dn

@@ -5,13 +5,8 @@
 namespace tess {
 
 void CellBounds::refuse(double n_cells, const Item& item) {
-  fail(ErrorCode::bad_value,
-       "gridding: object ",
-       static_cast<std::uint32_t>(item.id.local),
-       " of owner ",
-       static_cast<std::uint64_t>(item.id.owner),
-       " touches ",
-       n_cells,
+  fail(ErrorCode::bad_value, "gridding: object ", static_cast<std::uint32_t>(item.id.local),
+       " of owner ", static_cast<std::uint64_t>(item.id.owner), " touches ", n_cells,
        " voxels (at most 2^24 each, 2^32 in all): take larger voxels");
 }
 

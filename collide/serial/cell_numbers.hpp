@@ -28,12 +28,11 @@ namespace tess {
 
 /// The range that holds all cells added, and how many cells were.
 struct CellBounds {
-  CellRange range{{std::numeric_limits<std::int32_t>::max(),
-                   std::numeric_limits<std::int32_t>::max(),
-                   std::numeric_limits<std::int32_t>::max()},
-                  {std::numeric_limits<std::int32_t>::min(),
-                   std::numeric_limits<std::int32_t>::min(),
-                   std::numeric_limits<std::int32_t>::min()}};
+  CellRange range{
+      {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
+       std::numeric_limits<std::int32_t>::max()},
+      {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
+       std::numeric_limits<std::int32_t>::min()}};
   double n_entries = 0;
 
   /// Errors: an item of more than 2^24 cells, or 2^32 entries in all.
@@ -42,11 +41,9 @@ struct CellBounds {
     n_entries += n_cells;
     if (n_cells > 0x1p24 || n_entries >= 0x1p32) [[unlikely]]
       refuse(n_cells, item);
-    range.lo = {std::min(range.lo.x, cells.lo.x),
-                std::min(range.lo.y, cells.lo.y),
+    range.lo = {std::min(range.lo.x, cells.lo.x), std::min(range.lo.y, cells.lo.y),
                 std::min(range.lo.z, cells.lo.z)};
-    range.hi = {std::max(range.hi.x, cells.hi.x),
-                std::max(range.hi.y, cells.hi.y),
+    range.hi = {std::max(range.hi.x, cells.hi.x), std::max(range.hi.y, cells.hi.y),
                 std::max(range.hi.z, cells.hi.z)};
   }
 
@@ -76,8 +73,7 @@ class CellNumbers {
             visit(static_cast<std::uint32_t>(row + z));
         } else {
           for (std::int64_t z = range.lo.z; z <= range.hi.z; ++z)
-            visit(number(Cell{static_cast<std::int32_t>(x),
-                              static_cast<std::int32_t>(y),
+            visit(number(Cell{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
                               static_cast<std::int32_t>(z)}));
         }
       }

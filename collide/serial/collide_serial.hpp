@@ -10,11 +10,8 @@ namespace tess {
 /// Calls found(const Item&, const Item&) exactly once for each pair of items that overlap under the
 /// rules, whatever the grid. Errors: as group_by_voxel(), before the first call.
 template <class Found>
-void collide_serial(std::span<const Item> items,
-                    const VoxelGrid& grid,
-                    PairRules rules,
-                    Found&& found,
-                    SerialMethod method = SerialMethod::automatic) {
+void collide_serial(std::span<const Item> items, const VoxelGrid& grid, PairRules rules,
+                    Found&& found, SerialMethod method = SerialMethod::automatic) {
   const auto keep =
       rules.within_model == WithinModel::skip ? KeepVoxels::of_several_models : KeepVoxels::all;
   const VoxelGroups groups = group_by_voxel(items, grid, keep);

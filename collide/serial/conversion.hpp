@@ -23,8 +23,7 @@ struct Constants {
 inline constexpr double kLeast = -2147483648.0, kMost = 2147483647.0;
 
 /// `box`: lo x y z, hi x y z. Writes six indices; false where a lo > hi, too.
-[[nodiscard]] inline bool convert_plain(const Constants& grid,
-                                        const double* box,
+[[nodiscard]] inline bool convert_plain(const Constants& grid, const double* box,
                                         std::int32_t* cells) noexcept {
   bool good = true;
   for (std::size_t k = 0; k < 6; ++k) {
@@ -37,8 +36,7 @@ inline constexpr double kLeast = -2147483648.0, kMost = 2147483647.0;
 }
 
 #ifdef __AVX2__
-[[nodiscard]] inline bool convert_avx2(const Constants& grid,
-                                       const double* box,
+[[nodiscard]] inline bool convert_avx2(const Constants& grid, const double* box,
                                        std::int32_t* cells) noexcept {
   const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
   int good = 7;
@@ -60,8 +58,7 @@ inline constexpr double kLeast = -2147483648.0, kMost = 2147483647.0;
 #endif
 
 #if defined(__AVX512VL__) && defined(__AVX512DQ__)
-[[nodiscard]] inline bool convert_avx512(const Constants& grid,
-                                         const double* box,
+[[nodiscard]] inline bool convert_avx512(const Constants& grid, const double* box,
                                          std::int32_t* cells) noexcept {
   const __m512d x = _mm512_maskz_loadu_pd(0x3F, box);
   const __m512d cell = _mm512_maskz_roundscale_pd(
@@ -81,8 +78,7 @@ inline constexpr double kLeast = -2147483648.0, kMost = 2147483647.0;
 }
 #endif
 
-[[nodiscard]] inline bool convert(const Constants& grid,
-                                  const double* box,
+[[nodiscard]] inline bool convert(const Constants& grid, const double* box,
                                   std::int32_t* cells) noexcept {
 #if defined(__AVX512VL__) && defined(__AVX512DQ__)
   return convert_avx512(grid, box, cells);

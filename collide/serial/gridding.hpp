@@ -35,8 +35,7 @@ class VoxelGroups {
 
 /// Errors: an invalid box, a coordinate without a cell, an object of more than 2^24 cells, or 2^32
 /// entries in all.
-[[nodiscard]] VoxelGroups group_by_voxel(std::span<const Item> items,
-                                         const VoxelGrid& grid,
+[[nodiscard]] VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid,
                                          KeepVoxels keep = KeepVoxels::all);
 
 }  // namespace tess

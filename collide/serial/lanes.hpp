@@ -54,8 +54,7 @@ class Lanes {
   }
   /// Writes the numbers of the boxes j + b whose bit b is set to `out`, where there must be room
   /// for eight; returns the end of those written.
-  std::uint32_t* copy_sources(std::size_t j,
-                              std::uint32_t bits,
+  std::uint32_t* copy_sources(std::size_t j, std::uint32_t bits,
                               std::uint32_t* out) const noexcept {
 #ifdef __AVX512VL__
     const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(source + j));
@@ -68,9 +67,7 @@ class Lanes {
     return out;
 #endif
   }
-  [[nodiscard]] std::size_t size() const noexcept {
-    return n_;
-  }
+  [[nodiscard]] std::size_t size() const noexcept { return n_; }
 
   std::array<double*, 3> lo{}, hi{};
   std::uint32_t* below = nullptr;   ///< axes_below() of each box

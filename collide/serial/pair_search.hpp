@@ -30,9 +30,7 @@ class PairSearch {
   /// Calls found(const Item&, const Item&) for each pair that voxel `cell` reports. `items` are all
   /// that it received, valid boxes that touch it.
   template <class Found>
-  void for_each_pair(std::span<const Item> items,
-                     const Cell& cell,
-                     const VoxelGrid& grid,
+  void for_each_pair(std::span<const Item> items, const Cell& cell, const VoxelGrid& grid,
                      Found&& found) {
     const bool closed = rules_.touching == Touching::counts;
     if (rules_.within_model == WithinModel::skip)
@@ -45,11 +43,8 @@ class PairSearch {
 
   /// The same for the items with these numbers.
   template <class Found>
-  void for_each_pair(std::span<const Item> items,
-                     std::span<const std::uint32_t> numbers,
-                     const Cell& cell,
-                     const VoxelGrid& grid,
-                     Found&& found) {
+  void for_each_pair(std::span<const Item> items, std::span<const std::uint32_t> numbers,
+                     const Cell& cell, const VoxelGrid& grid, Found&& found) {
     gathered_.clear();
     for (const std::uint32_t i : numbers) gathered_.push_back(items[i]);
     for_each_pair(gathered_, cell, grid, [&](const Item& a, const Item& b) {
@@ -140,10 +135,7 @@ class PairSearch {
   /// The partners of a probe among the boxes first … end: found without a branch for each hit, then
   /// reported.
   template <class Probe, class Report>
-  void compare(const Probe& probe,
-               std::uint32_t number,
-               std::size_t first,
-               std::size_t end,
+  void compare(const Probe& probe, std::uint32_t number, std::size_t first, std::size_t end,
                Report& report) {
     std::uint32_t* const begin = partners_.data();
     std::uint32_t* next = begin;

@@ -10,14 +10,10 @@ VoxelGrid::VoxelGrid(const Point& origin, const Point& size)
     : origin_(origin), size_(size), per_voxel_{1 / size[0], 1 / size[1], 1 / size[2]} {
   for (std::size_t k = 0; k < 3; ++k) {
     if (!std::isfinite(origin[k]))
-      fail(
-          ErrorCode::bad_value, "voxel grid: origin ", origin[k], " on axis ", k, " is not finite");
+      fail(ErrorCode::bad_value, "voxel grid: origin ", origin[k], " on axis ", k,
+           " is not finite");
     if (!(size[k] > 0) || !std::isfinite(size[k]) || !std::isfinite(per_voxel_[k]))
-      fail(ErrorCode::bad_value,
-           "voxel grid: voxel size ",
-           size[k],
-           " on axis ",
-           k,
+      fail(ErrorCode::bad_value, "voxel grid: voxel size ", size[k], " on axis ", k,
            " must be positive and finite, and so must its inverse");
     for (const std::size_t lane : {k, k + 3}) {
       constants_.origin[lane] = origin[k];
@@ -29,13 +25,8 @@ VoxelGrid::VoxelGrid(const Point& origin, const Point& size)
 std::int32_t VoxelGrid::index(double x, std::size_t axis) const {
   const double cell = std::floor((x - origin_[axis]) * per_voxel_[axis]);
   if (!(cell >= -2147483648.0 && cell <= 2147483647.0))
-    fail(ErrorCode::out_of_range,
-         "voxel grid: coordinate ",
-         x,
-         " on axis ",
-         axis,
-         " has no 32-bit cell at voxel size ",
-         size_[axis],
+    fail(ErrorCode::out_of_range, "voxel grid: coordinate ", x, " on axis ", axis,
+         " has no 32-bit cell at voxel size ", size_[axis],
          ": take larger voxels or a nearer origin");
   return static_cast<std::int32_t>(cell);
 }

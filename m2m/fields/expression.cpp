@@ -19,16 +19,11 @@ struct Function {
   Op op;
   int n_arguments;
 };
-constexpr std::array functions{Function{"sin", Op::sin, 1},
-                               Function{"cos", Op::cos, 1},
-                               Function{"tan", Op::tan, 1},
-                               Function{"exp", Op::exp, 1},
-                               Function{"log", Op::log, 1},
-                               Function{"sqrt", Op::sqrt, 1},
-                               Function{"abs", Op::abs, 1},
-                               Function{"min", Op::min, 2},
-                               Function{"max", Op::max, 2},
-                               Function{"pow", Op::power, 2}};
+constexpr std::array functions{Function{"sin", Op::sin, 1}, Function{"cos", Op::cos, 1},
+                               Function{"tan", Op::tan, 1}, Function{"exp", Op::exp, 1},
+                               Function{"log", Op::log, 1}, Function{"sqrt", Op::sqrt, 1},
+                               Function{"abs", Op::abs, 1}, Function{"min", Op::min, 2},
+                               Function{"max", Op::max, 2}, Function{"pow", Op::power, 2}};
 
 constexpr bool is_operand(Op op) {
   return op <= Op::z;
@@ -50,13 +45,7 @@ class Parser {
 
  private:
   [[noreturn]] void wrong(std::string_view what) const {
-    fail(ErrorCode::bad_argument,
-         "expression '",
-         text_,
-         "', position ",
-         at_ + 1,
-         ": ",
-         what,
+    fail(ErrorCode::bad_argument, "expression '", text_, "', position ", at_ + 1, ": ", what,
          "; use numbers, x y z pi, + - * / ^, brackets, sin cos tan exp log sqrt abs min max pow");
   }
 

@@ -50,9 +50,7 @@ double tolerance(const std::array<Point, 4>& corners) {
 
 /// A point outside: near enough to every face that it is outside of, and inside the padded box (at
 /// a sharp edge the planes of two faces are near long after the tetrahedron has ended).
-bool snaps(const Point& p,
-           const std::array<Point, 4>& corners,
-           const Weights& volume,
+bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& volume,
            double total) {
   const double reach = tolerance(corners);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -172,10 +170,8 @@ void classify(Lanes& lanes) {
 
 }  // namespace
 
-void locate_pairs(std::span<const Point> points,
-                  std::span<const Tet> tets,
-                  std::span<const Point> queries,
-                  std::span<const PointPair> pairs,
+void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
+                  std::span<const Point> queries, std::span<const PointPair> pairs,
                   std::vector<Found>& found) {
   Lanes lanes{};
   for (std::size_t first = 0; first < pairs.size(); first += width) {
@@ -199,10 +195,8 @@ void locate_pairs(std::span<const Point> points,
       const auto index = static_cast<std::int32_t>(first + l);
       if (lanes.verdict[l] > 0) {
         const double total = lanes.total[l];
-        const Weights weights{lanes.volume[0][l] / total,
-                              lanes.volume[1][l] / total,
-                              lanes.volume[2][l] / total,
-                              lanes.volume[3][l] / total};
+        const Weights weights{lanes.volume[0][l] / total, lanes.volume[1][l] / total,
+                              lanes.volume[2][l] / total, lanes.volume[3][l] / total};
         found.push_back({index, {weights, 0, Status::inside}});
         continue;
       }

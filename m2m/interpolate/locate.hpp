@@ -60,10 +60,8 @@ struct Found {
 
 /// locate() for many pairs at once, vectorised; appends the pairs that hold, in order. The same
 /// bits as locate().
-void locate_pairs(std::span<const Point> points,
-                  std::span<const Tet> tets,
-                  std::span<const Point> queries,
-                  std::span<const PointPair> pairs,
+void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
+                  std::span<const Point> queries, std::span<const PointPair> pairs,
                   std::vector<Found>& found);
 
 /// The box of a tetrahedron, padded so that it holds every point that locate() would snap to it:
@@ -79,9 +77,7 @@ void locate_pairs(std::span<const Point> points,
 
 /// One component of a field at a location: values[vertex * stride]. A weight of 1 copies the value
 /// bit for bit.
-[[nodiscard]] inline double weigh(const Weights& weights,
-                                  const Tet& tet,
-                                  const double* values,
+[[nodiscard]] inline double weigh(const Weights& weights, const Tet& tet, const double* values,
                                   std::size_t stride) {
   const auto value = [&](std::size_t corner) {
     return values[static_cast<std::size_t>(tet[corner]) * stride];

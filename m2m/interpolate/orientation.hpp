@@ -13,9 +13,7 @@ namespace tess::m2m {
 [[nodiscard]] double orientation(const Point& p, const Point& a, const Point& b, const Point& c);
 
 /// The same to a few ulps of its own value, always by expansions: about 0.3 µs.
-[[nodiscard]] double orientation_exact(const Point& p,
-                                       const Point& a,
-                                       const Point& b,
+[[nodiscard]] double orientation_exact(const Point& p, const Point& a, const Point& b,
                                        const Point& c);
 
 /// |orientation| above this multiple of the sum of absolute products has the right sign (Shewchuk,

@@ -23,20 +23,8 @@ enum class ExodusElement {
     return n_vertices == 4 && (count.empty() || count == "4") ? ExodusElement::tetrahedron
                                                               : ExodusElement::other;
   }
-  constexpr std::array no_volume{"TRI",
-                                 "QUAD",
-                                 "SHELL",
-                                 "BAR",
-                                 "BEAM",
-                                 "TRUSS",
-                                 "ROD",
-                                 "LINE",
-                                 "EDGE",
-                                 "CURVE",
-                                 "SPHERE",
-                                 "CIRCLE",
-                                 "POINT",
-                                 "NODE"};
+  constexpr std::array no_volume{"TRI",  "QUAD", "SHELL", "BAR",    "BEAM",   "TRUSS", "ROD",
+                                 "LINE", "EDGE", "CURVE", "SPHERE", "CIRCLE", "POINT", "NODE"};
   for (const std::string_view start : no_volume)
     if (type.starts_with(start)) return ExodusElement::no_volume;
   return ExodusElement::other;

@@ -68,10 +68,7 @@ class ExodusReader {
     mesh.name = path_;
     const std::int64_t n_axes = inquire(EX_INQ_DIM);
     if (n_axes != 3) {
-      fail(ErrorCode::bad_mesh,
-           path_,
-           ": has ",
-           n_axes,
+      fail(ErrorCode::bad_mesh, path_, ": has ", n_axes,
            " dimensions; only meshes in 3 are transferred");
     }
     // Compressed NetCDF-4 may hold more than its size shows; 1 000 times more it does not.
@@ -83,10 +80,7 @@ class ExodusReader {
       damaged("number of nodes or blocks", -1);
     }
     if (n > std::numeric_limits<VertexId>::max()) {
-      fail(ErrorCode::bad_mesh,
-           path_,
-           ": has ",
-           n,
+      fail(ErrorCode::bad_mesh, path_, ": has ", n,
            " vertices; at most 2147483647 fit in one mesh, split it");
     }
     if (n > 0) read_points(mesh, n);
@@ -122,12 +116,7 @@ class ExodusReader {
   }
 
   [[noreturn]] void damaged(const char* call, int code) const {
-    fail(ErrorCode::bad_file,
-         path_,
-         ": is truncated or damaged (",
-         call,
-         " gives ",
-         code,
+    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (", call, " gives ", code,
          "); write the mesh again");
   }
   void check(int code, const char* call) const {
@@ -167,13 +156,7 @@ class ExodusReader {
     }
     const ExodusElement element = exodus_element(type, block.num_nodes_per_entry);
     if (element == ExodusElement::other) {
-      fail(ErrorCode::bad_mesh,
-           path_,
-           ": block ",
-           id,
-           " has elements of type ",
-           type,
-           " with ",
+      fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", type, " with ",
            block.num_nodes_per_entry,
            " vertices; only TET4 is read: mesh it with linear tetrahedra");
     }
@@ -184,8 +167,8 @@ class ExodusReader {
         {n_elements_, static_cast<GlobalId>(mesh.n_tets()) - (n_elements_ - block.num_entry)});
     const auto n = static_cast<std::size_t>(block.num_entry);
     std::vector<std::int64_t> vertices(4 * n);
-    check(ex_get_n_conn(
-              id_, EX_ELEM_BLOCK, id, 1, block.num_entry, vertices.data(), nullptr, nullptr),
+    check(ex_get_n_conn(id_, EX_ELEM_BLOCK, id, 1, block.num_entry, vertices.data(), nullptr,
+                        nullptr),
           "ex_get_conn");
     const auto n_points = static_cast<std::int64_t>(mesh.n_points());
     mesh.tets.reserve(mesh.n_tets() + n);
@@ -194,17 +177,8 @@ class ExodusReader {
       for (std::size_t corner = 0; corner < 4; ++corner) {
         const std::int64_t vertex = vertices[4 * t + corner];
         if (vertex < 1 || vertex > n_points) {
-          fail(ErrorCode::bad_mesh,
-               path_,
-               ": element ",
-               t + 1,
-               " of block ",
-               id,
-               " names vertex ",
-               vertex,
-               " of ",
-               n_points,
-               "; write the mesh again");
+          fail(ErrorCode::bad_mesh, path_, ": element ", t + 1, " of block ", id, " names vertex ",
+               vertex, " of ", n_points, "; write the mesh again");
         }
         tetrahedron[corner] = static_cast<VertexId>(vertex - 1);
       }
@@ -213,8 +187,7 @@ class ExodusReader {
   }
 
   void skip(TetMesh& mesh, const std::string& type, std::int64_t n) {
-    const auto known = std::find_if(mesh.skipped.begin(),
-                                    mesh.skipped.end(),
+    const auto known = std::find_if(mesh.skipped.begin(), mesh.skipped.end(),
                                     [&](const Skipped& other) { return other.type == type; });
     if (known == mesh.skipped.end())
       mesh.skipped.push_back({type, static_cast<std::uint64_t>(n)});
@@ -226,8 +199,8 @@ class ExodusReader {
   /// The tetrahedron that is this element of the file (counted from 1 over all blocks); -1 for an
   /// element that was skipped, -2 for one that is not there.
   [[nodiscard]] GlobalId tet_of(std::int64_t element) const {
-    const auto run = std::partition_point(
-        element_runs_.begin(), element_runs_.end(), [&](const Run& r) { return r.last < element; });
+    const auto run = std::partition_point(element_runs_.begin(), element_runs_.end(),
+                                          [&](const Run& r) { return r.last < element; });
     if (element < 1 || run == element_runs_.end()) return -2;
     return run->shift ? element - 1 + *run->shift : -1;
   }
@@ -241,8 +214,7 @@ class ExodusReader {
   }
 
   /// How many entries and distribution factors a set has.
-  [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type,
-                                                            std::int64_t id,
+  [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type, std::int64_t id,
                                                             std::int64_t most) const {
     std::int64_t n = 0, n_factors = 0;
     check(ex_get_set_param(id_, type, id, &n, &n_factors), "ex_get_set_param");
@@ -250,8 +222,7 @@ class ExodusReader {
     return {static_cast<std::size_t>(n), static_cast<std::size_t>(n_factors)};
   }
 
-  [[nodiscard]] std::vector<double> factors_of(ex_entity_type type,
-                                               std::int64_t id,
+  [[nodiscard]] std::vector<double> factors_of(ex_entity_type type, std::int64_t id,
                                                std::size_t n) const {
     std::vector<double> factors(n);
     if (n > 0) check(ex_get_set_dist_fact(id_, type, id, factors.data()), "ex_get_set_dist_fact");
@@ -269,17 +240,8 @@ class ExodusReader {
       const GlobalId tet = tet_of(elements[i]);
       if (tet == -1) continue;
       if (tet < 0 || sides[i] < 1 || sides[i] > 4) {
-        fail(ErrorCode::bad_mesh,
-             path_,
-             ": side set ",
-             id,
-             " names side ",
-             sides[i],
-             " of element ",
-             elements[i],
-             " of ",
-             n_elements_,
-             "; write the mesh again");
+        fail(ErrorCode::bad_mesh, path_, ": side set ", id, " names side ", sides[i],
+             " of element ", elements[i], " of ", n_elements_, "; write the mesh again");
       }
       set.entries.push_back({tet, static_cast<std::int32_t>(sides[i])});
     }
@@ -294,15 +256,8 @@ class ExodusReader {
     NodeSet set{id, name_of(EX_NODE_SET, id), {}, factors_of(EX_NODE_SET, id, n_factors)};
     for (const std::int64_t vertex : vertices) {
       if (vertex < 1 || vertex > static_cast<std::int64_t>(mesh.n_points())) {
-        fail(ErrorCode::bad_mesh,
-             path_,
-             ": node set ",
-             id,
-             " names vertex ",
-             vertex,
-             " of ",
-             mesh.n_points(),
-             "; write the mesh again");
+        fail(ErrorCode::bad_mesh, path_, ": node set ", id, " names vertex ", vertex, " of ",
+             mesh.n_points(), "; write the mesh again");
       }
       set.entries.push_back(static_cast<VertexId>(vertex - 1));
     }

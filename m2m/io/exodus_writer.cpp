@@ -25,19 +25,12 @@ struct Variable {
   std::size_t component;
 };
 
-std::vector<Variable> variables(std::span<const Field> fields,
-                                std::size_t n_rows,
+std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_rows,
                                 const std::string& path) {
   std::vector<Variable> result;
   for (const Field& field : fields) {
-    TESS_CHECK(field.values.size() == n_rows * field.n_components,
-               "field ",
-               field.name,
-               ": expected ",
-               n_rows,
-               " × ",
-               field.n_components,
-               " values, got ",
+    TESS_CHECK(field.values.size() == n_rows * field.n_components, "field ", field.name,
+               ": expected ", n_rows, " × ", field.n_components, " values, got ",
                field.values.size());
     for (std::size_t c = 0; c < field.n_components; ++c) {
       std::string name = field.name;
@@ -47,15 +40,8 @@ std::vector<Variable> variables(std::span<const Field> fields,
         name = fmt::format("{}_{}", field.name, c + 1);
       }
       if (name.empty() || name.size() > longest_name) {
-        fail(ErrorCode::bad_value,
-             path,
-             ": field name '",
-             name,
-             "' has ",
-             name.size(),
-             " characters; 1 to ",
-             longest_name,
-             " can be written");
+        fail(ErrorCode::bad_value, path, ": field name '", name, "' has ", name.size(),
+             " characters; 1 to ", longest_name, " can be written");
       }
       result.push_back({std::move(name), &field, c});
     }
@@ -74,9 +60,7 @@ class PartFile {
     errno = 0;
     id_ = ex_create(part_.c_str(), EX_CLOBBER | EX_LARGE_MODEL, &compute_bytes, &stored_bytes);
     if (id_ < 0) {
-      fail(ErrorCode::bad_file,
-           path_,
-           ": cannot be written (",
+      fail(ErrorCode::bad_file, path_, ": cannot be written (",
            std::generic_category().message(errno),
            "); check that its folder is there and may be written");
     }
@@ -98,11 +82,8 @@ class PartFile {
     id_ = -1;
     check(code, "ex_close");
     if (std::rename(part_.c_str(), path_.c_str()) != 0) {
-      fail(ErrorCode::bad_file,
-           path_,
-           ": cannot be replaced (",
-           std::generic_category().message(errno),
-           ")");
+      fail(ErrorCode::bad_file, path_, ": cannot be replaced (",
+           std::generic_category().message(errno), ")");
     }
     part_.clear();
   }
@@ -141,15 +122,9 @@ void put_blocks(const PartFile& file, const TetMesh& mesh, const std::vector<Blo
 }
 
 template <class Entry>
-void put_set(const PartFile& file,
-             ex_entity_type type,
-             const EntrySet<Entry>& set,
-             const std::vector<int>& entries,
-             const int* extra) {
-  file.check(ex_put_set_param(file.id(),
-                              type,
-                              set.id,
-                              static_cast<std::int64_t>(entries.size()),
+void put_set(const PartFile& file, ex_entity_type type, const EntrySet<Entry>& set,
+             const std::vector<int>& entries, const int* extra) {
+  file.check(ex_put_set_param(file.id(), type, set.id, static_cast<std::int64_t>(entries.size()),
                               static_cast<std::int64_t>(set.factors.size())),
              "ex_put_set_param");
   put_name(file, type, set.id, set.name);
@@ -177,14 +152,11 @@ void put_sets(const PartFile& file, const TetMesh& mesh) {
 }
 
 void put_mesh(const PartFile& file, const TetMesh& mesh, const std::vector<Block>& blocks) {
-  file.check(ex_put_init(file.id(),
-                         "Tessera mesh transfer",
-                         3,
-                         static_cast<std::int64_t>(mesh.n_points()),
-                         static_cast<std::int64_t>(mesh.n_tets()),
-                         static_cast<std::int64_t>(blocks.size()),
-                         static_cast<std::int64_t>(mesh.node_sets.size()),
-                         static_cast<std::int64_t>(mesh.side_sets.size())),
+  file.check(ex_put_init(
+                 file.id(), "Tessera mesh transfer", 3, static_cast<std::int64_t>(mesh.n_points()),
+                 static_cast<std::int64_t>(mesh.n_tets()), static_cast<std::int64_t>(blocks.size()),
+                 static_cast<std::int64_t>(mesh.node_sets.size()),
+                 static_cast<std::int64_t>(mesh.side_sets.size())),
              "ex_put_init");
   std::array<std::vector<double>, 3> axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -223,13 +195,8 @@ void put_variables(const PartFile& file, const std::vector<Variable>& all, const
     const Field& field = *all[i].field;
     for (std::size_t row = 0; row < rows.n; ++row)
       column[row] = field.values[(rows.first + row) * field.n_components + all[i].component];
-    file.check(ex_put_var(file.id(),
-                          1,
-                          rows.type,
-                          static_cast<int>(i + 1),
-                          rows.id,
-                          static_cast<std::int64_t>(rows.n),
-                          column.data()),
+    file.check(ex_put_var(file.id(), 1, rows.type, static_cast<int>(i + 1), rows.id,
+                          static_cast<std::int64_t>(rows.n), column.data()),
                "ex_put_var");
   }
 }
@@ -238,17 +205,9 @@ void put_variables(const PartFile& file, const std::vector<Variable>& all, const
 void check_groups(const TetMesh& mesh, const std::vector<Block>& blocks, const std::string& path) {
   const auto check = [&](const char* kind, std::int64_t id, const std::string& name) {
     if (id < 0 || id > std::numeric_limits<std::int32_t>::max() || name.size() > longest_name)
-      fail(ErrorCode::bad_value,
-           path,
-           ": ",
-           kind,
-           " ",
-           id,
-           " '",
-           name,
+      fail(ErrorCode::bad_value, path, ": ", kind, " ", id, " '", name,
            "' cannot be written; numbers reach from 0 to 2147483647, names have at most ",
-           longest_name,
-           " characters");
+           longest_name, " characters");
   };
   for (const Block& block : blocks) check("block", block.id, block.name);
   for (const SideSet& set : mesh.side_sets) check("side set", set.id, set.name);
@@ -265,10 +224,8 @@ std::size_t longest_name_of(const TetMesh& mesh, const std::vector<Block>& block
 
 }  // namespace
 
-void write_exodus(const std::string& path,
-                  const TetMesh& mesh,
-                  std::span<const Field> vertex_fields,
-                  std::span<const Field> tet_fields) {
+void write_exodus(const std::string& path, const TetMesh& mesh,
+                  std::span<const Field> vertex_fields, std::span<const Field> tet_fields) {
   const std::vector<Variable> nodal = variables(vertex_fields, mesh.n_points(), path);
   const std::vector<Variable> element = variables(tet_fields, mesh.n_tets(), path);
   const std::vector<Block> blocks = blocks_of(mesh);

@@ -15,9 +15,7 @@ namespace tess::m2m {
 /// rows), element variables from `tet_fields` (n_tets rows); a field of several components becomes
 /// NAME_1, NAME_2, …; three become NAME_x, NAME_y, NAME_z. Throws Error (bad_file, environment)
 /// naming the path where it cannot be written; nothing is left behind then. One thread at a time.
-void write_exodus(const std::string& path,
-                  const TetMesh& mesh,
-                  std::span<const Field> vertex_fields,
-                  std::span<const Field> tet_fields = {});
+void write_exodus(const std::string& path, const TetMesh& mesh,
+                  std::span<const Field> vertex_fields, std::span<const Field> tet_fields = {});
 
 }  // namespace tess::m2m

@@ -14,10 +14,7 @@ namespace tess::m2m {
 FileBytes::FileBytes(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
-    fail(ErrorCode::bad_file,
-         path,
-         ": cannot be opened (",
-         std::generic_category().message(errno),
+    fail(ErrorCode::bad_file, path, ": cannot be opened (", std::generic_category().message(errno),
          "); check the path");
   }
   struct ::stat status {};
@@ -35,13 +32,8 @@ FileBytes::FileBytes(const std::string& path) {
   const int error = errno;
   ::close(descriptor);
   if (bytes == MAP_FAILED) {
-    fail(ErrorCode::environment,
-         path,
-         ": mmap of ",
-         size_,
-         " bytes failed (",
-         std::generic_category().message(error),
-         ")");
+    fail(ErrorCode::environment, path, ": mmap of ", size_, " bytes failed (",
+         std::generic_category().message(error), ")");
   }
   begin_ = static_cast<const char*>(bytes);
 }

@@ -40,8 +40,8 @@ class TagMap {
   /// -1 where no node has the tag.
   [[nodiscard]] VertexId find(std::uint64_t tag) const {
     if (dense_) return tag < place_.size() ? place_[tag] : -1;
-    const auto found = std::lower_bound(
-        sorted_.begin(), sorted_.end(), std::pair<std::uint64_t, VertexId>(tag, -1));
+    const auto found = std::lower_bound(sorted_.begin(), sorted_.end(),
+                                        std::pair<std::uint64_t, VertexId>(tag, -1));
     return found != sorted_.end() && found->first == tag ? found->second : -1;
   }
 
@@ -108,13 +108,13 @@ class GmshReader {
     const int kind = file_.number_as_text<int>();
     const int word_bytes = file_.number_as_text<int>();
     if (version != 2.2 && version != 4.1) {
-      file_.refuse(
-          "is MSH ", version, "; only 2.2 and 4.1 are read: save it with gmsh -save -format msh41");
+      file_.refuse("is MSH ", version,
+                   "; only 2.2 and 4.1 are read: save it with gmsh -save -format msh41");
     }
     if (kind != 0 && kind != 1) file_.damaged("file type ", kind);
     if (word_bytes != 8)
-      file_.refuse(
-          "has numbers of ", word_bytes, " bytes; only 8 are read: save it again with gmsh");
+      file_.refuse("has numbers of ", word_bytes,
+                   " bytes; only 8 are read: save it again with gmsh");
     legacy_ = version == 2.2;
     binary_ = kind == 1;
     if (binary_) {
@@ -193,8 +193,7 @@ class GmshReader {
     if (type == nullptr)
       file_.refuse("has elements of unknown gmsh type ", number, "; only tet4 volumes are read");
     if (type->dimension == 3 && number != gmsh_tet4) {
-      file_.refuse("has elements of type ",
-                   type->name,
+      file_.refuse("has elements of type ", type->name,
                    "; only tet4 volumes are read: mesh it with linear tetrahedra");
     }
     return *type;
@@ -211,10 +210,7 @@ class GmshReader {
       const Tag tag = file_.number<Tag>();
       vertex = tag < Tag{0} ? -1 : tags_.find(static_cast<std::uint64_t>(tag));
       if (vertex < 0) {
-        file_.refuse("tetrahedron ",
-                     mesh_.n_tets(),
-                     " names node ",
-                     tag,
+        file_.refuse("tetrahedron ", mesh_.n_tets(), " names node ", tag,
                      ", which is not there; write the mesh again");
       }
     }

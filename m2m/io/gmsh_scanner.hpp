@@ -25,12 +25,7 @@ class GmshScanner {
 
   template <class... Parts>
   [[noreturn]] void damaged(const Parts&... parts) const {
-    fail(ErrorCode::bad_file,
-         path_,
-         ": is truncated or damaged (byte ",
-         at_,
-         ": ",
-         parts...,
+    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (byte ", at_, ": ", parts...,
          "); write the mesh again");
   }
   template <class... Parts>

@@ -23,20 +23,16 @@ double noise(std::uint64_t vertex, std::uint64_t axis) {
 
 /// The six paths from corner 0 to corner 7 of a cube (bits zyx); odd permutations have their middle
 /// swapped, so that all orientations are positive.
-constexpr int corners_of_tets[6][4] = {
-    {0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}};
+constexpr int corners_of_tets[6][4] = {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7},
+                                       {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}};
 
 }  // namespace
 
 KuhnBox parse_kuhn(std::string_view name) {
   const auto refuse = [&] {
-    fail(ErrorCode::bad_argument,
-         "'",
-         name,
-         "': expected kuhn:N or kuhn:N@JITTER with N from 1 to ",
-         largest_n,
-         " and JITTER from 0 to ",
-         largest_jitter);
+    fail(ErrorCode::bad_argument, "'", name,
+         "': expected kuhn:N or kuhn:N@JITTER with N from 1 to ", largest_n,
+         " and JITTER from 0 to ", largest_jitter);
   };
   KuhnBox box;
   if (!name.starts_with("kuhn:")) refuse();
@@ -54,15 +50,8 @@ KuhnBox parse_kuhn(std::string_view name) {
 
 TetMesh kuhn_mesh(KuhnBox box) {
   if (box.n < 1 || box.n > largest_n || !(box.jitter >= 0 && box.jitter <= largest_jitter)) {
-    fail(ErrorCode::bad_argument,
-         "kuhn box of n = ",
-         box.n,
-         " and jitter ",
-         box.jitter,
-         ": n is from 1 to ",
-         largest_n,
-         ", jitter from 0 to ",
-         largest_jitter);
+    fail(ErrorCode::bad_argument, "kuhn box of n = ", box.n, " and jitter ", box.jitter,
+         ": n is from 1 to ", largest_n, ", jitter from 0 to ", largest_jitter);
   }
   TetMesh mesh;
   mesh.name =
@@ -83,8 +72,8 @@ TetMesh kuhn_mesh(KuhnBox box) {
       }
     }
   }
-  const std::int32_t corner[8] = {
-      0, 1, row, row + 1, plane, plane + 1, plane + row, plane + row + 1};
+  const std::int32_t corner[8] = {0,     1,         row,         row + 1,
+                                  plane, plane + 1, plane + row, plane + row + 1};
   const auto side = static_cast<std::size_t>(n);
   mesh.tets.reserve(6 * side * side * side);
   for (std::int32_t k = 0; k < n; ++k) {
@@ -92,9 +81,7 @@ TetMesh kuhn_mesh(KuhnBox box) {
       for (std::int32_t i = 0; i < n; ++i) {
         const VertexId first = i + j * row + k * plane;
         for (const auto& c : corners_of_tets) {
-          mesh.tets.push_back({first + corner[c[0]],
-                               first + corner[c[1]],
-                               first + corner[c[2]],
+          mesh.tets.push_back({first + corner[c[0]], first + corner[c[1]], first + corner[c[2]],
                                first + corner[c[3]]});
         }
       }

@@ -36,13 +36,8 @@ class Header {
 
   template <class... Parts>
   [[noreturn]] void damaged(const Parts&... parts) const {
-    fail(ErrorCode::bad_file,
-         path_,
-         ": is truncated or damaged (NetCDF header, byte ",
-         at_,
-         ": ",
-         parts...,
-         "); write the mesh again");
+    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (NetCDF header, byte ", at_, ": ",
+         parts..., "); write the mesh again");
   }
 
   void need(std::uint64_t n) const {
@@ -111,13 +106,9 @@ class Header {
       const std::uint64_t length = count();
       if (length > bytes_.size()) damaged("attribute ", called, " of length ", length);
       // What ex_open reads into single variables.
-      constexpr std::array<std::string_view, 7> scalars{"version",
-                                                        "api_version",
-                                                        "floating_point_word_size",
-                                                        "floating point word size",
-                                                        "file_size",
-                                                        "int64_status",
-                                                        "maximum_name_length"};
+      constexpr std::array<std::string_view, 7> scalars{
+          "version",   "api_version",  "floating_point_word_size", "floating point word size",
+          "file_size", "int64_status", "maximum_name_length"};
       for (const std::string_view scalar : scalars) {
         if (global && called == scalar && length != 1)
           damaged("attribute ", called, " has ", length, " values");
@@ -149,9 +140,7 @@ class Header {
     }
   }
 
-  void inside(const std::string& called,
-              const std::vector<std::size_t>& shape,
-              std::uint64_t size,
+  void inside(const std::string& called, const std::vector<std::size_t>& shape, std::uint64_t size,
               std::uint64_t begin) const {
     std::uint64_t n_bytes = size;
     for (std::size_t d = 0; d < shape.size(); ++d) {

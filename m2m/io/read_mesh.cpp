@@ -22,8 +22,7 @@ TetMesh read_mesh(const std::string& name) {
     } else if (bytes.starts_with("$")) {
       mesh = read_gmsh(name, bytes);
     } else {
-      fail(ErrorCode::bad_file,
-           name,
+      fail(ErrorCode::bad_file, name,
            ": is neither ExodusII (NetCDF) nor gmsh (begins with $MeshFormat); convert it to one "
            "of them");
     }

@@ -8,8 +8,7 @@ namespace tess::m2m {
 namespace {
 
 /// The rows of all fields side by side, for the points of a part.
-std::vector<double> rows_of(const MeshPart& part,
-                            const std::vector<Field>& fields,
+std::vector<double> rows_of(const MeshPart& part, const std::vector<Field>& fields,
                             std::size_t n_components) {
   std::vector<double> rows(part.points.size() * n_components);
   std::size_t column = 0;
@@ -26,19 +25,13 @@ std::vector<double> rows_of(const MeshPart& part,
 
 }  // namespace
 
-DistributedMesh scatter(const TetMesh& mesh,
-                        const std::vector<Field>& fields,
-                        std::int32_t n_parts,
+DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields, std::int32_t n_parts,
                         PartitionMethod method) {
   DistributedMesh out;
   out.n_parts = n_parts;
   for (const Field& field : fields) {
-    TESS_CHECK(field.values.size() == mesh.n_points() * field.n_components,
-               "field ",
-               field.name,
-               ": expected ",
-               mesh.n_points() * field.n_components,
-               " values, got ",
+    TESS_CHECK(field.values.size() == mesh.n_points() * field.n_components, "field ", field.name,
+               ": expected ", mesh.n_points() * field.n_components, " values, got ",
                field.values.size());
     out.n_components += field.n_components;
   }

@@ -30,9 +30,7 @@ struct DistributedMesh {
 /// Sends the parts of a mesh, with their rows of the fields, to new Workers, spread evenly over all
 /// PEs. Inside an epoch, the mesh is in place when the epoch is done. Partitions by tetrahedra
 /// (partition.hpp).
-[[nodiscard]] DistributedMesh scatter(const TetMesh& mesh,
-                                      const std::vector<Field>& fields,
-                                      std::int32_t n_parts,
-                                      PartitionMethod method);
+[[nodiscard]] DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields,
+                                      std::int32_t n_parts, PartitionMethod method);
 
 }  // namespace tess::m2m

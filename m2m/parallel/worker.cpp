@@ -234,8 +234,8 @@ void Worker::answer_nearest(NearestQuery query) {
     answer.vertices.push_back(
         found.vertex < 0 ? -1 : part_.point_ids[static_cast<std::size_t>(found.vertex)]);
     if (found.vertex >= 0)
-      std::copy_n(
-          row(values, found.vertex), n_components_, answer.values.data() + i * n_components_);
+      std::copy_n(row(values, found.vertex), n_components_,
+                  answer.values.data() + i * n_components_);
   }
   from.setup.target[query.from].send<&Worker::receive_nearest>(std::move(answer));
 }

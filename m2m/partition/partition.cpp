@@ -93,8 +93,7 @@ class Zoltan {
 
 void give_objects(Zoltan& zoltan, std::vector<Point>& centres) {
   Zoltan_Set_Num_Obj_Fn(
-      zoltan.get(),
-      [](void* data, int*) { return static_cast<int>(objects(data).size()); },
+      zoltan.get(), [](void* data, int*) { return static_cast<int>(objects(data).size()); },
       &centres);
   Zoltan_Set_Obj_List_Fn(
       zoltan.get(),
@@ -124,16 +123,12 @@ PartitionMethod parse_partition_method(const std::string& name) {
   fail(ErrorCode::bad_argument, "partition method '", name, "': expected rcb or hsfc");
 }
 
-std::vector<std::int32_t> partition(const TetMesh& mesh,
-                                    std::int32_t n_parts,
+std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
                                     PartitionMethod method) {
   if (n_parts < 1)
     fail(ErrorCode::bad_argument, "a partition into ", n_parts, " parts: give at least 1");
   if (mesh.n_tets() > INT32_MAX) {
-    fail(ErrorCode::bad_mesh,
-         mesh.name,
-         ": has ",
-         mesh.n_tets(),
+    fail(ErrorCode::bad_mesh, mesh.name, ": has ", mesh.n_tets(),
          " tetrahedra; Zoltan takes 2147483647 from one process");
   }
   std::vector<std::int32_t> parts(mesh.n_tets(), 0);
@@ -158,20 +153,9 @@ std::vector<std::int32_t> partition(const TetMesh& mesh,
                 export_lids = nullptr;
   int *import_procs = nullptr, *import_parts = nullptr, *export_procs = nullptr,
       *export_parts = nullptr;
-  const int code = Zoltan_LB_Partition(zoltan.get(),
-                                       &changes,
-                                       &n_gid,
-                                       &n_lid,
-                                       &n_import,
-                                       &import_gids,
-                                       &import_lids,
-                                       &import_procs,
-                                       &import_parts,
-                                       &n_export,
-                                       &export_gids,
-                                       &export_lids,
-                                       &export_procs,
-                                       &export_parts);
+  const int code = Zoltan_LB_Partition(
+      zoltan.get(), &changes, &n_gid, &n_lid, &n_import, &import_gids, &import_lids, &import_procs,
+      &import_parts, &n_export, &export_gids, &export_lids, &export_procs, &export_parts);
   for (int i = 0; i < n_export; ++i) parts[export_gids[i]] = export_parts[i];
   Zoltan_LB_Free_Part(&import_gids, &import_lids, &import_procs, &import_parts);
   Zoltan_LB_Free_Part(&export_gids, &export_lids, &export_procs, &export_parts);

@@ -22,8 +22,7 @@ enum class PartitionMethod {
 /// parts than tetrahedra. Zoltan needs MPI: where it has not been initialised, this call does so
 /// (as a singleton), and it is finalised at exit. Any thread may call it; calls of one process take
 /// turns. Throws Error (bad_argument) on no part, (environment) where Zoltan fails.
-[[nodiscard]] std::vector<std::int32_t> partition(const TetMesh& mesh,
-                                                  std::int32_t n_parts,
+[[nodiscard]] std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
                                                   PartitionMethod method);
 
 }  // namespace tess::m2m

@@ -27,23 +27,17 @@ void list_ghosts(std::vector<MeshPart>& parts, std::span<const std::int32_t> own
 
 }  // namespace
 
-std::vector<MeshPart> split(const TetMesh& mesh,
-                            std::span<const std::int32_t> parts,
+std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> parts,
                             std::int32_t n_parts) {
-  TESS_CHECK(
-      parts.size() == mesh.n_tets(), "expected ", mesh.n_tets(), " parts, got ", parts.size());
+  TESS_CHECK(parts.size() == mesh.n_tets(), "expected ", mesh.n_tets(), " parts, got ",
+             parts.size());
   constexpr std::int32_t nobody = std::numeric_limits<std::int32_t>::max();
   const std::size_t n = mesh.n_points();
   std::vector<MeshPart> result(static_cast<std::size_t>(n_parts));
   std::vector<std::int32_t> owner(n, nobody);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    TESS_CHECK(parts[t] >= 0 && parts[t] < n_parts,
-               "tetrahedron ",
-               t,
-               " in part ",
-               parts[t],
-               " of ",
-               n_parts);
+    TESS_CHECK(parts[t] >= 0 && parts[t] < n_parts, "tetrahedron ", t, " in part ", parts[t],
+               " of ", n_parts);
     result[static_cast<std::size_t>(parts[t])].tet_ids.push_back(static_cast<GlobalId>(t));
     for (const VertexId v : mesh.tets[t]) {
       std::int32_t& least = owner[static_cast<std::size_t>(v)];

@@ -37,8 +37,7 @@ struct MeshPart {
 };
 
 /// The parts 0 to n_parts - 1. `parts`: the part of every tetrahedron.
-[[nodiscard]] std::vector<MeshPart> split(const TetMesh& mesh,
-                                          std::span<const std::int32_t> parts,
+[[nodiscard]] std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> parts,
                                           std::int32_t n_parts);
 
 /// The rows of a field that belong to the points of a part: part.points.size() × n_components.

@@ -17,8 +17,7 @@ struct Winner {
   Weights weights{};
 };
 
-std::vector<Winner> search(const TetMesh& source,
-                           const TetMesh& target,
+std::vector<Winner> search(const TetMesh& source, const TetMesh& target,
                            std::uint64_t& n_candidates) {
   std::vector<Aabb> boxes;
   boxes.reserve(source.n_tets());
@@ -53,32 +52,23 @@ std::vector<Winner> search(const TetMesh& source,
 }
 
 void copy_row(const Field& from, std::size_t source_row, Field& to, std::size_t target_row) {
-  std::copy_n(from.values.data() + source_row * from.n_components,
-              from.n_components,
+  std::copy_n(from.values.data() + source_row * from.n_components, from.n_components,
               to.values.data() + target_row * to.n_components);
 }
 
 }  // namespace
 
-SerialReport transfer_serial(const TetMesh& source,
-                             std::span<const Field> source_fields,
-                             const TetMesh& target,
-                             std::span<Field> target_fields,
+SerialReport transfer_serial(const TetMesh& source, std::span<const Field> source_fields,
+                             const TetMesh& target, std::span<Field> target_fields,
                              const OutsidePolicy& policy) {
-  TESS_CHECK(source_fields.size() == target_fields.size(),
-             "expected ",
-             source_fields.size(),
-             " target fields, got ",
-             target_fields.size());
+  TESS_CHECK(source_fields.size() == target_fields.size(), "expected ", source_fields.size(),
+             " target fields, got ", target_fields.size());
   for (std::size_t f = 0; f < source_fields.size(); ++f) {
     const std::size_t n = source_fields[f].n_components;
     TESS_CHECK(target_fields[f].n_components == n &&
                    source_fields[f].values.size() == n * source.n_points() &&
                    target_fields[f].values.size() == n * target.n_points(),
-               "field ",
-               source_fields[f].name,
-               ": expected ",
-               n,
+               "field ", source_fields[f].name, ": expected ", n,
                " components at every vertex of both meshes");
   }
   SerialReport report;

@@ -25,10 +25,8 @@ struct SerialReport {
 /// Moves `source_fields` (at the source's vertices) to `target_fields`, which has one field for
 /// each, of as many components, with the values that Keep keeps. Both meshes have passed
 /// validate().
-SerialReport transfer_serial(const TetMesh& source,
-                             std::span<const Field> source_fields,
-                             const TetMesh& target,
-                             std::span<Field> target_fields,
+SerialReport transfer_serial(const TetMesh& source, std::span<const Field> source_fields,
+                             const TetMesh& target, std::span<Field> target_fields,
                              const OutsidePolicy& policy);
 
 }  // namespace tess::m2m

@@ -8,21 +8,12 @@ namespace {
 
 void check(const Snapshot& s, const Assignment& wanted) {
   if (wanted.size() != s.elements.size())
-    fail(ErrorCode::bad_value,
-         "balance strategy: returned ",
-         wanted.size(),
-         " PEs for ",
-         s.elements.size(),
-         " elements; give one for each");
+    fail(ErrorCode::bad_value, "balance strategy: returned ", wanted.size(), " PEs for ",
+         s.elements.size(), " elements; give one for each");
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (wanted[i].value < 0 || slot(wanted[i]) >= s.pes.size())
-      fail(ErrorCode::out_of_range,
-           "balance strategy: element ",
-           i,
-           " to ",
-           wanted[i],
-           "; choose one of ",
-           s.pes.size());
+      fail(ErrorCode::out_of_range, "balance strategy: element ", i, " to ", wanted[i],
+           "; choose one of ", s.pes.size());
 }
 
 }  // namespace

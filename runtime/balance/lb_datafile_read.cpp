@@ -67,10 +67,7 @@ class Place {
   }
 
   [[noreturn]] void damaged(const std::string& what) const {
-    fail(ErrorCode::bad_file,
-         where_,
-         ' ',
-         what,
+    fail(ErrorCode::bad_file, where_, ' ', what,
          ", which the LBDatafile schema does not allow; write the file again");
   }
 
@@ -167,8 +164,8 @@ class Gathering {
     if (user.has("memory_bytes")) e.memory_bytes.back() = user["memory_bytes"].whole_amount();
     if (user.has("measured")) e.measured.back() = user["measured"].whole_amount() != 0 ? 1 : 0;
     if (!user.has("position_x")) return;
-    e.position.back() = {
-        user["position_x"].number(), user["position_y"].number(), user["position_z"].number()};
+    e.position.back() = {user["position_x"].number(), user["position_y"].number(),
+                         user["position_z"].number()};
     ++n_positions_;
   }
 

@@ -24,8 +24,7 @@ std::optional<Item> LocalPe::offer(const PeSummary& other, double wanted) const 
   return std::nullopt;
 }
 
-std::optional<std::vector<Item>> LocalPe::change_for(const Item& item,
-                                                     double wanted,
+std::optional<std::vector<Item>> LocalPe::change_for(const Item& item, double wanted,
                                                      const PeSummary& giver) const {
   std::vector<Item> change;
   double net = item.load;

@@ -48,8 +48,7 @@ class LocalPe {
   /// The answer to an offer: elements to give in return, largest first, such that not much more
   /// than `wanted` work comes in with it. Nothing, a refusal, where memory has no room for the
   /// trade or the later of the two PEs would not be done sooner.
-  [[nodiscard]] std::optional<std::vector<Item>> change_for(const Item& item,
-                                                            double wanted,
+  [[nodiscard]] std::optional<std::vector<Item>> change_for(const Item& item, double wanted,
                                                             const PeSummary& giver) const;
 
  private:

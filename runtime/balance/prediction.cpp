@@ -10,9 +10,7 @@ Prediction parse_prediction(std::string_view name) {
   if (name == "last") return Prediction::last;
   if (name == "moving_average") return Prediction::moving_average;
   if (name == "linear_trend") return Prediction::linear_trend;
-  fail(ErrorCode::bad_argument,
-       "no prediction '",
-       name,
+  fail(ErrorCode::bad_argument, "no prediction '", name,
        "'; choose one of last, moving_average, linear_trend");
 }
 

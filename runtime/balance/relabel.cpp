@@ -15,12 +15,11 @@ std::vector<std::size_t> kinds(const Snapshot& s) {
   std::map<std::tuple<double, double, std::uint64_t, std::size_t>, std::size_t> known;
   std::vector<std::size_t> result;
   for (std::size_t p = 0; p < s.pes.size(); ++p)
-    result.push_back(
-        known
-            .try_emplace(
-                {s.pes.speed[p], s.pes.background[p], s.pes.memory_limit_bytes[p], alone[p]},
-                known.size())
-            .first->second);
+    result.push_back(known
+                         .try_emplace({s.pes.speed[p], s.pes.background[p],
+                                       s.pes.memory_limit_bytes[p], alone[p]},
+                                      known.size())
+                         .first->second);
   return result;
 }
 
@@ -31,8 +30,7 @@ struct Overlap {
 };
 
 /// What each part has on each PE of its kind already, most first.
-std::vector<Overlap> overlaps(const Snapshot& s,
-                              const Assignment& wanted,
+std::vector<Overlap> overlaps(const Snapshot& s, const Assignment& wanted,
                               const std::vector<std::size_t>& kind) {
   std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> bytes;
   for (std::size_t i = 0; i < wanted.size(); ++i) {

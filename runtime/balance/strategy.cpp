@@ -62,9 +62,8 @@ Strategy make_strategy(std::string_view name, std::uint64_t seed) {
         if (n_known_loads(s) == s.elements.size()) return run(s, seed);
         return run(with_unknown_pinned(s), seed);
       };
-  fail(ErrorCode::bad_argument,
-       fmt::format(
-           "no balance strategy '{}'; choose one of {}", name, fmt::join(strategy_names(), ", ")));
+  fail(ErrorCode::bad_argument, fmt::format("no balance strategy '{}'; choose one of {}", name,
+                                            fmt::join(strategy_names(), ", ")));
 }
 
 Strategy make_strategy(Strategy users) {

@@ -25,7 +25,7 @@ struct HugePageAllocator {
   [[nodiscard]] T* allocate(std::size_t n) {
     const std::size_t n_bytes = n * sizeof(T);
     if (n_bytes < 2 * page_bytes) return static_cast<T*>(::operator new(n_bytes));
-    void* const memory = ::operator new (n_bytes, std::align_val_t{page_bytes});
+    void* const memory = ::operator new(n_bytes, std::align_val_t{page_bytes});
 #if defined(__linux__)
     (void)madvise(memory, n_bytes, MADV_HUGEPAGE);  // a wish; refused, the memory serves as well
 #endif
@@ -35,12 +35,10 @@ struct HugePageAllocator {
     if (n * sizeof(T) < 2 * page_bytes) {
       ::operator delete(at);
     } else {
-      ::operator delete (at, std::align_val_t{page_bytes});
+      ::operator delete(at, std::align_val_t{page_bytes});
     }
   }
-  friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) {
-    return true;
-  }
+  friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }
 };
 
 }  // namespace tess

@@ -30,8 +30,8 @@ class MpscQueue {
     do {
       last->next = head;
       // seq_cst, not release: with Parker::wake() it forms the pair that loses no wake-up.
-    } while (!head_.compare_exchange_weak(
-        head, first, std::memory_order_seq_cst, std::memory_order_relaxed));
+    } while (!head_.compare_exchange_weak(head, first, std::memory_order_seq_cst,
+                                          std::memory_order_relaxed));
     return head == nullptr;
   }
 

@@ -35,7 +35,7 @@ void Pool::carve(std::size_t size_class) {
   if (slab_bytes < last_slab_bytes) ++n_slabs_[size_class];
   const std::size_t n = slab_bytes / block_bytes;
   slabs_.emplace_back(
-      static_cast<std::byte*>(::operator new (n* block_bytes, std::align_val_t{granule})));
+      static_cast<std::byte*>(::operator new(n* block_bytes, std::align_val_t{granule})));
   held_bytes_ += n * block_bytes;
   for (std::size_t i = n; i-- > 0;) {  // backwards, so that the list runs forwards in memory
     auto* const header = ::new (slabs_.back().get() + i * block_bytes) Header{this, size_class};

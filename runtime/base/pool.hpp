@@ -79,9 +79,7 @@ class Pool {
   void flush() noexcept;
 
   /// Bytes this pool holds, used or free.
-  [[nodiscard]] std::size_t held_bytes() const {
-    return held_bytes_;
-  }
+  [[nodiscard]] std::size_t held_bytes() const { return held_bytes_; }
 
  private:
   struct Header {
@@ -99,7 +97,7 @@ class Pool {
   };
 
   struct Free {
-    void operator()(std::byte* slab) const { ::operator delete (slab, std::align_val_t{granule}); }
+    void operator()(std::byte* slab) const { ::operator delete(slab, std::align_val_t{granule}); }
   };
 
   static constexpr std::size_t granule = 64;  // a cache line: no two blocks share one
@@ -109,9 +107,7 @@ class Pool {
   static constexpr std::uint32_t batch_most = 32;
   static constexpr std::size_t n_batches = 8;
 
-  static Header* header_of(void* block) {
-    return static_cast<Header*>(block) - 1;
-  }
+  static Header* header_of(void* block) { return static_cast<Header*>(block) - 1; }
   [[nodiscard]] static void* allocate_unpooled(std::size_t bytes);
   [[nodiscard]] void* refill(std::size_t size_class);
   void take_returned() noexcept;

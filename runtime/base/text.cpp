@@ -51,8 +51,7 @@ void append_number(std::string& out, double value) {
   append_characters(out, value, std::chars_format::general, 6);
 }
 
-void append_streamed(std::string& out,
-                     const void* value,
+void append_streamed(std::string& out, const void* value,
                      void (*write)(std::ostream& out, const void* value)) {
   std::ostringstream stream;
   write(stream, value);

@@ -17,8 +17,7 @@ void append_number(std::string& out, std::uint64_t value);
 void append_number(std::string& out, double value);  // six digits
 
 /// What `write` puts into a stream.
-void append_streamed(std::string& out,
-                     const void* value,
+void append_streamed(std::string& out, const void* value,
                      void (*write)(std::ostream& out, const void* value));
 
 template <class Part>
@@ -45,10 +44,8 @@ void append(std::string& out, const Part& part) {
 /// What text() can write.
 template <class Part>
 concept Writable = std::integral<Part> || std::floating_point<Part> ||
-    std::convertible_to<const Part&, std::string_view> ||
-    requires(std::ostream& out, const Part& part) {
-  out << part;
-};
+                   std::convertible_to<const Part&, std::string_view> ||
+                   requires(std::ostream& out, const Part& part) { out << part; };
 
 /// The parts, written one behind the other: characters, numbers, strings, and whatever has an
 /// operator<< of its own.

@@ -291,11 +291,8 @@ inline void ArrayOf<Index>::execute(Indexed& element, Letter* letter) {
   const auto& action = static_cast<const ElementAction<Index>&>(*letter->action);
   const EpochId epoch = letter->epoch;
   if (action.invoke == nullptr) [[unlikely]] {
-    TESS_CHECK(letter->demand == Demand::insert_if_absent,
-               name(),
-               index_text(letter->index),
-               " is inserted, but it exists already on ",
-               pe_.id(),
+    TESS_CHECK(letter->demand == Demand::insert_if_absent, name(), index_text(letter->index),
+               " is inserted, but it exists already on ", pe_.id(),
                "; insert_if_absent() allows for that");
     discard(letter);
   } else {

@@ -39,8 +39,7 @@ void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
   ar(load.since);
   for (const PackedEntry& entry : ar.take<std::vector<PackedEntry>>())
     load.entries.push_back({&static_cast<const Action&>(Registry::at(entry.action)),
-                            meter.ticks(entry.seconds),
-                            entry.calls});
+                            meter.ticks(entry.seconds), entry.calls});
   for (const PackedTraffic& one : ar.take<std::vector<PackedTraffic>>())
     load.sent.emplace(one.to, one.sent);
 }

@@ -36,8 +36,8 @@ void start_broadcast(CollectionId collection, SharedCall call) {
   Pe& pe = current_pe();
   const EpochId epoch = pe.context().epoch;
   pe.completion().sent(epoch);
-  send_to_collection<&start_arrives>(
-      pe, collection, root_of(collection, pe.n_pes()), NumberedCall{0, epoch, std::move(call)});
+  send_to_collection<&start_arrives>(pe, collection, root_of(collection, pe.n_pes()),
+                                     NumberedCall{0, epoch, std::move(call)});
 }
 
 void BroadcastLog::on_start(NumberedCall&& call) {
@@ -79,8 +79,8 @@ void BroadcastLog::settle() {
   }
   if (settled_ - told_ < portion) return;
   told_ = settled_;
-  send_to_collection<&settled_arrives>(
-      collection_, collection_.root(), Settled{pe_.id(), settled_});
+  send_to_collection<&settled_arrives>(collection_, collection_.root(),
+                                       Settled{pe_.id(), settled_});
 }
 
 void BroadcastLog::end() {

@@ -204,8 +204,8 @@ struct Arrival final : Envelope {
     ar(arrival->collection, arrival->from, arrival->state);
     return arrival.release();
   }
-  static inline const Action entry{
-      name_of_type<Arrival>, &run, &destroy, &pack, &unpack, Traffic::migration};
+  static inline const Action entry{name_of_type<Arrival>, &run, &destroy, &pack, &unpack,
+                                   Traffic::migration};
 };
 
 /// A call of entry method F of all elements.

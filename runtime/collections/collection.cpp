@@ -10,8 +10,7 @@ std::string element_text(const Element& element) {
 
 void Element::after_birth(const char* what, std::function<void()> call) {
   Collection* collection = current_pe().birth_collection();
-  TESS_CHECK(collection != nullptr,
-             what,
+  TESS_CHECK(collection != nullptr, what,
              " belongs into an entry method or the constructor; serialize() is neither");
   collection->after_birth(std::move(call));
 }
@@ -21,9 +20,9 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name)
       id_(id),
       name_(std::move(name)),
       broadcasts_(pe, *this),
-      reductions_(pe, *this, Track::own, root(), {"reduction", [this](std::uint32_t number) {
-                                                    return elements_before(number);
-                                                  }}) {}
+      reductions_(pe, *this, Track::own, root(),
+                  {"reduction", [this](std::uint32_t number) { return elements_before(number); }}) {
+}
 
 ReductionTree& Collection::tree(Track track) {
   return track == Track::own ? reductions_ : *second_tree_;
@@ -88,8 +87,8 @@ void Collection::postpone_newborns() {
 
 void Collection::call(Element& element, const NumberedCall& call) {
   element.state_.seen_broadcast = call.number;
-  const ElementScope scope(
-      pe_, element, &call.call->action(), call.epoch, static_cast<std::uint32_t>(call.number));
+  const ElementScope scope(pe_, element, &call.call->action(), call.epoch,
+                           static_cast<std::uint32_t>(call.number));
   try {
     call.call->invoke(element);
   } catch (...) {
@@ -180,8 +179,7 @@ void Collection::end_wait(Element& element) {
 void Collection::at_sync(Element& element) {
   if (ended_) return;  // nothing resumes it: it ends once its coroutine is done
   SyncState& sync = make_record(element).sync;
-  TESS_CHECK(sync.phase == SyncPhase::runs,
-             element_text(element),
+  TESS_CHECK(sync.phase == SyncPhase::runs, element_text(element),
              " calls at_sync() again before it was resumed");
   sync.phase = SyncPhase::waits;
   sync.epoch = pe_.context().epoch;

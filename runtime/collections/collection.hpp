@@ -208,8 +208,8 @@ class Collection {
 /// before the scope does.
 class ElementScope {
  public:
-  ElementScope(
-      Pe& pe, Element& element, const Action* action, EpochId epoch, std::uint32_t led_by = 0)
+  ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch,
+               std::uint32_t led_by = 0)
       : pe_(pe),
         element_(element),
         context_{&element, action, epoch, led_by},

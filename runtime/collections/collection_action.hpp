@@ -60,9 +60,7 @@ struct CollectionAction {
 /// Sends a payload to the part of a collection on a PE, which may be yet to come there; a hop of
 /// epoch 0, on no other epoch's account.
 template <auto Handler, Traffic Kind = Traffic::control>
-void send_to_collection(Pe& pe,
-                        CollectionId id,
-                        PeId to,
+void send_to_collection(Pe& pe, CollectionId id, PeId to,
                         typename CollectionAction<Handler, Kind>::Payload payload) {
   using A = CollectionAction<Handler, Kind>;
   pe.send(to,
@@ -70,8 +68,7 @@ void send_to_collection(Pe& pe,
               pe, A::action, detail::ToCollection<typename A::Payload>{id, std::move(payload)})));
 }
 template <auto Handler, Traffic Kind = Traffic::control>
-void send_to_collection(Collection& collection,
-                        PeId to,
+void send_to_collection(Collection& collection, PeId to,
                         typename CollectionAction<Handler, Kind>::Payload payload) {
   send_to_collection<Handler, Kind>(collection.pe(), collection.id(), to, std::move(payload));
 }

@@ -13,20 +13,13 @@ namespace tess {
 
 template <class T>
 void check_target(const Element& element, const Callback<T>& target) {
-  TESS_CHECK(static_cast<bool>(target),
-             element_text(element),
-             " contributes, but its Callback<",
-             name_of_type<T>,
-             "> for the result is empty");
+  TESS_CHECK(static_cast<bool>(target), element_text(element), " contributes, but its Callback<",
+             name_of_type<T>, "> for the result is empty");
 }
 
 /// Merges as it goes; the sum that the elements before it have begun takes the value in place.
 template <class Key, class Op, class T>
-void contribute_as(const Key& /*key*/,
-                   Element& element,
-                   Collection& collection,
-                   Op /*op*/,
-                   T value,
+void contribute_as(const Key& /*key*/, Element& element, Collection& collection, Op /*op*/, T value,
                    Callback<T>&& target) {
   using Merged = MergedPartial<T, Op>;
   if (Partial* open = collection.open_sum(element, Merged::its_kind()); open != nullptr) {
@@ -40,12 +33,8 @@ void contribute_as(const Key& /*key*/,
 
 /// Combines in the order of keys, at the end.
 template <class Key, class Op, class T>
-void contribute_as(const Key& key,
-                   Element& element,
-                   Collection& collection,
-                   InOrder<Op> /*op*/,
-                   T value,
-                   Callback<T>&& target) {
+void contribute_as(const Key& key, Element& element, Collection& collection, InOrder<Op> /*op*/,
+                   T value, Callback<T>&& target) {
   check_target(element, target);
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));

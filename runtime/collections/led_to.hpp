@@ -25,19 +25,18 @@ class LedTo {
   bool learn(std::uint32_t broadcast, std::uint32_t number) {
     if (end(broadcast) > number) return false;
     const auto at = std::lower_bound(
-        entries_.begin(), entries_.end(), broadcast, [](const Entry& entry, std::uint32_t least) {
-          return entry.broadcast < least;
-        });
-    const auto last = std::find_if(
-        at, entries_.end(), [&](const Entry& entry) { return entry.end > number + 1; });
+        entries_.begin(), entries_.end(), broadcast,
+        [](const Entry& entry, std::uint32_t least) { return entry.broadcast < least; });
+    const auto last = std::find_if(at, entries_.end(),
+                                   [&](const Entry& entry) { return entry.end > number + 1; });
     entries_.insert(entries_.erase(at, last), Entry{broadcast, number + 1});
     return true;
   }
 
   /// Reductions below this one are complete: no element is going to join there.
   void forget_below(std::uint32_t number) {
-    const auto last = std::find_if(
-        entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.end > number; });
+    const auto last = std::find_if(entries_.begin(), entries_.end(),
+                                   [&](const Entry& entry) { return entry.end > number; });
     entries_.erase(entries_.begin(), last);
   }
 

@@ -14,8 +14,8 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
   count_departure(element);
   const Version version{element.state_.version.incarnation, element.state_.version.epoch + 1};
   element.state_.version = version;
-  table_.at(index).set(
-      home(index) == pe_.id() ? IndexState::moving : IndexState::departed, to, version);
+  table_.at(index).set(home(index) == pe_.id() ? IndexState::moving : IndexState::departed, to,
+                       version);
   broadcasts().left(element.state_.seen_broadcast);
   ++pe_.statistics().migrations;
   pe_.completion().sent(pe_.context().epoch);
@@ -130,8 +130,8 @@ void ArrayOf<Index>::bury(Indexed& element) {
   }
   ++n_deaths_[index];
   table_.at(index).park(Parked::grave);
-  send_to_collection<&died_arrives, Traffic::location>(
-      *this, home(index), Died{index, version, pe_.id()});
+  send_to_collection<&died_arrives, Traffic::location>(*this, home(index),
+                                                       Died{index, version, pe_.id()});
 }
 
 template <class Index>

@@ -37,8 +37,8 @@ void ReductionTree::end() {
   current_ = nullptr;
 }
 
-ReductionTree::ReductionTree(
-    Pe& pe, Collection& collection, Track track, PeId root, TreeWords words)
+ReductionTree::ReductionTree(Pe& pe, Collection& collection, Track track, PeId root,
+                             TreeWords words)
     : pe_(pe), collection_(collection), track_(track), words_(std::move(words)), root_(root) {
   const SpanningTree tree(pe.id(), root_, pe.n_pes());
   parent_ = tree.parent();
@@ -94,10 +94,8 @@ void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {
     return;
   }
   TESS_CHECK(into.kind == &value->kind(),
-             "two elements contribute to one reduction with different types: ",
-             into.kind->name(),
-             " and ",
-             value->kind().name());
+             "two elements contribute to one reduction with different types: ", into.kind->name(),
+             " and ", value->kind().name());
   into.value->merge(std::move(*value));
 }
 
@@ -161,8 +159,7 @@ void ReductionTree::added(std::uint32_t number, const Cause& cause) {
   if (ready(next_report_)) advance();
 }
 
-void ReductionTree::contribute(std::uint32_t number,
-                               std::unique_ptr<Partial> value,
+void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> value,
                                const Cause& cause) {
   const EpochId epoch = pe_.context().epoch;
   pe_.completion().sent(epoch);
@@ -224,15 +221,8 @@ void ReductionTree::advance() {
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != pe_.id()) {
-    send(parent_,
-         Report{number,
-                gathered.n,
-                gathered.change,
-                false,
-                0,
-                gathered.cause,
-                PartialBox{std::move(gathered.value)},
-                std::move(gathered.shares)});
+    send(parent_, Report{number, gathered.n, gathered.change, false, 0, gathered.cause,
+                         PartialBox{std::move(gathered.value)}, std::move(gathered.shares)});
     return;
   }
   Whole& whole = whole_[number];
@@ -308,39 +298,18 @@ void ReductionTree::complete_if_whole() {
 void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [number, gathering] : gathering_) {
     if (gathering.n == 0 && ready(number)) continue;
-    lines.push_back(text(collection_.name(),
-                         ": ",
-                         words_.noun,
-                         " ",
-                         number,
-                         " has ",
-                         gathering.n,
-                         " contributions on ",
-                         pe_.id(),
-                         "; it waits for ",
+    lines.push_back(text(collection_.name(), ": ", words_.noun, " ", number, " has ", gathering.n,
+                         " contributions on ", pe_.id(), "; it waits for ",
                          ready(number) ? "other PEs" : words_.missing_before(number + 1)));
   }
   // Elements that came after this PE had reported; what they have yet to give is not complete.
   if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
-    lines.push_back(text(collection_.name(),
-                         ": ",
-                         words_.noun,
-                         " ",
-                         elements_at_.lowest(),
-                         " waits for ",
-                         words_.missing_before(next_report_)));
+    lines.push_back(text(collection_.name(), ": ", words_.noun, " ", elements_at_.lowest(),
+                         " waits for ", words_.missing_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
     if (whole.sum.n != 0)
-      lines.push_back(text(collection_.name(),
-                           ": ",
-                           words_.noun,
-                           " ",
-                           number,
-                           " has ",
-                           whole.sum.n,
-                           " contributions of ",
-                           members_ + whole.sum.change,
-                           " members"));
+      lines.push_back(text(collection_.name(), ": ", words_.noun, " ", number, " has ", whole.sum.n,
+                           " contributions of ", members_ + whole.sum.change, " members"));
   }
 }
 

@@ -13,8 +13,8 @@ void ArrayOf<Index>::forward(Letter* letter, const Place& place) {
   if (letter->source != pe_.id()) {
     ++pe_.statistics().forwards;
     if (letter->hops < 255) ++letter->hops;
-    send_to_collection<&hint_arrives, Traffic::location>(
-        *this, letter->source, Where{letter->index, place});
+    send_to_collection<&hint_arrives, Traffic::location>(*this, letter->source,
+                                                         Where{letter->index, place});
   }
   pe_.send(place.pe, letter);
 }
@@ -144,15 +144,15 @@ void ArrayOf<Index>::ask(Letter* letter) {
   const Index index = letter->index;
   letter->ask = false;
   park(letter, Parked::pending);
-  send_to_collection<&request_arrives, Traffic::location>(
-      *this, home(index), Request{index, pe_.id()});
+  send_to_collection<&request_arrives, Traffic::location>(*this, home(index),
+                                                          Request{index, pe_.id()});
 }
 
 template <class Index>
 void ArrayOf<Index>::on_request(const Request& request) {
   const auto reply = [&](const Place& place) {
-    send_to_collection<&where_arrives, Traffic::location>(
-        *this, request.from, Where{request.index, place});
+    send_to_collection<&where_arrives, Traffic::location>(*this, request.from,
+                                                          Where{request.index, place});
   };
   Record& record = table_.at(request.index);
   if (record.state() == IndexState::here) {
@@ -165,8 +165,8 @@ void ArrayOf<Index>::on_request(const Request& request) {
   }
   const Version version{record.version().incarnation + 1, 1};
   record.set(IndexState::live, request.from, version);
-  send_to_collection<&grant_arrives, Traffic::location>(
-      *this, request.from, Grant{request.index, version});
+  send_to_collection<&grant_arrives, Traffic::location>(*this, request.from,
+                                                        Grant{request.index, version});
   reroute(unpark(request.index, Parked::waiting));
 }
 
@@ -220,17 +220,9 @@ void ArrayOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
   Collection::describe_waiting(lines);
   const auto say = [&](const Index& index, const std::vector<Letter*>& letters, const char* what) {
     if (letters.empty()) return;
-    lines.push_back(text(letters.size(),
-                         letters.size() == 1 ? " message" : " messages",
-                         " (",
-                         plain_name(letters.front()->action->name()),
-                         ") on ",
-                         pe_.id(),
-                         " to ",
-                         name(),
-                         index_text(index),
-                         ", ",
-                         what));
+    lines.push_back(text(letters.size(), letters.size() == 1 ? " message" : " messages", " (",
+                         plain_name(letters.front()->action->name()), ") on ", pe_.id(), " to ",
+                         name(), index_text(index), ", ", what));
   };
   for (const auto& [index, letters] : waiting_) say(index, letters, "which does not exist");
   for (const auto& [index, letters] : pending_)

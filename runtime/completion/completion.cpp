@@ -184,14 +184,8 @@ void Completion::on_wave(const Wave& wave) {
 
 void Completion::on_echo(const Echo& message) {
   Relay& relay = relays_.at(message.epoch);
-  TESS_CHECK(relay.wave.number == message.number,
-             "epoch ",
-             message.epoch.value,
-             ": echo of wave ",
-             message.number,
-             " while wave ",
-             relay.wave.number,
-             " runs");
+  TESS_CHECK(relay.wave.number == message.number, "epoch ", message.epoch.value, ": echo of wave ",
+             message.number, " while wave ", relay.wave.number, " runs");
   relay.sum = relay.sum + message.sum;
   if (--relay.waiting != 0) return;
   Relay complete = relay;
@@ -245,15 +239,8 @@ void Completion::describe_open(std::vector<std::string>& lines) const {
     if (epoch.value == 0) continue;
     const auto at = tallies_.find(epoch);
     const Counters sum = at == tallies_.end() ? Counters{} : at->second.sum();
-    lines.push_back(text("epoch ",
-                         epoch.value >> 24U,
-                         " opened on ",
-                         pe_.id(),
-                         ": ",
-                         sum.sent,
-                         " messages sent, ",
-                         sum.processed,
-                         " done"));
+    lines.push_back(text("epoch ", epoch.value >> 24U, " opened on ", pe_.id(), ": ", sum.sent,
+                         " messages sent, ", sum.processed, " done"));
   }
 }
 

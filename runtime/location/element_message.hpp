@@ -43,8 +43,8 @@ struct ElementAction : Action {
   using Construct = Element* (*)(ElementMessage<Index>&);
 
   /// Traffic::user, or control for a message that the user did not send: it is no dead letter.
-  ElementAction(
-      std::string_view name, Run r, Destroy d, Pack p, Unpack u, Invoke i, Construct c, Traffic t)
+  ElementAction(std::string_view name, Run r, Destroy d, Pack p, Unpack u, Invoke i, Construct c,
+                Traffic t)
       : Action(name, r, d, p, u, t), invoke(i), construct(c) {}
 
   /// How many dead letters a message of this kind is that does not meet its element.

@@ -63,8 +63,7 @@ class Program {
   virtual void receive(PeId pe, std::span<const std::byte> bytes) = 0;
   /// Takes the head of a parcel, whose parts have these sizes: returns a message, and says in
   /// `places` where each part is to be put.
-  virtual Link* place(PeId /*pe*/,
-                      std::span<const std::byte> /*head*/,
+  virtual Link* place(PeId /*pe*/, std::span<const std::byte> /*head*/,
                       std::span<const std::uint64_t> /*sizes*/,
                       std::vector<std::span<std::byte>>& /*places*/) {
     return nullptr;

@@ -36,10 +36,8 @@ class MpiMachine final : public Machine, private Network {
     if (pes_per_process_ == 0)
       pes_per_process_ = session_.least(std::max(1, topology_.n_cores() / shared.n_processes));
     if (!agree(static_cast<std::uint64_t>(pes_per_process_)))
-      fail(ErrorCode::bad_argument,
-           "the processes were given different numbers of PEs, this one ",
-           pes_per_process_,
-           ": start them all with the same --pes");
+      fail(ErrorCode::bad_argument, "the processes were given different numbers of PEs, this one ",
+           pes_per_process_, ": start them all with the same --pes");
 
     const bool enough = shared.n_processes * pes_per_process_ <= topology_.n_cores();
     placement_ = {.pinned = enough && options.pinning == Pinning::automatic,
@@ -47,10 +45,8 @@ class MpiMachine final : public Machine, private Network {
                   .oversubscribed = !enough};
     transport_ = std::make_unique<Transport>(session_.comm(), n_processes_, options.chunk_bytes);
     for (std::int32_t i = 0; i < pes_per_process_; ++i) mail_.push_back(transport_->new_mail());
-    team_ = std::make_unique<Team>(PeId{process_.value * pes_per_process_},
-                                   pes_per_process_,
-                                   placement_,
-                                   static_cast<Network*>(this));
+    team_ = std::make_unique<Team>(PeId{process_.value * pes_per_process_}, pes_per_process_,
+                                   placement_, static_cast<Network*>(this));
     must(MPI_Barrier(session_.comm()), "MPI_Barrier");  // the clocks start together
     start_ = std::chrono::steady_clock::now();
   }
@@ -82,12 +78,8 @@ class MpiMachine final : public Machine, private Network {
   Time now(PeId) const override { return std::chrono::steady_clock::now() - start_; }
 
   std::string describe() const override {
-    return text("mpi: ",
-                n_processes_,
-                n_processes_ == 1 ? " process, " : " processes, ",
-                pes_per_process_,
-                pes_per_process_ == 1 ? " PE each; " : " PEs each; ",
-                process_,
+    return text("mpi: ", n_processes_, n_processes_ == 1 ? " process, " : " processes, ",
+                pes_per_process_, pes_per_process_ == 1 ? " PE each; " : " PEs each; ", process_,
                 placement_.describe(topology_));
   }
 
@@ -144,14 +136,10 @@ bool speaks_for_job() {
 
 std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv, MpiOptions options) {
   if (options.pes_per_process < 0)
-    fail(ErrorCode::bad_argument,
-         "cannot run on ",
-         options.pes_per_process,
+    fail(ErrorCode::bad_argument, "cannot run on ", options.pes_per_process,
          " PEs a process: give a positive number");
   if (options.chunk_bytes == 0 || options.chunk_bytes > std::size_t{1} << 30)
-    fail(ErrorCode::bad_argument,
-         "a chunk of ",
-         options.chunk_bytes,
+    fail(ErrorCode::bad_argument, "a chunk of ", options.chunk_bytes,
          " bytes cannot be sent: give 1 to 1073741824");
   return std::make_unique<MpiMachine>(argc, argv, options);
 }

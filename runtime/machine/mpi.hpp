@@ -30,8 +30,7 @@ struct MpiOptions {
 /// Initialises MPI if nobody has, and then finalises it when destroyed. Every process of the job
 /// calls it; the thread that does drives the process's first PE. Throws Error for options that
 /// cannot be, or that differ between processes.
-[[nodiscard]] std::unique_ptr<Machine> make_mpi_machine(int& argc,
-                                                        char**& argv,
+[[nodiscard]] std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv,
                                                         MpiOptions options);
 
 }  // namespace tess

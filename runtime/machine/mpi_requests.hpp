@@ -26,11 +26,8 @@ class Requests {
     if (requests_.empty()) return;
     int n_complete = 0;
     places_.resize(requests_.size());
-    must(MPI_Testsome(static_cast<int>(requests_.size()),
-                      requests_.data(),
-                      &n_complete,
-                      places_.data(),
-                      MPI_STATUSES_IGNORE),
+    must(MPI_Testsome(static_cast<int>(requests_.size()), requests_.data(), &n_complete,
+                      places_.data(), MPI_STATUSES_IGNORE),
          "MPI_Testsome");
     if (n_complete <= 0) return;  // MPI_UNDEFINED is negative
     std::size_t kept = 0;

@@ -37,9 +37,7 @@ Session::Session(int& argc, char**& argv) {
   else
     must(MPI_Query_thread(&provided), "MPI_Query_thread");
   if (provided < MPI_THREAD_SERIALIZED)
-    fail(ErrorCode::environment,
-         "MPI gives thread level ",
-         provided,
+    fail(ErrorCode::environment, "MPI gives thread level ", provided,
          ", but MPI_THREAD_SERIALIZED is needed: use an MPI built with threads");
   must(MPI_Comm_dup(MPI_COMM_WORLD, &comm_), "MPI_Comm_dup");
   must(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");

@@ -150,13 +150,8 @@ void Transport::start_large(std::unique_ptr<Outgoing> owned) {
   out->tag = last_tag_;
   std::memcpy(out->first.data() + offsetof(Announcement, tag), &out->tag, sizeof out->tag);
   MPI_Request request = MPI_REQUEST_NULL;
-  must(MPI_Isend(out->first.data(),
-                 static_cast<int>(out->first.size()),
-                 MPI_BYTE,
-                 out->to,
-                 announcement,
-                 comm_,
-                 &request),
+  must(MPI_Isend(out->first.data(), static_cast<int>(out->first.size()), MPI_BYTE, out->to,
+                 announcement, comm_, &request),
        "MPI_Isend");
   sends_.add(request, out);
   const auto send_chunks = [&](std::span<const std::byte> bytes) {
@@ -190,8 +185,8 @@ void Transport::take_in(Mail& mail) {
     int count = 0;
     must(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
     if (status.MPI_TAG == announcement) {
-      read_announcement(
-          {slot.bytes.get(), static_cast<std::size_t>(count)}, status.MPI_SOURCE, mail);
+      read_announcement({slot.bytes.get(), static_cast<std::size_t>(count)}, status.MPI_SOURCE,
+                        mail);
     } else {
       mail.exchange(slot.bytes, static_cast<std::size_t>(count));
       ++n_received_;
@@ -203,13 +198,8 @@ void Transport::take_in(Mail& mail) {
 }
 
 void Transport::post(Slot& slot) {
-  must(MPI_Irecv(slot.bytes.get(),
-                 static_cast<int>(slot_bytes_),
-                 MPI_BYTE,
-                 MPI_ANY_SOURCE,
-                 MPI_ANY_TAG,
-                 comm_,
-                 &slot.request),
+  must(MPI_Irecv(slot.bytes.get(), static_cast<int>(slot_bytes_), MPI_BYTE, MPI_ANY_SOURCE,
+                 MPI_ANY_TAG, comm_, &slot.request),
        "MPI_Irecv");
 }
 
@@ -285,8 +275,8 @@ void Transport::drain(const std::function<void(Link*)>& drop) {
       }
     }
     if (!counting && waiting_.empty()) {
-      must(MPI_Ireduce_scatter_block(
-               n_sent_.data(), &n_expected, 1, MPI_INT64_T, MPI_SUM, comm_, &counted),
+      must(MPI_Ireduce_scatter_block(n_sent_.data(), &n_expected, 1, MPI_INT64_T, MPI_SUM, comm_,
+                                     &counted),
            "MPI_Ireduce_scatter_block");
       counting = true;
     }

@@ -91,15 +91,8 @@ class SimulatedMachine final : public Machine {
     clocks_[static_cast<std::size_t>(pe.value)].now += work.count();
   }
   [[nodiscard]] std::string describe() const override {
-    return text("simulated: ",
-                options_.n_pes,
-                " PEs in ",
-                n_processes_,
-                " processes, latency ",
-                options_.latency.count(),
-                " ns, ",
-                options_.bandwidth / 1e9,
-                " GB/s",
+    return text("simulated: ", options_.n_pes, " PEs in ", n_processes_, " processes, latency ",
+                options_.latency.count(), " ns, ", options_.bandwidth / 1e9, " GB/s",
                 options_.seed ? text(", seed ", *options_.seed) : "");
   }
 
@@ -155,8 +148,7 @@ void SimulatedMachine::run(Program& program) {
   std::uint64_t n_events = 0;
   while (!stopped_ && !events_.empty()) {
     if (options_.most_events != 0 && ++n_events > options_.most_events) {
-      std::fprintf(stderr,
-                   "tessera: the simulated run needs more than %llu events: a livelock?\n",
+      std::fprintf(stderr, "tessera: the simulated run needs more than %llu events: a livelock?\n",
                    static_cast<unsigned long long>(options_.most_events));
       break;
     }
@@ -251,15 +243,8 @@ SimulatedOptions parse_simulated(const std::string& given) {
       const double number = number_of(value, key, &unit);
       if (!unit.empty() || number < least || number > most ||
           number != static_cast<double>(static_cast<std::int64_t>(number)))
-        fail(ErrorCode::bad_argument,
-             "--sim ",
-             key,
-             ": ",
-             value,
-             " is not a whole number of ",
-             least,
-             " … ",
-             most);
+        fail(ErrorCode::bad_argument, "--sim ", key, ": ", value, " is not a whole number of ",
+             least, " … ", most);
       return static_cast<std::int64_t>(number);
     };
     if (key == "pes") {
@@ -283,17 +268,12 @@ SimulatedOptions parse_simulated(const std::string& given) {
         fail(ErrorCode::bad_argument, "--sim bandwidth: ", value, " is no rate (MB/s, GB/s)");
       options.bandwidth = number * factor;
     } else {
-      fail(ErrorCode::bad_argument,
-           "--sim: unknown key ",
-           key,
+      fail(ErrorCode::bad_argument, "--sim: unknown key ", key,
            " (pes, per-process, latency, bandwidth, cost, seed, migrate)");
     }
   }
   if (options.pes_per_process != 0 && options.n_pes % options.pes_per_process != 0)
-    fail(ErrorCode::bad_argument,
-         "--sim: ",
-         options.n_pes,
-         " PEs do not divide into processes of ",
+    fail(ErrorCode::bad_argument, "--sim: ", options.n_pes, " PEs do not divide into processes of ",
          options.pes_per_process);
   return options;
 }

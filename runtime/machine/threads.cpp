@@ -37,9 +37,7 @@ class ThreadsMachine final : public Machine {
   }
   Time now(PeId) const override { return std::chrono::steady_clock::now() - start_; }
   std::string describe() const override {
-    return text("threads: ",
-                pes_per_process_,
-                pes_per_process_ == 1 ? " PE" : " PEs",
+    return text("threads: ", pes_per_process_, pes_per_process_ == 1 ? " PE" : " PEs",
                 placement_.describe(topology_));
   }
 

@@ -56,8 +56,7 @@ Topology::Topology() : handle_(std::make_unique<Handle>()) {
 Topology::~Topology() = default;
 
 bool Topology::pin(std::int32_t core) const {
-  return hwloc_set_cpubind(handle_->topology,
-                           handle_->cores.at(static_cast<std::size_t>(core)),
+  return hwloc_set_cpubind(handle_->topology, handle_->cores.at(static_cast<std::size_t>(core)),
                            HWLOC_CPUBIND_THREAD) == 0;
 }
 
@@ -74,9 +73,7 @@ std::string Topology::cpuset() const {
 }
 
 std::string Placement::describe(const Topology& topology) const {
-  return text(" on ",
-              topology.n_cores(),
-              topology.n_cores() == 1 ? " core (" : " cores (",
+  return text(" on ", topology.n_cores(), topology.n_cores() == 1 ? " core (" : " cores (",
               topology.cpuset(),
               pinned           ? "), pinned"
               : oversubscribed ? "), more PEs than cores: not pinned"

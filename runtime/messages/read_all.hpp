@@ -17,18 +17,11 @@ auto read_all(Reader& body, const What& what, const Read& read) {
   const std::size_t n_bytes = body.remaining();
   try {
     auto value = read(body);
-    TESS_CHECK(body.remaining() == 0,
-               what(),
-               ": ",
-               body.remaining(),
-               " of ",
-               n_bytes,
+    TESS_CHECK(body.remaining() == 0, what(), ": ", body.remaining(), " of ", n_bytes,
                " bytes are left when it is read back; does serialize() read what it writes?");
     return value;
   } catch (const Error& error) {
-    check_failed("read back",
-                 __FILE__,
-                 __LINE__,
+    check_failed("read back", __FILE__, __LINE__,
                  text(what(), ": ", error.what(), "; does serialize() read what it writes?"));
   }
 }

@@ -18,13 +18,11 @@ std::vector<Registered*>& Registry::all() {
 
 void Registry::seal() {
   auto& things = all();
-  std::sort(things.begin(), things.end(), [](const Registered* a, const Registered* b) {
-    return a->name_ < b->name_;
-  });
+  std::sort(things.begin(), things.end(),
+            [](const Registered* a, const Registered* b) { return a->name_ < b->name_; });
   for (std::size_t i = 0; i < things.size(); ++i) {
     TESS_CHECK(i == 0 || things[i - 1]->name_ != things[i]->name_,
-               "two registered things share the name ",
-               things[i]->name_);
+               "two registered things share the name ", things[i]->name_);
     things[i]->id_ = static_cast<std::uint32_t>(i);
   }
 }
@@ -38,11 +36,7 @@ std::uint64_t Registry::fingerprint() {
 
 const Registered& Registry::at(std::uint32_t id) {
   if (id >= all().size())
-    fail(ErrorCode::bad_value,
-         "a message names action ",
-         id,
-         ", but only ",
-         all().size(),
+    fail(ErrorCode::bad_value, "a message names action ", id, ", but only ", all().size(),
          " are known");
   return *all()[id];
 }

@@ -27,9 +27,7 @@ struct Sent {
 
 }  // namespace
 
-Outbox::Outbox(PeId self,
-               Machine& machine,
-               const MessageOptions& options,
+Outbox::Outbox(PeId self, Machine& machine, const MessageOptions& options,
                std::uint64_t& bytes_sent)
     : self_(self),
       machine_(machine),

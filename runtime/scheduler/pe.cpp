@@ -32,11 +32,7 @@ Pe& current_pe() {
   return *detail::the_current_pe;
 }
 
-Pe::Pe(PeId id,
-       Runtime& runtime,
-       Machine& machine,
-       Pool& pool,
-       std::uint64_t seed,
+Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
        const MessageOptions& messages)
     : id_(id),
       n_pes_(machine.n_pes()),
@@ -332,9 +328,8 @@ void Pe::keep_ending(std::unique_ptr<Collection> collection, EpochId epoch) {
 }
 
 Pe::Ending Pe::take_ending(CollectionId id) {
-  const auto at = std::find_if(ending_.begin(), ending_.end(), [id](const Ending& one) {
-    return one.collection->id() == id;
-  });
+  const auto at = std::find_if(ending_.begin(), ending_.end(),
+                               [id](const Ending& one) { return one.collection->id() == id; });
   Ending taken = std::move(*at);
   ending_.erase(at);
   return taken;
@@ -359,20 +354,14 @@ std::vector<std::string> Pe::census() const {
   std::vector<std::string> lines;
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
-    lines.push_back(
-        text(one.element != nullptr ? element_text(*one.element) : text("the main program"),
-             " on ",
-             id_,
-             ": ",
-             one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
-             " waits for ",
-             one.waits_for()));
+    lines.push_back(text(
+        one.element != nullptr ? element_text(*one.element) : text("the main program"), " on ", id_,
+        ": ", one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
+        " waits for ", one.waits_for()));
   }
   for (const auto& [id, collection] : collections_) collection->describe_waiting(lines);
   for (const Ending& one : ending_)
-    lines.push_back(text(one.collection->name(),
-                         " on ",
-                         id_,
+    lines.push_back(text(one.collection->name(), " on ", id_,
                          " was destroyed, but coroutines of its elements wait"));
   for (const auto& [id, messages] : early_)
     lines.push_back(

@@ -56,11 +56,7 @@ struct PeStatistics {
 class Pe {
  public:
   /// The pool outlives all PEs of the process: messages of one are freed by another.
-  Pe(PeId id,
-     Runtime& runtime,
-     Machine& machine,
-     Pool& pool,
-     std::uint64_t seed,
+  Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
      const MessageOptions& messages);
   Pe(const Pe&) = delete;
   Pe& operator=(const Pe&) = delete;
@@ -330,12 +326,8 @@ inline thread_local Pe* the_current_pe = nullptr;
 
 /// There must be a PE of that number in the run.
 inline void check_exists(const Pe& pe, PeId id) {
-  TESS_CHECK(id.value >= 0 && id.value < pe.n_pes(),
-             "there is no ",
-             id,
-             ": the run has ",
-             pe.n_pes(),
-             pe.n_pes() == 1 ? " PE" : " PEs");
+  TESS_CHECK(id.value >= 0 && id.value < pe.n_pes(), "there is no ", id, ": the run has ",
+             pe.n_pes(), pe.n_pes() == 1 ? " PE" : " PEs");
 }
 
 /// Makes a PE current for a scope.

@@ -28,12 +28,11 @@ void room_arrives(Pe& pe, Room&& room) {
 }
 
 /// `n_bytes`: with the attached parts.
-Envelope* unpack(
-    Pe& pe, PeId sender, const PackedHeader& header, Reader& body, std::uint64_t n_bytes) {
+Envelope* unpack(Pe& pe, PeId sender, const PackedHeader& header, Reader& body,
+                 std::uint64_t n_bytes) {
   const auto& action = static_cast<const Action&>(Registry::at(header.action));
   Envelope* message = read_all(
-      body,
-      [&action] { return plain_name(action.name()); },
+      body, [&action] { return plain_name(action.name()); },
       [&pe, &action](Reader& arguments) { return action.unpack(pe, arguments); });
   message->action = &action;
   message->epoch = header.epoch;
@@ -62,8 +61,7 @@ void Pe::receive(std::span<const std::byte> bytes) {
   }
 }
 
-Envelope* Pe::place(std::span<const std::byte> head,
-                    std::span<const std::uint64_t> sizes,
+Envelope* Pe::place(std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
                     std::vector<std::span<std::byte>>& taken) {
   const RunsOn here(*this);
   Reader read(head);
@@ -74,12 +72,8 @@ Envelope* Pe::place(std::span<const std::byte> head,
   const std::uint64_t attached = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
   Envelope* message =
       unpack(*this, from.sender, header, body, sizeof header + header.n_bytes + attached);
-  TESS_CHECK(taken.size() == sizes.size(),
-             plain_name(message->action->name()),
-             ": the arguments read back leave ",
-             sizes.size() - taken.size(),
-             " of ",
-             sizes.size(),
+  TESS_CHECK(taken.size() == sizes.size(), plain_name(message->action->name()),
+             ": the arguments read back leave ", sizes.size() - taken.size(), " of ", sizes.size(),
              " large vectors; does serialize() read what it writes?");
   return message;
 }

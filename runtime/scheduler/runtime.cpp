@@ -64,12 +64,8 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);
   for (std::int32_t i = 0; i < n_here; ++i) {
-    pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i},
-                                        *this,
-                                        machine,
-                                        pools_.emplace_back(),
-                                        options.seed,
-                                        options.messages));
+    pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i}, *this, machine,
+                                        pools_.emplace_back(), options.seed, options.messages));
     Pe& pe = *pes_.back();
     pe.set_migration_chance(options.migration_chance);
     if (options.statistics) pe.start_meter();
@@ -137,25 +133,15 @@ void Runtime::print_statistics(PeId id) {
   error_line(fmt::format(
       "stats: PE {} messages {} sent {} bytes {} busy {:.6f} s idle {:.6f} s chares {} forwards {} "
       "migrations {} dead letters {}",
-      id.value,
-      s.messages,
-      s.sent_remote,
-      s.bytes_sent,
-      busy,
-      std::max(0.0, of.meter()->age() - busy),
-      chares,
-      s.forwards,
-      s.migrations,
-      s.dead_letters));
+      id.value, s.messages, s.sent_remote, s.bytes_sent, busy,
+      std::max(0.0, of.meter()->age() - busy), chares, s.forwards, s.migrations, s.dead_letters));
 }
 
 void Runtime::write_traces() {
   if (options_.trace.empty()) return;
   std::vector<TraceOfPe> all;
   for (const auto& pe : pes_)
-    all.push_back({pe->id(),
-                   pe->trace(),
-                   pe->meter()->seconds(1'000'000'000) * 1e-9,
+    all.push_back({pe->id(), pe->trace(), pe->meter()->seconds(1'000'000'000) * 1e-9,
                    pes_.front()->meter()->made()});
   write_trace(trace_path(), machine_.process(), all);
 }
@@ -190,8 +176,7 @@ std::string Runtime::describe(Pe& pe) const {
 void Runtime::out_of_memory(Pe& pe, const std::string& place) {
   if (!out_of_memory_.exchange(true)) {
     reserve_.reset();
-    error_line(text("error: memory is exhausted ",
-                    place.empty() ? describe(pe) : place,
+    error_line(text("error: memory is exhausted ", place.empty() ? describe(pe) : place,
                     "; ask for less, or spread the run over more machines"));
   }
   exit(pe, 2);
@@ -249,8 +234,7 @@ void Runtime::on_census_asked(Pe& pe) {
     if (collection->n_local() == 0 && collection->broadcasts().applied() != 0)
       empty.push_back({collection->id(), collection->name()});
   send_uncounted<&census_arrives>(
-      pe,
-      PeId{0},
+      pe, PeId{0},
       Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped()});
 }
 
@@ -263,15 +247,13 @@ void Runtime::on_census(Pe& pe, Census&& census) {
   census_.exits = census_.exits || census.exits;
   if (--n_answers_ != 0 || census_.exits) return;
   if (census_.dead_letters != 0)
-    error_line(text("tessera: ",
-                    census_.dead_letters,
+    error_line(text("tessera: ", census_.dead_letters,
                     " messages to elements that had been destroyed were not delivered"));
   if (!census_.lines.empty()) {
     constexpr std::size_t most = 40;
     std::sort(census_.lines.begin(), census_.lines.end());
     std::string report = text("tessera: deadlock: nothing runs and nothing is under way, but ",
-                              census_.lines.size(),
-                              " wait:");
+                              census_.lines.size(), " wait:");
     for (std::size_t i = 0; i < std::min(most, census_.lines.size()); ++i)
       report += "\n  " + census_.lines[i];
     if (census_.lines.size() > most)

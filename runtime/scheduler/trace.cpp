@@ -36,42 +36,28 @@ class TraceWriter {
     put(
         fmt::format("{{\"ph\":\"M\",\"name\":\"process_name\",\"pid\":{},\"args\":{{\"name\":"
                     "\"process {}\"}}}}",
-                    process_.value,
-                    process_.value));
+                    process_.value, process_.value));
   }
 
   void pe(const TraceOfPe& of) {
     put(
         fmt::format(",\n{{\"ph\":\"M\",\"name\":\"thread_name\",\"pid\":{},\"tid\":{},\"args\":{{"
                     "\"name\":\"PE {}\"}}}}",
-                    process_.value,
-                    of.pe.value,
-                    of.pe.value));
+                    process_.value, of.pe.value, of.pe.value));
     for (const Trace::Slice& slice : of.trace->slices()) {
       const double begin = micros(of, slice.begin);
-      event("X",
-            escaped(plain_name(slice.action->name())),
-            of.pe,
-            begin,
+      event("X", escaped(plain_name(slice.action->name())), of.pe, begin,
             fmt::format(",\"dur\":{:.3f}", micros(of, slice.end) - begin));
       if (slice.number != 0)
-        event("f",
-              "message",
-              of.pe,
-              begin,
+        event("f", "message", of.pe, begin,
               fmt::format(R"(,"bp":"e","cat":"m","id":{})", arrow(slice.source, slice.number)));
     }
     for (const Trace::Send& send : of.trace->sends())
-      event("s",
-            "message",
-            of.pe,
-            micros(of, send.at),
+      event("s", "message", of.pe, micros(of, send.at),
             fmt::format(R"(,"cat":"m","id":{})", arrow(of.pe, send.number)));
     if (of.trace->n_dropped() != 0)
-      std::fprintf(stderr,
-                   "tessera: --trace %s: PE %d had %llu records more than fit\n",
-                   path_.c_str(),
-                   of.pe.value,
+      std::fprintf(stderr, "tessera: --trace %s: PE %d had %llu records more than fit\n",
+                   path_.c_str(), of.pe.value,
                    static_cast<unsigned long long>(of.trace->n_dropped()));
   }
 
@@ -85,15 +71,10 @@ class TraceWriter {
   [[nodiscard]] static double micros(const TraceOfPe& of, std::uint64_t ticks) {
     return 1e6 * of.seconds_per_tick * static_cast<double>(ticks - of.origin);
   }
-  void event(
-      const char* phase, const std::string& name, PeId pe, double at, const std::string& more) {
+  void event(const char* phase, const std::string& name, PeId pe, double at,
+             const std::string& more) {
     put(fmt::format(",\n{{\"ph\":\"{}\",\"name\":\"{}\",\"pid\":{},\"tid\":{},\"ts\":{:.3f}{}}}",
-                    phase,
-                    name,
-                    process_.value,
-                    pe.value,
-                    at,
-                    more));
+                    phase, name, process_.value, pe.value, at, more));
   }
   void put(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size())
@@ -117,10 +98,7 @@ std::uint32_t Trace::sent(std::uint64_t at) {
   return n_sent_;
 }
 
-void Trace::ran(const Action* action,
-                std::uint64_t begin,
-                std::uint64_t end,
-                PeId source,
+void Trace::ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
                 std::uint32_t number) {
   if (slices_.size() < most_) {
     slices_.push_back({action, begin, end, source, number});

@@ -21,10 +21,7 @@ class Trace {
   /// A message is sent: the number that its slice will name, never 0.
   [[nodiscard]] std::uint32_t sent(std::uint64_t at);
   /// A message of `source`, with the number that it was given there (0: none), has run.
-  void ran(const Action* action,
-           std::uint64_t begin,
-           std::uint64_t end,
-           PeId source,
+  void ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
            std::uint32_t number);
 
   struct Slice {

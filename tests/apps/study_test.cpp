@@ -49,10 +49,9 @@ TEST_CASE("a study pairs its meshes", "[apps][study]") {
   CHECK(pairs_of("kuhn:2,4", "", {"keep"}) == Strings{"kuhn:2 kuhn:3 keep", "kuhn:4 kuhn:5 keep"});
   CHECK(pairs_of("kuhn:2,4", "kuhn:9", {"keep"}) ==
         Strings{"kuhn:2 kuhn:9 keep", "kuhn:4 kuhn:9 keep"});
-  CHECK(pairs_of("kuhn:2", "kuhn:3", {"keep", "nearest"}) == Strings{"kuhn:2 kuhn:3 keep",
-                                                                     "kuhn:3 kuhn:2 keep",
-                                                                     "kuhn:2 kuhn:3 nearest",
-                                                                     "kuhn:3 kuhn:2 nearest"});
+  CHECK(pairs_of("kuhn:2", "kuhn:3", {"keep", "nearest"}) ==
+        Strings{"kuhn:2 kuhn:3 keep", "kuhn:3 kuhn:2 keep", "kuhn:2 kuhn:3 nearest",
+                "kuhn:3 kuhn:2 nearest"});
   CHECK_THAT(message_of([] { (void)pairs_of("kuhn:2,3", "kuhn:4,5,6", {"keep"}); }),
              Catch::Contains("2 source meshes and 3 target meshes"));
   CHECK_THAT(message_of([] { (void)pairs_of("absent.msh", "kuhn:4", {"keep"}); }),
@@ -146,9 +145,8 @@ TEST_CASE("norms over found vertices leave out what the policy gave", "[apps][tr
   const std::string svg = slurp(options.picture);
   const auto elements = test::read_xml(svg);
   const auto count = [&](const std::string& name) {
-    return std::count_if(elements.begin(), elements.end(), [&](const test::XmlElement& e) {
-      return e.name == name;
-    });
+    return std::count_if(elements.begin(), elements.end(),
+                         [&](const test::XmlElement& e) { return e.name == name; });
   };
   CHECK(count("text") == 6);
   CHECK(count("path") >= 4);

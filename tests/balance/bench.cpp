@@ -26,14 +26,8 @@ bool row(const std::string& scene, const Snapshot& s, const std::string& name) {
   for (double& time : times) time = seconds(strategy, s, result);
   std::ranges::sort(times);
   const Metrics m = measure(s, result);
-  fmt::print("{:24} {:14} {:9.2f} {:9.2f} {:8.3f} {:7} {:12}\n",
-             scene,
-             name,
-             1e3 * times[2],
-             1e3 * (times[4] - times[0]),
-             m.max_over_average,
-             m.n_moves,
-             m.external_bytes);
+  fmt::print("{:24} {:14} {:9.2f} {:9.2f} {:8.3f} {:7} {:12}\n", scene, name, 1e3 * times[2],
+             1e3 * (times[4] - times[0]), m.max_over_average, m.n_moves, m.external_bytes);
   return honour(s, result) == result && times[2] < 1;
 }
 
@@ -45,14 +39,8 @@ int main(int argc, char** argv) {
       {"mod 7, all on PE 0", mod_seven(Start::all_on_first)},
       {"stencil 64², 16 PEs", stencil(64, 16, 1)},
       {"heavy 32768 on 1024", heavy_tailed(32768, 1024, 1)}};
-  fmt::print("{:24} {:14} {:>9} {:>9} {:>8} {:>7} {:>12}\n",
-             "scene",
-             "strategy",
-             "median ms",
-             "spread ms",
-             "max/avg",
-             "moves",
-             "ext. bytes");
+  fmt::print("{:24} {:14} {:>9} {:>9} {:>8} {:>7} {:>12}\n", "scene", "strategy", "median ms",
+             "spread ms", "max/avg", "moves", "ext. bytes");
   bool good = true;
   for (const auto& [scene, s] : scenes)
     for (const std::string& name : strategy_names()) {

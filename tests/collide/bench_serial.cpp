@@ -28,8 +28,8 @@ void add(Items& items, const Aabb& box, std::uint32_t model) {
 void add_wave(Items& items, int nx, int ny, const Point& shift, std::uint32_t model) {
   const auto at = [&](int x, int y) {
     constexpr double turn = 2 * std::numbers::pi / 32;
-    return Point{
-        shift[0] + x, shift[1] + y, shift[2] + 4 * std::sin(turn * x) * std::cos(turn * y)};
+    return Point{shift[0] + x, shift[1] + y,
+                 shift[2] + 4 * std::sin(turn * x) * std::cos(turn * y)};
   };
   for (int y = 0; y < ny; ++y)
     for (int x = 0; x < nx; ++x) {
@@ -86,11 +86,7 @@ bool row(const char* name, const Items& items, PairRules rules, int runs) {
   }
   std::sort(ns.begin(), ns.end());
   fmt::print("{:<28} {:>9} objects {:>10} pairs {:>8.1f} ns an object (median), {:>8.1f} least{}\n",
-             name,
-             items.size(),
-             n_pairs,
-             ns[ns.size() / 2],
-             ns.front(),
+             name, items.size(), n_pairs, ns[ns.size() / 2], ns.front(),
              n_pairs == expected ? "" : fmt::format("  WRONG: bisection finds {}", expected));
   return n_pairs == expected;
 }

@@ -36,9 +36,7 @@ Pairs oracle(std::span<const Item> items, PairRules rules) {
   return out;
 }
 
-Pairs found(std::span<const Item> items,
-            const VoxelGrid& grid,
-            PairRules rules,
+Pairs found(std::span<const Item> items, const VoxelGrid& grid, PairRules rules,
             SerialMethod method = SerialMethod::automatic) {
   Pairs out;
   collide_serial(
@@ -55,10 +53,8 @@ void check_scene(std::span<const Item> items, std::initializer_list<double> size
       const Pairs expected = oracle(items, rules);
       for (const double size : sizes)
         for (const double origin : {0.0, shift, -3.7 * shift})
-          for (const auto method : {SerialMethod::automatic,
-                                    SerialMethod::brute_force,
-                                    SerialMethod::sweep,
-                                    SerialMethod::bisection}) {
+          for (const auto method : {SerialMethod::automatic, SerialMethod::brute_force,
+                                    SerialMethod::sweep, SerialMethod::bisection}) {
             const VoxelGrid grid({origin, -origin, origin}, {size, size, size});
             CAPTURE(size, origin, static_cast<int>(method), static_cast<int>(touching));
             REQUIRE((found(items, grid, rules, method) == expected));
@@ -66,8 +62,8 @@ void check_scene(std::span<const Item> items, std::initializer_list<double> size
     }
 }
 
-std::vector<Item> random_scene(
-    unsigned seed, std::size_t n, double offset, double scale, bool on_lattice) {
+std::vector<Item> random_scene(unsigned seed, std::size_t n, double offset, double scale,
+                               bool on_lattice) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-5, 5), logarithm(-3, 0.5);
   std::vector<Item> items;
@@ -122,8 +118,7 @@ TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
   Lanes lanes;
   lanes.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i)
-    lanes.set(i,
-              items[i],
+    lanes.set(i, items[i],
               axes_below({static_cast<int>(i % 2), static_cast<int>(i % 3), 0}, {0, 0, 0}),
               static_cast<std::uint32_t>(i));
   for (std::size_t i = 0; i < items.size(); ++i) {

@@ -25,16 +25,15 @@ struct Scene {
 /// The boxes of a client: a function of the scene, so that the oracle knows them, too. On a coarse
 /// lattice half of the time, where boxes touch each other and the faces of voxels.
 std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
-  std::seed_seq seeds{
-      scene.seed, static_cast<std::uint64_t>(scene.round), static_cast<std::uint64_t>(client)};
+  std::seed_seq seeds{scene.seed, static_cast<std::uint64_t>(scene.round),
+                      static_cast<std::uint64_t>(client)};
   std::mt19937_64 random(seeds);
   std::uniform_real_distribution<double> place(-2, 2), extent(0, 0.8);
   const bool on_lattice = scene.seed % 2 == 0;
   std::vector<Item> items;
   for (std::int32_t i = 0; i < scene.n_boxes; ++i) {
     Item item{{},
-              {owner_of(Index1{client}),
-               static_cast<LocalId>(i),
+              {owner_of(Index1{client}), static_cast<LocalId>(i),
                static_cast<ModelId>(random() % static_cast<std::uint64_t>(scene.n_models))}};
     for (std::size_t k = 0; k < 3; ++k) {
       double lo = place(random), width = i % 4 == 0 ? 0 : extent(random);
@@ -198,11 +197,9 @@ int run_with(const std::string& option, Problem& problem, Task (*program)(Proble
 /// A problem of every kind: numbers of clients and models, rules, voxel sizes, drawn from the seed.
 Problem problem_of(std::uint64_t seed) {
   Problem problem;
-  problem.scene = {seed,
-                   static_cast<std::int32_t>(1 + seed % 7),
+  problem.scene = {seed, static_cast<std::int32_t>(1 + seed % 7),
                    static_cast<std::int32_t>(20 + seed % 3 * 10),
-                   static_cast<std::int32_t>(1 + seed % 3),
-                   0};
+                   static_cast<std::int32_t>(1 + seed % 3), 0};
   const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0}[seed % 5];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
   problem.options.size = {size, size, 2 * size};

@@ -48,12 +48,11 @@ TEST_CASE("a closed mesh turned inside out is what it bounds, normals too", "[dn
   struct Case {
     Surface right, wrong;
   };
-  for (const auto& [right, wrong] : {Case{ball, inverted(ball)},
-                                     Case{torn(ball, 0), inverted(torn(ball, 0))},
-                                     Case{shell, inverted(shell)},
-                                     Case{two, inverted(two)},
-                                     Case{two, joined(ball, inverted(core), {2, 0.3, 0.1})},
-                                     Case{two, joined(inverted(ball), core, {2, 0.3, 0.1})}}) {
+  for (const auto& [right, wrong] :
+       {Case{ball, inverted(ball)}, Case{torn(ball, 0), inverted(torn(ball, 0))},
+        Case{shell, inverted(shell)}, Case{two, inverted(two)},
+        Case{two, joined(ball, inverted(core), {2, 0.3, 0.1})},
+        Case{two, joined(inverted(ball), core, {2, 0.3, 0.1})}}) {
     const Grid grid = grid_around(bounds(right), 36, 0.4);
     for (const Method method : {Method::exact, Method::normals, Method::potential}) {
       const Field wanted = field_of(right, grid, method), found = field_of(wrong, grid, method);

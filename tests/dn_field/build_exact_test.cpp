@@ -114,8 +114,8 @@ TEST_CASE("an encoded normal is met to 6.6e-5 rad", "[dn_field]") {
 TEST_CASE("a plate built two-sided has positive distances and opposite normals on its sides",
           "[dn_field]") {
   const Grid grid{{-1, -1, -0.95}, 0.1, {21, 21, 20}};
-  const Field field = build_exact(
-      make_plate(0.8, 4), grid, {Sides::two, Content::distance_and_normal, HUGE_VAL, {}});
+  const Field field = build_exact(make_plate(0.8, 4), grid,
+                                  {Sides::two, Content::distance_and_normal, HUGE_VAL, {}});
   CHECK(field.distance[grid.index(10, 10, 12)] == Approx(0.25));
   CHECK(field.distance[grid.index(10, 10, 7)] == Approx(0.25));
   CHECK(decode_normal(field.normal[grid.index(10, 10, 12)]).z == Approx(1));

@@ -75,13 +75,10 @@ TEST_CASE("a field does not depend on how its layers are split, in which order, 
 TEST_CASE("the sign of open, flipped and torn meshes is that of the exact winding number",
           "[dn_field]") {
   const Surface torus = make_torus(1, 0.4, 28);
-  for (const Surface& surface : {without_last(torus, 300),
-                                 with_flipped(torus, 20),
-                                 torn(torus, 2e-3),
-                                 torn(torus, 0),
-                                 without_last(make_sphere(1, 16), 256),
-                                 without_last(make_box({1, 0.7, 0.5}), 2),
-                                 make_plate(1, 6)}) {
+  for (const Surface& surface :
+       {without_last(torus, 300), with_flipped(torus, 20), torn(torus, 2e-3), torn(torus, 0),
+        without_last(make_sphere(1, 16), 256), without_last(make_box({1, 0.7, 0.5}), 2),
+        make_plate(1, 6)}) {
     const Grid grid = grid_around(bounds(surface), 15, 0.25);
     const Bvh tree(surface);
     const Field field = build_exact(surface, grid);
@@ -152,8 +149,8 @@ TEST_CASE("beyond its thickness a field is a lower bound of the distance, with t
 TEST_CASE("off the medial axis the distance between voxels converges with order 2", "[dn_field]") {
   const auto worst_error = [](bool sphere, int n) {
     const Surface surface = sphere ? make_sphere(1, 2 * n) : make_torus(1, 0.45, 4 * n);
-    const Field field = build_exact(
-        surface, grid_around(bounds(surface), n, 0.25), {Sides::one, Content::distance, 0.8, {}});
+    const Field field = build_exact(surface, grid_around(bounds(surface), n, 0.25),
+                                    {Sides::one, Content::distance, 0.8, {}});
     std::mt19937 random(5);
     std::uniform_real_distribution<double> at(-1.4, 1.4);
     double worst = 0;

@@ -57,11 +57,9 @@ TEST_CASE("eight look-ups at once have the bits of one by one", "[dn_field][comp
         x[i] = place(random), y[i] = place(random), z[i] = place(random);
       if (round == 0) y[3] = std::nanf("");
       nearest(compressed, {x, y, z}, d, {nx, ny, nz});
-      const Sample found =
-          lanes::sample<LookUp::nearest, Ask::both>(sampler,
-                                                    {lanes::load<lanes::F>(x.data()),
-                                                     lanes::load<lanes::F>(y.data()),
-                                                     lanes::load<lanes::F>(z.data())});
+      const Sample found = lanes::sample<LookUp::nearest, Ask::both>(
+          sampler, {lanes::load<lanes::F>(x.data()), lanes::load<lanes::F>(y.data()),
+                    lanes::load<lanes::F>(z.data())});
       // A float normal has three digits more than its code: wide ones are normalised differently.
       const float off = compressed.layout.wide ? 1e-6F : 0;
       const lanes::F distance = found.distance_or_far();

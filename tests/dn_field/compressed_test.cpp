@@ -38,8 +38,7 @@ ErrorBound worst_seen(const Field& flat, const CompressedField& field) {
   CHECK((again.x == normal.x && again.y == normal.y && again.z == normal.z));
   for (std::size_t v = 0; v < n; ++v) {
     if (flat.normal[v] == no_normal) continue;
-    const Vec3 found{static_cast<double>(normal.x[v]),
-                     static_cast<double>(normal.y[v]),
+    const Vec3 found{static_cast<double>(normal.x[v]), static_cast<double>(normal.y[v]),
                      static_cast<double>(normal.z[v])};
     if (std::abs(norm(found) - 1) > 1e-6) worst.angle = HUGE_VAL;
     worst.angle = std::max(worst.angle, angle_between(found, decoded(flat.normal[v])));
@@ -50,8 +49,8 @@ ErrorBound worst_seen(const Field& flat, const CompressedField& field) {
 TEST_CASE(
     "every voxel of a compressed field meets the bound, and the measured error is the true one",
     "[dn_field]") {
-  const std::vector<Surface> shapes{
-      make_sphere(1, 30), make_torus(1, 0.4, 40), make_box({1, 0.7, 0.5}), make_plate(1, 8)};
+  const std::vector<Surface> shapes{make_sphere(1, 30), make_torus(1, 0.4, 40),
+                                    make_box({1, 0.7, 0.5}), make_plate(1, 8)};
   for (const Surface& surface : shapes)
     for (const int n : {25, 32})
       for (const double cells : {3.0, HUGE_VAL})

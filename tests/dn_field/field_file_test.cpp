@@ -40,8 +40,8 @@ class TemporaryFile {
 
 Field small_field(Content content) {
   const Surface sphere = make_sphere(1, 8);
-  return build_exact(
-      sphere, grid_around(bounds(sphere), 7, 1), {Sides::one, content, HUGE_VAL, {}});
+  return build_exact(sphere, grid_around(bounds(sphere), 7, 1),
+                     {Sides::one, content, HUGE_VAL, {}});
 }
 
 bool same(const Grid& a, const Grid& b) {
@@ -117,8 +117,8 @@ TEST_CASE("particles move among loaded fields as among those that were saved, bi
       particles.push_back({1.9 * std::sin(i), 1.9 * std::sin(2.3 * i), 1.9 * std::sin(3.7 * i)},
                           {std::sin(5.1 * i), std::sin(7.7 * i), std::sin(9.1 * i)});
     stepper.run(particles.span(), {&object, 1}, 0, 100);
-    return std::array{
-        particles.x, particles.y, particles.z, particles.vx, particles.vy, particles.vz};
+    return std::array{particles.x,  particles.y,  particles.z,
+                      particles.vx, particles.vy, particles.vz};
   };
   CHECK(moved({&flat_back, {}}) == moved({&flat, {}}));
   CHECK(moved({&outline_back, {}, &back}) == moved({&flat, {}, &compressed}));

@@ -43,12 +43,9 @@ TEST_CASE("a growing or shrinking sphere throws particles back with 2 u - v",
     double rate, start, speed;  // of the scale; of the particle, along the radius
   };
   // The wall stands at 1 + rate t. The particle meets it, and is thrown back once.
-  const auto [rate, start, speed] = GENERATE(Case{0.5, 1.3, 0},
-                                             Case{0.5, 1.3, -1},
-                                             Case{2, 1.5, 0.5},
-                                             Case{-0.3, 1.2, -1},
-                                             Case{100, 1.9, 3},
-                                             Case{1e5, 40, 0});
+  const auto [rate, start, speed] =
+      GENERATE(Case{0.5, 1.3, 0}, Case{0.5, 1.3, -1}, Case{2, 1.5, 0.5}, Case{-0.3, 1.2, -1},
+               Case{100, 1.9, 3}, Case{1e5, 40, 0});
   const double met = (start - 1) / (rate - speed), wall = 1 + rate * met;
   const double after = 2 * rate - speed, whole = 1.7 * met;
   const Vec3 out = direction({1, -2, 0.5});
@@ -58,11 +55,9 @@ TEST_CASE("a growing or shrinking sphere throws particles back with 2 u - v",
       Object object{&unit_sphere(), {}};
       object.frame.position = {5, 6, 7};
       object.frame.scale_rate = rate;
-      const Flown end = flown(elastic(kind),
-                              object,
-                              {object.frame.position + start * out, speed * out},
-                              whole / n_steps,
-                              n_steps);
+      const Flown end =
+          flown(elastic(kind), object, {object.frame.position + start * out, speed * out},
+                whole / n_steps, n_steps);
       // The tangent look-up is off by the square of half a cell's diagonal times the curvature, its
       // normal by that half times the curvature.
       const double cell = unit_sphere().grid.cell, off = 3 * cell * cell;
@@ -83,8 +78,8 @@ TEST_CASE("a growing box throws back exactly: its faces are planes", "[dn_field]
     object.frame.scale_rate = 0.25;  // faces at 0.5 + t/4
     object.frame.velocity = {0, 0.3, 0.1};
     const double met = 0.4 / (0.25 + 0.1 + 1), whole = 1;
-    const Flown end = flown(
-        elastic(LookUp::tangent), object, {{0.1, 0, 0.9}, {0, 0, -1}}, whole / n_steps, n_steps);
+    const Flown end = flown(elastic(LookUp::tangent), object, {{0.1, 0, 0.9}, {0, 0, -1}},
+                            whole / n_steps, n_steps);
     const double after = 2 * (0.25 + 0.1) + 1;
     CHECK(end.velocity.x == Approx(0).margin(1e-5));
     CHECK(end.velocity.z == Approx(after).epsilon(1e-5));

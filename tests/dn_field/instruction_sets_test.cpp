@@ -25,9 +25,7 @@ TEST_CASE("look-ups have the same bits with and without vector instructions",
     std::vector<float> plain_out(4 * plain::sample_count), out(4 * plain::sample_count);
     const std::size_t n = plain::sample_count;
     plain::samples(unit, kind, points.data(), plain_out.data());
-    look_up(unit,
-            kind,
-            {{&points[0], n}, {&points[n], n}, {&points[2 * n], n}},
+    look_up(unit, kind, {{&points[0], n}, {&points[n], n}, {&points[2 * n], n}},
             {{&out[0], n}, {&out[n], n}, {&out[2 * n], n}, {&out[3 * n], n}});
     CHECK(std::memcmp(out.data(), plain_out.data(), out.size() * sizeof(float)) == 0);
   }
@@ -61,8 +59,8 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
   narrow = wide;
   const auto a = std::make_unique<Scratch>(), b = std::make_unique<Scratch>();
   turn_to_surface(c.flow, Setting::general, wide.span(), *closest);
-  rule_loop_general({Flight{true, Drags::surface}, Impacts::swept, Springs::exact})(
-      c, wide.span(), *closest, *a);
+  rule_loop_general({Flight{true, Drags::surface}, Impacts::swept, Springs::exact})(c, wide.span(),
+                                                                                    *closest, *a);
   plain::loop(c, narrow.span(), *closest, *b);
   const auto same = [](const Values& x, const Values& y) {
     return std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;

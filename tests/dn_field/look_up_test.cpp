@@ -50,9 +50,8 @@ float jump_by_brute_force(const Field& field) {
       const int i = at % nx, j = at / nx % ny, k = at / (nx * ny);
       const int u = i + way % 3 - 1, v = j + way / 3 % 3 - 1, w = k + way / 9 - 1;
       if (u < 0 || v < 0 || w < 0 || u >= nx || v >= ny || w >= nz) continue;
-      largest = std::max(largest,
-                         std::fabs(field.distance[field.grid.index(i, j, k)] -
-                                   field.distance[field.grid.index(u, v, w)]));
+      largest = std::max(largest, std::fabs(field.distance[field.grid.index(i, j, k)] -
+                                            field.distance[field.grid.index(u, v, w)]));
     }
   return largest;
 }

@@ -10,9 +10,7 @@
 
 namespace tess::dn::plain {
 
-void loop(const RuleConstants& c,
-          const ParticleSpan& particles,
-          const Closest& closest,
+void loop(const RuleConstants& c, const ParticleSpan& particles, const Closest& closest,
           Scratch& scratch) {
   lanes::flow_loop<Setting::general>(c.flow, particles, closest);
   lanes::rule_loop<Flight{true, Drags::surface}, Impacts::swept, Springs::exact, Setting::general>(
@@ -23,11 +21,10 @@ template <LookUp Kind>
 void sample_all(const Field& field, const float* points, float* out) {
   const Sampler sampler = sampler_of(field);
   for (int i = 0; i < sample_count; i += lanes::width) {
-    const Sample found =
-        lanes::sample<Kind, Ask::both>(sampler,
-                                       {lanes::load<lanes::F>(points + i),
-                                        lanes::load<lanes::F>(points + sample_count + i),
-                                        lanes::load<lanes::F>(points + 2 * sample_count + i)});
+    const Sample found = lanes::sample<Kind, Ask::both>(
+        sampler,
+        {lanes::load<lanes::F>(points + i), lanes::load<lanes::F>(points + sample_count + i),
+         lanes::load<lanes::F>(points + 2 * sample_count + i)});
     lanes::store(out + i, found.distance_or_far());
     lanes::store(out + sample_count + i, found.normal.x);
     lanes::store(out + 2 * sample_count + i, found.normal.y);

@@ -6,9 +6,7 @@
 namespace tess::dn::plain {
 
 /// All rules at once, without wide vectors.
-void loop(const RuleConstants& constants,
-          const ParticleSpan& particles,
-          const Closest& closest,
+void loop(const RuleConstants& constants, const ParticleSpan& particles, const Closest& closest,
           Scratch& scratch);
 
 inline constexpr int sample_count = 512;

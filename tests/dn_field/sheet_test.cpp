@@ -55,8 +55,8 @@ struct WedgeRoom {
         {{0, 0, 0}, {std::cos(half), 0, std::sin(half)}, {std::cos(half), 0, -std::sin(half)}}};
     for (const double y : {-0.8, 0.8})
       for (const Vec3 corner : section) surface.vertices.push_back({corner.x, y, corner.z});
-    surface.triangles = {
-        {0, 1, 2}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {0, 2, 5}, {0, 5, 3}, {1, 2, 5}, {1, 5, 4}};
+    surface.triangles = {{0, 1, 2}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                         {0, 2, 5}, {0, 5, 3}, {1, 2, 5}, {1, 5, 4}};
     up = {-std::sin(half), 0, std::cos(half)}, down = {-std::sin(half), 0, -std::cos(half)};
     back = std::cos(half);
   }
@@ -81,8 +81,8 @@ TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rule
             const bool springs = n_scenes++ % 3 == 0;
             const WedgeRoom room(angle);
             const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
-            const Field field = build_exact(
-                room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
+            const Field field = build_exact(room.surface, grid,
+                                            {Sides::two, Content::distance_and_normal, 0.3, {}});
             const Bvh triangles(room.surface);
             Object object{&field, {}, nullptr, &triangles};
             object.frame.axes = rotation({anywhere(random), anywhere(random), anywhere(random)});
@@ -95,8 +95,7 @@ TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rule
             if (springs) rules.spring = Spring{1e5, 0, 0.1};
             Particles particles;
             while (particles.size() < 40) {
-              const Vec3 x{room.back * (0.55 + 0.1 * anywhere(random)),
-                           anywhere(random),
+              const Vec3 x{room.back * (0.55 + 0.1 * anywhere(random)), anywhere(random),
                            0.2 * anywhere(random)};
               if (room.within(x) < 2 * grid.cell) continue;
               const Vec3 v{-1, 0.3 * anywhere(random), 0.5 * anywhere(random)};

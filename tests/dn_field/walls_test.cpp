@@ -49,8 +49,8 @@ TEST_CASE("a segment crosses the triangles that brute force finds, at the same p
         return dot(cross(q - p, r - p), s - p);
       };
       const double begin = volume(a, b, c, from), end = volume(a, b, c, to);
-      const std::array sides{
-          volume(from, to, a, b), volume(from, to, b, c), volume(from, to, c, a)};
+      const std::array sides{volume(from, to, a, b), volume(from, to, b, c),
+                             volume(from, to, c, a)};
       const bool same = std::ranges::all_of(sides, [](double v) { return v > 0; }) ||
                         std::ranges::all_of(sides, [](double v) { return v < 0; });
       if (begin * end < 0 && same) wanted.insert(t);

@@ -108,9 +108,7 @@ void read_damaged(const Scratch& scratch, const std::string& name, const std::st
     FAIL("the file is not named: " << message);
 }
 
-void damage_everywhere(const std::string& name,
-                       const std::string& bytes,
-                       std::size_t n_cuts,
+void damage_everywhere(const std::string& name, const std::string& bytes, std::size_t n_cuts,
                        std::size_t n_flips) {
   const Scratch scratch;
   for (std::size_t i = 0; i < n_cuts; ++i) {
@@ -289,12 +287,9 @@ TEST_CASE("surface and line elements beside tetrahedra are skipped, and counted 
     CHECK(mesh.side_sets.at(1) == SideSet{2, "", {{1, 2}}, {}});  // the triangle's side is left out
     CHECK(mesh.node_sets.at(0) == NodeSet{8, "", {4}, {}});
   }
-  for (const auto& [type, n] : {std::pair{"HEX8", 8},
-                                std::pair{"wedge", 6},
-                                std::pair{"PYRAMID5", 5},
-                                std::pair{"TET10", 10},
-                                std::pair{"TETRA", 10},
-                                std::pair{"superelement", 4}}) {
+  for (const auto& [type, n] :
+       {std::pair{"HEX8", 8}, std::pair{"wedge", 6}, std::pair{"PYRAMID5", 5},
+        std::pair{"TET10", 10}, std::pair{"TETRA", 10}, std::pair{"superelement", 4}}) {
     CAPTURE(type);
     const std::string path = mixed_file(scratch, type, n);
     CHECK_THAT(message_of([&] { (void)read_mesh(path); }),

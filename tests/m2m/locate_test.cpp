@@ -157,14 +157,13 @@ TEST_CASE("merging candidates is independent of order and grouping", "[m2m][loca
                              {1e-14, 1, Status::snapped},
                              {0, 7, Status::boundary},
                              {}};
-  std::sort(
-      all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.tet < b.tet; });
+  std::sort(all.begin(), all.end(),
+            [](const Candidate& a, const Candidate& b) { return a.tet < b.tet; });
   do {
     Candidate best;
     for (const Candidate& candidate : all) best = better(candidate, best) ? candidate : best;
     CHECK(best.tet == 4);
   } while (
-      std::next_permutation(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-        return a.tet < b.tet;
-      }));
+      std::next_permutation(all.begin(), all.end(),
+                            [](const Candidate& a, const Candidate& b) { return a.tet < b.tet; }));
 }

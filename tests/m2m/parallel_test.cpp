@@ -72,9 +72,7 @@ Task run_case(const Case& c, Result& result) {
   }
 }
 
-void check_same(const Case& c,
-                const Result& want,
-                std::unique_ptr<Machine> machine,
+void check_same(const Case& c, const Result& want, std::unique_ptr<Machine> machine,
                 const RuntimeOptions& options) {
   Setup setup{std::move(machine), options};
   Result got;
@@ -83,8 +81,7 @@ void check_same(const Case& c,
   const bool same_status = got.status == want.status;  // not the whole lists in a failure's text
   REQUIRE(same_status);
   for (std::size_t f = 0; f < 2; ++f)
-    REQUIRE(std::memcmp(got.values[f].data(),
-                        want.values[f].data(),
+    REQUIRE(std::memcmp(got.values[f].data(), want.values[f].data(),
                         want.values[f].size() * sizeof(double)) == 0);
 }
 

@@ -66,10 +66,8 @@ TEST_CASE("the real ExodusII meshes have the counts and the volume they are said
 }
 
 TEST_CASE("the real gmsh meshes are read in both versions and modes", "[m2m][io]") {
-  for (const char* name : {"mfem/indheat.asc.v22.msh",
-                           "mfem/indheat.bin.v41.msh",
-                           "mfem/homology.asc.v41.msh",
-                           "skfem/cuubat.msh"}) {
+  for (const char* name : {"mfem/indheat.asc.v22.msh", "mfem/indheat.bin.v41.msh",
+                           "mfem/homology.asc.v41.msh", "skfem/cuubat.msh"}) {
     const auto path = shared_data(name);
     if (!path) return;
     CAPTURE(name);
@@ -88,15 +86,14 @@ TEST_CASE("elements that are not linear tetrahedra are refused by name", "[m2m][
     const char* file;
     const char* word;
   };
-  for (const Known& known : {Known{"mfem/simple-cube-hex8.e", "HEX"},
-                             Known{"mfem/simple-cube-hex27.e", "HEX"},
-                             Known{"mfem/simple-cube-wedge6.e", "WEDGE"},
-                             Known{"mfem/simple-cube-pyramid5.e", "PYRAMID"},
-                             Known{"mfem/simple-cube-tet10.e", "TET"},
-                             Known{"mfem/simple-cube-multi-element-order1.e", "only TET4"},
-                             Known{"nalu/3d_hex8_pipe.exo", "HEX8"},
-                             Known{"nalu/3d_hex8_taylor_green_0p2.exo", "type HEX with 8"},
-                             Known{"skfem/quadratic_sphere_tet.msh", "tet10"}}) {
+  for (const Known& known :
+       {Known{"mfem/simple-cube-hex8.e", "HEX"}, Known{"mfem/simple-cube-hex27.e", "HEX"},
+        Known{"mfem/simple-cube-wedge6.e", "WEDGE"},
+        Known{"mfem/simple-cube-pyramid5.e", "PYRAMID"}, Known{"mfem/simple-cube-tet10.e", "TET"},
+        Known{"mfem/simple-cube-multi-element-order1.e", "only TET4"},
+        Known{"nalu/3d_hex8_pipe.exo", "HEX8"},
+        Known{"nalu/3d_hex8_taylor_green_0p2.exo", "type HEX with 8"},
+        Known{"skfem/quadratic_sphere_tet.msh", "tet10"}}) {
     const auto path = shared_data(known.file);
     if (!path) return;
     const std::string message = message_of([&] { (void)read_mesh(*path); });
@@ -121,13 +118,7 @@ TEST_CASE("a mesh without tetrahedra, a missing, empty or foreign file is one li
     CHECK(one_line(message));
     CHECK_THAT(message, Catch::Contains(path));
   }
-  for (const char* name : {"kuhn:",
-                           "kuhn:0",
-                           "kuhn:-1",
-                           "kuhn:x",
-                           "kuhn:3x",
-                           "kuhn:3@",
-                           "kuhn:3@1",
+  for (const char* name : {"kuhn:", "kuhn:0", "kuhn:-1", "kuhn:x", "kuhn:3x", "kuhn:3@", "kuhn:3@1",
                            "kuhn:99999999999"}) {
     CHECK_THAT(message_of([&] { (void)read_mesh(name); }), Catch::Contains(name));
   }
@@ -184,12 +175,9 @@ TEST_CASE("a mesh whose coordinates have collapsed is refused by name, with the 
   for (Point& p : flat.points) p[2] = 0;
   refused(flat, "no tetrahedron has a volume");
 
-  for (const auto& [scale, shift] : {std::pair{1.0, 1e9},
-                                     std::pair{1e-9, 0.0},
-                                     std::pair{1e9, 0.0},
-                                     std::pair{1e-70, 0.0},
-                                     std::pair{1e60, 0.0},
-                                     std::pair{1.0, 1e12}})
+  for (const auto& [scale, shift] :
+       {std::pair{1.0, 1e9}, std::pair{1e-9, 0.0}, std::pair{1e9, 0.0}, std::pair{1e-70, 0.0},
+        std::pair{1e60, 0.0}, std::pair{1.0, 1e12}})
     CHECK_NOTHROW(validate(moved(scale, shift)));
   TetMesh graded = moved(1, 0);  // a few collapsed tetrahedra among many
   graded.tets.push_back({1, 1, 1, 1});

@@ -35,8 +35,8 @@ Piece piece(const char* name, double scale, double offset, const char* formula) 
 }
 
 std::vector<Status> transfer_alone(const Piece& from, Piece& to, const OutsidePolicy& policy) {
-  return transfer_serial(
-             from.mesh, std::span(&from.field, 1), to.mesh, std::span(&to.field, 1), policy)
+  return transfer_serial(from.mesh, std::span(&from.field, 1), to.mesh, std::span(&to.field, 1),
+                         policy)
       .status;
 }
 

@@ -28,9 +28,7 @@ struct Moved {
 };
 
 /// The formula, sampled on the source, moved to the target, compared with the formula there.
-Moved move_formula(const TetMesh& source,
-                   const TetMesh& target,
-                   const std::string& formula,
+Moved move_formula(const TetMesh& source, const TetMesh& target, const std::string& formula,
                    const OutsidePolicy& policy = UseValue{-7}) {
   const Formula truth = make_formula(formula, bounds(source));
   const std::vector<Field> from{sample(source, "f", truth)};
@@ -53,8 +51,7 @@ TetMesh moved_by(TetMesh mesh, double scale, double offset) {
 }
 
 /// A gmsh cube of that edge length, or nothing, with the reason printed.
-std::optional<TetMesh> gmsh_cube(const Scratch& scratch,
-                                 double h,
+std::optional<TetMesh> gmsh_cube(const Scratch& scratch, double h,
                                  const std::string& options = {}) {
   const auto geometry = shared_data("geo/cube_pair.geo");
   if (!geometry) return std::nullopt;
@@ -76,11 +73,9 @@ std::optional<TetMesh> gmsh_cube(const Scratch& scratch,
 
 TEST_CASE("a mesh onto itself loses nothing and returns the values bit for bit",
           "[m2m][transfer]") {
-  std::vector<TetMesh> meshes{kuhn_mesh({6}),
-                              kuhn_mesh({5, 0.2}),
+  std::vector<TetMesh> meshes{kuhn_mesh({6}), kuhn_mesh({5, 0.2}),
                               moved_by(kuhn_mesh({5, 0.2}), 1, 1e9),
-                              moved_by(kuhn_mesh({6}), 1e-9, 0),
-                              moved_by(kuhn_mesh({6}), 1e9, 0)};
+                              moved_by(kuhn_mesh({6}), 1e-9, 0), moved_by(kuhn_mesh({6}), 1e9, 0)};
   for (const char* name : {"nalu/3d_tet4_taylor_green_0p4.exo", "nalu/3d_tet4_pipe.exo"}) {
     if (const auto path = shared_data(name)) meshes.push_back(read_mesh(*path));
   }

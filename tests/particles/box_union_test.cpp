@@ -39,8 +39,8 @@ bool edges_cancel(const Surface& surface) {
       ++balance[{t[i], t[(i + 1) % 3]}];
       --balance[{t[(i + 1) % 3], t[i]}];
     }
-  return std::all_of(
-      balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+  return std::all_of(balance.begin(), balance.end(),
+                     [](const auto& edge) { return edge.second == 0; });
 }
 
 }  // namespace
@@ -52,8 +52,7 @@ TEST_CASE("a union of boxes has its volume and its outer faces alone", "[particl
   };
   const Bounds unit{{0, 0, 0}, {1, 1, 1}};
   const auto [boxes, volume, area] =
-      GENERATE_COPY(Case{{unit}, 1, 6},
-                    Case{{unit, unit}, 1, 6},
+      GENERATE_COPY(Case{{unit}, 1, 6}, Case{{unit, unit}, 1, 6},
                     Case{{unit, {{1, 0, 0}, {2, 1, 1}}}, 2, 10},             // side by side
                     Case{{unit, {{3, 0, 0}, {4, 1, 1}}}, 2, 12},             // apart
                     Case{{unit, {{0.2, 0.2, 0.2}, {0.8, 0.8, 0.8}}}, 1, 6},  // one within the other
@@ -67,20 +66,8 @@ TEST_CASE("a union of boxes has its volume and its outer faces alone", "[particl
 TEST_CASE("boxes that cut one another into too many cells are refused", "[particles][scene]") {
   std::string boxes;
   for (int i = 0; i < 240; ++i)
-    boxes += tess::text(i > 0 ? "," : "",
-                        R"({"low": [)",
-                        i,
-                        ",",
-                        i,
-                        ",",
-                        i,
-                        R"(], "high": [)",
-                        i + 0.5,
-                        ",",
-                        i + 0.5,
-                        ",",
-                        i + 0.5,
-                        "]}");
+    boxes += tess::text(i > 0 ? "," : "", R"({"low": [)", i, ",", i, ",", i, R"(], "high": [)",
+                        i + 0.5, ",", i + 0.5, ",", i + 0.5, "]}");
   const std::string scene = R"({"dt": 1, "steps": 0, "objects": [{"shape": {"boxes": [)" + boxes +
                             R"(]}}], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})";
   CHECK_THROWS_WITH(parse_scene(scene, "scene.json"),

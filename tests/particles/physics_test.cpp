@@ -243,8 +243,7 @@ TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negati
     const char* file;
     double in, out;
   };
-  const auto regime = GENERATE(Regime{"shaft_in12_out3", 1, 1},
-                               Regime{"shaft_in3_out6", 1, 1},
+  const auto regime = GENERATE(Regime{"shaft_in12_out3", 1, 1}, Regime{"shaft_in3_out6", 1, 1},
                                Regime{"shaft_in3_out_minus3", 1, -1});
   Scene scene = read_scene(fmt::format("{}/{}.json", TESS_PARTICLE_SCENES, regime.file));
   scene.rules.impact.reset();

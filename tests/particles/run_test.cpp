@@ -159,8 +159,7 @@ TEST_CASE("a run gives the same bits under every strategy",
       ++seed;
       (void)moves_of(first,
                      fmt::format("--sim=pes=6,per-process=2,cost=1us,migrate={},seed={}",
-                                 seed % 2 == 0 ? "0.1" : "0",
-                                 seed),
+                                 seed % 2 == 0 ? "0.1" : "0", seed),
                      fmt::format("{},when={},seed={}", strategy, when, seed));
     }
 }

@@ -45,81 +45,58 @@ std::string refusal(const std::string& text) {
 TEST_CASE("a bad scene is refused in one line that names the key, the value and what is allowed",
           "[particles][scene]") {
   const auto [what, by, message] = GENERATE(table<std::string, std::string, std::string>({
-      {"\"resolution\": 20",
-       "\"resolution\": 0",
+      {"\"resolution\": 20", "\"resolution\": 0",
        "objects[1].resolution: 0 is not within 4 … 1024"},
-      {"\"resolution\": 20",
-       "\"resolution\": 2.5",
+      {"\"resolution\": 20", "\"resolution\": 2.5",
        "objects[1].resolution: 2.5 is not a whole number"},
-      {"\"resolution\": 20",
-       "\"resolutoin\": 20",
+      {"\"resolution\": 20", "\"resolutoin\": 20",
        "objects[1].resolutoin: unknown key; allowed here: shape"},
-      {"\"thickness\": 0.5",
-       "\"blur\": {\"radius\": 2, \"rounds\": 3}",
+      {"\"thickness\": 0.5", "\"blur\": {\"radius\": 2, \"rounds\": 3}",
        "objects[1].blur: {\"radius\":2,\"rounds\":3} stands beside the exact method"},
-      {"\"thickness\": 0.5",
-       "\"method\": \"potential\", \"blur\": {\"radius\": 5, \"rounds\": 3}",
+      {"\"thickness\": 0.5", "\"method\": \"potential\", \"blur\": {\"radius\": 5, \"rounds\": 3}",
        "objects[1].blur.radius: 5 is not within 2 … 4"},
-      {"\"thickness\": 0.5",
-       "\"field\": \"none.dnf\"",
+      {"\"thickness\": 0.5", "\"field\": \"none.dnf\"",
        "objects[1].resolution: 20 stands beside a field from a file"},
-      {"\"resolution\": 20, \"thickness\": 0.5",
-       "\"field\": \"none.dnf\"",
+      {"\"resolution\": 20, \"thickness\": 0.5", "\"field\": \"none.dnf\"",
        "objects[1].field: none.dnf: cannot be opened; give the path of a field file"},
       {"\"thickness\": 0.5", "\"thickness\": 0", "objects[1].thickness: 0 is not above 0"},
-      {"\"thickness\": 0.5",
-       "\"thickness\": 0.1",
+      {"\"thickness\": 0.5", "\"thickness\": 0.1",
        "objects[1].thickness: 0.1 is thinner than two cells"},
       {"\"thickness\": 0.5", "\"method\": \"magic\"", "\"magic\" is not one of exact"},
-      {"\"thickness\": 0.5",
-       "\"transform\": {\"scale\": 0}",
+      {"\"thickness\": 0.5", "\"transform\": {\"scale\": 0}",
        "objects[1].transform.scale: 0 is not above 0"},
-      {"\"thickness\": 0.5",
-       "\"transform\": {\"matrix\": [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}",
+      {"\"thickness\": 0.5", "\"transform\": {\"matrix\": [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}",
        "objects[1].transform.matrix: [[1,0.5,0],[0,1,0],[0,0,1]] cannot be used: transform"},
-      {"\"thickness\": 0.5",
-       "\"transform\": {\"matrix\": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}",
+      {"\"thickness\": 0.5", "\"transform\": {\"matrix\": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}",
        "mirrors the object"},
-      {"\"thickness\": 0.5",
-       "\"motion\": {\"scale\": -20}",
+      {"\"thickness\": 0.5", "\"motion\": {\"scale\": -20}",
        "objects[1].motion.scale: -20 a second takes the scale from 1 to -1 in 10 steps of 0.01; it "
        "must stay above 0"},
-      {"\"thickness\": 0.5",
-       "\"motion\": {\"grow\": 1}",
+      {"\"thickness\": 0.5", "\"motion\": {\"grow\": 1}",
        "objects[1].motion.grow: unknown key; allowed here: velocity, spin, scale"},
-      {"\"thickness\": 0.5",
-       "\"thickness\": 0.5, \"thickness\": 1",
+      {"\"thickness\": 0.5", "\"thickness\": 0.5, \"thickness\": 1",
        "key \"thickness\" stands twice"},
-      {"\"thickness\": 0.5",
-       "\"choose\": {\"max_speed\": 1, \"detail\": 1}",
+      {"\"thickness\": 0.5", "\"choose\": {\"max_speed\": 1, \"detail\": 1}",
        "stands beside resolution"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}",
-       "{\"box\": {\"half\": [1, 1]}}",
+      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"box\": {\"half\": [1, 1]}}",
        "objects[0].shape.box.half: [1,1] is not a list of three numbers"},
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{}", "needs exactly one of sphere, box"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}",
-       "{\"file\": \"none.obj\"}",
+      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"none.obj\"}",
        "scene.json: objects[0].shape.file: none.obj: cannot be opened"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}",
-       "{\"file\": \"/dev/zero\"}",
+      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"/dev/zero\"}",
        "/dev/zero: is no file; give the path of an OBJ file"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}",
-       "{\"file\": \".\"}",
+      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \".\"}",
        "scene.json: objects[0].shape.file: .: is a directory; give the path of an OBJ file"},
       {"\"count\": 5, ", "", "emitters[0].count: is missing; give how many particles"},
       {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
       {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},
-      {"\"count\": 5",
-       "\"count\": 5, \"seed\": -1",
+      {"\"count\": 5", "\"count\": 5, \"seed\": -1",
        "emitters[0].seed: -1 is not a whole number of at least 0"},
-      {"\"count\": 5",
-       "\"count\": 5, \"outward\": 1",
+      {"\"count\": 5", "\"count\": 5, \"outward\": 1",
        "emitters[0].outward: 1 has no direction in a box"},
-      {"\"restitution\": 0.7",
-       "\"restitution\": 1.5",
+      {"\"restitution\": 0.7", "\"restitution\": 1.5",
        "rules.impact.restitution: 1.5 is not within 0 … 1"},
-      {"\"restitution\": 0.7",
-       "\"restitution\": 1, \"threshold\": 0.6",
+      {"\"restitution\": 0.7", "\"restitution\": 1, \"threshold\": 0.6",
        "objects[0].thickness: 0.5 times scale 1 is below the distance 0.6"},
       {"\"restitution\": 0.7}",
        "\"restitution\": 1}, \"spring\": {\"stiffness\": 1, \"reach\": 0.1, \"damping\": 5}",
@@ -127,14 +104,12 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"\"restitution\": 0.7}",
        "\"restitution\": 1, \"sweep\": false}, \"wind\": {\"velocity\": [0, 0, 1]}",
        "rules.wind.rate: is missing"},
-      {"\"high\": [3, 3, 3]}",
-       "\"high\": [3, 3, 3]}, \"velocity\": [0, \"fast\", 0]",
+      {"\"high\": [3, 3, 3]}", "\"high\": [3, 3, 3]}, \"velocity\": [0, \"fast\", 0]",
        "emitters[0].velocity[1]: \"fast\" is not a number"},
       {"\"dt\": 0.01", "\"dt\": 1e999", "is not JSON"},
       {"\"dt\": 0.01", "\"dt\": 1e101", "scene.json: dt: 1e+101 is beyond ±1e+100, the largest"},
       {"\"dt\": 0.01", "\"dt\": 1e-101", "scene.json: dt: 1e-101 is below 1e-100, the least"},
-      {"\"low\": [2, 2, 2]",
-       "\"low\": [-1e308, 2, 2]",
+      {"\"low\": [2, 2, 2]", "\"low\": [-1e308, 2, 2]",
        "scene.json: emitters[0].box.low[0]: -1e+308 is beyond ±1e+100"},
       {"[0, 0, -9.81]", "[0, 0, -1e300]", "rules.gravity[2]: -1e+300 is beyond ±1e+100"},
       {"\"restitution\": 0.7}",
@@ -143,8 +118,7 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"\"thickness\": 0.5",
        "\"transform\": {\"matrix\": [[1e200, 0, 0], [0, 1e200, 0], [0, 0, 1e200]]}",
        "objects[1].transform.matrix[0][0]: 1e+200 is beyond"},
-      {"\"thickness\": 0.5",
-       "\"transform\": {\"scale\": 1e100}",
+      {"\"thickness\": 0.5", "\"transform\": {\"scale\": 1e100}",
        "objects[1]: by its shape, transform and motion it reaches 2.23205e+100 from the origin"},
       {"\"thickness\": 0.5",
        "\"motion\": {\"velocity\": [0, 1e100, 0]}, \"transform\": {\"position\": [9.9e99, 0, 0]}",
@@ -270,13 +244,13 @@ TEST_CASE("a chosen field covers the step, or two cells where impacts are swept 
 
 TEST_CASE("bodies too thin for their field are refused where particles bounce off them",
           "[particles][scene]") {
-  const auto told =
-      [](const std::string& shape, const std::string& more, const std::string& rules) {
-        return refusal(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": )" + shape +
-                       R"(, "resolution": 30, "thickness": 0.4)" + more +
-                       R"(}], "emitters": [{"count": 1, "sphere": {"radius": 1}}], "rules": {)" +
-                       rules + "}}");
-      };
+  const auto told = [](const std::string& shape, const std::string& more,
+                       const std::string& rules) {
+    return refusal(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": )" + shape +
+                   R"(, "resolution": 30, "thickness": 0.4)" + more +
+                   R"(}], "emitters": [{"count": 1, "sphere": {"radius": 1}}], "rules": {)" +
+                   rules + "}}");
+  };
   const std::string plate = R"({"plate": {"half": 1}})",
                     thin = R"({"box": {"half": [1, 1, 0.02]}})",
                     bounce = R"("impact": {"restitution": 1})";
@@ -290,8 +264,7 @@ TEST_CASE("bodies too thin for their field are refused where particles bounce of
   CHECK(told(thin, "", R"("spring": {"stiffness": 1, "reach": 0.1})") == "accepted");
   CHECK(told(thin, "", R"("impact": {"restitution": 1, "threshold": 0.08})") == "accepted");
   // The threshold, a length of the world, is less of an object that has grown.
-  CHECK(told(thin,
-             R"(, "motion": {"scale": 1000})",
+  CHECK(told(thin, R"(, "motion": {"scale": 1000})",
              R"("impact": {"restitution": 1, "threshold": 0.08})")
             .find("needs; particles would pass it") != std::string::npos);
   const std::string wall = R"({"box": {"half": [1, 1, 0.1]}})";
@@ -341,8 +314,8 @@ TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
     try {
       const Scene scene = parse_scene(text, (folder / "scene.json").string());
       const SceneObject& object = scene.objects.front();
-      return tess::text(
-          object.grid.n[0], " ", object.thickness, " ", object.sides == tess::dn::Sides::two);
+      return tess::text(object.grid.n[0], " ", object.thickness, " ",
+                        object.sides == tess::dn::Sides::two);
     } catch (const tess::Error& error) {
       return error.what();
     }
@@ -350,8 +323,7 @@ TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
   const std::string box = R"({"box": {"half": [1, 1, 1]}})",
                     other = R"({"box": {"half": [1, 1, 1.2]}})";
   const tess::dn::Surface surface = tess::dn::make_box({1, 1, 1});
-  tess::dn::save_field(build_exact(surface,
-                                   grid_around(bounds(surface), 16, 0.5),
+  tess::dn::save_field(build_exact(surface, grid_around(bounds(surface), 16, 0.5),
                                    {tess::dn::Sides::two, tess::dn::Content::distance, 0.4, {}}),
                        (folder / "a.dnf").string());
   CHECK(read(with_field(box)) == "16 0.4 1");

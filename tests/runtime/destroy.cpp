@@ -51,10 +51,9 @@ tess::Task use_and_end(int round) {
   const auto workers = tess::create<Worker>(round % 2 == 0 ? tess::range(16) : tess::sparse);
   const auto members = tess::create_group<Member>();
   if (round % 3 == 0)
-    tess::start_balancing(workers,
-                          {.strategy = round % 2 == 0 ? "greedy" : "diffusion",
-                           .when = tess::BalanceWhen::periodic,
-                           .period = std::chrono::microseconds(1)});
+    tess::start_balancing(workers, {.strategy = round % 2 == 0 ? "greedy" : "diffusion",
+                                    .when = tess::BalanceWhen::periodic,
+                                    .period = std::chrono::microseconds(1)});
   if (round % 2 != 0) {
     co_await tess::epoch([&] {
       for (int i = 0; i < 16; ++i) workers[{i}].insert();

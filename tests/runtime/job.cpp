@@ -30,9 +30,7 @@ class Crowd : public tess::Group<Crowd> {
   void give(int code) { tess::exit(code); }
 #ifdef OTHER_PROGRAM
   void only_here() {}
-  void begin_other() {
-    group()[pe()].send<&Crowd::only_here>();
-  }
+  void begin_other() { group()[pe()].send<&Crowd::only_here>(); }
 #endif
 };
 

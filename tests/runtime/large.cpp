@@ -60,8 +60,8 @@ struct Mixed {
 
 const std::vector<std::size_t>& sizes() {
   // Around the sizes at which a message is attached, flushed, announced, sent in a piece.
-  static const std::vector<std::size_t> all{
-      0, 1, 500, 4095, 4096, 4097, 8'000, 9'000, 9'216, 10'000, 30'000, 100'000, 300'000};
+  static const std::vector<std::size_t> all{0,     1,     500,    4095,   4096,    4097,   8'000,
+                                            9'000, 9'216, 10'000, 30'000, 100'000, 300'000};
   return all;
 }
 

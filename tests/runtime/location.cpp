@@ -47,8 +47,7 @@ class Sender : public tess::Group<Sender> {
   }
   void touch(tess::ArrayProxy<Heavy> array) { array[{0}].send<&Heavy::touch>(); }
   void count_forwards(tess::Callback<std::int64_t> done) {
-    contribute(tess::sum,
-               static_cast<std::int64_t>(tess::current_pe().statistics().forwards),
+    contribute(tess::sum, static_cast<std::int64_t>(tess::current_pe().statistics().forwards),
                std::move(done));
   }
 };

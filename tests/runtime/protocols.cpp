@@ -127,23 +127,10 @@ TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
 
 TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
   // Not those whose report depends on one order of events.
-  for (const char* name : {"create_at_once",
-                           "message_first",
-                           "lives",
-                           "broadcasts",
-                           "rounds",
-                           "newborns",
-                           "refinement",
-                           "tour",
-                           "epochs",
-                           "epoch_migrations",
-                           "flood_exit",
-                           "mailboxes",
-                           "destroyed",
-                           "constructors",
-                           "payloads",
-                           "floods",
-                           "groups"}) {
+  for (const char* name :
+       {"create_at_once", "message_first", "lives", "broadcasts", "rounds", "newborns",
+        "refinement", "tour", "epochs", "epoch_migrations", "flood_exit", "mailboxes", "destroyed",
+        "constructors", "payloads", "floods", "groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

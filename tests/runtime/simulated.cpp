@@ -61,17 +61,8 @@ TEST_CASE("the options of the simulated machine are read with their units",
 }
 
 TEST_CASE("a bad option of the simulated machine is named", "[runtime][simulated]") {
-  for (const char* bad : {"pes=0",
-                          "pes=many",
-                          "pes",
-                          "latency=-1us",
-                          "latency=1h",
-                          "bandwidth=0",
-                          "migrate=2",
-                          "colour=red",
-                          "pes=5,per-process=2",
-                          "seed=0.5",
-                          "pes=2x"}) {
+  for (const char* bad : {"pes=0", "pes=many", "pes", "latency=-1us", "latency=1h", "bandwidth=0",
+                          "migrate=2", "colour=red", "pes=5,per-process=2", "seed=0.5", "pes=2x"}) {
     INFO(bad);
     CHECK_THROWS_AS(tess::parse_simulated(bad), tess::Error);
   }
@@ -86,16 +77,9 @@ TEST_CASE("the memory for messages is read with its unit", "[runtime]") {
 }
 
 TEST_CASE("a bad runtime option is refused", "[runtime]") {
-  for (const char* bad : {"--pes=0",
-                          "--pes=x",
-                          "--pes=-2",
-                          "--pes=",
-                          "--sim=colour=red",
-                          "--message-memory=0",
-                          "--message-memory=8MB",
-                          "--message-memory=x",
-                          "--message-memory=2000GiB",
-                          "--message-memory=-1"}) {
+  for (const char* bad : {"--pes=0", "--pes=x", "--pes=-2", "--pes=", "--sim=colour=red",
+                          "--message-memory=0", "--message-memory=8MB", "--message-memory=x",
+                          "--message-memory=2000GiB", "--message-memory=-1"}) {
     std::string program = "test", option = bad;
     std::array<char*, 3> argv{program.data(), option.data(), nullptr};
     int argc = 2;

@@ -175,12 +175,7 @@ TEST_CASE("the busy time of --stats is the cost of each message and the work tha
       double busy = 0, idle = 0;
       REQUIRE(std::sscanf(line.c_str(),
                           "stats: PE %d messages %llu sent %llu bytes %llu busy %lf s idle %lf s",
-                          &pe,
-                          &n_messages,
-                          &n_sent,
-                          &n_bytes,
-                          &busy,
-                          &idle) == 6);
+                          &pe, &n_messages, &n_sent, &n_bytes, &busy, &idle) == 6);
       const auto n_filed = static_cast<unsigned long long>(n_files * (pe + 1) + 1);
       CHECK(n_messages > n_filed);
       const double expected =

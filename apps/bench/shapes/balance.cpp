@@ -146,8 +146,7 @@ int run_balance(Bench& bench) {
 Shape balance_shape() {
   return {"balance",
           "60 iterations of 64 unequal chares, balanced every 20",
-          {{"balance_total",
-            "elapsed time; its limit: 20 iterations as mapped first, 40 ideal",
+          {{"balance_total", "elapsed time; its limit: 20 iterations as mapped first, 40 ideal",
             Needs::two_pes}},
           &run_balance};
 }

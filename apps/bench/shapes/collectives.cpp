@@ -29,12 +29,8 @@ class Voter : public tess::Chare<Voter<Index>, Index> {
     this->array().template broadcast<&Voter::vote>(value_);
   }
   void next(std::int32_t sum) {
-    TESS_CHECK(sum == value_ * rounds_.n_elements,
-               rounds_.n_elements,
-               " votes of ",
-               value_,
-               " add up to ",
-               sum);
+    TESS_CHECK(sum == value_ * rounds_.n_elements, rounds_.n_elements, " votes of ", value_,
+               " add up to ", sum);
     if (value_ == rounds_.n)
       rounds_.done(value_);
     else
@@ -77,10 +73,8 @@ class Registrar : public tess::Group<Registrar> {
 };
 
 template <class Index>
-tess::Task hold_votes(const Bench& bench,
-                      tess::ArrayProxy<Voter<Index>> voters,
-                      std::int32_t n_elements,
-                      Samples& samples) {
+tess::Task hold_votes(const Bench& bench, tess::ArrayProxy<Voter<Index>> voters,
+                      std::int32_t n_elements, Samples& samples) {
   std::int32_t n_rounds = 2;
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
     tess::Future<std::int32_t> done;

@@ -94,8 +94,8 @@ tess::Task hop_about(MessageRun run, ChainStart start, double& result) {
   tess::Future<std::int64_t> total;
   run.hoppers.broadcast<&Hopper::count>(total.callback());
   const std::int64_t n = co_await total;
-  TESS_CHECK(
-      n == run.n_chains * start.n_hops, n, " hops were made, not ", run.n_chains * start.n_hops);
+  TESS_CHECK(n == run.n_chains * start.n_hops, n, " hops were made, not ",
+             run.n_chains * start.n_hops);
 }
 
 tess::Task measure_message(const Bench& bench, Samples& by_message, Samples& by_epoch) {

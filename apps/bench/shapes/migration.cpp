@@ -89,8 +89,7 @@ Shape migration_shape() {
   return {"migration",
           "20 000 elements of 1 KiB go to the next PE, elapsed time over elements",
           {{"migration_by_epoch", "ended by an epoch", Needs::two_pes},
-           {"migration_by_message",
-            "ended by a message that follows each and a reduction",
+           {"migration_by_message", "ended by a message that follows each and a reduction",
             Needs::two_pes}},
           &run_migration};
 }

@@ -59,8 +59,8 @@ class Player : public tess::Chare<Player, tess::Index1> {
  private:
   [[nodiscard]] tess::ElementProxy<Player> other() const { return array()[{other_}]; }
   void check(const Bytes& bytes) const {
-    TESS_CHECK(
-        bytes.front() == 7 && bytes.back() == 9, "a vector of ", bytes.size(), " is damaged");
+    TESS_CHECK(bytes.front() == 7 && bytes.back() == 9, "a vector of ", bytes.size(),
+               " is damaged");
   }
   /// The ball has come; true if that was the last time.
   bool over(std::int64_t n_hits) {
@@ -130,16 +130,11 @@ tess::Task play_match(tess::ArrayProxy<Player> players, Match match, double& res
   players.broadcast<&Player::count>(total.callback());
   const std::int64_t n_met = co_await total;
   TESS_CHECK(n_met == 2 * match.n_round_trips && (n_hits < 0 || n_hits == n_met),
-             "the ball was met ",
-             n_met,
-             " times, not ",
-             2 * match.n_round_trips);
+             "the ball was met ", n_met, " times, not ", 2 * match.n_round_trips);
 }
 
-tess::Task ping_cores(tess::GroupProxy<CorePlayer> group,
-                      std::size_t n_bytes,
-                      std::int64_t n_round_trips,
-                      double& result) {
+tess::Task ping_cores(tess::GroupProxy<CorePlayer> group, std::size_t n_bytes,
+                      std::int64_t n_round_trips, double& result) {
   CorePing ping(n_bytes);
   tess::Future<double> done;
   group.local().expect(done.callback());
@@ -226,8 +221,7 @@ Shape one_way_shape() {
   std::vector<RowText> rows;
   for (const Size& size : sizes) {
     rows.push_back({std::string("raw_mpi_") + size.name,
-                    "MPI_Isend and MPI_Irecv without the runtime",
-                    Needs::two_processes});
+                    "MPI_Isend and MPI_Irecv without the runtime", Needs::two_processes});
     rows.push_back({std::string("core_to_core_") + size.name,
                     size.n_bytes == 8 ? "an atomic between two threads, without the runtime"
                                       : "the same with a copy of so many bytes",
@@ -236,16 +230,12 @@ Shape one_way_shape() {
   rows.push_back({"one_way_int64", "a number", Needs::two_pes});
   for (const Size& size : sizes) {
     rows.push_back({std::string("one_way_copied_") + size.name,
-                    "a vector of bytes, copied into the message",
-                    Needs::two_pes});
+                    "a vector of bytes, copied into the message", Needs::two_pes});
     rows.push_back({std::string("one_way_moved_") + size.name,
-                    "a vector of bytes, moved into the message",
-                    Needs::two_pes});
+                    "a vector of bytes, moved into the message", Needs::two_pes});
   }
-  return {"one_way",
-          "a ball between elements on the first and the last PE, elapsed time over hits",
-          rows,
-          &run_one_way};
+  return {"one_way", "a ball between elements on the first and the last PE, elapsed time over hits",
+          rows, &run_one_way};
 }
 
 }  // namespace bench

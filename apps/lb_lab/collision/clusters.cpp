@@ -55,10 +55,8 @@ Clusters::Pose Clusters::pose(std::uint64_t cluster, std::int32_t iteration) con
   return {drift(width_, 0), drift(height_, 2), std::cos(angle), std::sin(angle)};
 }
 
-std::vector<tess::Item> Clusters::items(std::uint64_t first,
-                                        std::uint64_t last,
-                                        tess::OwnerId owner,
-                                        std::int32_t iteration) const {
+std::vector<tess::Item> Clusters::items(std::uint64_t first, std::uint64_t last,
+                                        tess::OwnerId owner, std::int32_t iteration) const {
   std::vector<tess::Item> result;
   result.reserve(last - first);
   for (std::uint64_t cluster = 0; cluster < n_clusters; ++cluster) {
@@ -70,8 +68,7 @@ std::vector<tess::Item> Clusters::items(std::uint64_t first,
                    phi = 2 * std::numbers::pi * drawn(hash + 1);
       const double dx = r * std::cos(phi), dy = r * std::sin(phi);
       const tess::Point low{at.x + dx * at.cosine - dy * at.sine,
-                            at.y + dx * at.sine + dy * at.cosine,
-                            (1 - edge_) * drawn(hash + 2)};
+                            at.y + dx * at.sine + dy * at.cosine, (1 - edge_) * drawn(hash + 2)};
       const auto number = static_cast<std::uint32_t>(i);
       result.push_back({{low, {low[0] + edge_, low[1] + edge_, low[2] + edge_}},
                         {owner, tess::LocalId{number}, tess::ModelId{0}}});

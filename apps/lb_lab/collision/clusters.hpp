@@ -25,10 +25,8 @@ class Clusters {
   [[nodiscard]] double seconds_a_pair() const { return seconds_a_pair_; }
 
   /// Objects first … last − 1 of an owner in an iteration; the local id is the number.
-  [[nodiscard]] std::vector<tess::Item> items(std::uint64_t first,
-                                              std::uint64_t last,
-                                              tess::OwnerId owner,
-                                              std::int32_t iteration) const;
+  [[nodiscard]] std::vector<tess::Item> items(std::uint64_t first, std::uint64_t last,
+                                              tess::OwnerId owner, std::int32_t iteration) const;
 
  private:
   /// A cluster in an iteration.
@@ -48,8 +46,7 @@ class Clusters {
 inline constexpr tess::PairRules pair_rules{tess::Touching::counts, tess::WithinModel::test};
 
 /// A pair's part of the answer, in an iteration. Which of the two is first says nothing.
-[[nodiscard]] std::uint64_t answer_of_pair(tess::LocalId a,
-                                           tess::LocalId b,
+[[nodiscard]] std::uint64_t answer_of_pair(tess::LocalId a, tess::LocalId b,
                                            std::int32_t iteration);
 
 }  // namespace lb_lab

@@ -50,8 +50,7 @@ class Collision final : public Stepped {
   tess::ArrayProxy<Owner> owners_;
 };
 
-tess::Task run_collision(const Experiment& experiment,
-                         tess::GroupProxy<Station> stations,
+tess::Task run_collision(const Experiment& experiment, tess::GroupProxy<Station> stations,
                          Outcome& outcome) {
   Collision workload(experiment, stations, outcome);
   co_await run_stepped(experiment, stations, workload, outcome);
@@ -76,15 +75,12 @@ std::string describe_collision(const Problem& p) {
   return fmt::format(
       "{} boxes in clusters that drift over {} x {} cells, {} owners a PE; voxels are made on "
       "demand, and end when nothing touches them; speeds are imitated, by work for what a PE lacks",
-      Clusters(p).n_objects(),
-      p.domain.width,
-      p.domain.height,
-      owners_a_pe);
+      Clusters(p).n_objects(), p.domain.width, p.domain.height, owners_a_pe);
 }
 
 }  // namespace
 
-const Kind collision_kind{
-    &serial_answer_of_collision, &nominal_seconds, &describe_collision, &run_collision};
+const Kind collision_kind{&serial_answer_of_collision, &nominal_seconds, &describe_collision,
+                          &run_collision};
 
 }  // namespace lb_lab

@@ -28,10 +28,8 @@ void Owner::submit(const tess::Collider& collider, std::int32_t iteration) {
   iteration_ = iteration;
   const Clusters clusters(stations_.local().plan().problem);
   const auto n = static_cast<std::uint64_t>(n_owners_), me = static_cast<std::uint64_t>(index().x);
-  collider.submit(clusters.items(me * clusters.n_objects() / n,
-                                 (me + 1) * clusters.n_objects() / n,
-                                 tess::owner_of(index()),
-                                 iteration));
+  collider.submit(clusters.items(me * clusters.n_objects() / n, (me + 1) * clusters.n_objects() / n,
+                                 tess::owner_of(index()), iteration));
 }
 
 void Owner::told(const tess::Hits& hits) {

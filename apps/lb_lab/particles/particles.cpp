@@ -57,8 +57,7 @@ class Particles final : public Stepped {
   tess::ArrayProxy<Region> regions_;
 };
 
-tess::Task run_particles(const Experiment& experiment,
-                         tess::GroupProxy<Station> stations,
+tess::Task run_particles(const Experiment& experiment, tess::GroupProxy<Station> stations,
                          Outcome& outcome) {
   Particles workload(experiment, stations, outcome);
   co_await run_stepped(experiment, stations, workload, outcome);
@@ -78,14 +77,12 @@ std::string describe_particles(const Problem& p) {
   return fmt::format(
       "{} particles on {} x {} cells, in blocks made on demand; those that leave go to the next "
       "block; speeds are imitated, by work for what a PE lacks",
-      Swarm(p).size(),
-      p.domain.width,
-      p.domain.height);
+      Swarm(p).size(), p.domain.width, p.domain.height);
 }
 
 }  // namespace
 
-const Kind particles_kind{
-    &serial_answer_of_particles, &nominal_seconds, &describe_particles, &run_particles};
+const Kind particles_kind{&serial_answer_of_particles, &nominal_seconds, &describe_particles,
+                          &run_particles};
 
 }  // namespace lb_lab

@@ -41,8 +41,8 @@ void Region::step(std::int32_t iteration) {
 
 void Region::send_leavers(const Domain& domain, std::int32_t iteration) {
   const auto leaves = [&](const Particle& p) { return region_of(domain, p) != index(); };
-  const auto first = std::partition(
-      particles_.begin(), particles_.end(), [&](const Particle& p) { return !leaves(p); });
+  const auto first = std::partition(particles_.begin(), particles_.end(),
+                                    [&](const Particle& p) { return !leaves(p); });
   boost::unordered_flat_map<std::int32_t, Arrivals> leaving;  // by the block's number
   for (auto p = first; p != particles_.end(); ++p) {
     const tess::Index2 to = region_of(domain, *p);

@@ -35,9 +35,7 @@ void exchange_known(Collection& exchange, Attach&& m) {
 
 struct MergeOutcomes {
   Balancer::Outcome operator()(const Balancer::Outcome& a, const Balancer::Outcome& b) const {
-    return {MergeSums()(a.phase, b.phase),
-            a.n_elements + b.n_elements,
-            a.n_moved + b.n_moved,
+    return {MergeSums()(a.phase, b.phase), a.n_elements + b.n_elements, a.n_moved + b.n_moved,
             a.moved_bytes + b.moved_bytes};
   }
 };
@@ -46,9 +44,7 @@ struct MergeOutcomes {
 
 Balancer::Balancer(const Plan& plan)
     : plan_(plan),
-      barrier_(current_pe(),
-               *current_pe().birth_collection(),
-               plan.coordinator,
+      barrier_(current_pe(), *current_pe().birth_collection(), plan.coordinator,
                group()[plan.coordinator].target<&Balancer::reached>()),
       measured_(current_pe()) {
   Pe& pe = current_pe();
@@ -81,10 +77,10 @@ void Balancer::attach(Collection& array) {
   }
   Meter& meter = current_pe().start_meter();
   if (plan_.when == BalanceWhen::periodic)
-    meter.add_alarm(
-        meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), this, [this] { alarm(); });
-  contribute(
-      sum, array.n_away(), group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+    meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), this,
+                    [this] { alarm(); });
+  contribute(sum, array.n_away(),
+             group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
 }
 
 void Balancer::array_ends() {
@@ -96,8 +92,8 @@ void Balancer::array_ends() {
 
 void Balancer::cannot_attach() {
   // The coordinator may wait until all have attached; here the exchange is known, or over, by now.
-  contribute(
-      sum, std::int64_t{0}, group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
+  contribute(sum, std::int64_t{0},
+             group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
   array_ends();
 }
 
@@ -368,17 +364,9 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);
   GroupProxy<Exchange> exchange;
   if (distributed != DistributedStrategy::none) exchange = create_group<Exchange>();
-  const GroupProxy<Balancer> group =
-      create_group<Balancer>(Balancer::Plan{array,
-                                            pe.id(),
-                                            pe.context().epoch,
-                                            options.when,
-                                            options.period.count(),
-                                            passes,
-                                            options.speeds,
-                                            options.memory_limit_bytes,
-                                            distributed,
-                                            exchange});
+  const GroupProxy<Balancer> group = create_group<Balancer>(
+      Balancer::Plan{array, pe.id(), pe.context().epoch, options.when, options.period.count(),
+                     passes, options.speeds, options.memory_limit_bytes, distributed, exchange});
   group.local().coordinate(std::make_unique<Coordinator>(options, std::move(users)));
   return group;
 }

@@ -127,8 +127,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
 };
 
 /// Makes the balancer of an array, coordinated by this PE. For start_balancing().
-[[nodiscard]] GroupProxy<Balancer> start(CollectionId array,
-                                         const BalanceOptions& options,
+[[nodiscard]] GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options,
                                          Strategy users);
 
 }  // namespace tess::balance

@@ -14,9 +14,8 @@ SyncState& sync_of(Element& element) {
 Barrier::Barrier(Pe& pe, Collection& group, PeId coordinator, Callback<std::uint64_t> reached)
     : pe_(pe),
       reached_(std::move(reached)),
-      tree_(pe, group, Track::second, coordinator, {"balance round", [this](std::uint32_t round) {
-                                                      return missing_before(round);
-                                                    }}) {
+      tree_(pe, group, Track::second, coordinator,
+            {"balance round", [this](std::uint32_t round) { return missing_before(round); }}) {
   group.set_second_tree(tree_);
   tree_.enter(0);
 }

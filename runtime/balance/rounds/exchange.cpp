@@ -48,8 +48,7 @@ void Exchange::hold(const PeReport& report, double speed, std::uint64_t memory_l
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
     const bool known = report.measured[i] != 0;
     n_unknown_ += known ? 0U : 1U;
-    local_->hold({known ? report.seconds[i] * speed : 0.0,
-                  item_name(pe(), i),
+    local_->hold({known ? report.seconds[i] * speed : 0.0, item_name(pe(), i),
                   static_cast<std::int64_t>(report.size_bytes[i])},
                  known && report.migratable[i] != 0);
   }

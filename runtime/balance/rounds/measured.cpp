@@ -68,8 +68,7 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
     report.parcels.push_back({record.position, to, sent.bytes, sent.messages});
   for (const LoadRecord::Entry& entry : record.load.entries) {
     const std::uint32_t action = entry.action->id();
-    auto at = std::find_if(report.seconds_by_action.begin(),
-                           report.seconds_by_action.end(),
+    auto at = std::find_if(report.seconds_by_action.begin(), report.seconds_by_action.end(),
                            [action](const auto& one) { return one.first == action; });
     if (at == report.seconds_by_action.end())
       at = report.seconds_by_action.insert(at, {action, 0.0});

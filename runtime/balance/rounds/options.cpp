@@ -39,9 +39,7 @@ BalanceWhen parse_when(std::string_view value) {
   if (value == "at_sync") return BalanceWhen::at_sync;
   if (value == "periodic") return BalanceWhen::periodic;
   if (value == "automatic") return BalanceWhen::automatic;
-  fail(ErrorCode::bad_argument,
-       "--balance when: ",
-       value,
+  fail(ErrorCode::bad_argument, "--balance when: ", value,
        " is none of at_sync, periodic, automatic");
 }
 
@@ -74,9 +72,7 @@ BalanceOptions parse_balance(std::string_view given) {
     } else if (first && equals == std::string_view::npos) {
       options.strategy = key;
     } else {
-      fail(ErrorCode::bad_argument,
-           "--balance: unknown key ",
-           key,
+      fail(ErrorCode::bad_argument, "--balance: unknown key ", key,
            " (strategy, when, period, prediction, window, seed, report)");
     }
   }
@@ -97,22 +93,14 @@ void balance::validate(const BalanceOptions& options, std::int32_t n_pes) {
     return n == 0 || n == static_cast<std::size_t>(n_pes);
   };
   if (!fits(options.speeds.size()))
-    fail(ErrorCode::bad_argument,
-         "balance speeds: ",
-         options.speeds.size(),
-         " are given, the run has ",
-         n_pes,
-         " PEs");
+    fail(ErrorCode::bad_argument, "balance speeds: ", options.speeds.size(),
+         " are given, the run has ", n_pes, " PEs");
   for (const double speed : options.speeds)
     if (!(speed > 0 && speed < 1e9))
       fail(ErrorCode::bad_argument, "balance speeds: ", speed, " is not above 0");
   if (!fits(options.memory_limit_bytes.size()))
-    fail(ErrorCode::bad_argument,
-         "balance memory limits: ",
-         options.memory_limit_bytes.size(),
-         " are given, the run has ",
-         n_pes,
-         " PEs");
+    fail(ErrorCode::bad_argument, "balance memory limits: ", options.memory_limit_bytes.size(),
+         " are given, the run has ", n_pes, " PEs");
 }
 
 }  // namespace tess

@@ -100,16 +100,8 @@ Assignment map(const Snapshot& s, std::uint64_t seed, double tolerance) {
   SCOTCH_contextRandomReset(context.get());
   check(SCOTCH_contextThreadSpawn(context.get(), 1, nullptr), "SCOTCH_contextThreadSpawn");
   Graph graph(SCOTCH_graphInit, "SCOTCH_graphInit");
-  check(SCOTCH_graphBuild(graph.get(),
-                          0,
-                          n_elements,
-                          edges.begin.data(),
-                          nullptr,
-                          vertex.data(),
-                          nullptr,
-                          edges.begin.back(),
-                          edges.to.data(),
-                          edges.weight.data()),
+  check(SCOTCH_graphBuild(graph.get(), 0, n_elements, edges.begin.data(), nullptr, vertex.data(),
+                          nullptr, edges.begin.back(), edges.to.data(), edges.weight.data()),
         "SCOTCH_graphBuild");
   Graph bound(SCOTCH_graphInit, "SCOTCH_graphInit");
   check(SCOTCH_contextBindGraph(context.get(), graph.get(), bound.get()),
@@ -125,8 +117,8 @@ Assignment map(const Snapshot& s, std::uint64_t seed, double tolerance) {
   bool pinned = false;
   for (std::size_t i = 0; i < part.size(); ++i)
     if (!s.elements.migratable[i]) part[i] = s.elements.pe[i].value, pinned = true;
-  check((pinned ? SCOTCH_graphMapFixed : SCOTCH_graphMap)(
-            bound.get(), arch.get(), strategy.get(), part.data()),
+  check((pinned ? SCOTCH_graphMapFixed : SCOTCH_graphMap)(bound.get(), arch.get(), strategy.get(),
+                                                          part.data()),
         "SCOTCH_graphMap");
   Assignment result;
   for (const SCOTCH_Num pe : part) result.push_back(PeId{pe});
@@ -138,9 +130,7 @@ Assignment map(const Snapshot& s, std::uint64_t seed, double tolerance) {
 Assignment graph(const Snapshot& s, std::uint64_t seed, double tolerance) {
   if (s.pes.size() == 1 || s.elements.size() == 0) return s.elements.pe;
   if (s.elements.size() + 2 * s.edges.size() > INT32_MAX / 2)
-    fail(ErrorCode::bad_value,
-         "strategy graph: ",
-         s.edges.size(),
+    fail(ErrorCode::bad_value, "strategy graph: ", s.edges.size(),
          " edges; Scotch takes 500000000; choose hierarchical");
   if (std::ranges::all_of(s.edges, [](const Edge& e) { return e.from == e.to; }))
     return greedy_refine(s);

@@ -45,11 +45,8 @@ Assignment enter(const Snapshot& s, const Assignment& group, std::size_t group_s
 }
 
 /// What one group knows: its PEs, and the elements on them. PEs are numbered from 0.
-Snapshot inside(const Snapshot& s,
-                const Assignment& placed,
-                const std::vector<std::size_t>& elements,
-                std::size_t begin,
-                std::size_t end) {
+Snapshot inside(const Snapshot& s, const Assignment& placed,
+                const std::vector<std::size_t>& elements, std::size_t begin, std::size_t end) {
   Snapshot group;
   for (std::size_t p = begin; p < end; ++p) {
     group.pes.background.push_back(s.pes.background[p]);

@@ -101,8 +101,8 @@ TEST_CASE("clusters drift: the voxels that they touch come and go", "[lb_lab]") 
   const Problem p = problem("collision");
   const auto before = touched(p, 0), after = touched(p, p.n_iterations / 2);
   std::vector<std::pair<int, int>> gone;
-  std::set_difference(
-      before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(gone));
+  std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
+                      std::back_inserter(gone));
   CHECK(gone.size() >= before.size() / 4);
   CHECK(before.size() < static_cast<std::size_t>(p.domain.n_cells()));
 }

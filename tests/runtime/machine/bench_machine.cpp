@@ -27,12 +27,8 @@ double nanoseconds(Clock::duration span) {
 
 void report(const char* what, std::vector<double> ns) {
   std::sort(ns.begin(), ns.end());
-  fmt::print("{:<48} {:9.1f} ns   ({:.1f} to {:.1f}, {} runs)\n",
-             what,
-             ns[ns.size() / 2],
-             ns.front(),
-             ns.back(),
-             ns.size());
+  fmt::print("{:<48} {:9.1f} ns   ({:.1f} to {:.1f}, {} runs)\n", what, ns[ns.size() / 2],
+             ns.front(), ns.back(), ns.size());
 }
 
 constexpr int n_runs = 9;
@@ -77,10 +73,8 @@ class PingPong final : public Program {
   };
 
   void arrived(PeId pe, std::uint64_t number) {
-    TESS_CHECK(number == ++expected_[pe.value == 0 ? 0 : 1].n * 2 - (pe.value == 0 ? 0 : 1),
-               "hop ",
-               number,
-               " came out of turn");
+    TESS_CHECK(number == ++expected_[pe.value == 0 ? 0 : 1].n * 2 - (pe.value == 0 ? 0 : 1), "hop ",
+               number, " came out of turn");
     if (number < 2 * n_rounds_) return hand_on(pe, pe.value == 0 ? far_ : PeId{0}, number + 1);
     end_ = Clock::now();
     if (machine_.n_processes() > 1) send(pe, far_, 0);

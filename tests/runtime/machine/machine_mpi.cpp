@@ -43,19 +43,11 @@ TEST_CASE("buffers at the edges of the protocols arrive intact", "[runtime][mach
   constexpr std::size_t limit = 10'000;
   constexpr std::size_t stamp = sizeof(test::Stamp);
   const auto machine = make({.pes_per_process = 1, .chunk_bytes = limit});
-  test::Tour tour(*machine,
-                  {.n_tokens = 10,
-                   .n_hops = 100,
-                   .filling_bytes = {0,
-                                     1,
-                                     4095 - stamp,
-                                     4096 - stamp,
-                                     4097 - stamp,
-                                     limit - stamp - 1,
-                                     limit - stamp,
-                                     limit - stamp + 1,
-                                     2 * limit - stamp,
-                                     5 * limit + 17}});
+  test::Tour tour(*machine, {.n_tokens = 10,
+                             .n_hops = 100,
+                             .filling_bytes = {0, 1, 4095 - stamp, 4096 - stamp, 4097 - stamp,
+                                               limit - stamp - 1, limit - stamp, limit - stamp + 1,
+                                               2 * limit - stamp, 5 * limit + 17}});
   machine->run(tour);
   CHECK(sum(tour.n_hops_made()) == std::int64_t{10} * 100 * machine->n_pes());
   CHECK(tour.n_broken == 0);

@@ -56,11 +56,8 @@ class Tour final : public Program {
     for (std::int32_t i = 0; i < plan_.n_tokens; ++i) {
       auto* token = new Token;
       token->stamp = {
-          0,
-          mix(static_cast<std::uint64_t>(pe.value) * 1000 + static_cast<std::uint64_t>(i)),
-          plan_.n_hops,
-          pe.value,
-          machine_.process().value};
+          0, mix(static_cast<std::uint64_t>(pe.value) * 1000 + static_cast<std::uint64_t>(i)),
+          plan_.n_hops, pe.value, machine_.process().value};
       seat(pe).ready.push_back(token);
     }
   }
