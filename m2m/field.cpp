@@ -1,7 +1,7 @@
 #include "m2m/field.hpp"
 
 #include "m2m/fields/expression.hpp"
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 #include "m2m/policy.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "m2m/transfer.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // What a mesh must be before anything is done with it.
 #include "m2m/mesh.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>

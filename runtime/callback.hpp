@@ -2,9 +2,9 @@
 // group's member on a PE. A value that can be stored and sent; it is called once or many times.
 #pragma once
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/serialize.hpp"
 #include "runtime/messages/registry.hpp"
-#include "runtime/serialize.hpp"
 
 #include <algorithm>
 #include <array>

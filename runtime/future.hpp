@@ -5,7 +5,7 @@
 #pragma once
 
 #include "runtime/callback.hpp"
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
 

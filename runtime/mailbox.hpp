@@ -6,7 +6,7 @@
 //     Edge edge = co_await edges_.take(step);
 #pragma once
 
-#include "runtime/serialize.hpp"
+#include "runtime/core/serialize.hpp"
 #include "runtime/task.hpp"
 
 #include <functional>

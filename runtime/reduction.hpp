@@ -6,8 +6,8 @@
 #pragma once
 
 #include "runtime/callback.hpp"
-#include "runtime/check.hpp"
 #include "runtime/collections/partial.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "runtime/room.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {

@@ -10,7 +10,7 @@
 //     --trace F    what each PE ran when, as JSON for Perfetto
 #pragma once
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/task.hpp"

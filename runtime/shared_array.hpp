@@ -11,7 +11,7 @@
 // nothing else does. A reference to a number, or a span of them, is valid while there is an owner.
 #pragma once
 
-#include "runtime/serialize.hpp"
+#include "runtime/core/serialize.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "runtime/task.hpp"
 
-#include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {

@@ -3,7 +3,7 @@
 #include "apps/bench/openvdb_field.hpp"
 #include "apps/bench/thread_watch.hpp"
 #include "collide/dn_field/build_exact.hpp"
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <fmt/core.h>
 #include <random>

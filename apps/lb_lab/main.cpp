@@ -2,10 +2,10 @@
 // workloads whose answer is known under every strategy and cut that are asked for, or strategies on
 // snapshots that were saved.
 #include "apps/command_line.hpp"
-#include "apps/lb_lab/kernel.hpp"
-#include "apps/lb_lab/replay.hpp"
-#include "apps/lb_lab/report.hpp"
+#include "apps/lb_lab/output/replay.hpp"
+#include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
+#include "apps/lb_lab/workload/kernel.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/runtime.hpp"
 

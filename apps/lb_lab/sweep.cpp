@@ -1,7 +1,7 @@
 #include "apps/lb_lab/sweep.hpp"
 
-#include "apps/lb_lab/draw.hpp"
-#include "apps/lb_lab/report.hpp"
+#include "apps/lb_lab/output/draw.hpp"
+#include "apps/lb_lab/output/report.hpp"
 #include "runtime/runtime.hpp"
 
 #include <fmt/format.h>

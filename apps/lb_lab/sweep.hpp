@@ -2,8 +2,8 @@
 // serial answer.
 #pragma once
 
-#include "apps/lb_lab/experiment.hpp"
-#include "apps/lb_lab/settings.hpp"
+#include "apps/lb_lab/run/experiment.hpp"
+#include "apps/lb_lab/run/settings.hpp"
 
 #include <functional>
 #include <string>

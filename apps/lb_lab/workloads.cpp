@@ -1,7 +1,7 @@
 #include "apps/lb_lab/collision/collision.hpp"
 #include "apps/lb_lab/particles/particles.hpp"
-#include "runtime/base/mix.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 
 #include "m2m/io/read_mesh.hpp"
 #include "m2m/transfer.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>

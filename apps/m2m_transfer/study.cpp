@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/study.hpp"
 
 #include "m2m/io/kuhn.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "apps/plot/chart.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <filesystem>

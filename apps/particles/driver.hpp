@@ -2,7 +2,7 @@
 // with the input is found before the run starts.
 #pragma once
 
-#include "apps/particles/simulate.hpp"
+#include "apps/particles/simulation/simulate.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>

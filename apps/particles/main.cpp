@@ -2,8 +2,8 @@
 // of it: energies, particles that tunnelled, time a particle and step.
 #include "apps/command_line.hpp"
 #include "apps/particles/driver.hpp"
-#include "apps/particles/scene.hpp"
-#include "apps/particles/stability.hpp"
+#include "apps/particles/scene/scene.hpp"
+#include "apps/particles/stability/report.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
 

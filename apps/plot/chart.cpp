@@ -3,7 +3,7 @@
 #include "apps/plot/gnuplot.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <array>
 #include <cmath>

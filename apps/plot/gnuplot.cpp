@@ -1,6 +1,6 @@
 #include "apps/plot/gnuplot.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cerrno>

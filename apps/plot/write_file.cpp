@@ -1,6 +1,6 @@
 #include "apps/plot/write_file.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <cerrno>
 #include <cstdio>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/stencil/tile.hpp"
-#include "runtime/index.hpp"
+#include "runtime/core/index.hpp"
 
 #include <utility>
 #include <vector>

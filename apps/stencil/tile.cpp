@@ -1,7 +1,7 @@
 #include "apps/stencil/tile.hpp"
 
-#include "runtime/base/mix.hpp"
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <array>

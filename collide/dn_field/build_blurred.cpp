@@ -1,10 +1,10 @@
 #include "collide/dn_field/build_blurred.hpp"
 
-#include "collide/dn_field/build_blur.hpp"
-#include "collide/dn_field/build_checks.hpp"
-#include "collide/dn_field/normal_code.hpp"
-#include "collide/dn_field/outward.hpp"
-#include "runtime/error.hpp"
+#include "collide/dn_field/build/blur.hpp"
+#include "collide/dn_field/build/checks.hpp"
+#include "collide/dn_field/field/normal_code.hpp"
+#include "collide/dn_field/tree/outward.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 

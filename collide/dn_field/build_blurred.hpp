@@ -12,9 +12,9 @@
 // each over any split of the layers. build_blurred does all in order.
 #pragma once
 
+#include "collide/dn_field/build/plan.hpp"
+#include "collide/dn_field/build/voxels.hpp"
 #include "collide/dn_field/build_exact.hpp"
-#include "collide/dn_field/build_plan.hpp"
-#include "collide/dn_field/build_voxels.hpp"
 
 #include <array>
 

@@ -1,8 +1,8 @@
 #include "collide/dn_field/build_exact.hpp"
 
-#include "collide/dn_field/build_checks.hpp"
-#include "collide/dn_field/normal_code.hpp"
-#include "runtime/check.hpp"
+#include "collide/dn_field/build/checks.hpp"
+#include "collide/dn_field/field/normal_code.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 

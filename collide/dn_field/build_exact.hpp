@@ -9,7 +9,7 @@
 // after the other.
 #pragma once
 
-#include "collide/dn_field/build_sign.hpp"
+#include "collide/dn_field/build/sign.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/surface.hpp"
 

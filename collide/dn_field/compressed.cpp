@@ -1,7 +1,7 @@
 #include "collide/dn_field/compressed.hpp"
 
-#include "collide/dn_field/compressed_entry.hpp"
-#include "runtime/check.hpp"
+#include "collide/dn_field/field/compressed_entry.hpp"
+#include "runtime/core/check.hpp"
 
 namespace tess::dn {
 namespace {

@@ -1,6 +1,6 @@
 #include "collide/dn_field/field.hpp"
 
-#include "collide/dn_field/lanes.hpp"
+#include "collide/dn_field/geometry/lanes.hpp"
 
 #include <algorithm>
 #include <array>

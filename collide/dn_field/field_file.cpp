@@ -1,9 +1,9 @@
 #include "collide/dn_field/field_file.hpp"
 
-#include "collide/dn_field/checksum.hpp"
+#include "collide/dn_field/field/checksum.hpp"
 #include "runtime/base/open_file.hpp"
 #include "runtime/base/usable_memory.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 #include "collide/dn_field/frame.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 namespace tess::dn {
 namespace {

@@ -1,6 +1,6 @@
 #include "collide/dn_field/grid.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 

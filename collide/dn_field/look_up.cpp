@@ -1,7 +1,7 @@
 #include "collide/dn_field/look_up.hpp"
 
-#include "collide/dn_field/sample.hpp"
-#include "runtime/check.hpp"
+#include "collide/dn_field/field/sample.hpp"
+#include "runtime/core/check.hpp"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #include "collide/dn_field/stepper.hpp"
 
-#include "collide/dn_field/block_flight.hpp"
+#include "collide/dn_field/step/block_flight.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #include "collide/dn_field/surface.hpp"
 
-#include "collide/dn_field/surface_edges.hpp"
-#include "runtime/base/mix.hpp"
+#include "collide/dn_field/geometry/surface_edges.hpp"
 #include "runtime/base/open_file.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <cstdlib>

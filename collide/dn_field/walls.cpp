@@ -1,7 +1,7 @@
 #include "collide/dn_field/walls.hpp"
 
-#include "collide/dn_field/surface_points.hpp"
-#include "runtime/base/mix.hpp"
+#include "collide/dn_field/geometry/surface_points.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "collide/serial/cell_numbers.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 namespace tess {
 

@@ -1,6 +1,6 @@
 #include "collide/serial/voxel_grid.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <cmath>
 

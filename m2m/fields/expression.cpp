@@ -1,6 +1,6 @@
 #include "m2m/fields/expression.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <array>

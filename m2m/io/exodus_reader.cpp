@@ -2,7 +2,7 @@
 
 #include "m2m/io/exodus_elements.hpp"
 #include "m2m/io/netcdf_header.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <array>

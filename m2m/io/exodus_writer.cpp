@@ -1,6 +1,6 @@
 #include "m2m/io/exodus_writer.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <array>

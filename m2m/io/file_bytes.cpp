@@ -1,6 +1,6 @@
 #include "m2m/io/file_bytes.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <cerrno>
 #include <fcntl.h>

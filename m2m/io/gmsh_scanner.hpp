@@ -3,7 +3,7 @@
 // it happened. Used by gmsh_reader.cpp.
 #pragma once
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <charconv>
 #include <cstdint>

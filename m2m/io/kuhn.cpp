@@ -1,6 +1,6 @@
 #include "m2m/io/kuhn.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <charconv>
 #include <cstdlib>

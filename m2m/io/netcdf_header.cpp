@@ -1,6 +1,6 @@
 #include "m2m/io/netcdf_header.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <array>
 #include <cstdint>

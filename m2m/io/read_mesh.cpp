@@ -4,7 +4,7 @@
 #include "m2m/io/file_bytes.hpp"
 #include "m2m/io/gmsh_reader.hpp"
 #include "m2m/io/kuhn.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <string_view>
 

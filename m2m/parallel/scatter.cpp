@@ -1,6 +1,6 @@
 #include "m2m/parallel/scatter.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <span>
 

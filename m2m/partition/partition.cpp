@@ -1,6 +1,6 @@
 #include "m2m/partition/partition.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <cstdint>
 #include <cstdlib>

@@ -3,7 +3,7 @@
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/search/cell_grid.hpp"
 #include "m2m/search/nearest_vertex.hpp"
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <optional>

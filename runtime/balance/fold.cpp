@@ -1,7 +1,7 @@
 #include "runtime/balance/fold.hpp"
 
-#include "runtime/check.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
 
 namespace tess::balance {
 

@@ -1,7 +1,7 @@
 #include "runtime/balance/honour.hpp"
 
 #include "runtime/balance/loads.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 namespace tess::balance {
 namespace {

@@ -1,6 +1,6 @@
 #include "runtime/balance/lb_datafile.hpp"
 #include "runtime/balance/unknown_loads.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>

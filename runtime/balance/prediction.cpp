@@ -1,6 +1,6 @@
 #include "runtime/balance/prediction.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 

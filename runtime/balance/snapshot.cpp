@@ -1,6 +1,6 @@
 #include "runtime/balance/snapshot.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <cmath>
 

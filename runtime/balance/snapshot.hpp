@@ -3,7 +3,7 @@
 // its position in them.
 #pragma once
 
-#include "runtime/element_key.hpp"
+#include "runtime/core/element_key.hpp"
 
 #include <array>
 #include <cstddef>

@@ -12,7 +12,7 @@
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategies/simple.hpp"
 #include "runtime/balance/unknown_loads.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

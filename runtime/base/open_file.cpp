@@ -1,6 +1,6 @@
 #include "runtime/base/open_file.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <filesystem>
 

@@ -3,7 +3,7 @@
 // agree.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -18,9 +18,9 @@
 // confirmation.
 #pragma once
 
-#include "runtime/check.hpp"
 #include "runtime/collections/collection_action.hpp"
-#include "runtime/index.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/index.hpp"
 #include "runtime/location/element_message.hpp"
 #include "runtime/location/index_table.hpp"
 

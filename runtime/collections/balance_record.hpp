@@ -2,9 +2,9 @@
 // its measured load, and its place in the at_sync() barrier.
 #pragma once
 
+#include "runtime/core/serialize.hpp"
 #include "runtime/scheduler/load_record.hpp"
 #include "runtime/scheduler/meter.hpp"
-#include "runtime/serialize.hpp"
 
 #include <cstdint>
 #include <utility>

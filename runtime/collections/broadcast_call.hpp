@@ -2,10 +2,10 @@
 // elements of a process, packed when it crosses to another.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
+#include "runtime/core/serialize.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/messages/registry.hpp"
-#include "runtime/serialize.hpp"
 
 #include <boost/smart_ptr/intrusive_ptr.hpp>
 #include <boost/smart_ptr/intrusive_ref_counter.hpp>

@@ -4,8 +4,8 @@
 
 #include "runtime/collections/array_of.hpp"
 #include "runtime/collections/make_chare.hpp"
+#include "runtime/core/round_trip.hpp"
 #include "runtime/messages/entry_traits.hpp"
-#include "runtime/round_trip.hpp"
 #include "runtime/scheduler/block.hpp"
 
 namespace tess {

@@ -1,6 +1,6 @@
 #include "runtime/collections/collection.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 namespace tess {
 

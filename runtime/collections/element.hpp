@@ -3,7 +3,7 @@
 // from it through Chare or Group.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <compare>
 #include <cstdint>

@@ -7,7 +7,7 @@
 // the collection is freed, and this PE's part of the end is done.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 namespace tess {
 

@@ -2,10 +2,10 @@
 // another of its type, how to be packed, and what to do once it is whole: it carries the target.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
+#include "runtime/core/serialize.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/messages/registry.hpp"
-#include "runtime/serialize.hpp"
 
 #include <cstdint>
 #include <memory>

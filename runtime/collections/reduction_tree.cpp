@@ -1,9 +1,9 @@
 #include "runtime/collections/reduction_tree.hpp"
 
 #include "runtime/base/spanning_tree.hpp"
-#include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
 #include "runtime/collections/collection_action.hpp"
+#include "runtime/core/check.hpp"
 
 namespace tess {
 namespace {

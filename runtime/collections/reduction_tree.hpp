@@ -33,7 +33,7 @@
 #include "runtime/collections/led_to.hpp"
 #include "runtime/collections/number_counts.hpp"
 #include "runtime/collections/partial.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "runtime/completion/completion.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 

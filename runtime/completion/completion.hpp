@@ -28,7 +28,7 @@
 #pragma once
 
 #include "runtime/base/spanning_tree.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 

@@ -16,7 +16,7 @@
 
 #include "runtime/base/huge_pages.hpp"
 #include "runtime/collections/element.hpp"
-#include "runtime/index.hpp"
+#include "runtime/core/index.hpp"
 
 #include <array>
 #include <cstddef>

@@ -16,7 +16,7 @@
 #include "runtime/base/buffer.hpp"
 #include "runtime/base/bundle.hpp"
 #include "runtime/base/link.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <chrono>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "runtime/machine/mpi_session.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <array>

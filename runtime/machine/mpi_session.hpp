@@ -3,7 +3,7 @@
 // run.
 #pragma once
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <mpi.h>
 

@@ -1,7 +1,7 @@
 #include "runtime/machine/simulated.hpp"
 
-#include "runtime/base/mix.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <array>

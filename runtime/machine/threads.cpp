@@ -1,6 +1,6 @@
 #include "runtime/machine/threads.hpp"
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 #include "runtime/machine/topology.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <hwloc.h>
 

@@ -8,10 +8,10 @@
 #pragma once
 
 #include "runtime/base/link.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
+#include "runtime/core/serialize.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/messages/registry.hpp"
-#include "runtime/serialize.hpp"
 
 #include <atomic>
 #include <cstdint>

@@ -2,9 +2,9 @@
 // is read, by name, and not by what is read next.
 #pragma once
 
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/serialize.hpp"
 #include "runtime/messages/registry.hpp"
-#include "runtime/serialize.hpp"
 
 #include <cstdint>
 #include <string_view>

@@ -1,7 +1,7 @@
 #include "runtime/messages/registry.hpp"
 
-#include "runtime/base/mix.hpp"
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "runtime/base/interval_set.hpp"
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 namespace tess {
 

@@ -2,7 +2,7 @@
 // and what it sent to whom. Kept while a balancer watches the element, and travels with it.
 #pragma once
 
-#include "runtime/element_key.hpp"
+#include "runtime/core/element_key.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 

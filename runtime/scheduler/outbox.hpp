@@ -21,7 +21,7 @@
 // The other end is Pe::receive and Pe::place. One PE's.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ready_queue.hpp"

@@ -1,7 +1,7 @@
 #include "runtime/scheduler/pe.hpp"
 
-#include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/runtime.hpp"

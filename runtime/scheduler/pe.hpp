@@ -3,11 +3,11 @@
 // world through it. Nothing here is shared: a PE is touched by the one thread that runs it.
 #pragma once
 
-#include "runtime/base/mix.hpp"
 #include "runtime/base/pool.hpp"
 #include "runtime/base/ticks.hpp"
-#include "runtime/check.hpp"
 #include "runtime/completion/completion.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/core/hash.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/meter.hpp"

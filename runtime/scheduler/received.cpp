@@ -1,6 +1,6 @@
 // Messages that come from other processes: unpacked where they arrive, handed to their PE, and
 // repaid once they have run.
-#include "runtime/check.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/pe_action.hpp"

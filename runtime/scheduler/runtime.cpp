@@ -1,7 +1,7 @@
 #include "runtime/scheduler/runtime.hpp"
 
-#include "runtime/check.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // nothing.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <functional>
 #include <string>

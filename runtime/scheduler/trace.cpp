@@ -1,6 +1,6 @@
 #include "runtime/scheduler/trace.hpp"
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/messages/envelope.hpp"
 
 #include <cstdio>

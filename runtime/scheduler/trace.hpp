@@ -4,7 +4,7 @@
 // costs one test of a null pointer a message.
 #pragma once
 
-#include "runtime/ids.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <cstdint>
 #include <string>

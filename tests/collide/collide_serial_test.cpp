@@ -2,7 +2,7 @@
 #include "collide/serial/collide_serial.hpp"
 
 #include "collide/serial/voxel_size.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

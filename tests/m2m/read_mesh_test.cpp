@@ -1,7 +1,7 @@
 #include "m2m/io/read_mesh.hpp"
 
 #include "m2m/io/kuhn.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 #include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"

@@ -1,7 +1,7 @@
 // What the tests of meshes and files share: a folder that vanishes, and the message of an Error.
 #pragma once
 
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <filesystem>
 #include <fstream>

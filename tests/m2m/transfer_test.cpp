@@ -2,7 +2,7 @@
 #include "m2m/io/kuhn.hpp"
 #include "m2m/io/read_mesh.hpp"
 #include "m2m/search/serial_transfer.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"

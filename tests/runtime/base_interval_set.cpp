@@ -1,5 +1,5 @@
 #include "runtime/base/interval_set.hpp"
-#include "runtime/base/mix.hpp"
+#include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
 #include <set>

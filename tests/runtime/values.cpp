@@ -1,5 +1,5 @@
 // The parts of the runtime that need no run: serialisation, indices, names, reduction operations.
-#include "runtime/round_trip.hpp"
+#include "runtime/core/round_trip.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "tests/support/catch.hpp"

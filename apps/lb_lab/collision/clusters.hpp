@@ -8,7 +8,7 @@
 //     └──────────────┘
 #pragma once
 
-#include "apps/lb_lab/workload.hpp"
+#include "apps/lb_lab/workload/workload.hpp"
 #include "collide/hit.hpp"
 
 #include <cstdint>

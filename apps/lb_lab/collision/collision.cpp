@@ -1,8 +1,8 @@
 #include "apps/lb_lab/collision/collision.hpp"
 
-#include "apps/lb_lab/balanced.hpp"
 #include "apps/lb_lab/collision/owner.hpp"
-#include "apps/lb_lab/stepped.hpp"
+#include "apps/lb_lab/run/balanced.hpp"
+#include "apps/lb_lab/run/stepped.hpp"
 #include "collide/serial/collide_serial.hpp"
 #include "collide/serial/voxel_size.hpp"
 

@@ -3,7 +3,7 @@
 // many chares a PE; those that nothing touches do not exist.
 #pragma once
 
-#include "apps/lb_lab/kind.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 
 namespace lb_lab {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "apps/lb_lab/collision/clusters.hpp"
-#include "apps/lb_lab/station.hpp"
+#include "apps/lb_lab/run/station.hpp"
 #include "collide/collider.hpp"
 #include "runtime/runtime.hpp"
 

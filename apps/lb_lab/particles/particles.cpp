@@ -1,8 +1,8 @@
 #include "apps/lb_lab/particles/particles.hpp"
 
-#include "apps/lb_lab/balanced.hpp"
 #include "apps/lb_lab/particles/region.hpp"
-#include "apps/lb_lab/stepped.hpp"
+#include "apps/lb_lab/run/balanced.hpp"
+#include "apps/lb_lab/run/stepped.hpp"
 
 #include <fmt/format.h>
 #include <map>

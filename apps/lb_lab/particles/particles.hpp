@@ -1,7 +1,7 @@
 // The kind of workload whose chares are regions of space with the particles in them (region.hpp).
 #pragma once
 
-#include "apps/lb_lab/kind.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 
 namespace lb_lab {
 

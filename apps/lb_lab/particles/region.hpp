@@ -4,7 +4,7 @@
 #pragma once
 
 #include "apps/lb_lab/particles/swarm.hpp"
-#include "apps/lb_lab/station.hpp"
+#include "apps/lb_lab/run/station.hpp"
 #include "runtime/runtime.hpp"
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "apps/lb_lab/particles/swarm.hpp"
 
-#include "apps/lb_lab/kind.hpp"
-#include "runtime/base/mix.hpp"
+#include "apps/lb_lab/run/kind.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 // particle depends on its number and the iteration alone, not on who computes it, and beside whom.
 #pragma once
 
-#include "apps/lb_lab/workload.hpp"
+#include "apps/lb_lab/workload/workload.hpp"
 
 #include <cstdint>
 #include <vector>

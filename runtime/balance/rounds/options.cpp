@@ -2,7 +2,7 @@
 
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <charconv>
 

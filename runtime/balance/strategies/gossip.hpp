@@ -12,7 +12,7 @@
 #pragma once
 
 #include "runtime/balance/local_pe.hpp"
-#include "runtime/base/mix.hpp"
+#include "runtime/core/hash.hpp"
 
 namespace tess::balance {
 

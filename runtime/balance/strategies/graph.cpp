@@ -5,7 +5,7 @@
 #include "runtime/balance/relabel.hpp"
 #include "runtime/balance/strategies/greedy_refine.hpp"
 #include "runtime/balance/strategies/refine.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "runtime/balance/capacity.hpp"
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/relabel.hpp"
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "runtime/balance/strategies/simple.hpp"
 
 #include "runtime/balance/honour.hpp"
-#include "runtime/base/mix.hpp"
+#include "runtime/core/hash.hpp"
 
 namespace tess::balance {
 

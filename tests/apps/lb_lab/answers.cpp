@@ -1,8 +1,8 @@
 // The workloads' answers: the same under every cut, strategy, schedule and forced migration.
-#include "apps/lb_lab/cells.hpp"
-#include "apps/lb_lab/kernel.hpp"
-#include "apps/lb_lab/patch.hpp"
-#include "runtime/error.hpp"
+#include "apps/lb_lab/cells/cells.hpp"
+#include "apps/lb_lab/workload/kernel.hpp"
+#include "apps/lb_lab/workload/patch.hpp"
+#include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
 

@@ -1,8 +1,8 @@
 // What the laboratory measures, on a machine that repeats to the bit; what it writes; what it
 // refuses.
-#include "apps/lb_lab/replay.hpp"
-#include "apps/lb_lab/report.hpp"
-#include "runtime/error.hpp"
+#include "apps/lb_lab/output/replay.hpp"
+#include "apps/lb_lab/output/report.hpp"
+#include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
 

@@ -1,4 +1,4 @@
-#include "runtime/error.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/runtime/machine/mock_program.hpp"
 #include "tests/support/catch.hpp"

@@ -1,0 +1,10 @@
+// The kind of workload whose chares are blocks of cells (worker.hpp).
+#pragma once
+
+#include "apps/lb_lab/run/kind.hpp"
+
+namespace lb_lab {
+
+extern const Kind cells_kind;
+
+}  // namespace lb_lab

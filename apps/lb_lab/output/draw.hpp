@@ -1,0 +1,34 @@
+// Pictures of one workload: time against chares a PE, imbalance over iterations, and what PEs did
+// before and after the first rounds.
+#pragma once
+
+#include "apps/lb_lab/run/experiment.hpp"
+#include "apps/lb_lab/sweep.hpp"
+#include "apps/plot/chart.hpp"
+#include "apps/plot/timeline.hpp"
+
+#include <map>
+#include <string>
+
+namespace lb_lab {
+
+class Drawings {
+ public:
+  explicit Drawings(std::string workload) : workload_(std::move(workload)) {}
+
+  void add(const Outcome& outcome, const Row& row);
+
+  /// Into a directory: WORKLOAD-time.svg, WORKLOAD-imbalance.svg of the best cut,
+  /// WORKLOAD-timeline-none.svg and -timeline-STRATEGY.svg of the best cut and strategy.
+  void write(const std::string& directory) const;
+
+ private:
+  struct Run {
+    Row row;
+    plot::Timeline timeline;
+  };
+  std::string workload_;
+  std::vector<Run> runs_;
+};
+
+}  // namespace lb_lab

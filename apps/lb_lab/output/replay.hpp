@@ -1,0 +1,15 @@
+// Strategies on snapshots from files: what each would do, on any number of PEs, without running
+// anything.
+#pragma once
+
+#include "apps/lb_lab/run/settings.hpp"
+
+#include <string>
+
+namespace lb_lab {
+
+/// Reads the files of one run and gives each phase to each strategy: a table of predicted
+/// imbalance, moves, bytes and time. Throws tess::Error for files and options that cannot be used.
+[[nodiscard]] std::string replay(const Settings& settings);
+
+}  // namespace lb_lab

@@ -1,0 +1,26 @@
+// Balancing of an array in a run, as the experiment wants it; for all kinds of workloads.
+#pragma once
+
+#include "apps/lb_lab/run/experiment.hpp"
+#include "runtime/balance.hpp"
+
+namespace lb_lab {
+
+[[nodiscard]] inline bool balances(const Experiment& experiment) {
+  return experiment.balance.strategy != "none";
+}
+
+/// The experiment's strategy, which notes what it is shown.
+[[nodiscard]] tess::balance::Strategy noting(const tess::BalanceOptions& options,
+                                             std::vector<tess::balance::Phase>& phases);
+
+/// Starts balancing, inside an epoch of the caller. Both references outlive the run.
+template <class C>
+[[nodiscard]] tess::BalancerProxy start_balancing(tess::ArrayProxy<C> array,
+                                                  const Experiment& experiment, Outcome& outcome) {
+  if (experiment.keep == Keep::nothing) return tess::start_balancing(array, experiment.balance);
+  return tess::start_balancing(array, experiment.balance,
+                               noting(experiment.balance, outcome.phases));
+}
+
+}  // namespace lb_lab

@@ -1,0 +1,48 @@
+// One run of the laboratory: one workload, one cut, one strategy, an array of its own.
+#pragma once
+
+#include "apps/lb_lab/run/station.hpp"
+#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/rounds/round.hpp"
+#include "runtime/task.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+namespace lb_lab {
+
+enum class Keep : std::uint8_t { nothing, snapshots };
+
+struct Experiment {
+  Plan plan;
+  tess::BalanceOptions balance;  ///< strategy none: no balancer is made, nothing is measured
+  Keep keep = Keep::nothing;
+};
+
+struct Outcome {
+  double began = 0;    ///< on PE 0's clock
+  double seconds = 0;  ///< from the first message to the answer
+  std::uint64_t answer = 0;
+  std::vector<PeRecord> records;  ///< of each PE
+  std::vector<tess::balance::Round> rounds;
+  std::vector<tess::balance::Phase> phases;  ///< what the strategy saw, if it is kept
+};
+
+/// Runs it to its end; PE 0 awaits it. Both arguments outlive the run.
+tess::Task run(const Experiment& experiment, Outcome& outcome);
+
+/// max/average of PE time over the iterations [first, last): the sums over the iterations of the
+/// slowest PE, and of all by their speeds.
+[[nodiscard]] double imbalance(const Outcome& outcome, const Plan& plan, std::int32_t first,
+                               std::int32_t last);
+
+/// Seconds that the run would take if work were a fluid: measured work over all speeds.
+[[nodiscard]] double ideal_seconds(const Outcome& outcome, const Plan& plan);
+
+/// Rounds as intervals on the clock of the run, for each PE: from where the last element of all
+/// came to the barrier to where the first of this PE went on. Without a barrier: as PE 0 saw them.
+[[nodiscard]] std::vector<std::vector<Interval>> balancing_times(const Outcome& outcome);
+
+}  // namespace lb_lab

@@ -1,0 +1,86 @@
+#include "apps/lb_lab/run/settings.hpp"
+
+#include "runtime/balance/prediction.hpp"
+#include "runtime/balance/strategy.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+namespace lb_lab {
+namespace {
+
+template <class... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  tess::fail(tess::ErrorCode::bad_argument, parts...);
+}
+
+void expand_names(Settings& s) {
+  if (std::ranges::count(s.workloads, "all") > 0) {
+    s.workloads.clear();
+    for (const Workload& one : workloads()) s.workloads.push_back(one.name);
+  }
+  for (const std::string& name : s.workloads) (void)find_workload(name);
+  if (std::ranges::count(s.strategies, "all") > 0) s.strategies = tess::balance::strategy_names();
+  for (const std::string& name : s.strategies) (void)tess::balance::make_strategy(name, s.seed);
+  // What is gained is gained over none.
+  std::erase(s.strategies, "none");
+  s.strategies.insert(s.strategies.begin(), "none");
+}
+
+}  // namespace
+
+double parse_time(std::string_view option, std::string_view value) {
+  double count = 0;
+  const char* const last = value.data() + value.size();
+  const auto [end, error] = std::from_chars(value.data(), last, count);
+  const std::string_view unit(end, static_cast<std::size_t>(last - end));
+  const double factor = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" ? 1 : 0;
+  if (error != std::errc() || !(count * factor > 0) || count * factor > 1e6)
+    refuse(option, ": ", value, " is no time above 0, as 250us, 1ms, 0.5s");
+  return count * factor;
+}
+
+tess::BalanceWhen parse_when(std::string_view value) {
+  if (value == "at_sync") return tess::BalanceWhen::at_sync;
+  if (value == "periodic") return tess::BalanceWhen::periodic;
+  if (value == "automatic") return tess::BalanceWhen::automatic;
+  refuse("--when: ", value, " is none of at_sync, periodic, automatic");
+}
+
+Problem problem_of(const Settings& s, std::uint32_t workload, std::int32_t n_pes) {
+  const std::int32_t n_finest = n_pes * std::ranges::max(s.per_pe);
+  Problem p;
+  p.workload = workload;
+  p.domain = workloads()[workload].shape == Shape::plane ? plane_of(n_finest) : line_of(n_finest);
+  p.n_pes = n_pes;
+  p.n_iterations = s.n_iterations;
+  p.seed = s.seed;
+  p.cell_seconds =
+      parse_time("--grain", s.grain) * n_finest / static_cast<double>(p.domain.n_cells());
+  p.cell_bytes = s.cell_bytes;
+  p.message_bytes = s.message_bytes;
+  return p;
+}
+
+void complete(Settings& s, std::int32_t n_pes) {
+  expand_names(s);
+  (void)parse_time("--grain", s.grain);
+  (void)parse_when(s.when);
+  (void)tess::balance::parse_prediction(s.prediction);
+  for (const std::int32_t n : s.per_pe)
+    if (n < 1 || std::int64_t{n} * n_pes > 1 << 24)
+      refuse("--per-pe: ", n, " chares on each of ", n_pes, " PEs; give 1 to ", (1 << 24) / n_pes);
+  if (s.period < 1 || s.period > s.n_iterations)
+    refuse("--period: ", s.period, " iterations; give 1 to --iterations ", s.n_iterations);
+  if (!s.speeds.empty() && s.speeds.size() != static_cast<std::size_t>(n_pes))
+    refuse("--speed: ", s.speeds.size(), " speeds for ", n_pes, " PEs; give one a PE");
+  for (const double speed : s.speeds)
+    if (!(speed >= 1e-3 && speed <= 1e3))
+      refuse("--speed: ", speed, " is not within 0.001 and 1000");
+  for (const std::string& name : s.workloads)
+    for (const std::int32_t n : s.per_pe)
+      (void)cut(problem_of(s, find_workload(name), n_pes).domain, n * n_pes);
+}
+
+}  // namespace lb_lab

@@ -1,0 +1,49 @@
+// What the command line asks for, checked before anything runs.
+#pragma once
+
+#include "apps/lb_lab/workload/workload.hpp"
+#include "runtime/balance/rounds/options.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lb_lab {
+
+struct Settings {
+  std::vector<std::string> workloads{"linear"};  ///< names, or all
+  std::vector<std::int32_t> per_pe{1, 2, 4, 8, 16, 32};
+  std::vector<std::string> strategies{"none", "greedy_refine"};  ///< names, or all
+  std::int32_t period = 10;                                      ///< iterations between rounds
+  std::int32_t n_iterations = 50;
+  std::string grain = "1ms";  ///< mean work of an element an iteration, at the finest cut
+  std::string when = "at_sync";
+  std::string prediction = "last";
+  std::vector<double> speeds;  ///< of PEs; empty: all 1
+  std::uint64_t seed = 1;
+  std::uint64_t cell_bytes = 1024;
+  std::uint64_t message_bytes = 1024;
+  std::int32_t repeat = 1;  ///< runs of each; the fastest counts
+  std::string json, plot, snapshots;
+  bool explain = false;
+  std::vector<std::string> replay;  ///< files; not empty: no run
+  std::int32_t replay_pes = 0;      ///< 0: as in the files
+  std::string fold = "block";
+};
+
+/// Puts names in place of `all`, `none` in front of the strategies, and throws tess::Error for what
+/// cannot be run on that many PEs.
+void complete(Settings& settings, std::int32_t n_pes);
+
+/// "250us", "1ms", "0.5s" in seconds, above 0. Throws tess::Error that names the option.
+[[nodiscard]] double parse_time(std::string_view option, std::string_view value);
+
+[[nodiscard]] tess::BalanceWhen parse_when(std::string_view value);
+
+/// A workload with these settings, before it is cut.
+[[nodiscard]] Problem problem_of(const Settings& settings, std::uint32_t workload,
+                                 std::int32_t n_pes);
+
+}  // namespace lb_lab

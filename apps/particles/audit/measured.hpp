@@ -1,0 +1,57 @@
+// What a step's particles show: sums, extremes and counts that come out the same bit for bit in
+// whichever order particles, blocks and PEs are joined.
+#pragma once
+
+#include "apps/particles/audit/exact_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace particles {
+
+struct Measured {
+  std::uint64_t particles = 0;
+  std::uint64_t blocks = 0;
+  std::uint64_t nonfinite = 0;
+  std::uint64_t inside = 0;     ///< below the surface of an object
+  std::uint64_t tunnelled = 0;  ///< that ever went through a surface
+  double fastest = 0;           ///< speed
+  double nearest = HUGE_VAL;    ///< least signed distance to an object, in world units
+  ExactSum kinetic, potential;  ///< m v²/2 and −m g·x
+  std::uint64_t hash = 0;       ///< of ids and the bits of positions and velocities
+
+  void add(const Measured& other) {
+    particles += other.particles;
+    blocks += other.blocks;
+    nonfinite += other.nonfinite;
+    inside += other.inside;
+    tunnelled += other.tunnelled;
+    fastest = std::max(fastest, other.fastest);
+    nearest = std::min(nearest, other.nearest);
+    kinetic.add(other.kinetic);
+    potential.add(other.potential);
+    hash += other.hash;
+  }
+  /// Kinetic and potential; infinite or not a number where a particle's is beyond all doubles, as
+  /// is kinetic.total(). Particles that are not finite themselves have no part in it.
+  [[nodiscard]] double energy() const {
+    ExactSum both = kinetic;
+    both.add(potential);
+    return both.total();
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(particles, blocks, nonfinite, inside, tunnelled, fastest, nearest, kinetic, potential, hash);
+  }
+};
+
+/// Joins two; for reductions.
+struct JoinMeasured {
+  Measured operator()(Measured a, const Measured& b) const {
+    a.add(b);
+    return a;
+  }
+};
+
+}  // namespace particles

@@ -1,0 +1,109 @@
+#include "apps/particles/audit/passage.hpp"
+
+#include "apps/particles/audit/fields.hpp"
+
+#include <algorithm>
+
+namespace particles {
+namespace {
+using namespace tess::dn;
+
+/// A direction to 30 degrees as a number, and back.
+std::uint8_t code_of(Vec3 normal) {
+  constexpr double none = 0.38;  // of a unit vector: a component that counts as 0
+  const auto third = [](double part) { return part > none ? 2 : part < -none ? 0 : 1; };
+  return static_cast<std::uint8_t>(third(normal.x) + 3 * third(normal.y) + 9 * third(normal.z));
+}
+Vec3 direction_of(int code) {
+  return direction({code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0});
+}
+
+/// Follows who enters the body and leaves it. Between two crossings the winding number says where
+/// the way is: faces that parts of the body have inside of it, and those that touch, count for
+/// nothing, however shallow the way.
+Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 from, Vec3 to) {
+  constexpr double opposite = -0.5;
+  constexpr double together = 1e-9;  // of the way: an edge, or faces that touch
+  std::vector<Crossing> crossings;
+  triangles.crossings(from, to, crossings);
+  if (crossings.empty()) return mark;
+  std::ranges::sort(crossings, {}, &Crossing::at);
+  const Vec3 way = to - from;
+  const auto inside_between = [&](double begin, double end) {
+    return triangles.is_inside(from + (0.5 * (begin + end)) * way);
+  };
+  bool was_inside = inside_between(0, crossings.front().at);
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const double at = crossings[i].at, next = i + 1 < crossings.size() ? crossings[i + 1].at : 1;
+    if (i + 1 < crossings.size() && next - at < together) continue;
+    const bool inside = inside_between(at, next);
+    const Vec3 normal = triangles.normal(crossings[i].triangle);
+    if (!was_inside && !inside && mark.what != Mark::inside) mark.what = Mark::through;  // a sheet
+    if (!was_inside && inside) mark = {Mark::inside, code_of(normal), number};
+    if (was_inside && !inside && mark.what == Mark::inside && mark.object == number) {
+      const bool passed = dot(direction_of(mark.looks), normal) < opposite;
+      mark = {passed ? Mark::through : Mark::nothing, 0, number};
+    }
+    if (mark.what == Mark::through) break;
+    was_inside = inside;
+  }
+  return mark;
+}
+
+/// Whether a way reaches deeper below the surface than `depth`, and begins above that, at the
+/// distance `begin`.
+bool goes_below(const Object& object, double depth, double begin, Vec3 from, Vec3 to) {
+  const Field& field = *object.field;
+  const double length = norm(to - from), cell = field.grid.cell;
+  if (begin < -depth) return false;
+  // The part of the way that lies in the grid, cut into pieces of half a cell.
+  const Vec3 low = field.grid.origin, along = to - from;
+  const Vec3 high =
+      field.grid.centre(field.grid.n[0] - 1, field.grid.n[1] - 1, field.grid.n[2] - 1);
+  double first = 0, last = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = component(from, axis), d = component(along, axis);
+    if (d == 0) {
+      if (a < component(low, axis) || a > component(high, axis)) return false;
+      continue;
+    }
+    const double one = (component(low, axis) - a) / d, other = (component(high, axis) - a) / d;
+    first = std::max(first, std::min(one, other));
+    last = std::min(last, std::max(one, other));
+  }
+  if (!(first <= last)) return false;
+  const auto pieces =
+      static_cast<std::size_t>(std::ceil((last - first) * length / (0.5 * cell))) + 1;
+  for (std::size_t i = 0; i <= pieces; ++i) {
+    const double t =
+        first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
+    if (distance_at(object, from + t * along) < -depth) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double greatest_depth(const Rules& rules) {
+  return rules.impact && look_up_of(rules) == LookUp::nearest ? 2 : 1;
+}
+
+Mark mark_after(Mark mark, const Audited& audited, Vec3 from, Vec3 to) {
+  const auto& [number, object, depth] = audited;
+  const Bvh* const triangles = object.triangles;
+  const Mark through{Mark::through, 0, number};
+  const Field& field = *object.field;
+  const double length = norm(to - from);
+  if (mark.what == Mark::through || !std::isfinite(length)) return mark;
+  const double begin = distance_at(object, from);
+  if (begin < HUGE_VAL && std::abs(begin) > length + (depth + 1) * field.grid.cell) return mark;
+  if (field.sides == Sides::two) {
+    std::vector<Crossing> crossings;
+    triangles->crossings(from, to, crossings);
+    return crossings.empty() ? mark : through;
+  }
+  if (goes_below(object, depth * field.grid.cell, begin, from, to)) return through;
+  return triangles != nullptr ? after_walls(mark, number, *triangles, from, to) : mark;
+}
+
+}  // namespace particles

@@ -1,0 +1,14 @@
+// What a run of a scene uses and builds, what for, and what it leaves out.
+#pragma once
+
+#include "apps/particles/driver.hpp"
+#include "apps/particles/scene/scene.hpp"
+
+#include <string>
+
+namespace particles {
+
+/// For --explain.
+[[nodiscard]] std::string explanation(const Scene& scene, const DriverOptions& options);
+
+}  // namespace particles

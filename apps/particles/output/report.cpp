@@ -1,0 +1,208 @@
+#include "apps/particles/output/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+namespace particles {
+namespace {
+
+constexpr std::array method_names{"exact", "normals", "potential"};
+// In the order of BalanceWhen.
+constexpr std::array when_names{"at_sync", "periodic", "automatic"};
+
+/// The balancer's rounds of a run, summed.
+struct Balanced {
+  explicit Balanced(const std::vector<tess::balance::Round>& of) : rounds(of.size()) {
+    for (const tess::balance::Round& round : of) {
+      moves += round.n_moved;
+      bytes += round.moved_bytes;
+      seconds += round.round_seconds;
+    }
+  }
+  std::uint64_t rounds, moves = 0, bytes = 0;
+  double seconds = 0;
+};
+
+std::string method_of(const Scene& scene) {
+  if (scene.objects.empty()) return "none";
+  const auto name = [](const SceneObject& object) {
+    return std::string(method_names[static_cast<std::size_t>(object.method)]);
+  };
+  for (const SceneObject& object : scene.objects)
+    if (object.method != scene.objects.front().method) return "mixed";
+  return name(scene.objects.front());
+}
+
+FieldCost total(const std::vector<FieldCost>& fields) {
+  FieldCost sum;
+  for (const FieldCost& field : fields) {
+    sum.build_seconds = std::max(sum.build_seconds, field.build_seconds);  // made together
+    sum.cells += field.cells;
+    sum.bytes += field.bytes;
+    sum.bytes_used += field.bytes_used;
+  }
+  return sum;
+}
+
+double per_particle_step(const Scene& scene, double seconds) {
+  const double n = static_cast<double>(scene.n_particles()) * scene.steps;
+  return n > 0 ? seconds * 1e9 / n : 0;
+}
+
+std::string distance_text(double distance) {
+  return distance < HUGE_VAL ? fmt::format("{:.4g}", distance) : "-";
+}
+
+std::string row_text(const Row& row, double dt) {
+  const Measured& m = row.measured;
+  return fmt::format(
+      "  {:>9} {:>10.4g} {:>9} {:>7} {:>13.6e} {:>13.6e} {:>10.4g} {:>10} {:>8} {:>9} {:>9}\n",
+      row.step, row.step * dt, m.particles, m.blocks, m.kinetic.total(), m.energy(), m.fastest,
+      distance_text(m.nearest), m.inside, m.tunnelled, m.nonfinite);
+}
+
+nlohmann::ordered_json json_of(const Row& row, double dt) {
+  const Measured& m = row.measured;
+  nlohmann::ordered_json out;
+  out["step"] = row.step;
+  out["time"] = row.step * dt;
+  out["blocks"] = m.blocks;
+  out["kinetic"] = m.kinetic.total();  // what is not finite is written as null
+  out["energy"] = m.energy();
+  out["fastest"] = m.fastest;
+  if (m.nearest < HUGE_VAL) out["nearest"] = m.nearest;
+  out["inside"] = m.inside;
+  out["tunnelled"] = m.tunnelled;
+  out["nonfinite"] = m.nonfinite;
+  return out;
+}
+
+nlohmann::ordered_json json_of(const StudyRow& row) {
+  nlohmann::ordered_json out;
+  out["part"] = row.part;
+  out["resolution"] = row.resolution;
+  out["method"] = row.method;
+  if (!row.note.empty()) {
+    out["refused"] = row.note;
+    return out;
+  }
+  out["stored"] = row.stored;
+  out["look_up"] = row.look_up;
+  out["rule"] = row.rule;
+  const auto measured = [&out](const char* key, double value) {
+    if (value >= 0) out[key] = value;
+  };
+  measured("step", row.step);
+  measured("build_seconds", row.build_seconds);
+  if (row.bytes != 0) out["bytes"] = row.bytes;
+  measured("distance_error", row.distance_error);
+  measured("distance_error_max", row.distance_error_max);
+  measured("normal_error_degrees", row.normal_error);
+  measured("penetration", row.penetration);
+  measured("place_error", row.place_error);
+  measured("angle_error_degrees", row.angle_error);
+  if (row.lost >= 0) out["lost"] = row.lost;
+  if (row.bounces >= 0) out["bounces"] = row.bounces;
+  measured("ns", row.ns);
+  measured("of_tree", row.relative);
+  return out;
+}
+
+}  // namespace
+
+std::string table(const Scene& scene, const RunResult& result, const Report& report) {
+  const FieldCost fields = total(result.fields);
+  std::string out = fmt::format("{}: {} particles, {} steps of {}\n", scene.name,
+                                scene.n_particles(), scene.steps, scene.dt);
+  const auto line = [&out](const char* name, const std::string& value) {
+    out += fmt::format("  {:<10} {}\n", name, value);
+  };
+  line("machine", report.machine);
+  if (!result.fields.empty())
+    line("fields",
+         fmt::format("{} of method {}, {} cells, {:.3f} MB{}, made in {:.3f} s",
+                     result.fields.size(), method_of(scene), fields.cells,
+                     static_cast<double>(fields.bytes) / 1e6,
+                     scene.compression ? fmt::format(" compressed to {:.3f} MB",
+                                                     static_cast<double>(fields.bytes_used) / 1e6)
+                                       : "",
+                     fields.build_seconds));
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    const double needed = least_wall(scene, object), share = thin_share(scene, object);
+    if (!scene.rules.impact || object.walls.least >= needed) continue;
+    line("thin",
+         fmt::format("{} % of objects[{}] is thinner than {:.3g}: particles may pass there",
+                     share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1", i, needed));
+  }
+  line("blocks", fmt::format("of {:.4g}, particles change them every {} steps", result.block,
+                             result.exchange));
+  out += fmt::format("  {:>9} {:>10} {:>9} {:>7} {:>13} {:>13} {:>10} {:>10} {:>8} {:>9} {:>9}\n",
+                     "step", "time", "particles", "blocks", "kinetic", "energy", "fastest",
+                     "nearest", "inside", "tunnelled", "nonfinite");
+  for (const Row& row : result.rows) out += row_text(row, scene.dt);
+  line("time",
+       fmt::format("{:.4f} s, {:.3f} ns a particle and step, {:.3f} ns of it in the rules{}",
+                   result.seconds, per_particle_step(scene, result.seconds),
+                   per_particle_step(scene, result.loop_seconds),
+                   result.audited ? "; each step looked at" : ""));
+  if (const auto& balance = report.run.balance) {
+    const Balanced of(result.rounds);
+    line("balance",
+         fmt::format("{}: {} rounds moved {} blocks, {:.3f} MB, in {:.4f} s", balance->strategy,
+                     of.rounds, of.moves, static_cast<double>(of.bytes) / 1e6, of.seconds));
+  }
+  line("result", fmt::format("{:016x}", result.rows.back().measured.hash));
+  return out;
+}
+
+std::string json(const Scene& scene, const RunResult& result, const Report& report) {
+  const Measured& begin = result.rows.front().measured;
+  const Measured& end = result.rows.back().measured;
+  const FieldCost fields = total(result.fields);
+  nlohmann::ordered_json out;
+  out["scene"] = scene.name;
+  out["particles"] = scene.n_particles();
+  out["steps"] = scene.steps;
+  out["dt"] = scene.dt;
+  out["pes"] = report.pes;
+  out["processes"] = report.processes;
+  out["machine"] = report.machine;
+  out["ns_per_particle_step"] = per_particle_step(scene, result.seconds);
+  out["ns_in_rules"] = per_particle_step(scene, result.loop_seconds);
+  out["seconds"] = result.seconds;
+  out["field"] = {{"method", method_of(scene)},
+                  {"cells", fields.cells},
+                  {"build_seconds", fields.build_seconds},
+                  {"bytes", fields.bytes},
+                  {"bytes_compressed", nullptr},  // where it is not known
+                  {"stored", scene.compression ? "compressed" : "flat"}};
+  if (report.bytes_compressed) out["field"]["bytes_compressed"] = *report.bytes_compressed;
+  out["nonfinite"] = end.nonfinite;
+  out["tunnelled"] = end.tunnelled;
+  out["tunnelled_found_by"] = result.audited ? "each step" : "last step";
+  out["energy_start"] = begin.energy();
+  out["energy_end"] = end.energy();
+  out["block"] = result.block;
+  out["exchange"] = result.exchange;
+  if (const auto& balance = report.run.balance) {
+    const Balanced of(result.rounds);
+    out["balance"] = {{"strategy", balance->strategy},
+                      {"when", when_names[static_cast<std::size_t>(balance->when)]},
+                      {"rounds", of.rounds},
+                      {"moves", of.moves},
+                      {"bytes", of.bytes},
+                      {"seconds", of.seconds}};
+  }
+  out["result_hash"] = fmt::format("{:016x}", end.hash);
+  out["rows"] = nlohmann::ordered_json::array();
+  for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
+  out["study"] = nlohmann::ordered_json::array();
+  for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
+  // A file's name may be any bytes; JSON holds UTF-8 alone.
+  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace particles

@@ -1,0 +1,85 @@
+#include "apps/particles/scene/scene.hpp"
+
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace particles {
+
+std::uint64_t Scene::n_particles() const {
+  std::uint64_t n = 0;
+  for (const Emitter& emitter : emitters) n += emitter.count;
+  return n;
+}
+
+tess::dn::Rules for_mass(tess::dn::Rules rules, double mass) {
+  if (mass == 1) return rules;
+  if (rules.spring) {
+    rules.spring->stiffness /= mass;
+    rules.spring->damping /= mass;
+  }
+  if (rules.surface_drag) rules.surface_drag->rate /= mass;
+  if (rules.surface_flow) {
+    rules.surface_flow->alpha_in /= mass;
+    rules.surface_flow->alpha_out /= mass;
+  }
+  if (rules.wind) rules.wind->rate /= mass;
+  if (rules.air_drag) rules.air_drag->rate /= mass;
+  for (tess::dn::Explosion& explosion : rules.explosions) explosion.strength /= mass;
+  return rules;
+}
+
+void compress_fields(Scene& scene) {
+  if (!scene.compression) scene.compression.emplace();
+  if (scene.outputs.fields)
+    tess::fail(tess::ErrorCode::bad_value, scene.name,
+               ": outputs.fields: true, and the fields are compressed; files hold what was built, "
+               "leave out one of the two");
+  if (needs_field(scene.rules) && scene.rules.look_up == tess::dn::LookUp::trilinear)
+    tess::fail(
+        tess::ErrorCode::bad_value, scene.name,
+        ": rules.look_up: trilinear cannot ask compressed fields; choose nearest or tangent, "
+        "or leave out the compression");
+}
+
+double least_scale(const Scene& scene, const SceneObject& object) {
+  return object.frame.scale + std::min(0.0, object.frame.scale_rate) * scene.dt * scene.steps;
+}
+
+double greatest_scale(const Scene& scene, const SceneObject& object) {
+  return object.frame.scale + std::max(0.0, object.frame.scale_rate) * scene.dt * scene.steps;
+}
+
+bool builds_fields(const Scene& scene) {
+  return needs_field(scene.rules) || scene.outputs.slice || scene.outputs.fields;
+}
+
+double thin_share(const Scene& scene, const SceneObject& object) {
+  if (!scene.rules.impact || object.sides == tess::dn::Sides::two) return 0;
+  return object.walls.share_thinner_or_slanted(least_wall(scene, object));
+}
+
+double kept_off(const Scene& scene, const SceneObject& object) {
+  return scene.rules.impact ? 2 * scene.rules.impact->threshold / greatest_scale(scene, object) : 0;
+}
+
+double least_wall(const Scene& scene, const SceneObject& object) {
+  const bool nearest = look_up_of(scene.rules) == tess::dn::LookUp::nearest;
+  const double diagonals = !nearest ? 1 : object.frame.is_moving() ? 3 : 1.5;
+  return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(scene, object);
+}
+
+std::string field_file_name(std::size_t object) {
+  return tess::text("field_", object, ".dnf");
+}
+
+std::vector<double> species_of(const Scene& scene) {
+  std::vector<double> masses;
+  for (const Emitter& emitter : scene.emitters)
+    if (std::find(masses.begin(), masses.end(), emitter.mass) == masses.end())
+      masses.push_back(emitter.mass);
+  return masses;
+}
+
+}  // namespace particles

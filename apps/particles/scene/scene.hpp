@@ -1,0 +1,135 @@
+// A scene: objects with their fields and motions, emitters of particles, rules, and what to write.
+// Read once by every process from the same file, then only read. The keys of the file are described
+// by scene_help() and nowhere else.
+#pragma once
+
+#include "collide/dn_field/build/plan.hpp"
+#include "collide/dn_field/field.hpp"
+#include "collide/dn_field/frame.hpp"
+#include "collide/dn_field/rules.hpp"
+#include "collide/dn_field/surface.hpp"
+#include "collide/dn_field/walls.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace particles {
+
+/// An object with the field around it.
+struct SceneObject {
+  std::string name;
+  tess::dn::Surface surface;
+  tess::dn::Grid grid;   ///< of the field
+  double thickness = 0;  ///< of the field beyond the surface, in the object's units
+  tess::dn::Method method = tess::dn::Method::exact;
+  tess::dn::Sides sides = tess::dn::Sides::one;
+  tess::dn::Blur blur;    ///< of the methods that blur; no rounds: chosen from the thickness
+  std::string field;      ///< file that the field is read from; empty: it is built
+  tess::dn::Walls walls;  ///< of one-sided bodies that impacts or springs ask; else none
+  tess::dn::Frame frame;  ///< at the first step, with its velocities
+};
+
+/// How far the voxels of compressed fields may be off: by default no more than nearest look-up adds
+/// by itself.
+struct Compression {
+  double cells = 0.125;  ///< of the distance, in cells of the field
+  double degrees = 3;    ///< of the normal
+};
+
+/// Where particles begin. Particle i of the scene is the same on every PE: its random numbers are
+/// computed from the seed and i.
+struct Emitter {
+  enum class Where : std::uint8_t { box, sphere, lattice, surface } where = Where::box;
+  std::uint64_t count = 0;
+  tess::dn::Vec3 low, high;                       ///< box and lattice: corners
+  tess::dn::Vec3 centre;                          ///< sphere
+  double inner = 0, outer = 0;                    ///< sphere: radii; surface: distances from it
+  std::array<std::uint64_t, 3> lattice{1, 1, 1};  ///< points along each axis
+  std::size_t object = 0;                         ///< surface: of which object
+  tess::dn::Vec3 velocity;
+  double spread = 0;   ///< a random velocity up to this in each component
+  double outward = 0;  ///< speed away from the centre (sphere) or along the normal (surface)
+  double mass = 1;
+  std::uint64_t seed = 1;
+};
+
+/// What a run writes besides its table.
+struct Outputs {
+  int statistics = 0;          ///< a row of the table every so many steps; 0: first and last alone
+  int trajectories = 0;        ///< positions every so many steps; 0: none
+  std::uint64_t traced = 200;  ///< how many particles, evenly spread over the ids
+  int axis = 2;                ///< the pictures look along this axis
+  struct Slice {
+    std::size_t object = 0;
+    double at = 0;  ///< on the axis, in the object's units
+  };
+  std::optional<Slice> slice;  ///< a picture of the field
+  bool fields = false;         ///< files of the fields, for runs to come
+  std::optional<bool> audit;   ///< look at each step for particles that tunnel; absent: chosen
+};
+
+struct Scene {
+  std::string name;  ///< as the user gave the file
+  double dt = 0;
+  int steps = 0;
+  double block = 0;  ///< edge of the blocks of space that carry the particles; 0: chosen
+  int exchange = 0;  ///< particles change blocks every so many steps; 0: chosen
+  std::vector<SceneObject> objects;
+  std::vector<Emitter> emitters;
+  std::optional<Compression> compression;  ///< the fields are compressed; absent: they are flat
+  tess::dn::Rules rules;                   ///< as forces: for_mass() makes accelerations of them
+  Outputs outputs;
+
+  [[nodiscard]] std::uint64_t n_particles() const;
+};
+
+/// The rules for particles of mass `mass`: forces become accelerations, gravity is one.
+[[nodiscard]] tess::dn::Rules for_mass(tess::dn::Rules rules, double mass);
+
+/// The masses of all emitters, each once, in the order of their first emitter.
+[[nodiscard]] std::vector<double> species_of(const Scene& scene);
+
+/// Reads and checks a scene. Throws tess::Error: one line that names the key, the value, and what
+/// is allowed.
+[[nodiscard]] Scene read_scene(const std::string& path);
+
+/// The same from a text; files that it names are looked for beside `name`.
+[[nodiscard]] Scene parse_scene(const std::string& text, const std::string& name);
+
+/// What keys say together: rules, masses, motions, steps and fields must fit one another. Done by
+/// those that read; to be done again by who changes a scene. Throws tess::Error.
+void check_scene(const Scene& scene);
+
+/// The share of an object's surface where particles may pass its field: walls and edges thinner
+/// than least_wall(), and open sheets. 0 for fields of two sides, and without impact.
+[[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
+
+/// Whether anything asks for the fields: rules, a picture, or files of them.
+[[nodiscard]] bool builds_fields(const Scene& scene);
+
+/// Of an object in the whole run.
+[[nodiscard]] double least_scale(const Scene& scene, const SceneObject& object);
+[[nodiscard]] double greatest_scale(const Scene& scene, const SceneObject& object);
+
+/// What the impact's threshold adds to a wall on both sides, in the object's units, at least.
+[[nodiscard]] double kept_off(const Scene& scene, const SceneObject& object);
+
+/// The thickness, in the object's units, that its field needs of a wall: a voxel's diagonal; by
+/// nearest look-up, which errs by half of one wherever it stops and lifts, one and a half, or three
+/// if the object moves; less kept_off().
+[[nodiscard]] double least_wall(const Scene& scene, const SceneObject& object);
+
+/// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's
+/// look-up cannot ask compressed fields, and where files of the fields are asked for.
+void compress_fields(Scene& scene);
+
+/// What a run calls the file of its object's field.
+[[nodiscard]] std::string field_file_name(std::size_t object);
+
+/// All keys of a scene file, with their units and defaults.
+[[nodiscard]] std::string scene_help();
+
+}  // namespace particles

@@ -1,0 +1,148 @@
+#include "apps/particles/simulation/block.hpp"
+
+#include "apps/particles/simulation/observe.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <utility>
+
+namespace particles {
+namespace {
+
+/// CPU time of this thread: what others do on its core does not count.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Whether an explosion acts in these steps, or in one before or after: rounding of times aside.
+bool explodes_within(const Scene& scene, const Stretch& stretch) {
+  const double begin = (stretch.first - 1) * scene.dt,
+               end = (stretch.first + stretch.n_steps + 1) * scene.dt;
+  return std::any_of(scene.rules.explosions.begin(), scene.rules.explosions.end(),
+                     [=](const tess::dn::Explosion& explosion) {
+                       return explosion.start < end && explosion.start + explosion.duration > begin;
+                     });
+}
+
+/// Whether any particle stands outside of the box: one pass without branches, since most stretches
+/// end with none.
+bool any_outside(const tess::dn::Particles& motion, const tess::dn::Bounds& box) {
+  const auto [low, high] = box;
+  std::size_t n = 0;
+  for (std::size_t p = 0; p < motion.size(); ++p)
+    n += static_cast<std::size_t>(!((motion.x[p] >= low.x) & (motion.x[p] < high.x) &
+                                    (motion.y[p] >= low.y) & (motion.y[p] < high.y) &
+                                    (motion.z[p] >= low.z) & (motion.z[p] < high.z)));
+  return n != 0;
+}
+
+}  // namespace
+
+void Block::enter(Arrivals arrivals) {
+  stations_ = arrivals.stations;
+  arrivals_.push_back(std::move(arrivals));
+}
+
+void Block::take_in(std::int32_t step) {
+  for (Arrivals& arrivals : arrivals_) {
+    if (arrivals.step != step) continue;
+    flocks_.resize(std::max(flocks_.size(), arrivals.flocks.size()));
+    for (std::size_t s = 0; s < arrivals.flocks.size(); ++s) flocks_[s].append(arrivals.flocks[s]);
+  }
+  std::erase_if(arrivals_, [step](const Arrivals& arrivals) { return arrivals.step == step; });
+}
+
+void Block::move(const Stretch& stretch) {
+  take_in(stretch.first);
+  std::size_t n_particles = 0;
+  for (const Flock& flock : flocks_) n_particles += flock.size();
+  if (n_particles == 0 && arrivals_.empty()) {
+    destroy();
+    return;
+  }
+  if (n_particles != 0) work(stretch);
+}
+
+void Block::work(const Stretch& stretch) {
+  Station& station = stations_.local();
+  for (std::size_t s = 0; s < flocks_.size(); ++s) advance(s, stretch, station);
+  if (stretch.ask != Stretch::nothing) look(stretch, station);
+  send_leavers(stretch.first + stretch.n_steps, station);
+}
+
+void Block::advance(std::size_t species, const Stretch& stretch, Station& station) {
+  Flock& flock = flocks_[species];
+  if (stretch.n_steps == 0 || flock.size() == 0) return;
+  if (stretch.audit != 0) {
+    advance_audited(flock, species, stretch, station);
+    return;
+  }
+  // An explosion begins at a time: asked step by step, it is the same time for every exchange.
+  const Scene& scene = station.stage().scene;
+  const std::int32_t at_once = explodes_within(scene, stretch) ? 1 : stretch.n_steps;
+  std::vector<tess::dn::Object> objects = station.objects(stretch.first);
+  const double begin = cpu_seconds();
+  for (std::int32_t done = 0; done < stretch.n_steps; done += at_once) {
+    const double time = (stretch.first + done) * scene.dt;
+    station.stepper(species).run(flock.motion.span(), objects, time, at_once);
+    tess::dn::advance(objects, scene.dt, at_once);
+  }
+  station.spent(cpu_seconds() - begin);
+}
+
+void Block::advance_audited(Flock& flock, std::size_t species, const Stretch& stretch,
+                            Station& station) {
+  const Stage& stage = station.stage();
+  const double dt = stage.scene.dt;
+  std::vector<tess::dn::Object> objects = station.objects(stretch.first);
+  for (std::int32_t step = stretch.first; step < stretch.first + stretch.n_steps; ++step) {
+    const tess::dn::Particles before = flock.motion;
+    const double begin = cpu_seconds();
+    const std::vector<tess::dn::Waypoint> waypoints =
+        station.stepper(species).run_once(flock.motion.span(), objects, step * dt);
+    station.spent(cpu_seconds() - begin);
+    note_tunnelled(stage, objects, before, waypoints, flock);
+    tess::dn::advance(objects, dt, 1);
+  }
+}
+
+void Block::look(const Stretch& stretch, Station& station) {
+  const Stage& stage = station.stage();
+  std::vector<tess::dn::Object> objects = station.objects(stretch.first);
+  tess::dn::advance(objects, stage.scene.dt, stretch.n_steps);
+  ++station.measured().blocks;
+  for (std::size_t s = 0; s < flocks_.size(); ++s) {
+    if ((stretch.ask & Stretch::judge) != 0) note_inside(stage, objects, flocks_[s]);
+    if ((stretch.ask & Stretch::measure) != 0)
+      measure(stage, objects, flocks_[s], s, station.measured());
+    if ((stretch.ask & Stretch::trace) != 0) trace(stage, flocks_[s], station.samples());
+  }
+}
+
+void Block::send_leavers(std::int32_t step, Station& station) {
+  const Space& space = station.space();
+  const tess::dn::Bounds box = space.box(index());
+  std::map<tess::Index3, Arrivals> leaving;
+  for (std::size_t s = 0; s < flocks_.size(); ++s) {
+    Flock& flock = flocks_[s];
+    if (!any_outside(flock.motion, box)) continue;
+    for (std::size_t p = flock.size(); p-- > 0;) {
+      const tess::Index3 to = space.block_of(flock.motion.position(p));
+      if (to == index()) continue;
+      Arrivals& arrivals = leaving[to];
+      arrivals.flocks.resize(flocks_.size());
+      arrivals.flocks[s].add(flock, p);
+      flock.remove(p);
+    }
+  }
+  for (auto& [to, arrivals] : leaving) {
+    arrivals.step = step;
+    arrivals.stations = stations_;
+    array()[to].send_or_create_here<&Block::enter>(std::move(arrivals));
+  }
+}
+
+}  // namespace particles

@@ -1,0 +1,37 @@
+// The particles of a scene at the first step. Every number of particle i is computed from the seed
+// of its emitter and i alone, so any PE can make any of them.
+#pragma once
+
+#include "apps/particles/scene/scene.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace particles {
+
+/// A particle by itself: as it is emitted.
+struct Start {
+  tess::dn::Vec3 position, velocity;
+  double mass = 1;
+};
+
+class Source {
+ public:
+  explicit Source(const Scene& scene);
+
+  /// Of all emitters.
+  [[nodiscard]] std::uint64_t size() const { return first_.back(); }
+  /// Particle `id`, 0 … size() − 1: the emitters one behind the other.
+  [[nodiscard]] Start particle(std::uint64_t id) const;
+  /// A box that holds all first positions.
+  [[nodiscard]] tess::dn::Bounds bounds() const;
+
+ private:
+  [[nodiscard]] Start from_surface(const Emitter& emitter, std::uint64_t number) const;
+
+  const Scene& scene_;
+  std::vector<std::uint64_t> first_;        // id of the first particle of each emitter, and the end
+  std::vector<std::vector<double>> areas_;  // of each object that emits: sums up to each triangle
+};
+
+}  // namespace particles

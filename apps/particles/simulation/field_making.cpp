@@ -1,0 +1,118 @@
+#include "apps/particles/simulation/field_making.hpp"
+
+#include "collide/dn_field/field_file.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace particles {
+namespace {
+using namespace tess::dn;
+
+constexpr int block_layers = 4;  // that are built together
+
+/// The layers `first` to `last` − 1.
+struct Layers {
+  int first, last;
+};
+
+/// The part-th of n_parts of them, cut where blocks of layers that are built together end.
+Layers share(Layers of, int part, int n_parts) {
+  const int n_blocks = (of.last - of.first + block_layers - 1) / block_layers;
+  const auto edge = [&](int at) {
+    return std::min(
+        of.last, of.first + block_layers * static_cast<int>(std::int64_t{n_blocks} * at / n_parts));
+  };
+  return {edge(part), edge(part + 1)};
+}
+
+}  // namespace
+
+Content content_of(const Scene& scene) {
+  return scene.outputs.slice || scene.outputs.fields ? Content::distance_and_normal
+                                                     : needed_content(scene.rules);
+}
+
+void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
+  start_ = std::chrono::steady_clock::now();
+  content_ = content;
+  n_parts_ = n_parts;
+  if (!object.field.empty()) {
+    field_ = load_field(object.field);
+    if (content == Content::distance_and_normal && field_.normal.empty())
+      tess::fail(
+          tess::ErrorCode::bad_file, object.field,
+          ": holds no normals, which rules, pictures or files of this scene ask for; take one that "
+          "outputs.fields wrote");
+    return;
+  }
+  grid_ = object.grid;
+  if (object.method == Method::exact) {
+    const ExactOptions options{object.sides, content, object.thickness, {}};
+    field_ = exact_.emplace(object.surface, object.grid, options).empty_field();
+    slabs_.assign(static_cast<std::size_t>(grid_.n[2]), {});
+  } else {
+    const BlurredOptions options{object.method, object.sides, object.thickness, object.blur, {}};
+    blurred_.emplace(object.surface, object.grid, options);
+  }
+}
+
+int FieldInTheMaking::n_distance_stages() const {
+  constexpr std::size_t voxels_a_stage = std::size_t{1} << 24U;  // some tenths of a second
+  // Each with blocks enough for all parts.
+  const auto most =
+      static_cast<std::size_t>(std::max(1, grid_.n[2] / (4 * block_layers * n_parts_)));
+  return static_cast<int>(std::min(most, grid_.size() / voxels_a_stage + 1));
+}
+
+int FieldInTheMaking::n_stages() const {
+  if (exact_) return n_distance_stages();
+  return blurred_ ? n_distance_stages() + blurred_->n_rounds() : 0;
+}
+
+void FieldInTheMaking::fill(int stage, int part) {
+  if (stage >= n_stages()) return;
+  const Layers all{0, grid_.n[2]};
+  const int round = stage - n_distance_stages();
+  const Layers mine =
+      share(round < 0 ? share(all, stage, n_distance_stages()) : all, part, n_parts_);
+  if (mine.first == mine.last) return;
+  if (round >= 0)
+    blurred_->build_round(round, mine.first, mine.last);
+  else if (blurred_)
+    blurred_->build_distances(mine.first, mine.last);
+  else
+    slabs_[static_cast<std::size_t>(mine.first)] =
+        exact_->build(slab_of(field_, mine.first, mine.last));
+}
+
+void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
+  if (exact_) exact_->finish(field_, slabs_);
+  if (blurred_) field_ = blurred_->finish();
+  exact_.reset();
+  blurred_.reset();
+  if (content_ == Content::distance)
+    field_.normal = std::vector<std::uint32_t>();  // and the memory
+  flat_bytes_ = field_.bytes();
+  if (compression) {
+    compressed_ = compress(field_, bound_of(*compression, field_));
+    field_ = outline(*compressed_);
+  }
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+BuiltField build_alone(const SceneObject& object, Content content) {
+  FieldInTheMaking making;
+  making.begin(object, content, 1);
+  for (int stage = 0; stage < making.n_stages(); ++stage) making.fill(stage, 0);
+  making.finish();
+  const double seconds = making.seconds();
+  return {std::move(making).take(), seconds};
+}
+
+ErrorBound bound_of(const Compression& compression, const Field& field) {
+  return {compression.cells * field.grid.cell, compression.degrees * std::numbers::pi / 180};
+}
+
+}  // namespace particles

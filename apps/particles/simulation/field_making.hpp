@@ -1,0 +1,81 @@
+// The fields of a scene's objects in the making: built once a process by all its PEs, or read from
+// a file, then only read.
+#pragma once
+
+#include "apps/particles/scene/scene.hpp"
+#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/compressed.hpp"
+#include "collide/dn_field/stepper.hpp"
+
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace particles {
+
+/// What the fields of this scene must hold: what its rules need, and normals for pictures and
+/// files.
+[[nodiscard]] tess::dn::Content content_of(const Scene& scene);
+
+/// The field of an object in the making: begun by one PE of the process, filled by all in stages,
+/// finished by one. The field does not depend on how many there are.
+class FieldInTheMaking {
+ public:
+  /// The part that is one PE's: a tree of the triangles, and for the methods that blur the voxels
+  /// of the surface; or the whole field from a file. Throws Error(bad_file) for one without normals
+  /// where `content` has them.
+  void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
+  /// Known once begun; none for a field from a file.
+  [[nodiscard]] int n_stages() const;
+  /// Fills one of the parts in a stage, if there is one of that number. Different parts at once,
+  /// all before the next stage begins.
+  void fill(int stage, int part);
+  /// With a compression the flat arrays are given up for the compressed field.
+  void finish(const std::optional<Compression>& compression = {});
+
+  /// The flat field; of a compressed one its outline.
+  [[nodiscard]] const tess::dn::Field& field() const { return field_; }
+  [[nodiscard]] const std::optional<tess::dn::CompressedField>& compressed() const {
+    return compressed_;
+  }
+  /// The flat field, moved out.
+  [[nodiscard]] tess::dn::Field take() && { return std::move(field_); }
+  /// What the step loop asks, for an object that stands there.
+  [[nodiscard]] tess::dn::Object object(const tess::dn::Frame& frame,
+                                        const tess::dn::Bvh* triangles) const {
+    return {&field_, frame, compressed_ ? &*compressed_ : nullptr, triangles};
+  }
+  /// Bytes of the flat field, whether it is kept or not.
+  [[nodiscard]] std::uint64_t flat_bytes() const { return flat_bytes_; }
+  /// From begin() to finish().
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  /// Of large fields more than one, so that somebody who waits sees them go by.
+  [[nodiscard]] int n_distance_stages() const;
+
+  std::optional<tess::dn::ExactBuilder> exact_;
+  std::optional<tess::dn::BlurredBuilder> blurred_;
+  tess::dn::Content content_ = tess::dn::Content::distance_and_normal;
+  tess::dn::Field field_;
+  std::optional<tess::dn::CompressedField> compressed_;
+  std::uint64_t flat_bytes_ = 0;
+  int n_parts_ = 0;
+  tess::dn::Grid grid_;
+  std::vector<tess::dn::BuiltSlab> slabs_;  // by their first layer
+  std::chrono::steady_clock::time_point start_;
+  double seconds_ = 0;
+};
+
+/// A field that was built by one thread, and what it took.
+struct BuiltField {
+  tess::dn::Field field;
+  double seconds = 0;
+};
+[[nodiscard]] BuiltField build_alone(const SceneObject& object, tess::dn::Content content);
+
+[[nodiscard]] tess::dn::ErrorBound bound_of(const Compression& compression,
+                                            const tess::dn::Field& field);
+
+}  // namespace particles

@@ -1,0 +1,33 @@
+// Particles of one species together, with what each of them carries besides its motion. They are
+// independent of one another: their order means nothing, an id names a particle.
+#pragma once
+
+#include "apps/particles/audit/passage.hpp"
+#include "collide/dn_field/particles.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace particles {
+
+struct Flock {
+  tess::dn::Particles motion;
+  std::vector<std::uint64_t> ids;
+  std::vector<Mark> marks;  ///< for the audit
+
+  [[nodiscard]] std::size_t size() const { return ids.size(); }
+
+  void add(std::uint64_t id, tess::dn::Vec3 position, tess::dn::Vec3 velocity, Mark mark) {
+    motion.push_back(position, velocity);
+    ids.push_back(id);
+    marks.push_back(mark);
+  }
+  void add(const Flock& other, std::size_t p) {
+    add(other.ids[p], other.motion.position(p), other.motion.velocity(p), other.marks[p]);
+  }
+  void append(const Flock& other);
+  /// Takes out particle p; the last one takes its place.
+  void remove(std::size_t p);
+};
+
+}  // namespace particles

@@ -1,0 +1,106 @@
+#include "apps/particles/simulation/observe.hpp"
+
+#include "apps/particles/audit/fields.hpp"
+#include "apps/particles/audit/passage.hpp"
+#include "collide/dn_field/step/leg.hpp"
+#include "runtime/core/hash.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace particles {
+namespace {
+using tess::dn::Object;
+using tess::dn::Vec3;
+
+std::uint64_t hash_of(std::uint64_t id, Vec3 position, Vec3 velocity) {
+  std::uint64_t hash = tess::mix(id);
+  for (const double value :
+       {position.x, position.y, position.z, velocity.x, velocity.y, velocity.z})
+    hash = tess::mix(hash ^ std::bit_cast<std::uint64_t>(value));
+  return hash;
+}
+
+/// The least signed distance to an object that reaches here; HUGE_VAL where none does.
+double least_distance(const std::vector<Object>& objects, Vec3 p) {
+  double least = HUGE_VAL;
+  for (const Object& object : objects)
+    least = std::min(least, object.frame.scale * distance_at(object, object.frame.to_object(p)));
+  return least;
+}
+
+}  // namespace
+
+void measure(const Stage& stage, const std::vector<Object>& objects, const Flock& flock,
+             std::size_t species, Measured& into) {
+  const double mass = stage.masses[species];
+  const auto& gravity = stage.scene.rules.gravity;
+  const Vec3 down = gravity ? gravity->acceleration : Vec3{};
+  for (std::size_t p = 0; p < flock.size(); ++p) {
+    const Vec3 position = flock.motion.position(p), velocity = flock.motion.velocity(p);
+    ++into.particles;
+    into.tunnelled += static_cast<std::uint64_t>(flock.marks[p].what == Mark::through);
+    into.hash += hash_of(flock.ids[p], position, velocity);
+    if (!is_finite(position) || !is_finite(velocity)) {
+      ++into.nonfinite;
+      continue;
+    }
+    const double distance = least_distance(objects, position);
+    into.inside += static_cast<std::uint64_t>(distance < 0);
+    into.nearest = std::min(into.nearest, distance);
+    into.fastest = std::max(into.fastest, norm(velocity));
+    into.kinetic.add(0.5 * mass * dot(velocity, velocity));
+    into.potential.add(-mass * dot(down, position));
+  }
+}
+
+bool is_traced(std::uint64_t id, std::uint64_t n, std::uint64_t traced) {
+  if (traced >= n) return true;
+  return id * traced % n < traced;  // below 1e18: there are at most 1e9 particles
+}
+
+void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into) {
+  const std::uint64_t n = stage.source.size(), traced = stage.scene.outputs.traced;
+  for (std::size_t p = 0; p < flock.size(); ++p)
+    if (is_traced(flock.ids[p], n, traced))
+      into.push_back({flock.ids[p], flock.motion.position(p), flock.motion.velocity(p)});
+}
+
+void note_tunnelled(const Stage& stage, const std::vector<Object>& at_begin,
+                    const tess::dn::Particles& before,
+                    std::span<const tess::dn::Waypoint> waypoints, Flock& flock) {
+  const double depth = greatest_depth(stage.scene.rules);
+  std::vector<tess::dn::Leg> legs;
+  for (std::size_t o = 0; o < at_begin.size(); ++o) {
+    const Audited audited{static_cast<std::uint16_t>(o), at_begin[o], depth};
+    for (std::size_t p = 0; p < flock.size(); ++p) {
+      Mark& mark = flock.marks[p];
+      const auto has_passed = [&](Vec3 from, Vec3 to) {
+        mark = mark_after(mark, audited, from, to);
+        return mark.what == Mark::through;
+      };
+      if (mark.what == Mark::through) continue;
+      find_legs(p, before.position(p), waypoints, flock.motion.position(p), legs);
+      for (const tess::dn::Leg& leg : legs)
+        if (any_piece(at_begin[o].frame, stage.scene.dt, leg, has_passed)) break;
+    }
+  }
+}
+
+void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& flock) {
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    const tess::dn::Field& field = *objects[o].field;
+    if (field.sides == tess::dn::Sides::two) continue;
+    const double deepest = -greatest_depth(stage.scene.rules) * field.grid.cell;
+    for (std::size_t p = 0; p < flock.size(); ++p) {
+      const Vec3 now = objects[o].frame.to_object(flock.motion.position(p));
+      if (!(distance_at(objects[o], now) < deepest)) continue;
+      const Vec3 start =
+          stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
+      if (!(distance_at(objects[o], start) < deepest))
+        flock.marks[p] = {Mark::through, 0, static_cast<std::uint16_t>(o)};
+    }
+  }
+}
+
+}  // namespace particles

@@ -1,0 +1,167 @@
+#include "apps/particles/simulation/simulate.hpp"
+
+#include "apps/particles/simulation/block.hpp"
+#include "runtime/balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace particles {
+namespace {
+
+/// The next multiple of `every` after `step`; `last` where there is none before.
+std::int32_t next_after(std::int32_t step, std::int32_t every, std::int32_t last) {
+  if (every <= 0) return last;
+  return static_cast<std::int32_t>(
+      std::min<std::int64_t>((std::int64_t{step} / every + 1) * every, last));
+}
+
+/// What is to be looked at after `step` steps.
+std::uint32_t asked(const Scene& scene, std::int32_t step) {
+  const Outputs& outputs = scene.outputs;
+  const bool at_end = step == 0 || step == scene.steps;
+  std::uint32_t ask = Stretch::nothing;
+  if (at_end || (outputs.statistics > 0 && step % outputs.statistics == 0)) ask |= Stretch::measure;
+  if (outputs.trajectories > 0 && (at_end || step % outputs.trajectories == 0))
+    ask |= Stretch::trace;
+  if (step == scene.steps && !is_audited(scene)) ask |= Stretch::judge;
+  return ask;
+}
+
+}  // namespace
+
+bool is_audited(const Scene& scene) {
+  constexpr double affordable = 2e7;
+  if (!needs_field(scene.rules)) return false;
+  return scene.outputs.audit.value_or(static_cast<double>(scene.n_particles()) * scene.steps <=
+                                      affordable);
+}
+
+bool keeps_triangles(const Scene& scene, const SceneObject& object) {
+  const bool sheet = object.sides == tess::dn::Sides::two,
+             thin = object.walls.least < 2 * least_wall(scene, object);
+  return (sheet && scene.rules.impact) || ((sheet || thin) && is_audited(scene));
+}
+
+double block_edge(const Scene& scene) {
+  constexpr double particles_a_block = 2000, most_an_axis = 8;
+  if (scene.block > 0) return scene.block;
+  const tess::dn::Vec3 size = Source(scene).bounds().size();
+  const double longest = std::max({size.x, size.y, size.z});
+  const double an_axis = std::cbrt(static_cast<double>(scene.n_particles()) / particles_a_block);
+  return longest > 0 ? longest / std::clamp(an_axis, 1.0, most_an_axis) : 1;
+}
+
+std::int32_t exchange_interval(const Scene& scene) {
+  constexpr int usual = 8;
+  return scene.exchange > 0 ? scene.exchange : usual;
+}
+
+tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options) {
+  tess::Pe& pe = tess::current_pe();
+  const Scene& scene = stage->scene;
+  const StageHandle handle{stage};
+  const auto stations = tess::create_group<Station>();
+  const auto blocks = tess::create<Block>(tess::sparse);
+  const auto now_at = [&](const char* phase) {
+    if (options.progress != nullptr) options.progress->phase(phase);
+  };
+  const auto now_at_part = [&](int part, int n_parts) {
+    if (options.progress != nullptr)
+      options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+  };
+  const auto hand_out = [&] {
+    const std::int32_t each = pe.machine().pes_per_process();
+    for (std::int32_t first = 0; first < pe.n_pes(); first += each)
+      stations[tess::PeId{first}].send<&Station::take>(handle);
+  };
+  co_await tess::epoch(hand_out);
+  now_at("building fields");
+  const auto begin_fields = [&] { stations.broadcast<&Station::begin_fields>(); };
+  co_await tess::epoch(begin_fields);
+  int n_stages = 0;  // the same in all processes
+  for (const FieldInTheMaking& field : stage->fields)
+    n_stages = std::max(n_stages, field.n_stages());
+  std::int32_t filled = 0;
+  const auto fill_fields = [&] { stations.broadcast<&Station::fill_fields>(filled); };
+  for (; filled < n_stages; ++filled) {
+    now_at_part(filled + 1, n_stages);
+    co_await tess::epoch(fill_fields);
+  }
+  now_at_part(0, 0);
+  const auto finish_fields = [&] { stations.broadcast<&Station::finish_fields>(); };
+  co_await tess::epoch(finish_fields);
+  result.block = block_edge(scene);
+  result.exchange = exchange_interval(scene);
+  result.audited = is_audited(scene);
+  const auto prepare = [&] { stations.broadcast<&Station::prepare>(result.block); };
+  co_await tess::epoch(prepare);
+  now_at("placing particles");
+  const tess::Time before_emission = pe.now();
+  const auto emit = [&] { stations.broadcast<&Station::emit>(blocks); };
+  co_await tess::epoch(emit);
+  result.emit_seconds = tess::seconds(pe.now() - before_emission);
+
+  tess::BalancerProxy balancer;
+  const auto begin_balancing = [&] { balancer = tess::start_balancing(blocks, *options.balance); };
+  if (options.balance) {
+    co_await tess::epoch(begin_balancing);
+    co_await balancer.begin_phase();
+  }
+  const bool rounds_between =
+      options.balance && options.balance->when != tess::BalanceWhen::periodic;
+
+  Stretch stretch;
+  stretch.audit = result.audited ? 1 : 0;
+  const auto move = [&] { blocks.broadcast<&Block::move>(stretch); };
+  std::int32_t step = 0;
+  now_at("steps");
+  while (true) {
+    now_at_part(step, scene.steps);
+    stretch.first = step;
+    stretch.n_steps = 0;
+    stretch.ask = asked(scene, step);
+    if (stretch.ask != Stretch::nothing) co_await tess::epoch(move);
+    if ((stretch.ask & Stretch::measure) != 0) {
+      tess::Future<Measured> measured;
+      stations.broadcast<&Station::give_measured>(measured.callback());
+      Measured all = co_await measured;
+      result.rows.push_back({step, all});
+    }
+    if ((stretch.ask & Stretch::trace) != 0) {
+      tess::Future<std::vector<Sample>> samples;
+      stations.broadcast<&Station::give_samples>(samples.callback());
+      std::vector<Sample> all = co_await samples;
+      std::sort(all.begin(), all.end(),
+                [](const Sample& a, const Sample& b) { return a.id < b.id; });
+      result.trajectories.push_back({step, std::move(all)});
+    }
+    if (step == scene.steps) break;
+    const Outputs& outputs = scene.outputs;
+    const std::int32_t to = std::min({next_after(step, result.exchange, scene.steps),
+                                      next_after(step, outputs.statistics, scene.steps),
+                                      next_after(step, outputs.trajectories, scene.steps)});
+    stretch.n_steps = to - step;
+    stretch.ask = Stretch::nothing;
+    const tess::Time begin = pe.now();
+    co_await tess::epoch(move);
+    if (rounds_between) co_await balancer.round();
+    result.seconds += tess::seconds(pe.now() - begin);
+    step = to;
+  }
+  if (options.balance) result.rounds = balancer.history();
+  tess::Future<double> loop;
+  stations.broadcast<&Station::give_seconds>(loop.callback());
+  result.loop_seconds = co_await loop;
+  tess::Future<std::vector<double>> build_seconds;
+  stations.broadcast<&Station::give_build_seconds>(build_seconds.callback());
+  const std::vector<double> built = co_await build_seconds;
+  for (std::size_t i = 0; i < built.size(); ++i) {
+    const tess::dn::Field& field = stage->fields[i].field();
+    result.fields.push_back({built[i], field.grid.size(), stage->fields[i].flat_bytes()});
+    if (const auto& compressed = stage->fields[i].compressed())
+      result.fields.back().bytes_used = compressed->bytes();
+  }
+}
+
+}  // namespace particles

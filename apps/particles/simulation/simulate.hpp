@@ -1,0 +1,72 @@
+// One run of a scene on the runtime: fields are built, particles sent to their blocks, and moved
+// stretch by stretch, each closed by an epoch. What it gives does not depend on PEs, processes,
+// blocks or schedule, times excepted.
+#pragma once
+
+#include "apps/particles/audit/measured.hpp"
+#include "apps/particles/scene/scene.hpp"
+#include "apps/particles/simulation/station.hpp"
+#include "apps/progress.hpp"
+#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance/rounds/round.hpp"
+#include "runtime/runtime.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace particles {
+
+/// What is measured after so many steps.
+struct Row {
+  std::int32_t step = 0;
+  Measured measured;
+};
+
+/// Where the traced particles are after so many steps; in the order of ids.
+struct Snapshot {
+  std::int32_t step = 0;
+  std::vector<Sample> samples;
+};
+
+struct FieldCost {
+  double build_seconds = 0;
+  std::uint64_t cells = 0, bytes = 0;  ///< of the flat field
+  std::uint64_t bytes_used = 0;        ///< of the compressed one, where the run uses that
+};
+
+struct RunResult {
+  std::vector<Row> rows;  ///< the first before the first step, the last after the last
+  std::vector<Snapshot> trajectories;
+  std::vector<FieldCost> fields;
+  double seconds = 0;       ///< of all steps, exchanges included, looking excluded
+  double loop_seconds = 0;  ///< CPU in the step loops, summed over PEs
+  double emit_seconds = 0;
+  bool audited = false;
+  double block = 0;
+  std::int32_t exchange = 0;
+  std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
+};
+
+/// How a run is carried out; no result depends on it.
+struct RunOptions {
+  /// Blocks migrate: by rounds after each exchange of particles, where that is worth it, or beside
+  /// the work (see runtime/balance.hpp). Absent: they stay, and no load is measured.
+  std::optional<tess::BalanceOptions> balance{};
+  apps::Progress* progress = nullptr;  ///< is told what the run is at, if there is one
+};
+
+/// Whether a run of this scene looks at each step for particles that tunnel.
+[[nodiscard]] bool is_audited(const Scene& scene);
+
+/// Whether a run keeps the triangles of an object beside its field: for impacts on sheets, and for
+/// the audit of sheets and thin walls.
+[[nodiscard]] bool keeps_triangles(const Scene& scene, const SceneObject& object);
+
+/// The edge of blocks and the steps between exchanges that a run of this scene uses.
+[[nodiscard]] double block_edge(const Scene& scene);
+[[nodiscard]] std::int32_t exchange_interval(const Scene& scene);
+
+/// Runs the scene from PE 0. `stage`: of this process; its fields are there afterwards.
+tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options = {});
+
+}  // namespace particles

@@ -1,0 +1,134 @@
+#include "apps/particles/simulation/station.hpp"
+
+#include "apps/particles/simulation/block.hpp"
+#include "apps/particles/simulation/simulate.hpp"
+
+#include <map>
+#include <new>
+#include <utility>
+
+namespace particles {
+namespace {
+
+/// The PEs of this process: the first and how many.
+std::pair<std::int32_t, std::int32_t> pes_of_process() {
+  tess::Pe& pe = tess::current_pe();
+  const std::int32_t each = pe.machine().pes_per_process();
+  return {pe.id().value / each * each, each};
+}
+
+}  // namespace
+
+void Station::take(StageHandle handle) {
+  stage_ = handle.stage;
+  const auto [first, n] = pes_of_process();
+  if (pe().value != first) return;
+  for (std::int32_t i = 1; i < n; ++i) group()[tess::PeId{first + i}].send<&Station::take>(handle);
+}
+
+template <class Action>
+void Station::make(std::size_t field, const Action& action) {
+  const Scene& scene = stage_->scene;
+  try {
+    action(stage_->fields[field]);
+  } catch (const tess::Error& error) {
+    tess::fail(error.code(), scene.name, ": objects[", field, "]: ", error.what());
+  } catch (const std::bad_alloc&) {
+    tess::fail(tess::ErrorCode::environment, scene.name, ": objects[", field,
+               "]: memory does not hold a field of ", scene.objects[field].grid.n[0],
+               "³ voxels; lower its resolution");
+  }
+}
+
+void Station::begin_fields() {
+  const auto [first, n] = pes_of_process();
+  const auto mine = static_cast<std::size_t>(pe().value - first);
+  const Scene& scene = stage_->scene;
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
+    make(i, [&, parts = n](FieldInTheMaking& field) {
+      const SceneObject& object = scene.objects[i];
+      field.begin(object, content_of(scene), parts);
+      if (keeps_triangles(scene, object)) stage_->triangles[i].emplace(object.surface);
+    });
+}
+
+void Station::fill_fields(std::int32_t stage) {
+  const std::int32_t part = pe().value - pes_of_process().first;
+  for (std::size_t i = 0; i < stage_->fields.size(); ++i)
+    make(i, [&](FieldInTheMaking& field) { field.fill(stage, part); });
+}
+
+void Station::finish_fields() {
+  const auto [first, n] = pes_of_process();
+  const auto mine = static_cast<std::size_t>(pe().value - first);
+  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
+    make(i, [&](FieldInTheMaking& field) { field.finish(stage_->scene.compression); });
+}
+
+void Station::prepare(double block_edge) {
+  space_ = Space::around(stage_->source.bounds(), block_edge);
+  if (stage_->collides()) objects_ = stage_->objects();
+  for (const double mass : stage_->masses) {
+    const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
+    try {
+      validate(rules, objects_);
+    } catch (const tess::Error& error) {
+      tess::fail(error.code(), stage_->scene.name, ": objects: ", error.what());
+    }
+    steppers_.push_back(tess::dn::make_stepper(rules, stage_->scene.dt));
+  }
+}
+
+void Station::emit(tess::ArrayProxy<Block> blocks) {
+  constexpr std::size_t most_a_message = 16384;
+  const Stage& stage = *stage_;
+  const std::uint64_t n = stage.source.size();
+  const auto rank = static_cast<std::uint64_t>(pe().value),
+             n_pes = static_cast<std::uint64_t>(tess::current_pe().n_pes());
+  const std::uint64_t begin = n * rank / n_pes, end = n * (rank + 1) / n_pes;
+  std::map<tess::Index3, Arrivals> leaving;
+  const auto send = [&](tess::Index3 to, Arrivals& arrivals) {
+    blocks[to].send_or_create_home<&Block::enter>(std::move(arrivals));
+  };
+  for (std::uint64_t id = begin; id < end; ++id) {
+    const Start start = stage.source.particle(id);
+    const tess::Index3 to = space_.block_of(start.position);
+    Arrivals& arrivals = leaving[to];
+    arrivals.stations = group();
+    arrivals.flocks.resize(stage.masses.size());
+    const auto species = static_cast<std::size_t>(
+        std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
+    arrivals.flocks[species].add(id, start.position, start.velocity, Mark{});
+    if (arrivals.flocks[species].size() < most_a_message) continue;
+    send(to, arrivals);
+    leaving.erase(to);
+  }
+  for (auto& [to, arrivals] : leaving) send(to, arrivals);
+}
+
+const std::vector<tess::dn::Object>& Station::objects(std::int32_t step) {
+  TESS_CHECK(step >= at_step_, "the objects stand at step ", at_step_, ", not back at ", step);
+  if (step > at_step_) tess::dn::advance(objects_, stage_->scene.dt, step - at_step_);
+  at_step_ = step;
+  return objects_;
+}
+
+void Station::give_measured(tess::Callback<Measured> target) {
+  contribute(JoinMeasured{}, std::exchange(measured_, {}), std::move(target));
+}
+
+void Station::give_samples(tess::Callback<std::vector<Sample>> target) {
+  contribute(tess::concatenate, std::exchange(samples_, {}), std::move(target));
+}
+
+void Station::give_seconds(tess::Callback<double> target) {
+  contribute(tess::in_order(tess::sum), spent_, std::move(target));
+}
+
+void Station::give_build_seconds(tess::Callback<std::vector<double>> target) {
+  std::vector<double> seconds;
+  for (const FieldInTheMaking& field : stage_->fields) seconds.push_back(field.seconds());
+  contribute(tess::max, std::move(seconds), std::move(target));
+}
+
+}  // namespace particles

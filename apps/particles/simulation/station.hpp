@@ -1,0 +1,77 @@
+// What the blocks on a PE have in common: a group, one member a PE. It holds the stage of its
+// process, the step loops, the objects where they stand now, and takes what the blocks measure.
+#pragma once
+
+#include "apps/particles/audit/measured.hpp"
+#include "apps/particles/simulation/space.hpp"
+#include "apps/particles/simulation/stage.hpp"
+#include "runtime/runtime.hpp"
+
+#include <vector>
+
+namespace particles {
+
+class Block;
+
+/// A run of steps between two exchanges of particles; the same for all blocks.
+struct Stretch {
+  enum Ask : std::uint32_t { nothing = 0, measure = 1, trace = 2, judge = 4 };
+  std::int32_t first = 0;       ///< steps done before
+  std::int32_t n_steps = 0;     ///< may be 0: to look without moving
+  std::uint32_t ask = nothing;  ///< at the end; judge: who ended inside an object
+  std::uint32_t audit = 0;      ///< 1: each step is looked at for particles that tunnel
+};
+
+/// A traced particle at one time.
+struct Sample {
+  std::uint64_t id = 0;
+  tess::dn::Vec3 position, velocity;
+};
+
+class Station : public tess::Group<Station> {
+ public:
+  // Set-up, an epoch each. The first PEs of processes take the stage, and pass it on; all build.
+  void take(StageHandle handle);
+  void begin_fields();
+  void fill_fields(std::int32_t stage);
+  void finish_fields();
+  void prepare(double block_edge);
+  /// Makes this PE's share of the particles and sends them to their blocks.
+  void emit(tess::ArrayProxy<Block> blocks);
+
+  // For the blocks of this PE.
+  [[nodiscard]] const Stage& stage() const { return *stage_; }
+  [[nodiscard]] const Space& space() const { return space_; }
+  [[nodiscard]] const tess::dn::Stepper& stepper(std::size_t species) const {
+    return steppers_[species];
+  }
+  /// The objects as they stand after so many steps; forward only.
+  [[nodiscard]] const std::vector<tess::dn::Object>& objects(std::int32_t step);
+  [[nodiscard]] Measured& measured() { return measured_; }
+  [[nodiscard]] std::vector<Sample>& samples() { return samples_; }
+  void spent(double seconds) { spent_ += seconds; }
+
+  // Reductions; each empties what it gives.
+  void give_measured(tess::Callback<Measured> target);
+  void give_samples(tess::Callback<std::vector<Sample>> target);
+  /// Seconds of CPU in the step loop on this PE.
+  void give_seconds(tess::Callback<double> target);
+  /// Seconds of building each field, as its process measured them.
+  void give_build_seconds(tess::Callback<std::vector<double>> target);
+
+ private:
+  /// Does `action` to a field; what it throws is said of its object.
+  template <class Action>
+  void make(std::size_t field, const Action& action);
+
+  std::shared_ptr<Stage> stage_;
+  Space space_;
+  std::vector<tess::dn::Stepper> steppers_;
+  std::vector<tess::dn::Object> objects_;
+  std::int32_t at_step_ = 0;  // where objects_ stand
+  Measured measured_;
+  std::vector<Sample> samples_;
+  double spent_ = 0;
+};
+
+}  // namespace particles

@@ -1,0 +1,169 @@
+#include "apps/particles/stability/parts.hpp"
+
+#include <algorithm>
+
+namespace tess::dn {
+namespace stability {
+namespace {
+
+const Vec3 up{0, 0, 1};
+constexpr double decades[] = {1e-6, 1e-4, 1e-2, 0.25, 1, 4, 1e2, 1e4, 1e6};
+
+/// A bounce off the spring, with exit speed and place from the closed form.
+void spring(Rows& rows) {
+  const Field floor = plane_field(cube_grid(2, 9), up);
+  const Object object{&floor, {}};
+  const double speed = 0.5, start = 0.3;
+  for (const double stiffness : decades) {
+    // k dt²; the contact must be shallower than the field, and the run end in flight.
+    for (const double ratio : {0.0, 0.5}) {
+      const double omega0 = std::max(1.0, std::sqrt(stiffness)),
+                   step = std::sqrt(stiffness) / omega0;
+      const double gamma = ratio * omega0, omega = std::sqrt(omega0 * omega0 - gamma * gamma);
+      Rules rules;
+      rules.spring = Spring{omega0 * omega0, 2 * gamma, 0};
+      const double contact = 3.14159265358979323846 / omega;
+      const int n_steps = static_cast<int>(std::ceil((start / speed + contact + 0.2) / step));
+      const Particle end =
+          flown(rules, step, n_steps, {&object, 1}, {{0, 0, start}, {0, 0, -speed}});
+      const double leaving = speed * std::exp(-gamma * contact);
+      const double height = leaving * (n_steps * step - start / speed - contact);
+      const char* name = ratio > 0 ? "spring, half damped" : "spring";
+      rows.add(name, "k dt²/m", stiffness, std::abs(end.velocity.z - leaving) / speed, 2e-6);
+      rows.add(std::string(name) + ": place", "k dt²/m", stiffness,
+               std::abs(end.position.z - height), 2e-5);
+    }
+  }
+}
+
+void drag(Rows& rows) {
+  const Field floor = plane_field(cube_grid(2, 9), up);
+  const Object object{&floor, {}};
+  const double speed = 0.3;
+  for (const double rate : decades) {
+    const int n_steps = 5;
+    const double kept = std::exp(-rate * n_steps), way = -std::expm1(-rate * n_steps) / rate;
+    Rules air;
+    air.air_drag = AirDrag{rate, DragLaw::linear};
+    Particle end = flown(air, 1, n_steps, {}, {{}, {speed, 0, 0}});
+    rows.add("air drag", "c dt/m", rate, std::abs(end.velocity.x / speed - kept), 1e-13);
+    rows.add("air drag: way", "c dt/m", rate, std::abs(end.position.x / (speed * way) - 1), 1e-12);
+    Rules surface;
+    surface.surface_drag = SurfaceDrag{rate, 1, DragLaw::linear};
+    end = flown(surface, 1, n_steps, {&object, 1}, {{-0.5, 0, 0.5}, {speed, 0, 0}});
+    rows.add("surface drag", "c dt/m", rate, std::abs(end.velocity.x / speed - kept), 1e-13);
+    Rules fall = air;
+    fall.gravity = Gravity{{-0.7, 0, 0}};
+    end = flown(fall, 1, n_steps, {}, {{}, {speed, 0, 0}});
+    const double limit = -0.7 / rate, expected = limit + (speed - limit) * kept;
+    rows.add("fall with drag", "c dt/m", rate, std::abs(end.velocity.x / expected - 1), 1e-9);
+    Rules quadratic;
+    quadratic.air_drag = AirDrag{rate, DragLaw::quadratic};
+    end = flown(quadratic, 1, n_steps, {}, {{}, {speed, 0, 0}});
+    rows.add("quadratic air drag", "c |v| dt", rate * speed,
+             std::abs(end.velocity.x / speed * (1 + rate * speed * n_steps) - 1), 1e-12);
+  }
+}
+
+/// From 45°: |V| is kept, the angle falls monotonically, and as fast as it should.
+void surface_flow(Rows& rows) {
+  const Field floor = plane_field(cube_grid(2, 9), up);
+  const Object object{&floor, {}};
+  const double pi = 3.14159265358979323846;
+  for (const double alpha : decades) {
+    Rules rules;
+    rules.surface_flow = SurfaceFlow{alpha, alpha, 10};
+    const double speed = 1e-3, step = 1, total = 0.25 * pi * speed / alpha;  // to the tangent
+    double kept = 0, off = 0, rising = 0;
+    for (const double sign : {-1.0, 1.0}) {
+      Particle now{{0, 0, 0.5}, speed * std::sqrt(0.5) * Vec3{1, 0, sign}};
+      double before = 0.25 * pi;
+      for (int i = 1; i <= 100; ++i) {
+        now = flown(rules, step, 1, {&object, 1}, now);
+        now.position = {0, 0, 0.5};
+        const double angle = std::atan2(sign * now.velocity.z, now.velocity.x);
+        const double expected = std::max(0.0, 0.25 * pi * (1 - i * step / total));
+        kept = std::max(kept, std::abs(norm(now.velocity) / speed - 1));
+        off = std::max(off, std::abs(angle - expected));
+        rising = std::max(rising, angle - before);
+        before = angle;
+      }
+    }
+    rows.add("surface flow: |V|", "alpha dt/|V|", alpha / speed, kept, 1e-13);
+    rows.add("surface flow: angle", "alpha dt/|V|", alpha / speed, off, 1e-6);
+    rows.add("surface flow: overshoot", "alpha dt/|V|", alpha / speed, rising, 1e-15);
+  }
+}
+
+/// Bounces under gravity: no energy gained at restitution 1; at rest in time at less.
+void bounces(Rows& rows) {
+  const Field floor = plane_field(cube_grid(2, 9), up);
+  const Object object{&floor, {}};
+  for (const double step : {1e-3, 1e-2, 1e-1, 1.0}) {
+    Rules rules;
+    rules.gravity = Gravity{{0, 0, -1}};
+    rules.impact = Impact{1, 0, Sweep::off};
+    Particle now{{0, 0, 0.5}, {}};
+    double most = 0, least = HUGE_VAL;
+    for (int i = 0; i < 2000; ++i) {
+      now = flown(rules, step, 1, {&object, 1}, now);
+      const double energy = now.position.z + 0.5 * dot(now.velocity, now.velocity);
+      most = std::max(most, energy), least = std::min(least, energy);
+    }
+    rows.add("bounces, restitution 1: gain", "dt √(g/h)", step * std::sqrt(2.0), most / 0.5 - 1,
+             1e-6);
+    if (step < 0.05)
+      rows.add("bounces, restitution 1: loss", "dt √(g/h)", step * std::sqrt(2.0), 1 - least / 0.5,
+               1e-6);
+    rules.impact->restitution = 0;
+    now =
+        flown(rules, step, static_cast<int>(std::ceil(3 / step)), {&object, 1}, {{0, 0, 0.5}, {}});
+    rows.add("impact, restitution 0: at rest", "dt √(g/h)", step * std::sqrt(2.0),
+             std::abs(now.position.z) + norm(now.velocity), 2e-6);
+  }
+  // Restitution e: at rest (v0/g)(1 + e)/(1 - e) after the fall began. Bounces shorter than a step
+  // are cut off: the last 2 v/g.
+  const double step = 1e-3, e = 0.7, v0 = 1;
+  Rules rules;
+  rules.gravity = Gravity{{0, 0, -1}};
+  rules.impact = Impact{e, 0, Sweep::off};
+  const double at_rest = v0 * (1 + e) / (1 - e);
+  Particle now{{0, 0, 0.5 * v0 * v0}, {}};
+  double moved = 0;
+  int i = 0;
+  for (; i * step < at_rest + 1; ++i) {
+    now = flown(rules, step, 1, {&object, 1}, now);
+    if (std::abs(now.velocity.z) > 1e-9) moved = (i + 1) * step;
+  }
+  rows.add("impact, restitution 0.7: time to rest", "dt", step, std::abs(moved - at_rest),
+           20 * step);
+}
+
+}  // namespace
+
+Particle flown(const Rules& rules, double step, int n_steps, std::span<const Object> objects,
+               Particle start) {
+  Particles particles;
+  particles.push_back(start.position, start.velocity);
+  make_stepper(rules, step).run(particles.span(), objects, 0, n_steps);
+  return {particles.position(0), particles.velocity(0)};
+}
+
+void stiff_rules(Rows& rows) {
+  spring(rows);
+  drag(rows);
+  surface_flow(rows);
+  bounces(rows);
+}
+
+}  // namespace stability
+
+std::vector<StabilityRow> stability_report() {
+  stability::Rows rows;
+  stability::stiff_rules(rows);
+  stability::extreme_motion(rows);
+  stability::extreme_places(rows);
+  return rows.rows;
+}
+
+}  // namespace tess::dn

@@ -1,0 +1,99 @@
+// The stability report's extreme places: starts inside and on the surface, scales, offsets,
+// particles that are not finite.
+#include "apps/particles/stability/parts.hpp"
+
+#include <algorithm>
+
+namespace tess::dn::stability {
+namespace {
+
+Rules bouncing() {
+  Rules rules;
+  rules.impact = Impact{1, 0, Sweep::on};
+  return rules;
+}
+
+void starts(Rows& rows) {
+  const Field ball = sphere_field(cube_grid(2, 41), 1);
+  const Object object{&ball, {}};
+  for (const double depth : {0.0, 1e-9, 1e-3, 0.1, 0.5, 0.9}) {
+    double gain = 0, inside = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 from = direction({std::sin(1.0 * i), std::cos(2.0 * i), std::sin(3.0 * i + 1)});
+      const Vec3 velocity = 0.3 * direction({std::cos(5.0 * i), std::sin(7.0 * i), 0.2});
+      const Particle end =
+          flown(bouncing(), 0.02, 20, {&object, 1}, {(1 - depth) * from, velocity});
+      gain = std::max(gain, norm(end.velocity) / 0.3 - 1);
+      inside = std::max(inside, 1 - norm(end.position));
+    }
+    rows.add("start inside: gain of |v|", "depth", depth, gain, 1e-13);
+    rows.add("start inside: still inside by", "depth", depth, inside, 3e-3 * ball.grid.cell / 0.05);
+  }
+}
+
+/// The same bounce, scaled and shifted.
+void scales(Rows& rows) {
+  const Field ball = sphere_field(cube_grid(2, 41), 1);
+  const Object object{&ball, {}};
+  const Particle start{{1.5, 0.3, 0.2}, {-1, 0.1, 0}};
+  const Particle plain = flown(bouncing(), 0.05, 20, {&object, 1}, start);
+  for (const double scale : {1e-6, 1e-3, 1e3, 1e6}) {
+    Object scaled{&ball, {}};
+    scaled.frame.scale = scale;
+    const Particle end =
+        flown(bouncing(), 0.05, 20, {&scaled, 1}, {scale * start.position, scale * start.velocity});
+    rows.add("scale", "scale", scale, norm((1 / scale) * end.position - plain.position), 1e-5);
+    rows.add("scale: |v|", "scale", scale,
+             std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1), 1e-13);
+  }
+  for (const double offset : {1e3, 1e6, 1e9}) {
+    const Vec3 shift = offset * Vec3{1, -1, 1};
+    Object shifted{&ball, {}};
+    shifted.frame.position = shift;
+    const Particle end =
+        flown(bouncing(), 0.05, 20, {&shifted, 1}, {shift + start.position, start.velocity});
+    rows.add("offset", "offset", offset, norm(end.position - shift - plain.position),
+             1e-5 + 1e-14 * offset);
+    rows.add("offset: |v|", "offset", offset,
+             std::abs(norm(end.velocity) / norm(start.velocity) - 1), 1e-13);
+  }
+}
+
+/// One particle that is not finite among others that do not notice.
+void not_finite(Rows& rows) {
+  const Field ball = sphere_field(cube_grid(2, 17), 1);
+  const Object object{&ball, {}};
+  Rules rules = bouncing();
+  rules.spring = Spring{100, 1, 0.1};
+  rules.surface_drag = SurfaceDrag{1, 0.2, DragLaw::linear};
+  rules.surface_flow = SurfaceFlow{1, 1, 0.3};
+  rules.gravity = Gravity{{0, 0, -1}};
+  const Stepper stepper = make_stepper(rules, 0.01);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300}) {
+    Particles with, without;
+    for (int i = 0; i < 16; ++i) {
+      const Vec3 x{1.2 * std::sin(1.0 * i), 1.2 * std::cos(1.0 * i), 0.1 * i}, v{0, 0, -1};
+      without.push_back(x, v);
+      with.push_back(i == 3 ? Vec3{bad, 0, 0} : x, i == 5 ? Vec3{0, bad, 0} : v);
+    }
+    stepper.run(with.span(), {&object, 1}, 0, 50);
+    stepper.run(without.span(), {&object, 1}, 0, 50);
+    double different = 0;
+    for (std::size_t p = 0; p < 16; ++p)
+      if (p != 3 && p != 5)
+        different +=
+            with.position(p) == without.position(p) && with.velocity(p) == without.velocity(p) ? 0
+                                                                                               : 1;
+    rows.add("not finite: others changed", "value", bad, different, 0);
+  }
+}
+
+}  // namespace
+
+void extreme_places(Rows& rows) {
+  starts(rows);
+  scales(rows);
+  not_finite(rows);
+}
+
+}  // namespace tess::dn::stability

@@ -1,0 +1,58 @@
+// Error against run time: what each choice (resolution, construction, look-up, rule, step) costs
+// and how far from exact collision with the triangles it is. Serial; on one object at rest, in its
+// own coordinates.
+#pragma once
+
+#include "apps/particles/scene/scene.hpp"
+#include "apps/progress.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace particles {
+
+/// One choice. Lengths are in the object's units; a negative value was not measured in this row.
+struct StudyRow {
+  std::string part;  ///< field, memory, rule, cost
+  int resolution = 0;
+  std::string method, look_up, rule;
+  std::string stored;  ///< flat, compressed; empty where no field is asked
+  double step = -1;    ///< speed × dt as a part of the thickness
+  double build_seconds = -1;
+  std::uint64_t bytes = 0;
+  double distance_error = -1;      ///< RMS, against the closest point of the triangles
+  double distance_error_max = -1;  ///< of the same points
+  double normal_error = -1;        ///< RMS, in degrees
+  double penetration = -1;         ///< greatest depth below the triangles
+  double place_error = -1;         ///< RMS distance of bounces from where they should be
+  double angle_error = -1;         ///< RMS, in degrees, of the velocity after the bounce
+  std::int64_t lost = -1;          ///< particles that went in, or on as if nothing were there
+  std::int64_t bounces = -1;       ///< out of so many
+  double ns = -1;                  ///< a particle and step (memory: a look-up); fastest of three
+  double relative = -1;            ///< cost of collision, as a part of that by a tree of boxes
+  std::string note;                ///< why a choice is refused
+};
+
+struct StudyOptions {
+  std::vector<int> resolutions{16, 32, 64};
+  std::size_t n_samples = 4000;  ///< points at which distance and normal are compared
+  std::size_t n_bounces = 400;
+  std::size_t n_timed = 100'000;       ///< particles that are timed
+  apps::Progress* progress = nullptr;  ///< is told what the study is at, if there is one
+};
+
+/// The study of the scene's first object: fields (resolution × construction × look-up, each with
+/// swept impact; exact ones also compressed), memory (flat and compressed look-ups by themselves),
+/// rules (rule × step, at the object's resolution: impact and spring against bounces off the
+/// triangles, drag and surface flow against flights in front of them), and cost beside a tree of
+/// boxes. Throws Error(bad_value) for a scene without an object.
+[[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options);
+
+[[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows);
+[[nodiscard]] std::string study_csv(const std::vector<StudyRow>& rows);
+
+/// Writes study.csv and pictures to a folder.
+void write_study(const std::string& folder, const std::vector<StudyRow>& rows);
+
+}  // namespace particles

@@ -1,0 +1,87 @@
+#include "collide/dn_field/build/winding_lines.hpp"
+
+#include <algorithm>
+
+namespace tess::dn {
+namespace {
+
+/// On which side of the line a -> b, seen along x, the point (y, z) lies: +1 or -1, never 0. Always
+/// evaluated from the lower vertex number, so that two triangles at one edge agree; ties are
+/// decided as if the point were moved by (e, e²), e -> 0, so that triangles around one vertex agree
+/// too.
+int side(const Surface& surface, std::uint32_t ia, std::uint32_t ib, double y, double z) {
+  const int flip = ia < ib ? 1 : -1;
+  const Vec3 a = surface.vertices[std::min(ia, ib)], b = surface.vertices[std::max(ia, ib)];
+  const double dy = b.y - a.y, dz = b.z - a.z;
+  const double area = dy * (z - a.z) - dz * (y - a.y);
+  if (area != 0) return area > 0 ? flip : -flip;
+  if (dz != 0) return dz < 0 ? flip : -flip;
+  return dy >= 0 ? flip : -flip;
+}
+
+struct Range {
+  int first, last;  // inclusive; empty where last < first
+};
+
+Range voxels_between(double low, double high, double origin, double cell, int n) {
+  const double first = std::ceil((low - origin) / cell), last = std::floor((high - origin) / cell);
+  return {static_cast<int>(std::clamp(first, 0.0, 1.0 * n)),
+          static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
+}
+
+}  // namespace
+
+WindingLines::WindingLines(Surface surface, const Grid& grid)
+    : surface_(std::move(surface)), grid_(grid) {
+  const auto layers_of = [&](std::size_t t) {
+    const auto [a, b, c] = surface_.corners(t);
+    const auto [low, high] = std::minmax({a.z, b.z, c.z});
+    return voxels_between(low, high, grid_.origin.z, grid_.cell, grid_.n[2]);
+  };
+  begin_.assign(static_cast<std::size_t>(grid_.n[2]) + 2, 0);
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+    for (auto [k, last] = layers_of(t); k <= last; ++k) ++begin_[static_cast<std::size_t>(k) + 2];
+  for (std::size_t k = 2; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
+  triangles_.resize(begin_.back());
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+    for (auto [k, last] = layers_of(t); k <= last; ++k)
+      triangles_[begin_[static_cast<std::size_t>(k) + 1]++] = static_cast<std::uint32_t>(t);
+}
+
+void WindingLines::cross(std::uint32_t triangle, int k, std::span<std::int16_t> change) const {
+  const auto [ia, ib, ic] = surface_.triangles[triangle];
+  const auto [a, b, c] = surface_.corners(triangle);
+  const Vec3 normal = tess::dn::cross(b - a, c - a);
+  if (normal.x == 0) return;
+  const int nx = grid_.n[0];
+  const auto [low, high] = std::minmax({a.y, b.y, c.y});
+  const Range js = voxels_between(low, high, grid_.origin.y, grid_.cell, grid_.n[1]);
+  for (int j = js.first; j <= js.last; ++j) {
+    const Vec3 p = grid_.centre(0, j, k);
+    const int s = side(surface_, ia, ib, p.y, p.z);
+    if (side(surface_, ib, ic, p.y, p.z) != s || side(surface_, ic, ia, p.y, p.z) != s) continue;
+    const double x = a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x;
+    const double voxel = std::clamp(std::ceil((x - grid_.origin.x) / grid_.cell), 0.0, 1.0 * nx);
+    change[static_cast<std::size_t>(j) * (static_cast<std::size_t>(nx) + 1) +
+           static_cast<std::size_t>(voxel)] -= static_cast<std::int16_t>(s);
+  }
+}
+
+void WindingLines::layer(int k, std::span<std::int16_t> winding) const {
+  const auto nx = static_cast<std::size_t>(grid_.n[0]), ny = static_cast<std::size_t>(grid_.n[1]);
+  // The last entry of a line: crossings behind its last voxel.
+  std::vector<std::int16_t> change(ny * (nx + 1), 0);
+  const auto at = static_cast<std::size_t>(k);
+  for (std::size_t i = begin_[at]; i < begin_[at + 1]; ++i) cross(triangles_[i], k, change);
+  for (std::size_t j = 0; j < ny; ++j) {
+    const auto line = winding.subspan(j * nx, nx);
+    int so_far = 0;
+    for (std::size_t i = 0; i < nx; ++i) {
+      so_far += change[j * (nx + 1) + i];
+      line[i] = static_cast<std::int16_t>(so_far);
+    }
+    if (so_far + change[j * (nx + 1) + nx] != 0) std::fill(line.begin(), line.end(), unknown);
+  }
+}
+
+}  // namespace tess::dn

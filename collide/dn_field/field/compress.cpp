@@ -1,0 +1,270 @@
+// Chooses the layout of entries and the division of each block: the coarsest whose every voxel,
+// decoded as look-ups do, meets the bound.
+#include "collide/dn_field/compressed.hpp"
+#include "collide/dn_field/field/compressed_entry.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+
+namespace tess::dn {
+namespace {
+constexpr int min_shift = 2, max_shift = 4;
+constexpr int min_normal_bits = 4, max_normal_bits = 11;
+constexpr double entry_share = 0.4;  // of the angle's bound that writing an entry may take
+
+double angle_between(Vec3 a, Vec3 b) {
+  return std::atan2(norm(cross(a, b)), dot(a, b));
+}
+
+struct Entry {
+  std::uint32_t low = 0, high = 0;  // high: wide layouts alone
+  friend bool operator==(const Entry&, const Entry&) = default;
+};
+
+class Compressor {
+ public:
+  Compressor(const Field& field, const ErrorBound& bound, const EntryLayout& layout, int shift)
+      : field_(field),
+        bound_(bound),
+        layout_(layout),
+        decoder_(layout),
+        shift_(shift),
+        cell_(static_cast<float>(field.grid.cell)),
+        thickness_(static_cast<float>(field.thickness)) {}
+
+  /// Nothing where the layout's entries cannot meet the bound even voxel by voxel.
+  [[nodiscard]] std::optional<CompressedField> run();
+
+ private:
+  struct Voxel {
+    double distance;
+    Vec3 normal;         // zero: has none
+    std::uint32_t code;  // of the normal
+    float x, y, z;       // from the cell's middle
+  };
+
+  void gather(std::array<int, 3> low, int s);
+  [[nodiscard]] Vec3 direction_of_cell() const;
+  [[nodiscard]] Entry written(double distance, Vec3 normal) const;
+  [[nodiscard]] Plane plane(const Entry& e) const {
+    return layout_.wide ? EntryDecoder::wide(e.low, e.high) : decoder_.narrow(e.low);
+  }
+  [[nodiscard]] double fitted_distance(Vec3 normal) const;
+  [[nodiscard]] bool fits(std::array<int, 3> low, int s, Entry& entry);
+  [[nodiscard]] bool divide(std::array<int, 3> low, int s, std::vector<Entry>& entries);
+
+  const Field& field_;
+  ErrorBound bound_, off_{}, measured_{};
+  EntryLayout layout_;
+  EntryDecoder decoder_;
+  int shift_;
+  float cell_, thickness_;
+  std::vector<Voxel> voxels_;
+};
+
+void Compressor::gather(std::array<int, 3> low, int s) {
+  const Grid& grid = field_.grid;
+  const int edge = 1 << s, in_cell = edge - 1;
+  const float half = 0.5F * cell_;
+  voxels_.clear();
+  for (int k = low[2]; k < std::min(low[2] + edge, grid.n[2]); ++k)
+    for (int j = low[1]; j < std::min(low[1] + edge, grid.n[1]); ++j)
+      for (int i = low[0]; i < std::min(low[0] + edge, grid.n[0]); ++i) {
+        const std::size_t at = grid.index(i, j, k);
+        const std::uint32_t code = field_.normal.empty() ? no_normal : field_.normal[at];
+        voxels_.push_back({static_cast<double>(field_.distance[at]), to_vec3(decode_normal(code)),
+                           code, half * static_cast<float>(2 * (i - low[0]) - in_cell),
+                           half * static_cast<float>(2 * (j - low[1]) - in_cell),
+                           half * static_cast<float>(2 * (k - low[2]) - in_cell)});
+      }
+}
+
+/// The mean normal, or where none are stored the direction in which distances grow.
+Vec3 Compressor::direction_of_cell() const {
+  Vec3 sum;
+  if (!field_.normal.empty()) {
+    for (const Voxel& v : voxels_) sum += v.normal;
+    return direction(sum);
+  }
+  double mean = 0;
+  Vec3 middle;
+  const double share = 1 / static_cast<double>(voxels_.size());
+  const auto place = [](const Voxel& v) {
+    return Vec3{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  };
+  for (const Voxel& v : voxels_) mean += share * v.distance, middle += share * place(v);
+  for (const Voxel& v : voxels_) sum += (v.distance - mean) * (place(v) - middle);
+  return direction(sum);
+}
+
+Entry Compressor::written(double distance, Vec3 normal) const {
+  if (layout_.wide)
+    return {std::bit_cast<std::uint32_t>(static_cast<float>(distance)), encode_normal(normal)};
+  const auto most = static_cast<double>(decoder_.zero - 1);
+  const double steps =
+      layout_.step > 0 ? std::round(distance / static_cast<double>(layout_.step)) : 0;
+  const auto above =
+      static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + decoder_.zero);
+  return {above << (2 * decoder_.bits) | narrow_normal(decoder_, normal), 0};
+}
+
+/// The distance at the middle that is least off; voxels at the cut-off only need to stay beyond it.
+double Compressor::fitted_distance(Vec3 normal) const {
+  double low = HUGE_VAL, high = -HUGE_VAL, above = -HUGE_VAL, below = HUGE_VAL;
+  for (const Voxel& v : voxels_) {
+    const double rest =
+        v.distance -
+        dot(normal, {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
+    if (v.distance >= static_cast<double>(thickness_)) {
+      above = std::max(above, rest);
+    } else if (v.distance <= -static_cast<double>(thickness_)) {
+      below = std::min(below, rest);
+    } else {
+      low = std::min(low, rest);
+      high = std::max(high, rest);
+    }
+  }
+  if (low > high) return above > -HUGE_VAL ? above : below;
+  // Between the least and the most that the others ask for, moved as far as the cut-off needs.
+  const double middle = 0.5 * (low + high);
+  return std::min(std::max(middle, std::min(above, low + bound_.distance)),
+                  std::max(below, high - bound_.distance));
+}
+
+bool Compressor::fits(std::array<int, 3> low, int s, Entry& entry) {
+  gather(low, s);
+  off_ = {};
+  if (voxels_.empty()) {  // beyond the grid
+    entry = {};
+    return true;
+  }
+  const Vec3 normal = s == 0 ? voxels_[0].normal : direction_of_cell();
+  entry = written(0, normal);
+  const Vec3 kept = to_vec3(plane(entry).normal);
+  entry = written(s == 0 ? voxels_[0].distance : fitted_distance(kept), normal);
+  if (s == 0 && layout_.wide) entry.high = voxels_[0].code;  // written again it would be rounded
+  const Plane made = plane(entry);
+  const Vec3 made_normal = to_vec3(made.normal);
+  for (const Voxel& v : voxels_) {
+    const auto d = static_cast<double>(distance_to(made, v.x, v.y, v.z, thickness_));
+    off_.distance = std::max(off_.distance, std::abs(d - v.distance));
+    if (norm(v.normal) > 0) off_.angle = std::max(off_.angle, angle_between(made_normal, v.normal));
+    if (!(off_.distance <= bound_.distance) || !(off_.angle <= bound_.angle)) return false;
+  }
+  return true;
+}
+
+bool Compressor::divide(std::array<int, 3> low, int s, std::vector<Entry>& entries) {
+  ErrorBound worst;
+  entries.clear();
+  const int edge = 1 << s, block = 1 << shift_;
+  for (int k = 0; k < block; k += edge)
+    for (int j = 0; j < block; j += edge)
+      for (int i = 0; i < block; i += edge) {
+        Entry entry;
+        if (!fits({low[0] + i, low[1] + j, low[2] + k}, s, entry)) return false;
+        entries.push_back(entry);
+        worst = {std::max(worst.distance, off_.distance), std::max(worst.angle, off_.angle)};
+      }
+  measured_ = {std::max(measured_.distance, worst.distance),
+               std::max(measured_.angle, worst.angle)};
+  return true;
+}
+
+std::optional<CompressedField> Compressor::run() {
+  const Grid& grid = field_.grid;
+  CompressedField made{grid,
+                       field_.method,
+                       field_.sides,
+                       field_.normal.empty() ? Content::distance : Content::distance_and_normal,
+                       field_.thickness,
+                       shift_,
+                       {},
+                       layout_,
+                       {},
+                       {},
+                       bound_,
+                       {},
+                       field_.jump};
+  const int block = 1 << shift_;
+  for (std::size_t a = 0; a < 3; ++a) made.n_blocks[a] = (grid.n[a] + block - 1) / block;
+  std::unordered_map<std::uint64_t, std::uint32_t> undivided;  // blocks that are alike share one
+  std::vector<Entry> entries;
+  std::uint32_t n_entries = 0;
+  for (int k = 0; k < grid.n[2]; k += block)
+    for (int j = 0; j < grid.n[1]; j += block)
+      for (int i = 0; i < grid.n[0]; i += block) {
+        int s = shift_;
+        while (s >= 0 && !divide({i, j, k}, s, entries)) --s;
+        if (s < 0) return std::nullopt;
+        std::uint32_t first = n_entries;
+        if (s == shift_) {
+          const std::uint64_t key = std::uint64_t{entries[0].high} << 32U | entries[0].low;
+          first = undivided.try_emplace(key, n_entries).first->second;
+        }
+        made.block.push_back(first << 3U | static_cast<std::uint32_t>(s));
+        if (first != n_entries) continue;
+        n_entries += static_cast<std::uint32_t>(entries.size());
+        if (n_entries >= (1U << 28U))
+          fail(ErrorCode::bad_argument, "more than 2^28 entries in a compressed field of ",
+               grid.n[0], " × ", grid.n[1], " × ", grid.n[2],
+               " voxels; raise the error bound or lower the resolution");
+        for (const Entry& e : entries) {
+          made.entry.push_back(e.low);
+          if (layout_.wide) made.entry.push_back(e.high);
+        }
+      }
+  made.measured = measured_;
+  return made;
+}
+
+/// The greatest angle that `bits` an axis are off: 3 / 2^bits covers the octahedral map with the
+/// best of four neighbours; that it does is checked voxel by voxel.
+int bits_for(double angle) {
+  int bits = min_normal_bits;
+  while (bits < max_normal_bits && 3.0 / (1 << bits) > entry_share * angle) ++bits;
+  return bits;
+}
+
+EntryLayout narrow_layout(const Field& field, const ErrorBound& bound, int shift) {
+  const bool has_normals = !field.normal.empty();
+  const double coarse = has_normals ? bound.angle : 0.05;
+  const int bits = bits_for(coarse);
+  // The middle of a cell may stand a block's diagonal beyond the cut-off.
+  const double range = field.thickness + field.grid.cell * (2 << shift);
+  const double steps = std::ldexp(1.0, 31 - 2 * bits) - 1;
+  return {false, bits, static_cast<float>(range / steps)};
+}
+
+CompressedField smaller_of(std::optional<CompressedField> a, CompressedField b) {
+  return a && a->bytes() <= b.bytes() ? std::move(*a) : std::move(b);
+}
+
+}  // namespace
+
+CompressedField compress(const Field& field, const ErrorBound& bound, int block_shift) {
+  if (!(bound.distance >= 0) || !(bound.angle >= 0))
+    fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",
+         bound.angle, "; neither may be negative or NaN");
+  if (block_shift != 0 && (block_shift < min_shift || block_shift > max_shift))
+    fail(ErrorCode::bad_argument, "blocks of 2^", block_shift, " voxels; the exponent must be ",
+         min_shift, " to ", max_shift, ", or 0 for the best");
+  std::optional<CompressedField> best;
+  const int first = block_shift == 0 ? min_shift : block_shift;
+  const int last = block_shift == 0 ? max_shift - 1 : block_shift;
+  for (int shift = first; shift <= last; ++shift) {
+    auto made = Compressor(field, bound, narrow_layout(field, bound, shift), shift).run();
+    // Wide entries meet every bound: a division into voxels writes them as they are.
+    if (!made) made = Compressor(field, bound, {true, 0, 0}, shift).run();
+    if (!made)
+      fail(ErrorCode::bad_value,
+           "a voxel's distance is not finite, or beyond the field's thickness of ", field.thickness,
+           "; build the field again");
+    best = smaller_of(std::move(best), std::move(*made));
+  }
+  return std::move(*best);
+}
+
+}  // namespace tess::dn

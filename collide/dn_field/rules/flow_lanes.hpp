@@ -1,0 +1,74 @@
+// The surface flow, a loop of its own over a block before the rule loop: its long chain of a root,
+// a quotient and polynomials then overlaps from one vector to the next. Private to the step loop.
+#pragma once
+
+#include "collide/dn_field/rules/closest.hpp"
+
+namespace tess::dn {
+
+struct FlowConstants {
+  double turn_in = 0, turn_out = 0;  ///< alpha × step
+  double distance = 0;
+};
+
+namespace lanes {
+
+/// A power of two near 1 / sqrt(v), for 1e-300 < v < 1e300.
+inline D scale_to_one(D v) {
+  return (D)(((L{} + 0x5FE0000000000000) - ((L)v >> 1)) & (L{} + 0x7FF0000000000000));
+}
+
+/// tan(φ/2)/|n × w| of the turn by φ, with the sign that takes it from n: φ is rate/|w|, but no
+/// more than leads to the tangent, or, where the rate is negative, to the normal. Short of that by
+/// a millionth, so that rounding does not lead beyond. All squares of order 1.
+inline F half_turn(F rate, F alpha, F w2, F axis2) {
+  const F w = sqrt(w2), across = abs(alpha), along = sqrt(axis2);
+  const F x = 0.5F * min(abs(rate) / w, all(0.5F * static_cast<float>(pi))), xx = x * x;
+  // tan x = p/q, the continued fraction, five terms: good to a float for x <= pi/4.
+  const F p = x * (945.0F + xx * (xx - 105.0F)), q = 945.0F + xx * (15.0F * xx - 420.0F);
+  const I toward = rate > 0.0F;
+  const F rest = (1 - 0x1p-20F) * (toward ? across : along), to = w + (toward ? along : across);
+  const I arrives = p * to > rest * q;
+  const F turn = (arrives ? rest : p) / ((arrives ? to : q) * along);
+  return toward == (alpha > 0.0F) ? turn : -turn;
+}
+
+/// The velocity w turned toward the tangent of the surface with normal n by min(alpha dt/|w|, what
+/// is left); by a negative alpha away from it. In Cayley's form of the turn about n × w,
+///     w' = ((1 - g²(n × w)² + 2 g n·w) w - 2 g w² n) / (1 + g²(n × w)²),
+/// |w'| is |w| to rounding for any g: so g = tan(φ/2)/|n × w| is worked out in floats, which say φ
+/// better than a field says n. Not turned: w along n to a millionth, and below 1e-100.
+inline D3 turned_to_surface(const FlowConstants& c, D3 w, D3 n, L where) {
+  const D alpha = dot(w, n), w2 = dot(w, w);
+  const D3 axis = cross(n, w);
+  const D axis2 = dot(axis, axis);
+  where = settled(where & (axis2 > 1e-12 * w2) & (w2 > 1e-200) & (w2 < 1e200));
+  const D scale = scale_to_one(w2), rate = alpha < 0.0 ? all(c.turn_in) : all(c.turn_out);
+  const F turn = half_turn(to_float(rate * scale), to_float(alpha * scale),
+                           to_float(w2 * scale * scale), to_float(axis2 * scale * scale));
+  const D g = to_double(turn) * scale, t2 = g * g * axis2, per = 1.0 / (1.0 + t2);
+  const D of_w = fma(2.0 * g, alpha, 1.0 - t2) * per, of_n = -2.0 * g * w2 * per;
+  return select(where, fma(of_w, w, of_n * n), w);
+}
+
+template <Setting Where>
+void flow_loop(const FlowConstants& constants, const ParticleSpan& span, const Closest& closest) {
+  const FlowConstants c = constants;  // copies, which no store to a particle can change
+  const ParticleSpan particles = span;
+  for (std::size_t p = 0; p < particles.count; p += width) {
+    const L near = to_double(load<F>(closest.distance + p)) < c.distance;
+    if (!any(near)) continue;
+    const D3 n = to_double(normals(closest, p)), v = velocities(particles, p);
+    D3 w = v;
+    if constexpr (Where == Setting::general) {
+      const D3 u = surface_velocities(closest, p);
+      w = select(near, turned_to_surface(c, v - u, n, near) + u, v);
+    } else {
+      w = turned_to_surface(c, v, n, near);
+    }
+    set_velocities(particles, p, w);
+  }
+}
+
+}  // namespace lanes
+}  // namespace tess::dn

@@ -1,0 +1,10 @@
+// Several objects, or one that moves or is turned.
+#include "collide/dn_field/rules/rule_table.hpp"
+
+namespace tess::dn {
+
+RuleLoop rule_loop_general(const LoopKey& key) {
+  return chosen<Setting::general>(key);
+}
+
+}  // namespace tess::dn

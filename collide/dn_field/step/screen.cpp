@@ -1,0 +1,134 @@
+#include "collide/dn_field/step/screen.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tess::dn {
+namespace {
+
+using namespace lanes;
+
+constexpr float rounding = 1.0001F;  // of float speeds
+
+/// Lower bound of every look-up's distance, less what rules reach and the way of the surface;
+/// minimum over objects.
+template <bool Turned, bool Moves, bool First, Storage How>
+void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& span, Near& near) {
+  const Placed object = placed;  // copies, which no store can change
+  const ParticleSpan block = span;
+  const Sampler& field = object.field;
+  const Vec3 c = object.centre;
+  const auto& m = object.to_grid;
+  const F ox = all(object.middle[0] + 0.5F), oy = all(object.middle[1] + 0.5F),
+          oz = all(object.middle[2] + 0.5F);
+  const auto nx = static_cast<float>(field.n[0]), ny = static_cast<float>(field.n[1]),
+             nz = static_cast<float>(field.n[2]);
+  const F speed = all(static_cast<float>(norm(object.frame.velocity) + object.swell)),
+          spin = all(static_cast<float>(norm(object.frame.angular_velocity)));
+  const F shift = all(static_cast<float>(norm(c - object.frame.position)));
+  const F time = all(reach.time * rounding);
+  // A way of one cell may lead two voxels on.
+  const F share = all(reach.ahead ? 1 / (1 + object.jump / object.cell) : 1.0F);
+  for (std::size_t p = 0; p < block.count; p += width) {
+    const F3 q = to_float(places(block, p) - c);
+    F3 h;
+    if constexpr (Turned)
+      h = {q.x * m[0][0] + q.y * m[0][1] + q.z * m[0][2] + ox,
+           q.x * m[1][0] + q.y * m[1][1] + q.z * m[1][2] + oy,
+           q.x * m[2][0] + q.y * m[2][1] + q.z * m[2][2] + oz};
+    else
+      h = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
+    const Voxel voxel = voxel_from_corner(field.n, h);
+    F found;
+    if constexpr (How == Storage::compressed)
+      found = planes_at(object.planes, voxel).distance;
+    else
+      found = gather(field.distance, position(field, voxel));
+    const F beyond = max(max(max(-h.x, h.x - nx), max(-h.y, h.y - ny)), max(-h.z, h.z - nz));
+    F room = voxel.in ? (found * object.scale - taken) * share
+                      : object.cell * (0.999F * beyond - 1.0F) - reach.distance;
+    if constexpr (Moves) {
+      // As seen from the surface a particle at distance r from the object's origin goes
+      // (v + speed)(1 + spin time) + spin r in unit time at most.
+      const F turned = spin * time * (sqrt(dot(q, q)) + shift);
+      room = (room - turned) / (1.0F + spin * time) - time * speed;
+    }
+    if constexpr (!First) room = min(room, load<F>(near.room + p));
+    store(near.room + p, room);
+  }
+}
+
+using RoomTo = void (*)(const Placed&, F, Reach, const ParticleSpan&, Near&);
+
+template <bool First, Storage How>
+RoomTo choose(const Frame& frame) {
+  if (frame.is_moving()) return &room_to<true, true, First, How>;
+  return frame.is_turned() ? &room_to<true, false, First, How> : &room_to<false, false, First, How>;
+}
+template <bool First>
+RoomTo choose(const Placed& object) {
+  return object.compressed ? choose<First, Storage::compressed>(object.frame)
+                           : choose<First, Storage::flat>(object.frame);
+}
+
+}  // namespace
+
+void screen(std::span<const Placed> objects, LookUp kind, Sweep sweep, Reach reach,
+            const ParticleSpan& block, Near& near) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Placed& object = objects[i];
+    // Nearest is this voxel's value, the tangent leaves it by half a diagonal, trilinear blends it
+    // with voxels that touch it; a sweep doubts any of them by half a diagonal.
+    const bool half_off = kind == LookUp::tangent || sweep == Sweep::on;
+    const float jumps = (kind == LookUp::trilinear ? 1.0F : 0.0F) + (reach.ahead ? 1.0F : 0.0F);
+    const float doubt = (half_off ? object.doubt : 0.0F) + object.padding +
+                        (jumps > 0 ? jumps * object.jump : 0.0F);
+    const RoomTo room_to = i == 0 ? choose<true>(object) : choose<false>(object);
+    room_to(object, all(doubt * rounding + reach.distance), reach, block, near);
+  }
+  near.count = 0;
+  if (objects.empty()) return;
+  const F time = all(reach.time * rounding), gain = all(reach.gain);
+  // Who is near only if voxels on the way should say so comes last, so that whole vectors of them
+  // have nothing to do.
+  const F at_once =
+      all(reach.ahead ? -objects[0].jump / (1 + objects[0].jump / objects[0].cell) : 0.0F);
+  std::array<std::uint32_t, block_size> later;
+  std::size_t n_later = 0;
+  for (std::size_t p = 0; p < block.count; p += width) {
+    const F3 v = to_float(velocities(block, p));
+    const F room = load<F>(near.room + p), way = time * (sqrt(dot(v, v)) + gain);
+    const unsigned may = bits(~(room >= way)), may_later = may & bits(room - at_once >= way);
+    const auto list = [p](unsigned lanes, std::uint32_t* to, std::size_t& count) {
+      for (; lanes != 0; lanes &= lanes - 1)
+        to[count++] =
+            static_cast<std::uint32_t>(p) + static_cast<std::uint32_t>(std::countr_zero(lanes));
+    };
+    list(may & ~may_later, near.index, near.count);
+    list(may_later, later.data(), n_later);
+  }
+  std::copy_n(later.data(), n_later, near.index + near.count);
+  near.count += n_later;
+}
+
+void pack(const ParticleSpan& block, Near& near) {
+  const std::array<const double*, 6> from{block.x, block.y, block.z, block.vx, block.vy, block.vz};
+  const std::size_t whole = (near.count + width - 1) / width * width;
+  for (std::size_t a = 0; a < 6; ++a) {
+    for (std::size_t i = 0; i < near.count; ++i) near.values[a][i] = from[a][near.index[i]];
+    for (std::size_t i = near.count; i < whole; ++i) near.values[a][i] = 0;
+  }
+}
+
+ParticleSpan Near::packed() {
+  const std::size_t whole = (count + width - 1) / width * width;
+  return {values[0], values[1], values[2], values[3], values[4], values[5], whole};
+}
+
+void Near::unpack(const ParticleSpan& block) {
+  const std::array<double*, 6> to{block.x, block.y, block.z, block.vx, block.vy, block.vz};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t i = 0; i < count; ++i) to[a][index[i]] = values[a][i];
+}
+
+}  // namespace tess::dn

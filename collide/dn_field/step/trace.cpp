@@ -1,0 +1,276 @@
+#include "collide/dn_field/step/trace.hpp"
+
+#include "collide/dn_field/step/seen_lanes.hpp"
+
+#include <algorithm>
+
+namespace tess::dn {
+namespace {
+
+using namespace lanes;
+
+constexpr int max_bounces = 16;
+// The shortest advances, in cells: into the next voxel; of blends, thinner than what a grid
+// resolves.
+constexpr float into_next = 1e-3F, blend_stride = 0.25F;
+constexpr double most_bent = 0.25;  // cells that a way may leave the straight one taken for it
+constexpr double never = HUGE_VAL;
+// Of the ways, in a step: who sinks no faster rests on the surface but for rounding.
+constexpr double at_rest = 1e-12;
+
+D norm1(D3 v) {
+  return abs(v.x) + abs(v.y) + abs(v.z);
+}
+
+Sample sample_of(const Placed& object, LookUp kind, F3 g) {
+  if (kind == LookUp::trilinear) return sample<LookUp::trilinear, Ask::both>(object.field, g);
+  if (kind == LookUp::nearest)
+    return object.compressed ? sample<LookUp::nearest, Ask::both>(object.planes, g)
+                             : sample<LookUp::nearest, Ask::both>(object.field, g);
+  return object.compressed ? sample<LookUp::tangent, Ask::both>(object.planes, g)
+                           : sample<LookUp::tangent, Ask::both>(object.field, g);
+}
+
+/// The part of `way`, in grid coordinates, that stays in the voxel of g.
+F way_in_voxel(F3 g, F3 way) {
+  const auto along = [](F at, F by) {
+    const F h = at + 0.5F, in = h - floor(h);
+    return by == 0.0F ? all(HUGE_VALF) : (by > 0.0F ? 1.0F - in : in) / abs(by);
+  };
+  return min(min(along(g.x, way.x), along(g.y, way.y)), along(g.z, way.z));
+}
+
+/// What one object's field says, in units of the world when the step begins.
+struct Here {
+  D distance;  ///< `never` outside of the field
+  D3 normal;   ///< unit or zero
+  D stride;    ///< part of the step for which that holds, or which is free
+};
+
+Here ask(const Placed& object, LookUp kind, const Pose& pose, D3 x, D3 way, const Seen& seen) {
+  const F3 g = to_grid(object, to_float(seen.place - object.centre));
+  const Sample found = sample_of(object, kind, g);
+  const I in = found.in;
+  const F free = max(free_in_world(object, found, g), F{});
+  const D3 n = to_double(only(in, to_world(object, found.normal)));
+  const F3 w = turned_to_grid(object, to_float(seen.way));
+  const F per_cell = 1.0F / sqrt(dot(w, w));
+  const F straight = kind == LookUp::trilinear
+                         ? blend_stride * per_cell
+                         : (in ? way_in_voxel(g, w) : F{}) + into_next * per_cell;
+  Here here{widen(in) ? to_double(distance_in_world(object, found)) : all(never), refined(n), {}};
+  if (object.bends()) {
+    const Bend bend = bend_of(object, pose, x, way);
+    const D held = min(to_double(straight), bend.time_within(most_bent * object.cell));
+    here.stride = min(max(bend.time_for(to_double(free)), held), bend.valid);
+  } else {
+    here.stride = to_double(max(free / object.cell * per_cell, straight));
+  }
+  return here;
+}
+
+struct Contact {
+  D at = all(never);  ///< fraction of the step
+  D3 normal{}, surface_velocity{};
+  D too_deep{}, object{};  ///< its number
+};
+Contact select(L mask, const Contact& a, const Contact& b) {
+  return {mask ? a.at : b.at, select(mask, a.normal, b.normal),
+          select(mask, a.surface_velocity, b.surface_velocity), mask ? a.too_deep : b.too_deep,
+          mask ? a.object : b.object};
+}
+
+/// What is left between a particle and where it meets an object, by what the field said of one
+/// place, as that object sees it.
+struct Gap {
+  const Placed& object;
+  const Here& field;
+  const D3& place;
+  double threshold;  ///< in the world: as the object sees it, it shrinks while the object grows
+
+  [[nodiscard]] D keeps_off(const Pose& pose) const { return threshold / pose.size(); }
+  [[nodiscard]] D at(const Pose& pose, const Seen& seen) const {
+    return field.distance + dot(field.normal, seen.place - place) - keeps_off(pose);
+  }
+  [[nodiscard]] D rate(const Pose& pose, const Seen& seen) const {
+    return fma(object.growth / pose.size(), keeps_off(pose), dot(field.normal, seen.way));
+  }
+};
+
+struct Scene {
+  const RuleConstants& constants;
+  std::span<const Placed> objects;
+  LookUp kind;
+};
+
+/// Ways in the world that begin at the fraction `begin` of the step, x + s × way.
+struct Ways {
+  D3 x, way;
+  D begin;
+
+  [[nodiscard]] D3 at(D s) const { return fma(s, way, x); }
+};
+
+/// The contact with object `o` within the stride from s on that its field allows; `next` is cut to
+/// where that ends.
+Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D& next) {
+  const RuleConstants& c = scene.constants;
+  const Placed& object = scene.objects[o];
+  const Pose pose(object, ways.begin + s);
+  const D3 x = ways.at(s);
+  const Seen seen = lanes::seen(object, pose, x, ways.way);
+  const Here here = ask(object, scene.kind, pose, x, ways.way, seen);
+  next = min(next, s + here.stride);
+  const Gap gap{object, here, seen.place, c.threshold};
+  const D closes = gap.rate(pose, seen);
+  const L sinks =
+      (closes < -at_rest * (norm1(ways.way) + norm1(seen.way))) & (here.distance < never);
+  D met = max(gap.at(pose, seen) / -closes, D{});
+  const L may = settled(sinks & (met <= 2.0 * here.stride));
+  if (!any(may)) return {};
+  if (object.bends())
+    for (int newton = 0; newton < 2; ++newton) {
+      const D after = only(may, min(met, here.stride));
+      const Pose then(object, ways.begin + s + after);
+      const Seen seen_then = lanes::seen(object, then, ways.at(s + after), ways.way);
+      const D rate = gap.rate(then, seen_then);
+      const D better = max(after - gap.at(then, seen_then) / rate, D{});
+      met = (may & (rate < 0.0)) ? better : met;
+    }
+  // As the object stands there and then, so that who rests on it rests.
+  const L touches = may & (met <= here.stride);
+  const D at = s + only(touches, met);
+  const Pose then(object, ways.begin + at);
+  const D3 n = then.now(here.normal);
+  return {touches ? at : all(never), n, then.surface_velocity(ways.at(at), all(c.threshold) * n),
+          max(c.threshold - c.slack - here.distance * then.size(), D{}),
+          all(static_cast<double>(o))};
+}
+
+/// The first contacts on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on,
+/// for particles that fly; `at` is `never` where there is none. `rest` is shortened where the way
+/// could not be followed to its end.
+Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
+  std::size_t budget = 1024;  // advances; each leads into another voxel
+  for (const Placed& object : scene.objects)
+    budget +=
+        8 * static_cast<std::size_t>(object.field.n[0] + object.field.n[1] + object.field.n[2]);
+  const Ways ways{x, way, 1.0 - rest};
+  Contact first;
+  D s{};
+  for (L going = flies & (s <= rest); any(going); going = going & (s <= rest)) {
+    if (budget-- == 0) {
+      rest = going ? s : rest;
+      break;
+    }
+    D next = all(never);
+    Contact contact;
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      const Contact here = contact_with(scene, o, ways, s, next);
+      contact = select(here.at < contact.at, here, contact);
+    }
+    const L found = going & (contact.at <= next) & (contact.at <= rest);
+    first = select(found, contact, first);
+    going = going & ~found & (next < never);
+    s = going ? next : all(never);
+  }
+  return first;
+}
+
+L finite(D3 v) {
+  return norm1(v) < never;
+}
+
+/// Who touches an object at the fraction f of the step, at x, and flies by `slides` along it: goes
+/// with it to the step's end.
+void take_along(const Scene& scene, const Contact& contact, L touches, D f, D3& x, D3 slides,
+                D3& velocity) {
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Pose now(scene.objects[o], f), last(scene.objects[o], all(1.0));
+    const L on = touches & (contact.object == static_cast<double>(o));
+    x = select(on, last.place(now.seen(x)), x);
+    const D3 along = last.now(now.begin(slides));
+    velocity = select(on, last.surface_velocity(x, D3{}) + along, velocity);
+  }
+}
+
+/// As many as a vector holds, or fewer.
+void trace_vector(const Scene& scene, std::span<const Untraced> from, const ParticleSpan& particles,
+                  Scratch& scratch) {
+  const RuleConstants& c = scene.constants;
+  const auto lane = [&](Vec3 Untraced::*what) {
+    D3 v{};
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Vec3 value = from[i].*what;
+      v.x[i] = value.x, v.y[i] = value.y, v.z[i] = value.z;
+    }
+    return v;
+  };
+  const D3 x0 = lane(&Untraced::position), way0 = lane(&Untraced::way);
+  D3 x = x0, start = lane(&Untraced::start_velocity), end = lane(&Untraced::end_velocity),
+     way = way0;  // of a whole step at the rate of the rest
+  const L can_fly = finite(x) & finite(way) & finite(start) & finite(end);
+  const bool drags = c.surface_threshold > c.threshold;
+  const LinearFlow& flow = drags ? c.surface : c.air;
+  D rest = all(1.0);
+  L flies = can_fly;
+  const auto keep_waypoints = [&](L which) {
+    if (!scratch.keeps_waypoints) return;
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (which[i] != 0)
+        scratch.waypoints.push_back({from[i].particle, 1 - rest[i], Vec3{x.x[i], x.y[i], x.z[i]}});
+  };
+  keep_waypoints(flies);
+  for (int bounce = 0; bounce < max_bounces; ++bounce) {
+    const Contact contact = first_contact(scene, x, way, rest, flies);
+    flies = flies & (contact.at < never);
+    if (!any(flies)) break;
+    const D s = only(flies, contact.at), fraction = only(rest > 0.0, s / rest);
+    const D3 n = contact.normal, u = contact.surface_velocity;
+    rest = rest - s;
+    const D3 met = fma(fraction, end - start, start);
+    const D kick = -(1 + c.restitution) * min(dot(n, met - u), D{});
+    start = select(flies, fma(kick, n, met), start);
+    D3 a = all(c.acceleration);
+    if (drags) a = fma(all(c.surface_rate), u, a);
+    const D falls = max(-dot(n, a), D{});
+    const L pays = flies & (contact.too_deep > 0.0) & (falls > 0.0);
+    const D up = lifted(pays, contact.too_deep, falls, c.sunk, u, start);
+    x = select(flies, fma(s, way, fma(up, n, x)), x);
+    D3 w1 = fma(rest, all(flow.keep - 1) * start + all(flow.gain) * a, start);
+    D3 rest_way = all(flow.way_keep) * start + (rest * flow.way_gain) * a;
+    const D sinks = dot(n, rest_way - all(c.step) * u);
+    const L rests = sinks < 0.0;  // it rests, and slides
+    rest_way = fma(-only(rests, sinks), n, rest_way);
+    w1 = fma(-only(rests, min(dot(n, w1 - u), D{})), n, w1);
+    way = select(flies, rest_way, way);
+    end = select(flies, w1, end);
+    if (bounce + 1 == max_bounces) {
+      take_along(scene, contact, flies, 1.0 - rest, x, start - u, end);
+      rest = only(~flies, rest);
+    }
+    keep_waypoints(flies);
+  }
+  x = fma(rest, way, x);
+  const D work = dot(all(c.acceleration), x - x0 - way0);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t p = from[i].particle;
+    particles.x[p] = x.x[i], particles.y[p] = x.y[i], particles.z[p] = x.z[i];
+    particles.vx[p] = end.x[i], particles.vy[p] = end.y[i], particles.vz[p] = end.z[i];
+    if (can_fly[i] != 0) scratch.energy[p] += 2 * (c.air.gain / c.step) * work[i];
+  }
+}
+
+}  // namespace
+
+void trace(const RuleConstants& c, std::span<const Placed> objects, LookUp kind,
+           const ParticleSpan& particles, Scratch& scratch) {
+  const std::span<const Untraced> from = scratch.untraced;
+  for (std::size_t first = 0; first < from.size(); first += width) {
+    const std::size_t count = std::min<std::size_t>(width, from.size() - first);
+    trace_vector({c, objects, kind}, from.subspan(first, count), particles, scratch);
+  }
+  scratch.untraced.clear();
+}
+
+}  // namespace tess::dn

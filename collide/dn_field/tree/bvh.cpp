@@ -1,0 +1,253 @@
+#include "collide/dn_field/tree/bvh.hpp"
+
+#include <algorithm>
+
+namespace tess::dn {
+namespace {
+constexpr std::uint32_t leaf_size = 4;
+constexpr double slack = 1 + 1e-9;  // boxes are pruned only where rounding cannot have decided
+
+double gap2(const Bounds& a, const Bounds& b) {
+  const double x = std::max({0.0, a.low.x - b.high.x, b.low.x - a.high.x});
+  const double y = std::max({0.0, a.low.y - b.high.y, b.low.y - a.high.y});
+  const double z = std::max({0.0, a.low.z - b.high.z, b.low.z - a.high.z});
+  return x * x + y * y + z * z;
+}
+
+struct Pending {
+  std::uint32_t node;
+  double distance2;
+};
+
+struct Centroid {
+  std::array<float, 3> at;  // in units of the surface's box: no offset is lost in float
+  std::uint32_t triangle;
+};
+
+std::vector<Centroid> centroids(const Surface& surface) {
+  const Bounds box = bounds(surface);
+  const Vec3 size = box.size();
+  const double scale = 1 / std::max({size.x, size.y, size.z});
+  std::vector<Centroid> all(surface.triangles.size());
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    const Vec3 at = scale / 3 * ((a - box.low) + (b - box.low) + (c - box.low));
+    all[t] = {{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+              static_cast<std::uint32_t>(t)};
+  }
+  return all;
+}
+
+std::size_t widest_axis(const Centroid* first, const Centroid* last) {
+  std::array<float, 3> low = first->at, high = first->at;
+  for (; first != last; ++first)
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], first->at[a]);
+      high[a] = std::max(high[a], first->at[a]);
+    }
+  const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+}
+
+}  // namespace
+
+Bvh::Bvh(const Surface& surface) {
+  const auto n = static_cast<std::uint32_t>(surface.triangles.size());
+  std::vector<Centroid> all = centroids(surface);
+  struct Range {
+    std::uint32_t node, first, last;
+  };
+  std::vector<Range> open{{0, 0, n}};
+  nodes_.reserve(n);
+  nodes_.emplace_back();
+  while (!open.empty()) {
+    const Range range = open.back();
+    open.pop_back();
+    if (range.last - range.first <= leaf_size) {
+      nodes_[range.node].first = range.first;
+      nodes_[range.node].count = range.last - range.first;
+      continue;
+    }
+    Centroid* const begin = all.data();
+    const std::uint32_t middle = range.first + (range.last - range.first) / 2;
+    const std::size_t axis = widest_axis(begin + range.first, begin + range.last);
+    std::nth_element(begin + range.first, begin + middle, begin + range.last,
+                     [axis](const Centroid& a, const Centroid& b) {
+                       return a.at[axis] < b.at[axis] ||
+                              (a.at[axis] == b.at[axis] && a.triangle < b.triangle);
+                     });
+    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[range.node].first = child;
+    nodes_.emplace_back();
+    nodes_.emplace_back();
+    open.push_back({child + 1, middle, range.last});
+    open.push_back({child, range.first, middle});
+  }
+  order_.reserve(n);
+  prepared_.reserve(n);
+  normals_.resize(n);
+  for (const Centroid& c : all) {
+    order_.push_back(c.triangle);
+    prepared_.push_back(prepare(surface.corners(c.triangle)));
+    normals_[c.triangle] = prepared_.back().normal;
+  }
+  summarise();
+}
+
+void Bvh::summarise() {
+  moments_.resize(nodes_.size());
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    Node& node = nodes_[at];
+    Moment& moment = moments_[at];
+    Vec3 weighted;
+    if (node.count == 0) {
+      for (const std::size_t child : {node.first, node.first + 1}) {
+        node.box.extend(nodes_[child].box.low);
+        node.box.extend(nodes_[child].box.high);
+        moment.area_normal += moments_[child].area_normal;
+        moment.area += moments_[child].area;
+        weighted += moments_[child].area * moments_[child].centre;
+      }
+    } else {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const PreparedTriangle& t = prepared_[i];
+        for (const Vec3 p : t.corner) node.box.extend(p);
+        const Vec3 area_normal = 0.5 * cross(t.edge[0], -t.edge[2]);
+        const double area = norm(area_normal);
+        moment.area_normal += area_normal;
+        moment.area += area;
+        weighted += area / 3 * (t.corner[0] + t.corner[1] + t.corner[2]);
+      }
+    }
+    moment.centre = moment.area > 0 ? (1 / moment.area) * weighted : node.box.centre();
+    const Vec3 reach = moment.centre - node.box.low, rest = node.box.high - moment.centre;
+    moment.radius =
+        norm({std::max(reach.x, rest.x), std::max(reach.y, rest.y), std::max(reach.z, rest.z)});
+  }
+}
+
+ClosestPoint Bvh::closest(Vec3 p, double limit2) const {
+  std::array<Pending, max_depth> stack;
+  std::size_t height = 0;
+  ClosestPoint best;
+  double bound = limit2;
+  stack[height++] = {0, nodes_[0].box.distance2(p)};
+  while (height > 0) {
+    const Pending top = stack[--height];
+    if (top.distance2 > bound) continue;
+    const Node& node = nodes_[top.node];
+    if (node.count == 0) {
+      Pending near{node.first, nodes_[node.first].box.distance2(p)};
+      Pending far{node.first + 1, nodes_[node.first + 1].box.distance2(p)};
+      if (far.distance2 < near.distance2) std::swap(near, far);
+      if (far.distance2 <= bound) stack[height++] = far;
+      if (near.distance2 <= bound) stack[height++] = near;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const Vec3 offset = offset_from(prepared_[i], p);
+      const double distance2 = dot(offset, offset);
+      if (distance2 <= bound) {
+        bound = distance2;
+        best = {distance2, p - offset, order_[i]};
+      }
+    }
+  }
+  return best;
+}
+
+namespace {
+
+double furthest(const PointBlock& block) {
+  double most = block.distance2[0];
+  for (std::size_t l = 1; l < PointBlock::size; ++l)
+    most = block.distance2[l] > most ? block.distance2[l] : most;
+  return most;
+}
+
+constexpr std::size_t layer_size = 16;  // the points of a block that are offered together
+
+using Layers = std::array<bool, PointBlock::size / layer_size>;
+
+/// Which layers of the block hold a point that is nearer to `box` than to what it has found.
+Layers nearer_layers(const PointBlock& block, const Bounds& box) {
+  Layers layers{};
+  for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+    int nearer = 0;
+    for (std::size_t l = layer * layer_size; l < (layer + 1) * layer_size; ++l) {
+      const double ax = box.low.x - block.x[l], bx = block.x[l] - box.high.x;
+      const double ay = box.low.y - block.y[l], by = block.y[l] - box.high.y;
+      const double az = box.low.z - block.z[l], bz = block.z[l] - box.high.z;
+      double dx = ax > bx ? ax : bx, dy = ay > by ? ay : by, dz = az > bz ? az : bz;
+      dx = dx > 0 ? dx : 0;
+      dy = dy > 0 ? dy : 0;
+      dz = dz > 0 ? dz : 0;
+      nearer |= dx * dx + dy * dy + dz * dz <= block.distance2[l] * slack ? 1 : 0;
+    }
+    layers[layer] = nearer != 0;
+  }
+  return layers;
+}
+
+void offer(PointBlock& block, const Layers& layers, const PreparedTriangle& candidate,
+           std::uint64_t place) {
+  const PreparedTriangle t = candidate;  // a copy that the block's stores cannot change
+  for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+    if (!layers[layer]) continue;
+    for (std::size_t l = layer * layer_size; l < (layer + 1) * layer_size; ++l) {
+      const double d = distance2(t, block.x[l], block.y[l], block.z[l]);
+      const double known = block.distance2[l];
+      const std::uint64_t holder = block.place[l];
+      const bool wins = (d < known) | ((d == known) & (place < holder));
+      block.distance2[l] = wins ? d : known;
+      block.place[l] = wins ? place : holder;
+    }
+  }
+}
+
+}  // namespace
+
+void Bvh::closest(PointBlock& block) const {
+  Bounds box;
+  for (std::size_t l = 0; l < PointBlock::size; ++l)
+    if (block.distance2[l] >= 0) box.extend({block.x[l], block.y[l], block.z[l]});
+  block.place.fill(PointBlock::none);
+  std::array<Pending, max_depth> stack;
+  std::size_t height = 0;
+  double bound = furthest(block) * slack;
+  stack[height++] = {0, gap2(nodes_[0].box, box)};
+  while (height > 0) {
+    const Pending top = stack[--height];
+    if (top.distance2 > bound) continue;
+    const Node& node = nodes_[top.node];
+    if (node.count == 0) {
+      Pending near{node.first, gap2(nodes_[node.first].box, box)};
+      Pending far{node.first + 1, gap2(nodes_[node.first + 1].box, box)};
+      if (far.distance2 < near.distance2) std::swap(near, far);
+      if (far.distance2 <= bound) stack[height++] = far;
+      if (near.distance2 <= bound) stack[height++] = near;
+      continue;
+    }
+    const Layers layers = nearer_layers(block, node.box);
+    if (layers == Layers{}) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+      offer(block, layers, prepared_[i], i);
+    bound = furthest(block) * slack;
+  }
+}
+
+bool Bvh::may_reach(const Bounds& box, double limit2) const {
+  std::array<std::uint32_t, max_depth> stack;
+  std::size_t height = 0;
+  stack[height++] = 0;
+  while (height > 0) {
+    const Node& node = nodes_[stack[--height]];
+    if (gap2(node.box, box) > limit2) continue;
+    if (node.count != 0) return true;
+    stack[height++] = node.first;
+    stack[height++] = node.first + 1;
+  }
+  return false;
+}
+
+}  // namespace tess::dn

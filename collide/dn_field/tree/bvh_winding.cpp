@@ -1,0 +1,99 @@
+#include "collide/dn_field/geometry/turns.hpp"
+#include "collide/dn_field/tree/bvh.hpp"
+
+#include <numbers>
+
+namespace tess::dn {
+namespace {
+constexpr double opening_ratio = 2.0;  // dipole error at most a few per cent of the cluster's share
+constexpr double undecided_half_width = 0.2;  // |w - 1/2| below it: ask again without approximation
+constexpr double truncated = 0.5;  // of the first-order bound: what a dipole misses by its extent
+constexpr double touching = 1e-9;  // of the corners' distances: nearer, the side is rounding
+
+/// Half the solid angle of `t` seen from `p`, added to `sum` (van Oosterom and Strackee 1983).
+/// Whether it can be told from which side `p` sees it.
+bool add_half_angle(Turns& sum, Vec3 p, const PreparedTriangle& t) {
+  const Vec3 a = t.corner[0] - p, b = t.corner[1] - p, c = t.corner[2] - p;
+  const double la = norm(a), lb = norm(b), lc = norm(c), all = la * lb * lc;
+  if (!(all > 0)) return false;
+  const double y = dot(a, cross(b, c)) / all;
+  const double x = 1 + dot(a, b) / (la * lb) + dot(b, c) / (lb * lc) + dot(c, a) / (lc * la);
+  sum.add(y, x);
+  return x > touching || std::abs(y) > touching;
+}
+
+}  // namespace
+
+double Bvh::winding_number(Vec3 p, double accuracy) const {
+  std::array<std::uint32_t, max_depth> stack;
+  std::size_t height = 0;
+  stack[height++] = 0;
+  double angle = 0;
+  Turns halves;
+  while (height > 0) {
+    const std::uint32_t at = stack[--height];
+    const Node& node = nodes_[at];
+    const Moment& moment = moments_[at];
+    const Vec3 to = moment.centre - p;
+    const double distance2 = dot(to, to), reach = accuracy * moment.radius;
+    if (accuracy > 0 && distance2 > reach * reach) {
+      angle += dot(to, moment.area_normal) / (distance2 * std::sqrt(distance2));
+    } else if (node.count == 0) {
+      stack[height++] = node.first;
+      stack[height++] = node.first + 1;
+    } else {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        add_half_angle(halves, p, prepared_[i]);
+    }
+  }
+  return (angle + 2 * halves.angle()) / (4 * std::numbers::pi);
+}
+
+// A cluster of area A at distance D, seen from a point that is off by s, changes by at most
+// A s max|grad| = A s 2 / D³ of solid angle. What its extent r adds is far less than that of s = r,
+// for a dipole in the centre of area misses the second order alone: half of it. What many clusters
+// are off by has many signs and adds up as independent errors do; we allow for twice that.
+WindingEstimate Bvh::winding_estimate(Vec3 p, double radius, double accuracy) const {
+  std::array<std::uint32_t, max_depth> stack;
+  std::size_t height = 0;
+  stack[height++] = 0;
+  double angle = 0, error2 = 0;
+  Turns halves;
+  const auto off_by = [&error2](double area, double shift, double distance) {
+    const double off = 2 * area * shift / (distance * distance * distance);
+    error2 += off * off;
+  };
+  while (height > 0) {
+    const std::uint32_t at = stack[--height];
+    const Node& node = nodes_[at];
+    const Moment& moment = moments_[at];
+    const Vec3 to = moment.centre - p;
+    const double distance = norm(to);
+    if (distance > accuracy * moment.radius + 2 * radius) {
+      angle += dot(to, moment.area_normal) / (distance * distance * distance);
+      off_by(moment.area, radius + truncated * moment.radius, distance - radius);
+    } else if (node.count == 0) {
+      stack[height++] = node.first;
+      stack[height++] = node.first + 1;
+    } else {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const PreparedTriangle& t = prepared_[i];
+        if (radius > 0) {
+          const double least = std::sqrt(distance2(t, p.x, p.y, p.z)) - radius;
+          if (least <= 0) return {0, HUGE_VAL};
+          off_by(0.5 * norm(cross(t.edge[0], t.edge[2])), radius, least);
+        }
+        if (!add_half_angle(halves, p, t)) return {0, HUGE_VAL};
+      }
+    }
+  }
+  return {(angle + 2 * halves.angle()) / (4 * std::numbers::pi),
+          2 * std::sqrt(error2) / (4 * std::numbers::pi) + 1e-9};
+}
+
+bool Bvh::is_inside(Vec3 p) const {
+  const double w = winding_number(p, opening_ratio);
+  return std::abs(w - 0.5) > undecided_half_width ? w > 0.5 : winding_number(p, 0) > 0.5;
+}
+
+}  // namespace tess::dn

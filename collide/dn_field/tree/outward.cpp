@@ -1,0 +1,97 @@
+#include "collide/dn_field/tree/outward.hpp"
+
+#include "collide/dn_field/geometry/disjoint_sets.hpp"
+#include "collide/dn_field/geometry/surface_edges.hpp"
+#include "collide/dn_field/tree/bvh.hpp"
+
+#include <algorithm>
+
+namespace tess::dn {
+namespace {
+constexpr double no_volume = 1e-12;      // of the cube of a part's diagonal: rounding
+constexpr std::size_t max_samples = 16;  // triangles at which a part's winding is asked for
+constexpr double beside = 1e-5;          // of a triangle's size: how far off its sides are asked
+constexpr double accuracy = 4;           // the means are halves: an error of 0.1 does no harm
+
+/// A connected part of a surface.
+struct Part {
+  Bounds box;
+  double volume = 0;  // signed
+  bool open = false;
+  std::vector<std::uint32_t> triangles = {};
+};
+
+/// The parts of `surface`, by their lowest vertex; without those of lower vertices than others.
+std::vector<Part> parts_of(const Surface& surface, bool closed) {
+  DisjointSets sets(surface.vertices.size());
+  for (const auto& [a, b, c] : surface.triangles) sets.join(a, b), sets.join(a, c);
+  std::vector<std::uint32_t> number(surface.vertices.size(), 0);
+  std::vector<Part> parts;
+  for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+    const std::uint32_t lowest = sets.set_of(v);
+    if (lowest == v) {
+      number[v] = static_cast<std::uint32_t>(parts.size());
+      parts.emplace_back();
+    }
+    number[v] = number[lowest];
+    parts[number[v]].box.extend(surface.vertices[v]);
+  }
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    Part& part = parts[number[surface.triangles[t][0]]];
+    const Vec3 middle = part.box.centre();
+    const auto [a, b, c] = surface.corners(t);
+    part.volume += dot(a - middle, cross(b - middle, c - middle)) / 6;
+    part.triangles.push_back(t);
+  }
+  if (!closed)
+    each_edge(surface, [&](const EdgeUse& edge) {
+      if ((edge.up + edge.down) % 2 != 0) parts[number[edge.low]].open = true;
+    });
+  return parts;
+}
+
+/// Whether the triangles of `part` run the wrong way round as a whole. Flipped triangles among them
+/// only make it closer.
+bool looks_inverted(const Part& part) {
+  const double diagonal = norm(part.box.size());
+  return part.volume < -no_volume * diagonal * diagonal * diagonal;
+}
+
+/// How often all of a surface winds around the surface of `part`, as the mean of both sides.
+double winding_on(const Part& part, const Surface& surface, const Bvh& tree) {
+  const std::size_t n = part.triangles.size(), step = (n + max_samples - 1) / max_samples;
+  double sum = 0;
+  for (std::size_t i = 0; i < n; i += step) {
+    const std::uint32_t t = part.triangles[i];
+    if (norm(tree.normal(t)) == 0) continue;
+    const auto [a, b, c] = surface.corners(t);
+    const Vec3 middle = (1.0 / 3) * (a + b + c);
+    const Vec3 off = beside * std::sqrt(norm(cross(b - a, c - a))) * tree.normal(t);
+    sum +=
+        tree.winding_number(middle + off, accuracy) + tree.winding_number(middle - off, accuracy);
+  }
+  return sum;
+}
+
+}  // namespace
+
+OutwardSurface::OutwardSurface(const Surface& given)
+    : given_(given), closed_(tess::dn::is_closed(given)) {
+  if (!closed_) {
+    own_ = welded(given);
+    closed_ = tess::dn::is_closed(*own_);
+  }
+  const std::vector<Part> parts = parts_of(surface(), closed_);
+  const auto may_turn = [](const Part& part) { return !part.open && looks_inverted(part); };
+  if (std::none_of(parts.begin(), parts.end(), may_turn)) return;
+  const Bvh tree(surface());
+  Surface turned = surface();
+  for (const Part& part : parts) {
+    if (part.open || part.triangles.empty() || winding_on(part, surface(), tree) >= 0) continue;
+    for (const std::uint32_t t : part.triangles)
+      std::swap(turned.triangles[t][0], turned.triangles[t][1]);
+  }
+  own_ = std::move(turned);
+}
+
+}  // namespace tess::dn

@@ -1,0 +1,37 @@
+// Bugs and misuse: TESS_CHECK is on in every build, says where it stands and what was expected,
+// adds what the runtime is doing on this thread (PE, array, index, entry, epoch), and ends the job.
+// TESS_DEBUG_CHECK is for what is costly: it compiles away unless CHECKS=all.
+#pragma once
+
+#include "runtime/core/error.hpp"
+
+namespace tess {
+
+/// Prints the failure with the context of this thread and ends the job with exit code 1.
+[[noreturn]] void check_failed(const char* condition, const char* file, int line,
+                               const std::string& message);
+
+/// Who describes the context of this thread; the scheduler installs it. May be null.
+using CheckContext = std::string (*)();
+void set_check_context(CheckContext describe) noexcept;
+
+/// How the job is ended after the text has been printed; a machine over many processes installs its
+/// abort.
+using CheckAbort = void (*)();
+void set_check_abort(CheckAbort end) noexcept;
+
+}  // namespace tess
+
+#define TESS_CHECK(condition, ...)                                                     \
+  do {                                                                                 \
+    if (!(condition)) [[unlikely]]                                                     \
+      ::tess::check_failed(#condition, __FILE__, __LINE__, ::tess::text(__VA_ARGS__)); \
+  } while (false)
+
+#ifdef TESS_CHECKS_ALL
+#define TESS_DEBUG_CHECK(condition, ...) TESS_CHECK(condition, __VA_ARGS__)
+#else
+#define TESS_DEBUG_CHECK(condition, ...) \
+  do {                                   \
+  } while (false)
+#endif

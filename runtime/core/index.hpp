@@ -1,0 +1,180 @@
+// What names an element of an array: a tuple of one to six coordinates, or any type that compares
+// equal, packs and hashes: a string, the user's struct. A Range is the dense box [0, extent) of
+// such tuples.
+#pragma once
+
+#include "runtime/core/hash.hpp"
+#include "runtime/core/ids.hpp"
+#include "runtime/core/serialize.hpp"
+#include "runtime/core/text.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tess {
+
+struct Index1 {
+  std::int32_t x = 0;
+  friend auto operator<=>(const Index1&, const Index1&) = default;
+};
+struct Index2 {
+  std::int32_t x = 0, y = 0;
+  friend auto operator<=>(const Index2&, const Index2&) = default;
+};
+struct Index3 {
+  std::int32_t x = 0, y = 0, z = 0;
+  friend auto operator<=>(const Index3&, const Index3&) = default;
+};
+struct Index4 {
+  std::int32_t x = 0, y = 0, z = 0, w = 0;
+  friend auto operator<=>(const Index4&, const Index4&) = default;
+};
+struct Index5 {
+  std::array<std::int32_t, 5> x{};
+  friend auto operator<=>(const Index5&, const Index5&) = default;
+};
+struct Index6 {
+  std::array<std::int32_t, 6> x{};
+  friend auto operator<=>(const Index6&, const Index6&) = default;
+};
+
+/// Hash of an index: the same in every process, since homes are computed from it.
+template <class Index>
+struct IndexHash {
+  using is_avalanching = void;
+  std::size_t operator()(const Index& index) const noexcept {
+    if constexpr (Bitwise<Index> && sizeof(Index) <= 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, &index, sizeof index);
+      return mix(word);
+    } else if constexpr (Bitwise<Index>) {
+      return hash_bytes(&index, sizeof index);
+    } else if constexpr (std::is_convertible_v<const Index&, std::string_view>) {
+      const std::string_view view = index;
+      return hash_bytes(view.data(), view.size());
+    } else {
+      const auto bytes = to_bytes(index);
+      return hash_bytes(bytes.data(), bytes.size());
+    }
+  }
+};
+
+/// An index as text for reports: [3], [1,2,3], ["name"], or its bytes.
+template <class Index>
+[[nodiscard]] std::string index_text(const Index& index) {
+  if constexpr (std::is_convertible_v<const Index&, std::string_view>) {
+    return text("[\"", std::string_view(index), "\"]");
+  } else if constexpr (Writable<Index>) {
+    return text("[", index, "]");
+  } else if constexpr (std::is_aggregate_v<Index>) {
+    std::string out = "[";
+    const auto add = [&out](const auto& field) {
+      if (out.size() > 1) out += ",";
+      if constexpr (Writable<std::remove_cvref_t<decltype(field)>>) {
+        out += text(field);
+      } else if constexpr (requires { field.begin(); }) {
+        for (bool first = true; const auto& item : field) {
+          if (!std::exchange(first, false)) out += ",";
+          out += text(item);
+        }
+      } else {
+        out += "?";
+      }
+    };
+    boost::pfr::for_each_field(index, add);
+    return out + "]";
+  } else {
+    return text("[#", IndexHash<Index>()(index), "]");
+  }
+}
+
+/// The dense box of indices 0 … extent − 1 on each axis. `n_axes` 0 is the empty range of a sparse
+/// array.
+struct Range {
+  std::array<std::int32_t, 6> extent{1, 1, 1, 1, 1, 1};
+  std::int32_t n_axes = 0;
+
+  [[nodiscard]] std::uint64_t size() const {
+    if (n_axes == 0) return 0;
+    std::uint64_t n = 1;
+    for (const std::int32_t e : extent) n *= static_cast<std::uint64_t>(e);
+    return n;
+  }
+};
+
+/// The homes of a dense range: ranks in equal blocks over the PEs. The division is by a multiple of
+/// the inverse where that is exact.
+class BlockMap {
+ public:
+  BlockMap(const Range& range, std::int32_t n_pes)
+      : size_(range.size()), n_pes_(static_cast<std::uint64_t>(n_pes)) {
+    constexpr std::uint64_t most = std::uint64_t{1} << 32U;
+    if (size_ > 1 && size_ < most / n_pes_) inverse_ = ~std::uint64_t{0} / size_ + 1;
+  }
+  [[nodiscard]] PeId home(std::int64_t rank) const {
+    __extension__ using Wide = unsigned __int128;
+    const std::uint64_t scaled = static_cast<std::uint64_t>(rank) * n_pes_;
+    const std::uint64_t pe =
+        inverse_ != 0 ? static_cast<std::uint64_t>(Wide{scaled} * inverse_ >> 64U) : scaled / size_;
+    return PeId{static_cast<std::int32_t>(pe)};
+  }
+
+ private:
+  std::uint64_t size_, n_pes_;
+  std::uint64_t inverse_ = 0;  // of the size, times 2^64, rounded up
+};
+
+/// A dense range of one to six axes. Negative extents are an Error.
+template <class... Extent>
+[[nodiscard]] Range range(Extent... extents) {
+  static_assert(sizeof...(Extent) >= 1 && sizeof...(Extent) <= 6, "a range has one to six axes");
+  Range out;
+  for (const auto extent : {static_cast<std::int64_t>(extents)...}) {
+    if (extent < 0 || extent > 0x7fffffff)
+      fail(ErrorCode::bad_argument, "range: extent ", extent, " is not within 0 … 2147483647");
+    out.extent[static_cast<std::size_t>(out.n_axes++)] = static_cast<std::int32_t>(extent);
+  }
+  return out;
+}
+
+/// No element at first: all are inserted or created on demand.
+inline constexpr Range sparse{};
+
+/// Coordinates of an index that a Range can enumerate.
+template <class Index>
+concept Coordinates = Bitwise<Index> && std::is_aggregate_v<Index> && sizeof(Index) % 4 == 0 &&
+                      sizeof(Index) <= 24 && requires(Index i) { i.x; };
+
+template <Coordinates Index>
+inline constexpr std::int32_t n_axes_of = static_cast<std::int32_t>(sizeof(Index) / 4);
+
+/// The rank of an index within a range in row-major order, or −1 outside.
+template <Coordinates Index>
+[[nodiscard]] std::int64_t rank_in(const Range& range, const Index& index) {
+  if (range.n_axes != n_axes_of<Index>) return -1;
+  std::array<std::int32_t, sizeof(Index) / 4> at{};
+  std::memcpy(at.data(), &index, sizeof index);
+  std::int64_t rank = 0;
+  for (std::size_t axis = 0; axis < at.size(); ++axis) {
+    if (at[axis] < 0 || at[axis] >= range.extent[axis]) return -1;
+    rank = rank * range.extent[axis] + at[axis];
+  }
+  return rank;
+}
+
+/// The index of a rank; the inverse of rank_in.
+template <Coordinates Index>
+[[nodiscard]] Index index_at(const Range& range, std::int64_t rank) {
+  std::array<std::int32_t, sizeof(Index) / 4> at{};
+  for (std::size_t axis = at.size(); axis-- > 0;) {
+    at[axis] = static_cast<std::int32_t>(rank % range.extent[axis]);
+    rank /= range.extent[axis];
+  }
+  Index index;
+  std::memcpy(static_cast<void*>(&index), at.data(), sizeof index);
+  return index;
+}
+
+}  // namespace tess

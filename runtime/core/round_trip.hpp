@@ -1,0 +1,109 @@
+// Does a type read what it writes? Packs a value, unpacks it, packs again, and compares; what
+// differs is named by its place in serialize() (or in the aggregate) and its type. Builds with
+// CHECKS=all ask this of the arguments of every message, and of every element that migrates (it is
+// made again from its bytes then, on whatever machine); tests may ask it of any type. So
+// serialize() is called when nobody moves, and has no effect but on its archive and the members
+// that it reads.
+#pragma once
+
+#include "runtime/core/serialize.hpp"
+#include "runtime/messages/registry.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace tess {
+
+namespace detail {
+
+/// An archive that keeps the bytes and the type of each member by itself.
+class MemberWriter {
+ public:
+  static constexpr bool is_reading = false;
+  struct Member {
+    std::string_view type;
+    std::vector<std::byte> bytes;
+  };
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (members.push_back({name_of_type<T>, to_bytes(values)}), ...);
+  }
+  std::vector<Member> members;
+};
+
+/// Equal up to order: a hashed container may hold the same in another order.
+[[nodiscard]] inline bool same_bytes(std::vector<std::byte> a, std::vector<std::byte> b) {
+  if (a == b) return true;
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  return a == b;
+}
+
+template <class T>
+[[nodiscard]] std::vector<MemberWriter::Member> members_of(const T& value) {
+  MemberWriter members;
+  if constexpr (serialization::HasSerialize<T>) {
+    const_cast<T&>(value).serialize(members);
+  } else if constexpr (serialization::TupleLike<T>) {
+    std::apply(members, value);
+  } else {
+    members(value);
+  }
+  return std::move(members.members);
+}
+
+}  // namespace detail
+
+/// Empty if the copy packs like the original; otherwise one line that names the first member that
+/// does not.
+template <class T>
+[[nodiscard]] std::string difference(const T& original, const T& copy) {
+  const auto before = detail::members_of(original), after = detail::members_of(copy);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (i < after.size() && detail::same_bytes(before[i].bytes, after[i].bytes)) continue;
+    return text(plain_name(name_of_type<T>), ": member ", i + 1, " of ", before.size(), " (",
+                before[i].type, ") does not come back as it was sent: ", before[i].bytes.size(),
+                " bytes before, ", i < after.size() ? after[i].bytes.size() : 0, " after");
+  }
+  return {};
+}
+
+/// The same for a copy and the bytes that it was read from.
+template <class T>
+[[nodiscard]] std::string difference_from_bytes(std::span<const std::byte> sent, const T& copy) {
+  const auto members = detail::members_of(copy);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const auto mine = sent.subspan(at, std::min(members[i].bytes.size(), sent.size() - at));
+    if (!detail::same_bytes({mine.begin(), mine.end()}, members[i].bytes))
+      return text(plain_name(name_of_type<T>), ": member ", i + 1, " of ", members.size(), " (",
+                  members[i].type, ") does not come back as it was sent");
+    at += mine.size();
+  }
+  if (at != sent.size())
+    return text(plain_name(name_of_type<T>), ": serialize() writes ", sent.size() - at,
+                " bytes less after it has read than before");
+  return {};
+}
+
+/// The same for a value and what is read from its own bytes.
+template <class T>
+[[nodiscard]] std::string round_trip_difference(const T& value) {
+  const std::vector<std::byte> bytes = to_bytes(value);
+  Reader read(bytes);
+  T copy{};
+  try {
+    read(copy);
+  } catch (const Error& error) {
+    return text(plain_name(name_of_type<T>),
+                ": serialize() reads more bytes than it writes: ", error.what());
+  }
+  if (read.remaining() != 0)
+    return text(plain_name(name_of_type<T>), ": serialize() reads ", read.remaining(),
+                " bytes less than it writes");
+  return difference(value, copy);
+}
+
+}  // namespace tess

@@ -1,0 +1,476 @@
+// Values to bytes and back, for messages that cross processes and for chares that migrate.
+//
+//   struct Edge { int step; std::vector<double> values; };          an aggregate needs nothing
+//   class Block { template <class Ar> void serialize(Ar& ar) { ar(grid_, tile_, edges_); } };   one
+//   function, both ways
+//
+// Numbers and enums are copied as they are: all processes of a job run the same binary on the same
+// kind of machine. Standard and Boost containers, pair, tuple, optional, variant and unique_ptr
+// work when what they hold does. A raw pointer does not compile. Reading checks every length
+// against what is left and throws tess::Error.
+//
+// In a message to another process a large vector of numbers is not copied: its bytes are attached,
+// and travel from where they stand to where they are read. The stream holds its length, with the
+// highest bit set.
+//
+//     bytes:     | header | index | length of the vector, attached | next member … |
+//     attached:  | the numbers of the vector |
+#pragma once
+
+#include "runtime/base/buffer.hpp"
+#include "runtime/base/uninitialised.hpp"
+#include "runtime/core/error.hpp"
+
+#include <boost/pfr/core.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tess {
+
+class Writer;
+class Reader;
+
+namespace serialization {
+
+template <class T>
+concept HasSerialize = requires(T& value, Writer& ar) { value.serialize(ar); };
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <class T>
+concept TupleLike = requires { std::tuple_size<T>::value; } && !std::is_aggregate_v<T>;
+template <class T>
+concept Resizable = requires(T& c, std::size_t n) {
+  c.resize(n);
+  c.data();
+  c.size();
+  typename T::value_type;
+};
+template <class T>
+concept Growable = requires(T& c, typename T::value_type v) {
+  c.clear();
+  c.insert(c.end(), std::move(v));
+  c.size();
+};
+
+template <class T>
+struct IsArray : std::false_type {};
+template <class T, std::size_t N>
+struct IsArray<std::array<T, N>> : std::true_type {};
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::bool_constant<!std::is_same_v<T, bool>> {};
+/// What it gives to an archive are its own members, never a temporary: they may be attached.
+template <class T>
+concept GivesMembers = requires { typename T::GivesMembers; };
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+template <class T>
+struct IsVariant : std::false_type {};
+template <class... T>
+struct IsVariant<std::variant<T...>> : std::true_type {};
+template <class T>
+struct IsUnique : std::false_type {};
+template <class T>
+struct IsUnique<std::unique_ptr<T>> : std::true_type {};
+template <class T>
+struct IsPair : std::false_type {};
+template <class A, class B>
+struct IsPair<std::pair<A, B>> : std::true_type {};
+
+template <class T>
+consteval bool is_bitwise();
+
+template <class T, std::size_t... I>
+consteval bool fields_are_bitwise(std::index_sequence<I...> /*fields*/) {
+  return (is_bitwise<boost::pfr::tuple_element_t<I, T>>() && ...) &&
+         (sizeof(boost::pfr::tuple_element_t<I, T>) + ... + 0) == sizeof(T);
+}
+
+/// True if a copy of the bytes is a copy of the value, with no padding between.
+template <class T>
+consteval bool is_bitwise() {
+  if constexpr (Number<T>) {
+    return true;
+  } else if constexpr (IsArray<T>::value) {
+    return is_bitwise<typename T::value_type>();
+  } else if constexpr (std::is_array_v<T>) {
+    return false;
+  } else if constexpr (std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> &&
+                       !HasSerialize<T> && !std::is_union_v<T>) {
+    if constexpr (std::is_empty_v<T>) {
+      return false;
+    } else {
+      return fields_are_bitwise<T>(std::make_index_sequence<boost::pfr::tuple_size_v<T>>());
+    }
+  } else {
+    return false;
+  }
+}
+
+}  // namespace serialization
+
+/// A value whose bytes are the value.
+template <class T>
+concept Bitwise = serialization::is_bitwise<std::remove_cv_t<T>>();
+
+/// Memory that belongs to a message but is not copied into its bytes. The message keeps it alive
+/// until it has been sent, or `keepers` does.
+struct Attached {
+  std::size_t least_bytes = 0;  ///< of an attached vector; a smaller one is copied
+  std::size_t n_bytes = 0;      ///< of all parts
+  std::vector<std::span<const std::byte>> parts;
+  std::vector<std::shared_ptr<const void>> keepers;
+
+  static constexpr std::size_t most_parts = 64;
+  void clear() {
+    n_bytes = 0;
+    parts.clear();
+    keepers.clear();
+  }
+};
+
+/// Where the attached parts of a message are to be put, as its members are read one after the
+/// other.
+struct Places {
+  std::span<const std::uint64_t> sizes;      ///< of the parts, as announced
+  std::vector<std::span<std::byte>>& taken;  ///< where each of them belongs
+};
+
+/// Writes values as bytes: at the end of a buffer, which grows; or into memory of a fixed size.
+/// What does not fit there is counted and not written, so n_bytes() says how much is needed.
+class Writer {
+ public:
+  static constexpr bool is_reading = false;
+
+  explicit Writer(Buffer& out) : grows_(&out) {}
+  explicit Writer(std::span<std::byte> out, Attached* attached = nullptr)
+      : begin_(out.data()),
+        at_(out.data()),
+        end_(out.data() + out.size()),
+        attached_(attached),
+        may_attach_(attached != nullptr) {}
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+  void bytes(const void* data, std::size_t n) {
+    n_bytes_ += n;
+    if (n <= static_cast<std::size_t>(end_ - at_)) [[likely]] {
+      if (n != 0) std::memcpy(at_, data, n);
+      at_ += n;
+    } else if (grows_ != nullptr) {
+      grows_->append({static_cast<const std::byte*>(data), n});
+    } else {
+      end_ = at_;  // nothing after it is written either
+    }
+  }
+  /// The bytes written, or needed.
+  [[nodiscard]] std::size_t n_bytes() const { return n_bytes_; }
+
+  /// Attaches memory that `keeper` holds; false if it is to be copied. Then the length is written,
+  /// with Reader::attached_bit if it is attached (shared_array.hpp).
+  bool attach(std::span<const std::byte> memory, std::shared_ptr<const void> keeper) {
+    if (attached_ == nullptr || !fits(memory.size())) return false;
+    add_part(memory);
+    attached_->keepers.push_back(std::move(keeper));
+    return true;
+  }
+  [[nodiscard]] std::size_t position() const { return n_bytes_; }
+  /// Writes over eight bytes that were written at that position.
+  void patch(std::size_t position, std::uint64_t value) {
+    if (grows_ != nullptr) {
+      std::memcpy(grows_->data() + (grows_->size() - n_bytes_ + position), &value, sizeof value);
+    } else if (begin_ != nullptr && begin_ + position + sizeof value <= end_) {
+      std::memcpy(begin_ + position, &value, sizeof value);
+    }
+  }
+
+ private:
+  /// While it lives nothing is attached but by attach().
+  class CopiesAll {
+   public:
+    explicit CopiesAll(Writer& writer)
+        : writer_(writer), before_(std::exchange(writer.may_attach_, false)) {}
+    CopiesAll(const CopiesAll&) = delete;
+    CopiesAll& operator=(const CopiesAll&) = delete;
+    ~CopiesAll() { writer_.may_attach_ = before_; }
+
+   private:
+    Writer& writer_;
+    bool before_;
+  };
+
+  template <class T>
+  void put(const T& value);
+  [[nodiscard]] bool fits(std::size_t n_bytes) const {
+    return n_bytes != 0 && n_bytes >= attached_->least_bytes &&
+           attached_->parts.size() < Attached::most_parts;
+  }
+  void add_part(std::span<const std::byte> memory) {
+    attached_->parts.push_back(memory);
+    attached_->n_bytes += memory.size();
+  }
+
+  std::byte* begin_ = nullptr;
+  std::byte* at_ = nullptr;
+  std::byte* end_ = nullptr;
+  std::size_t n_bytes_ = 0;
+  Buffer* grows_ = nullptr;
+  Attached* attached_ = nullptr;
+  bool may_attach_ = false;
+};
+
+/// The bytes that a value takes when written.
+template <class T>
+[[nodiscard]] std::size_t written_bytes(const T& value) {
+  Writer count{std::span<std::byte>()};
+  count(value);
+  return count.n_bytes();
+}
+
+/// Takes values from bytes, in the order they were written. Throws tess::Error when the bytes end
+/// too early.
+class Reader {
+ public:
+  static constexpr bool is_reading = true;
+
+  explicit Reader(std::span<const std::byte> in, Places* places = nullptr)
+      : in_(in), places_(places) {}
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+  template <class T>
+  [[nodiscard]] T take() {
+    T value{};
+    get(value);
+    return value;
+  }
+  void bytes(void* data, std::size_t n) {
+    need(n);
+    if (n != 0) std::memcpy(data, in_.data() + at_, n);
+    at_ += n;
+  }
+  /// The next n bytes, without a copy; valid as long as the bytes that are read.
+  [[nodiscard]] std::span<const std::byte> view(std::size_t n) {
+    need(n);
+    at_ += n;
+    return in_.subspan(at_ - n, n);
+  }
+  [[nodiscard]] std::size_t remaining() const { return in_.size() - at_; }
+  /// A reader of the next n bytes alone; attached parts are placed by both.
+  [[nodiscard]] Reader part(std::size_t n) { return Reader(view(n), places_); }
+
+  /// The next attached part, of that many bytes, is to be put there. It comes later; nothing may
+  /// look at that memory, or move it, before the message runs.
+  void place(void* memory, std::size_t n_bytes) {
+    if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
+        places_->sizes[places_->taken.size()] != n_bytes)
+      fail(ErrorCode::bad_value, "message has no attached part of ", n_bytes, " bytes here");
+    places_->taken.emplace_back(static_cast<std::byte*>(memory), n_bytes);
+  }
+  /// The length of what may be attached, in things of that many bytes each; second: it is.
+  [[nodiscard]] std::pair<std::size_t, bool> length_or_attached(std::size_t bytes_each) {
+    const auto n = take<std::uint64_t>();
+    if ((n & attached_bit) == 0) return {checked_length(n, bytes_each), false};
+    // Before memory of that size is asked for.
+    const std::uint64_t length = n & ~attached_bit;
+    if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
+        places_->sizes[places_->taken.size()] / bytes_each != length)
+      fail(ErrorCode::bad_value, "message has no attached part of ", length, " elements here");
+    return {length, true};
+  }
+  static constexpr std::uint64_t attached_bit = std::uint64_t{1} << 63U;
+
+ private:
+  template <class T>
+  void get(T& value);
+  void need(std::size_t n) const {
+    if (n > remaining())
+      fail(ErrorCode::bad_value, "message ends early: ", n, " bytes wanted at byte ", at_, " of ",
+           in_.size());
+  }
+  std::size_t length(std::size_t least_bytes_each) {
+    return checked_length(take<std::uint64_t>(), least_bytes_each);
+  }
+  std::size_t checked_length(std::uint64_t n, std::size_t least_bytes_each) const {
+    if (least_bytes_each != 0 && n > remaining() / least_bytes_each)
+      fail(ErrorCode::bad_value, "message ends early: ", n, " elements announced, ", remaining(),
+           " bytes left");
+    return n;
+  }
+
+  std::span<const std::byte> in_;
+  std::size_t at_ = 0;
+  Places* places_;
+};
+
+template <class T>
+void Writer::put(const T& value) {
+  using namespace serialization;
+  static_assert(!std::is_pointer_v<T> && !std::is_reference_v<T>,
+                "a pointer means nothing in another process: send the value, an index or a proxy");
+  if constexpr (Bitwise<T>) {
+    bytes(&value, sizeof value);
+  } else if constexpr (HasSerialize<T>) {
+    if constexpr (GivesMembers<T>) {
+      const_cast<T&>(value).serialize(*this);
+    } else {
+      const CopiesAll scope(*this);
+      const_cast<T&>(value).serialize(*this);
+    }
+  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
+    put(static_cast<std::uint64_t>(value.size()));
+    for (const bool bit : value) put(static_cast<std::uint8_t>(bit));
+  } else if constexpr (IsOptional<T>::value || IsUnique<T>::value) {
+    put(static_cast<std::uint8_t>(value ? 1 : 0));
+    if (value) put(*value);
+  } else if constexpr (IsVariant<T>::value) {
+    put(static_cast<std::uint64_t>(value.index()));
+    std::visit([this](const auto& held) { put(held); }, value);
+  } else if constexpr (Resizable<T>) {
+    using Each = typename T::value_type;
+    const std::uint64_t n = value.size();
+    if constexpr (Bitwise<Each>) {
+      // A string may hold its bytes in itself, which moves: it is copied.
+      if constexpr (IsVector<T>::value || std::is_same_v<T, Buffer>) {
+        if (may_attach_ && fits(n * sizeof(Each))) {
+          put(n | Reader::attached_bit);
+          add_part(std::as_bytes(std::span(value.data(), n)));
+          return;
+        }
+      }
+      put(n);
+      bytes(value.data(), n * sizeof(Each));
+    } else {
+      put(n);
+      for (const auto& item : value) put(item);
+    }
+  } else if constexpr (Growable<T>) {
+    // The reader moves what it has read into the container: nothing is read in place.
+    const CopiesAll scope(*this);
+    put(static_cast<std::uint64_t>(value.size()));
+    for (const auto& item : value) put(item);
+  } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
+    for (const auto& item : value) put(item);
+  } else if constexpr (IsPair<T>::value || TupleLike<T>) {
+    std::apply([this](const auto&... item) { (put(item), ...); }, value);
+  } else if constexpr (std::is_empty_v<T>) {
+    // Nothing to write.
+  } else {
+    static_assert(std::is_aggregate_v<T>,
+                  "a type that is no aggregate and no known container needs `template <class Ar> "
+                  "void serialize(Ar& ar)`");
+    boost::pfr::for_each_field(value, [this](const auto& field) { put(field); });
+  }
+}
+
+template <class T>
+void Reader::get(T& value) {
+  using namespace serialization;
+  if constexpr (Bitwise<T>) {
+    bytes(&value, sizeof value);
+  } else if constexpr (HasSerialize<T>) {
+    value.serialize(*this);
+  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
+    value.resize(length(1));
+    for (auto&& bit : value) bit = take<std::uint8_t>() != 0;
+  } else if constexpr (IsOptional<T>::value) {
+    value.reset();
+    if (take<std::uint8_t>() != 0) get(value.emplace());
+  } else if constexpr (IsUnique<T>::value) {
+    value.reset();
+    if (take<std::uint8_t>() != 0) {
+      value = std::make_unique<typename T::element_type>();
+      get(*value);
+    }
+  } else if constexpr (IsVariant<T>::value) {
+    const auto which = take<std::uint64_t>();
+    if (which >= std::variant_size_v<T>)
+      fail(ErrorCode::bad_value, "message holds alternative ", which, " of a variant of ",
+           std::variant_size_v<T>);
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      ((which == I ? get(value.template emplace<I>()) : void()), ...);
+    }(std::make_index_sequence<std::variant_size_v<T>>());
+  } else if constexpr (Resizable<T>) {
+    using Each = typename T::value_type;
+    if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, Buffer>)) {
+      const auto [n, attached] = length_or_attached(sizeof(Each));
+      if constexpr (IsVector<T>::value)
+        resize_uninitialised(value, n);
+      else
+        value.resize(n);
+      if (attached)
+        place(value.data(), n * sizeof(Each));
+      else
+        bytes(value.data(), n * sizeof(Each));
+    } else if constexpr (Bitwise<Each>) {
+      value.resize(length(sizeof(Each)));
+      bytes(value.data(), value.size() * sizeof(Each));
+    } else {
+      value.resize(length(std::is_empty_v<Each> ? 0 : 1));
+      for (auto& item : value) get(item);
+    }
+  } else if constexpr (Growable<T>) {
+    value.clear();
+    for (std::size_t n = length(1); n > 0; --n) {
+      if constexpr (requires { typename T::mapped_type; }) {
+        auto key = take<typename T::key_type>();
+        auto mapped = take<typename T::mapped_type>();
+        value.insert(value.end(), typename T::value_type(std::move(key), std::move(mapped)));
+      } else {
+        value.insert(value.end(), take<typename T::value_type>());
+      }
+    }
+  } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
+    for (auto& item : value) get(item);
+  } else if constexpr (IsPair<T>::value || TupleLike<T>) {
+    std::apply([this](auto&... item) { (get(item), ...); }, value);
+  } else if constexpr (std::is_empty_v<T>) {
+    // Nothing to read.
+  } else {
+    static_assert(std::is_aggregate_v<T>,
+                  "a type that is no aggregate and no known container needs `template <class Ar> "
+                  "void serialize(Ar& ar)`");
+    boost::pfr::for_each_field(value, [this](auto& field) { get(field); });
+  }
+}
+
+/// The bytes of one value.
+template <class T>
+[[nodiscard]] std::vector<std::byte> to_bytes(const T& value) {
+  std::vector<std::byte> out;
+  resize_uninitialised(out, written_bytes(value));
+  Writer write{std::span<std::byte>(out)};
+  write(value);
+  return out;
+}
+
+/// The value of these bytes; throws tess::Error if they end early or are too many.
+template <class T>
+[[nodiscard]] T from_bytes(std::span<const std::byte> bytes) {
+  Reader read(bytes);
+  T value = read.take<T>();
+  if (read.remaining() != 0)
+    fail(ErrorCode::bad_value, "message has ", read.remaining(), " bytes more than its type reads");
+  return value;
+}
+
+}  // namespace tess

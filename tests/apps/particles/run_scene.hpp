@@ -1,0 +1,56 @@
+// Runs a scene from its text, on the machine that an option names; and by a plain loop over all
+// particles, without blocks or messages: the oracle.
+#pragma once
+
+#include "apps/particles/simulation/observe.hpp"
+#include "apps/particles/simulation/simulate.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace particles {
+
+struct Ran {
+  std::shared_ptr<Stage> stage;
+  RunResult result;
+  [[nodiscard]] const Measured& last() const { return result.rows.back().measured; }
+};
+
+/// option: "--pes=2", "--sim=pes=4,seed=3".
+inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& how = {}) {
+  std::string name = "test", argument = option;
+  std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
+  int argc = 2;
+  tess::Setup setup = tess::take_options(argc, argv.data());
+  Ran ran{std::make_shared<Stage>(std::move(scene)), {}};
+  const auto main = [&]() -> tess::Task { return simulate(ran.stage, ran.result, how); };
+  REQUIRE(tess::run(setup, main) == 0);
+  return ran;
+}
+
+/// What the last row must hold, step by step over all particles of a stage whose fields are built.
+inline Measured run_serially(const Stage& stage) {
+  const Scene& scene = stage.scene;
+  std::vector<tess::dn::Object> objects = stage.objects();
+  std::vector<Flock> flocks(stage.masses.size());
+  for (std::uint64_t id = 0; id < stage.source.size(); ++id) {
+    const Start start = stage.source.particle(id);
+    const auto species = static_cast<std::size_t>(
+        std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
+    flocks[species].add(id, start.position, start.velocity, Mark{});
+  }
+  for (std::int32_t step = 0; step < scene.steps; ++step) {
+    for (std::size_t s = 0; s < flocks.size(); ++s)
+      make_stepper(for_mass(scene.rules, stage.masses[s]), scene.dt)
+          .run(flocks[s].motion.span(), objects, step * scene.dt, 1);
+    tess::dn::advance(objects, scene.dt, 1);
+  }
+  Measured measured;
+  for (std::size_t s = 0; s < flocks.size(); ++s) measure(stage, objects, flocks[s], s, measured);
+  return measured;
+}
+
+}  // namespace particles

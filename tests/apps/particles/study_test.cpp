@@ -1,0 +1,155 @@
+// The study against what must come out: the exact reference by itself, and the orders and bounds
+// that theory gives for the rows.
+#include "apps/particles/study/study.hpp"
+
+#include "apps/particles/output/picture.hpp"
+#include "apps/particles/output/vtp.hpp"
+#include "apps/particles/study/exact_bounce.hpp"
+#include "apps/particles/study/exact_flight.hpp"
+#include "collide/dn_field/shapes.hpp"
+#include "tests/apps/particles/run_scene.hpp"
+
+using namespace particles;
+using tess::dn::Vec3;
+
+TEST_CASE("exact bounces lie on the surface and mirror the velocity", "[particles][study]") {
+  const tess::dn::Surface box = tess::dn::make_box({1, 2, 3});
+  const auto bounces = exact_bounces(box, 100, 0.5, 1);
+  CHECK(bounces.size() == 100);  // a box hides none of its faces
+  for (const Bounce& b : bounces) {
+    const Vec3 part{std::abs(b.hit.x), std::abs(b.hit.y) / 2, std::abs(b.hit.z) / 3};
+    CHECK(std::max({part.x, part.y, part.z}) == Approx(1).epsilon(1e-12));
+    CHECK(norm(b.velocity) == Approx(1).epsilon(1e-12));
+    CHECK(norm(b.outgoing) == Approx(1).epsilon(1e-12));
+    const Vec3 change = b.outgoing - b.velocity;  // along one axis
+    CHECK(norm(change) ==
+          Approx(std::abs(change.x) + std::abs(change.y) + std::abs(change.z)).epsilon(1e-12));
+    const Vec3 place = b.hit + 0.7 * b.outgoing;
+    CHECK(bounce_time(b, place, b.outgoing, b.time + 0.7) == Approx(b.time).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("exact flights in front of a plane are those of the formulas", "[particles][study]") {
+  const tess::dn::Surface box = tess::dn::make_box({20, 20, 1});
+  const tess::dn::Bvh tree(box);
+  // 45 degrees onto z = 1 from a distance of 2: the reach begins after sqrt(2), and then the speed
+  // falls by the rate per length.
+  const double root = std::sqrt(2.0);
+  const Flight start{{-3, 0, 3}, {1 / root, 0, -1 / root}};
+  const tess::dn::SurfaceDrag drag{2, 1, tess::dn::DragLaw::linear};
+  const Flight slowed = exact_drag(tree, start, drag, root + 0.3);
+  const double way = root + (1 - std::exp(-0.6)) / 2;
+  CHECK(norm(slowed.position - (start.position + way * start.velocity)) < 1e-8);
+  CHECK(norm(slowed.velocity) == Approx(std::exp(-0.6)).epsilon(1e-8));
+  // An arc of radius 1/2 to the tangent, a quarter of pi long in angle, and straight on along it.
+  const tess::dn::SurfaceFlow flow{2, 5, 1};
+  const double arc = std::acos(-1.0) / 8;
+  const Flight turned = exact_flow(tree, start, flow, root + arc + 0.5, 4000);
+  const double height = 2 - 0.5 * (1 - 1 / root);
+  CHECK(norm(turned.velocity - Vec3{1, 0, 0}) < 1e-3);
+  CHECK(norm(turned.position - Vec3{-2 + 0.5 / root + 0.5, 0, height}) < 1e-3);
+}
+
+TEST_CASE("the study finds the orders of the look-ups, and no particle lost where none may be",
+          "[particles][study]") {
+  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+    "objects": [{"shape": {"sphere": {"radius": 1, "rings": 30}}, "resolution": 24, "thickness": 1}],
+    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
+                                  "scene.json");
+  StudyOptions options;
+  options.resolutions = {12, 23};
+  options.n_samples = 1000;
+  options.n_bounces = 30;
+  options.n_timed = 100;
+  const std::vector<StudyRow> rows = study(scene, options);
+  const auto row_of = [&](int resolution, const char* look_up) {
+    for (const StudyRow& row : rows)
+      if (row.part == "field" && row.method == "exact" && row.resolution == resolution &&
+          row.look_up == look_up && row.stored == "flat")
+        return row;
+    FAIL("no row for " << look_up);
+    return rows.front();
+  };
+  // 23 - 1 cells are half as large as 12 - 1.
+  const auto order = [&](const char* look_up) {
+    return std::log2(row_of(12, look_up).distance_error / row_of(23, look_up).distance_error);
+  };
+  CHECK(order("nearest") == Approx(1).margin(0.25));
+  CHECK(order("tangent") == Approx(2).margin(0.5));
+  CHECK(order("trilinear") == Approx(2).margin(0.5));
+  const double cell = 4.0 / 22;
+  CHECK(row_of(23, "nearest").distance_error_max <= 0.5 * std::sqrt(3.0) * cell + 1e-6);
+  std::size_t n_memory = 0;
+  for (const StudyRow& row : rows) {
+    if (!row.note.empty()) continue;
+    INFO(row.part << " " << row.resolution << " " << row.method << " " << row.look_up << " "
+                  << row.rule);
+    const bool fine = row.look_up != "nearest" && row.resolution >= 23 && row.method == "exact";
+    if (row.rule == "impact, swept" && fine && row.lost >= 0) CHECK(row.lost == 0);
+    if (row.rule == "impact, swept" && row.look_up == "tangent" && row.lost >= 0)
+      CHECK(row.penetration < cell);
+    // A step of twice the thickness without a sweep: some go through.
+    if (row.rule == "impact" && row.step == 2) CHECK(row.lost > 0);
+    if (row.part == "memory") ++n_memory;
+    // Compressed fields lose nothing either, and take less.
+    if (row.stored == "compressed" && row.part == "field") {
+      const StudyRow flat = row_of(row.resolution, row.look_up.c_str());
+      CHECK(row.bytes < flat.bytes);
+      CHECK(row.lost <= flat.lost);
+      CHECK(row.angle_error < flat.angle_error + 1);
+    }
+  }
+  CHECK(n_memory == 4);
+  // Drag is of first order in the step. The flow turns by the voxels' normals, 0.15 radians off at
+  // this resolution, whatever the step.
+  const auto place_error = [&](const char* rule, double step) {
+    for (const StudyRow& row : rows)
+      if (row.part == "rule" && row.rule == rule && row.step == step) {
+        CHECK(row.ns > 0);
+        return row.place_error;
+      }
+    FAIL("no row for " << rule);
+    return 0.0;
+  };
+  CHECK(place_error("drag", 0.02) < 0.03);
+  CHECK(place_error("drag", 0.1) > 2 * place_error("drag", 0.02));
+  CHECK(place_error("drag", 2.0) > 4 * place_error("drag", 0.1));
+  CHECK(place_error("surface flow", 0.02) < 0.15);
+  CHECK(place_error("surface flow", 2.0) > 3 * place_error("surface flow", 0.02));
+  const std::string csv = study_csv(rows);
+  CHECK(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')) == rows.size() + 1);
+}
+
+TEST_CASE("a snapshot's file holds each particle once, in the order of ids", "[particles]") {
+  const Snapshot snapshot{7, {{3, {1, 2, 3}, {4, 5, 6}}, {9, {0.5, 0, -1}, {}}}};
+  const std::string file = vtp(snapshot);
+  CHECK(file.find("NumberOfPoints=\"2\"") != std::string::npos);
+  CHECK(file.find("format=\"ascii\">\n3\n9\n<") != std::string::npos);
+  CHECK(file.find("format=\"ascii\">\n1 2 3\n0.5 0 -1\n<") != std::string::npos);
+}
+
+TEST_CASE("a cut through a field is refused outside of it", "[particles]") {
+  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+    "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 12, "thickness": 1}],
+    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
+                                  "scene.json");
+  const auto built = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
+  CHECK(slice_svg(built.field, 2, 0).find("</svg>") != std::string::npos);
+  CHECK_THROWS_AS(slice_svg(built.field, 2, 2.5), tess::Error);
+  CHECK_THROWS_AS(slice_svg(built.field, 0, NAN), tess::Error);
+}
+
+TEST_CASE("a picture of paths outlines what moves where it ends", "[particles]") {
+  const auto picture = [](const char* motion) {
+    const Scene scene = parse_scene(R"({"dt": 0.01, "steps": 100,
+      "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "motion": {"velocity": )" +
+                                        std::string(motion) + R"(}}],
+      "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
+                                    "scene.json");
+    return paths_svg(scene, {{0, {{0, {}, {}}}}, {100, {{0, {}, {}}}}});
+  };
+  // 200 pixels a unit: the left side goes from 120 to 220.
+  CHECK(picture("[0.5, 0, 0]").find("M220.0 ") != std::string::npos);
+  CHECK(picture("[0.5, 0, 0]").find("t = 1 (outline)") != std::string::npos);
+  CHECK(picture("[0, 0, 0]").find("M220.0 ") == std::string::npos);
+}

@@ -1,0 +1,216 @@
+#include "collide/dn_field/build_blurred.hpp"
+
+#include "collide/dn_field/build/voxels.hpp"
+#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/shapes.hpp"
+#include "tests/collide/dn_field/field_samples.hpp"
+#include "tests/support/catch.hpp"
+
+#include <thread>
+
+namespace {
+
+using namespace tess::dn;
+using namespace tess::dn::test;
+
+TEST_CASE("the voxels of a surface are those its triangles cut", "[dn_field]") {
+  const Surface sphere = make_sphere(1, 32);
+  const Grid grid = grid_around(bounds(sphere), 24, 0.2);
+  const auto voxels = surface_voxels(sphere, grid);
+  std::vector<int> hit(grid.size(), 0);
+  for (const SurfaceVoxel& v : voxels) ++hit[v.at];
+  int wrong = 0;
+  for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
+    const Vec3 n = direction(p);
+    const double reach = 0.5 * grid.cell * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+    const double off = std::abs(norm(p) - 1);
+    if (off < 0.9 * reach - 0.005) wrong += hit[at] != 1;
+    if (off > 1.1 * reach + 0.005) wrong += hit[at] != 0;
+  });
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("a flat face between two layers of voxels meets both, wherever the grid stands",
+          "[dn_field]") {
+  for (const double aside : {0.0, 0.1, -7.3, 1e5})
+    for (int n = 6; n <= 60; n += 2) {
+      Surface plate = make_plate(1, 1);
+      for (Vec3& p : plate.vertices) p += Vec3{aside, -aside, aside};
+      const Grid grid = grid_around(bounds(plate), n, 0.4);
+      const auto voxels = surface_voxels(plate, grid);
+      const auto middle = grid.index(n / 2, n / 2, n / 2);
+      int below = 0, above = 0;
+      for (const SurfaceVoxel& v : voxels) {
+        below += v.at == middle - grid.index(0, 0, 1);
+        above += v.at == middle;
+      }
+      INFO("resolution " << n << ", aside " << aside);
+      CHECK(below == 1);
+      CHECK(above == 1);
+    }
+}
+
+TEST_CASE("a plate between two layers is refused by normals and served by potential on both sides",
+          "[dn_field]") {
+  const Surface plate = make_plate(1, 1);
+  for (const int n : {20, 21}) {
+    const Grid grid = grid_around(bounds(plate), n, 0.4);
+    CHECK(refusal([&] {
+            (void)build_blurred(plate, grid, {Method::normals, Sides::one, 0.4, {}, {}});
+          }).find("near-zero thickness") != std::string::npos);
+    const Field field = build_blurred(plate, grid, {Method::potential, Sides::two, 0.4, {}, {}});
+    for (const int k : {n / 2 - 2, n / 2 + 2})
+      CHECK(decoded(field.normal[grid.index(n / 2, n / 2, k)]).z ==
+            Approx(k < n / 2 ? -1 : 1).epsilon(0.01));
+  }
+  const Grid away{{5, 5, 5}, 0.1, {8, 8, 8}};
+  for (const Method method : {Method::normals, Method::potential})
+    CHECK(refusal([&] {
+            (void)build_blurred(plate, away, {method, Sides::one, 0.4, {}, {}});
+          }).find("no voxel of the grid") != std::string::npos);
+}
+
+/// The greatest and the mean angle to the exact normals of a sphere, in degrees, over all voxels
+/// with one at least `core` from the middle.
+std::pair<double, double> angles_off(const Field& field, double core) {
+  double worst = 0, sum = 0;
+  int count = 0;
+  for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
+    if (field.normal[at] == no_normal || norm(p) < core) return;
+    const double angle = angle_between(decoded(field.normal[at]), direction(p)) / degree;
+    worst = std::max(worst, angle);
+    sum += angle;
+    ++count;
+  });
+  CHECK(count > 1000);
+  return {worst, sum / count};
+}
+
+TEST_CASE("both of the paper's methods give a sphere's normals, and exact distances",
+          "[dn_field]") {
+  const Surface sphere = make_sphere(1, 48);
+  const Grid grid = grid_around(bounds(sphere), 40, 0.4);
+  const double thickness = 6 * grid.cell;
+  const Field exact =
+      build_exact(sphere, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
+  for (const Method method : {Method::normals, Method::potential})
+    for (const int radius : {2, 3, 4}) {
+      const Blur blur{radius, 6 / radius + 1};
+      const Field field = build_blurred(sphere, grid, {method, Sides::one, thickness, blur, {}});
+      CHECK(field.method == method);
+      CHECK(field.distance == exact.distance);
+      int missing = 0;
+      for (std::size_t at = 0; at < grid.size(); ++at)
+        missing += (field.normal[at] == no_normal) != (exact.normal[at] == no_normal);
+      CHECK(missing == 0);
+      const auto [worst, mean] = angles_off(field, 0.3);
+      INFO("method " << static_cast<int>(method) << " radius " << radius << ": worst " << worst
+                     << "°, mean " << mean << "°");
+      CHECK(worst < (method == Method::normals ? 6 : 22));
+      CHECK(mean < (method == Method::normals ? 1.5 : 4));
+    }
+}
+
+TEST_CASE("a blurred field does not depend on how its layers are split, or by whom", "[dn_field]") {
+  const Surface torus = make_torus(1, 0.4, 24);
+  const Grid grid = grid_around(bounds(torus), 26, 0.3);
+  for (const Method method : {Method::normals, Method::potential}) {
+    const BlurredOptions options{method, Sides::one, 0.3, {3, 2}, {}};
+    const Field whole = build_blurred(torus, grid, options);
+    for (const std::vector<int>& cuts :
+         {std::vector<int>{0, 26}, {0, 4, 4, 12, 26}, {0, 1, 2, 7, 25, 26}}) {
+      BlurredBuilder builder(torus, grid, options);
+      const auto each_part = [&cuts](const auto& build) {
+        std::vector<std::jthread> threads;
+        for (std::size_t i = cuts.size() - 1; i > 0; --i)
+          threads.emplace_back([&build, from = cuts[i - 1], to = cuts[i]] { build(from, to); });
+      };
+      each_part([&](int first, int last) { builder.build_distances(first, last); });
+      CHECK(builder.n_rounds() == (method == Method::normals ? 3 : 4));
+      for (int round = 0; round < builder.n_rounds(); ++round)
+        each_part([&](int first, int last) { builder.build_round(round, first, last); });
+      const Field field = builder.finish();
+      CHECK(field.distance == whole.distance);
+      CHECK(field.normal == whole.normal);
+      CHECK(field.thickness == whole.thickness);
+      CHECK(field.jump == whole.jump);
+    }
+  }
+}
+
+TEST_CASE("the potential of a thin plate points away from it on both sides", "[dn_field]") {
+  const Grid grid{{-1, -1, -0.95}, 0.1, {21, 21, 20}};
+  const Field field =
+      build_blurred(make_plate(0.8, 4), grid, {Method::potential, Sides::two, 0.5, {}, {}});
+  for (const int k : {5, 6, 7, 8, 9, 10, 11, 12, 13, 14}) {
+    const double away = k < 9.5 ? -1 : 1;
+    CHECK(decoded(field.normal[grid.index(10, 10, k)]).z == Approx(away).epsilon(0.01));
+    CHECK(field.distance[grid.index(10, 10, k)] > 0);
+  }
+}
+
+TEST_CASE("normals away from a box turn smoothly: less from voxel to voxel than the exact ones",
+          "[dn_field]") {
+  const Surface box = make_box({0.5, 0.5, 0.5});
+  const Grid grid = grid_around(bounds(box), 32, 0.4);
+  const double thickness = 6 * grid.cell;
+  const auto largest_turn = [&](const Field& field) {
+    double most = 0;
+    for (int k = 1; k < 31; ++k)
+      for (int j = 1; j < 31; ++j)
+        for (int i = 1; i < 31; ++i) {
+          const auto at = grid.index(i, j, k), next = grid.index(i + 1, j, k);
+          if (field.distance[at] > 0.5 * thickness || field.distance[at] < -2 * grid.cell ||
+              field.distance[next] < -2 * grid.cell)
+            continue;
+          if (std::abs(field.distance[at]) < 2 * grid.cell) continue;
+          if (field.normal[at] == no_normal || field.normal[next] == no_normal) continue;
+          most =
+              std::max(most, angle_between(decoded(field.normal[at]), decoded(field.normal[next])));
+        }
+    return most / degree;
+  };
+  const Field blurred = build_blurred(box, grid, {Method::normals, Sides::one, thickness, {}, {}});
+  const Field exact =
+      build_exact(box, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
+  INFO("largest turn " << largest_turn(blurred) << "°, exact " << largest_turn(exact) << "°");
+  CHECK(largest_turn(blurred) < largest_turn(exact));
+}
+
+TEST_CASE("the normals method refuses objects of near-zero thickness", "[dn_field]") {
+  const auto built = [](const Surface& surface, int n, Method method, Sides sides) {
+    const Grid grid = grid_around(bounds(surface), n, 0.3);
+    return refusal([&] {
+      (void)build_blurred(surface, grid, {method, sides, 3 * grid.cell, {}, {}});
+    });
+  };
+  CHECK(built(make_plate(1, 6), 24, Method::normals, Sides::one).find("near-zero thickness") !=
+        std::string::npos);
+  const Surface thin = make_box({1, 1, 0.01});
+  CHECK(built(thin, 24, Method::normals, Sides::one).find("potential") != std::string::npos);
+  CHECK(built(thin, 24, Method::potential, Sides::two).empty());
+  CHECK(built(make_box({1, 1, 0.5}), 24, Method::normals, Sides::one).empty());
+  CHECK(built(make_box({1, 1, 0.5}), 24, Method::normals, Sides::two).find("one side alone") !=
+        std::string::npos);
+}
+
+TEST_CASE("a plan covers the step and resolves the detail, or is refused", "[dn_field]") {
+  const Bounds box{{-1, -1, -1}, {1, 1, 1}};
+  const FieldPlan plan = choose_plan(box, {20, 0.01, 0.1}, Coverage::step, 1 << 24);
+  CHECK(plan.thickness >= 0.2 + 2 * plan.grid.cell);
+  CHECK(plan.grid.cell <= 0.05 * (1 + 1e-12));
+  CHECK(plan.blur.radius * plan.blur.rounds * plan.grid.cell >= plan.thickness);
+  const FieldPlan swept = choose_plan(box, {2000, 0.01, 0.1}, Coverage::swept, 1 << 24);
+  CHECK(swept.thickness < plan.thickness);
+  CHECK_FALSE(refusal([&] {
+                (void)choose_plan(box, {2000, 0.01, 0.1}, Coverage::step, 1 << 24);
+              }).empty());
+  CHECK(refusal([&] {
+          require_reach({100, 0.01, 0.1}, Coverage::step, 0.5);
+        }).find("swept") != std::string::npos);
+  require_reach({100, 0.01, 0.1}, Coverage::swept, 0.5);
+  CHECK(refusal([&] { require_blur({5, 2}); }).find("2 to 4") != std::string::npos);
+  CHECK(refusal([&] { require_blur({3, 0}); }).find("at least one") != std::string::npos);
+}
+
+}  // namespace

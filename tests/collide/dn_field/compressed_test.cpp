@@ -1,0 +1,132 @@
+#include "collide/dn_field/compressed.hpp"
+
+#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/shapes.hpp"
+#include "tests/collide/dn_field/field_samples.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+using namespace tess::dn;
+using namespace tess::dn::test;
+
+struct Columns {
+  std::vector<float> x, y, z;
+  explicit Columns(std::size_t n) : x(n), y(n), z(n) {}
+};
+
+/// The greatest differences at the centres of all voxels, seen through the look-ups.
+ErrorBound worst_seen(const Field& flat, const CompressedField& field) {
+  const std::size_t n = flat.grid.size();
+  Columns at(n), normal(n);
+  for_each_voxel(flat.grid, [&](std::size_t v, Vec3 p) {
+    at.x[v] = static_cast<float>(p.x);
+    at.y[v] = static_cast<float>(p.y);
+    at.z[v] = static_cast<float>(p.z);
+  });
+  std::vector<float> distance(n), alone(n);
+  nearest_distance(field, {at.x, at.y, at.z}, distance);
+  ErrorBound worst;
+  for (std::size_t v = 0; v < n; ++v)
+    worst.distance =
+        std::max(worst.distance, static_cast<double>(std::abs(distance[v] - flat.distance[v])));
+  if (flat.normal.empty()) return worst;
+  nearest(field, {at.x, at.y, at.z}, alone, {normal.x, normal.y, normal.z});
+  CHECK(alone == distance);
+  Columns again(n);
+  nearest_normal(field, {at.x, at.y, at.z}, {again.x, again.y, again.z});
+  CHECK((again.x == normal.x && again.y == normal.y && again.z == normal.z));
+  for (std::size_t v = 0; v < n; ++v) {
+    if (flat.normal[v] == no_normal) continue;
+    const Vec3 found{static_cast<double>(normal.x[v]), static_cast<double>(normal.y[v]),
+                     static_cast<double>(normal.z[v])};
+    if (std::abs(norm(found) - 1) > 1e-6) worst.angle = HUGE_VAL;
+    worst.angle = std::max(worst.angle, angle_between(found, decoded(flat.normal[v])));
+  }
+  return worst;
+}
+
+TEST_CASE(
+    "every voxel of a compressed field meets the bound, and the measured error is the true one",
+    "[dn_field]") {
+  const std::vector<Surface> shapes{make_sphere(1, 30), make_torus(1, 0.4, 40),
+                                    make_box({1, 0.7, 0.5}), make_plate(1, 8)};
+  for (const Surface& surface : shapes)
+    for (const int n : {25, 32})
+      for (const double cells : {3.0, HUGE_VAL})
+        for (const Content content : {Content::distance_and_normal, Content::distance}) {
+          const Grid grid = grid_around(bounds(surface), n, 0.3);
+          const Sides sides = surface.triangles.size() == 128 ? Sides::two : Sides::one;
+          const Field flat = build_exact(surface, grid, {sides, content, cells * grid.cell, {}});
+          for (const auto& [distance, angle] :
+               {std::pair{0.2, 8.0}, {0.05, 2.0}, {0.01, 10.0}, {0.001, 0.1}, {0.0, 0.0}}) {
+            const ErrorBound bound{distance * grid.cell, angle * degree};
+            const CompressedField field = compress(flat, bound);
+            const ErrorBound seen = worst_seen(flat, field);
+            INFO(surface.triangles.size() << " triangles, " << n << "³, " << cells << " cells, "
+                                          << distance << " cells, " << angle << "°");
+            CHECK(field.measured.distance <= bound.distance);
+            CHECK(field.measured.angle <= bound.angle);
+            CHECK(seen.distance <= field.measured.distance + 1e-6 * grid.cell);
+            CHECK(seen.angle <= field.measured.angle + 1e-6);
+            CHECK(seen.distance >= field.measured.distance - 1e-6 * grid.cell);
+            CHECK(seen.angle >= field.measured.angle - 1e-6);
+          }
+        }
+}
+
+TEST_CASE("a compressed field takes at most a fifth of the flat one's memory", "[dn_field]") {
+  for (const Surface& surface :
+       {make_sphere(1, 60), make_torus(1, 0.4, 80), make_box({1, 0.7, 0.5})}) {
+    const Grid grid = grid_around(bounds(surface), 60, 0.3);
+    const Field flat =
+        build_exact(surface, grid, {Sides::one, Content::distance_and_normal, 4 * grid.cell, {}});
+    const CompressedField field = compress(flat, {0.05 * grid.cell, 2 * degree});
+    INFO(flat.bytes() << " bytes flat, " << field.bytes() << " compressed");
+    CHECK(5 * field.bytes() <= flat.bytes());
+  }
+}
+
+TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach outside and for NaN",
+          "[dn_field]") {
+  const Surface torus = make_torus(1, 0.4, 40);
+  const Grid grid = grid_around(bounds(torus), 30, 0.3);
+  const Field flat = build_exact(torus, grid);
+  const ErrorBound bound{0.05 * grid.cell, 3 * degree};
+  for (const int block_shift : {2, 3, 4}) {
+    const CompressedField field = compress(flat, bound, block_shift);
+    CHECK(field.block_shift == block_shift);
+    const std::size_t n = 5001;
+    Columns at(n), normal(n);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> anywhere(-2, 2);
+    for (std::size_t p = 0; p < n; ++p)
+      at.x[p] = anywhere(random), at.y[p] = anywhere(random), at.z[p] = anywhere(random);
+    at.y[n - 1] = std::nanf("");
+    std::vector<float> expected(n), found(n);
+    nearest_distance(flat, {at.x, at.y, at.z}, expected);
+    nearest(field, {at.x, at.y, at.z}, found, {normal.x, normal.y, normal.z});
+    int wrong = 0, outside = 0;
+    for (std::size_t p = 0; p < n; ++p) {
+      outside += expected[p] == out_of_reach;
+      if (expected[p] == out_of_reach) {
+        wrong += found[p] != out_of_reach || normal.x[p] != 0 || normal.y[p] != 0;
+      } else {
+        wrong += std::abs(found[p] - expected[p]) > static_cast<float>(bound.distance);
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(outside > 1000);
+    CHECK(found[n - 1] == out_of_reach);
+  }
+}
+
+TEST_CASE("bounds that mean nothing are refused", "[dn_field]") {
+  const Surface box = make_box({1, 1, 1});
+  const Field flat = build_exact(box, grid_around(bounds(box), 12, 0.5));
+  CHECK(refusal([&] { (void)compress(flat, {-1, 0.1}); }).find("distance -1") != std::string::npos);
+  CHECK_FALSE(refusal([&] { (void)compress(flat, {0.1, std::nan("")}); }).empty());
+  CHECK(refusal([&] { (void)compress(flat, {0.1, 0.1}, 7); }).find("2^7") != std::string::npos);
+}
+
+}  // namespace

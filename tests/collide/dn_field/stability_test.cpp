@@ -1,0 +1,18 @@
+#include "apps/particles/stability/cases.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+using namespace tess::dn;
+
+TEST_CASE("every stiff and extreme case meets its tolerance", "[dn_field][rules]") {
+  const auto rows = stability_report();
+  CHECK(rows.size() > 200);
+  for (const StabilityRow& row : rows) {
+    INFO(row.name << ", " << row.parameter << " = " << row.value << ": " << row.met << " > "
+                  << row.tolerance);
+    CHECK(row.ok);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,178 @@
+#include "runtime/balance/lb_datafile.hpp"
+
+#include "apps/bench/balance_scenes.hpp"
+#include "runtime/core/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+using namespace tess;
+using namespace tess::balance;
+using nlohmann::json;
+
+namespace {
+
+void require_same(const Snapshot& a, const Snapshot& b) {
+  REQUIRE(a.elements.key == b.elements.key);
+  REQUIRE(a.elements.pe == b.elements.pe);
+  REQUIRE(a.elements.load == b.elements.load);
+  REQUIRE(a.elements.measured == b.elements.measured);
+  REQUIRE(a.elements.migratable == b.elements.migratable);
+  REQUIRE(a.elements.size_bytes == b.elements.size_bytes);
+  REQUIRE(a.elements.memory_bytes == b.elements.memory_bytes);
+  REQUIRE(a.elements.position == b.elements.position);
+  REQUIRE(a.pes.speed == b.pes.speed);
+  REQUIRE(a.pes.background == b.pes.background);
+  REQUIRE(a.pes.memory_limit_bytes == b.pes.memory_limit_bytes);
+  std::vector<Edge> edges_a = a.edges, edges_b = b.edges;  // files of ranks bring them by rank
+  std::ranges::sort(edges_a);
+  std::ranges::sort(edges_b);
+  REQUIRE(edges_a == edges_b);
+}
+
+/// A file as vt writes it for rank 0 of two: an element that rank 1 has as well as its messages.
+const char* const rank_0 = R"({"type":"LBDatafile","metadata":{"type":"LBDatafile","rank":0},
+  "phases":[{"id":0,"tasks":[
+    {"entity":{"collection_id":7,"home":0,"id":524291,"index":[3],"migratable":true,
+               "type":"object"},"node":0,"resource":"cpu","time":0.25,
+     "subphases":[{"id":0,"time":0.25}]},
+    {"entity":{"home":0,"id":1,"migratable":false,"type":"object"},"node":0,"resource":"cpu",
+     "time":0.0}],
+   "communications":[
+    {"type":"SendRecv","bytes":100.0,"messages":2,
+     "from":{"home":0,"id":524291,"migratable":true,"type":"object"},
+     "to":{"home":1,"id":524295,"migratable":true,"type":"object"}},
+    {"type":"NodeToCollection","bytes":9.0,"messages":1,"from":{"type":"node","id":0},
+     "to":{"home":0,"id":524291,"migratable":true,"type":"object"}}]}]})";
+const char* const rank_1 = R"({"type":"LBDatafile","phases":[{"id":0,"tasks":[
+    {"entity":{"collection_id":7,"home":1,"id":524295,"index":[4,2],"migratable":true,
+               "type":"object"},"node":1,"resource":"cpu","time":0.5},
+    {"entity":{"home":0,"id":1,"migratable":false,"type":"object"},"node":1,"resource":"cpu",
+     "time":0.0}]}]})";
+
+/// The message of the Error that a file's text gives.
+std::string complaint(const std::string& text) {
+  try {
+    (void)parse_lb_datafiles({{"data.0.json", text}});
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("phases come back from a file as they were", "[balance][lb_datafile]") {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    INFO("seed " << seed);
+    const std::vector<Phase> phases = {{3, anything(seed)}, {9, stencil(5, 3, seed)}};
+    const auto back = parse_lb_datafiles({{"f", write_lb_datafile(phases)}});
+    REQUIRE(back.size() == 2);
+    for (std::size_t k = 0; k < 2; ++k) {
+      REQUIRE(back[k].id == phases[k].id);
+      require_same(back[k].snapshot, phases[k].snapshot);
+    }
+  }
+}
+
+TEST_CASE("a file tells loads that are not known from others", "[balance][lb_datafile]") {
+  Snapshot s = mod_seven(Start::blocks);
+  s.elements.measured.assign(64, 1);
+  s.elements.measured[5] = 0;
+  const std::string text = write_lb_datafile({{0, s}});
+  const Snapshot back = parse_lb_datafiles({{"data.0.json", text}}).at(0).snapshot;
+  for (std::size_t i = 0; i < 64; ++i) {
+    INFO(i);
+    CHECK(back.elements.knows_load(i) == (back.elements.key[i].element != 5));
+  }
+}
+
+TEST_CASE("files of single ranks together hold what one file holds", "[balance][lb_datafile]") {
+  const std::vector<Phase> phases = {{0, stencil(6, 3, 1)}, {1, stencil(6, 3, 2)}};
+  std::vector<LbDatafile> files;
+  for (int rank = 0; rank < 3; ++rank)
+    files.push_back({"rank", write_lb_datafile(phases, PeId{rank})});
+  const auto back = parse_lb_datafiles(files);
+  REQUIRE(back.size() == 2);
+  for (std::size_t k = 0; k < 2; ++k) require_same(back[k].snapshot, phases[k].snapshot);
+}
+
+TEST_CASE("our files have what vt's schema requires, with its types", "[balance][lb_datafile]") {
+  Snapshot s = stencil(3, 2, 1);
+  s.elements.load[0] = 1;
+  s.elements.migratable[4] = 0;
+  const json file = json::parse(write_lb_datafile({{0, s}}));
+  CHECK(file.at("type") == "LBDatafile");
+  const json& phase = file.at("phases").at(0);
+  CHECK(phase.at("id").is_number_integer());
+  for (const json& task : phase.at("tasks")) {
+    CHECK(task.at("node").is_number_integer());
+    CHECK(task.at("resource") == "cpu");
+    CHECK(task.at("time").is_number_float());
+  }
+  for (const json& one : phase.at("communications")) {
+    CHECK(one.at("type") == "SendRecv");
+    CHECK(one.at("messages").is_number_integer());
+    CHECK(one.at("bytes").is_number_float());
+    for (const char* end : {"from", "to"}) {
+      const json& entity = one.at(end);
+      CHECK(entity.at("type") == "object");
+      CHECK(entity.at("migratable").is_boolean());
+      CHECK(entity.at("home").is_number_integer());
+      CHECK(entity.at("collection_id").is_number_integer());
+      // vt reads home and whether it migrates from the id.
+      const auto id = entity.at("id").get<std::uint64_t>();
+      CHECK((id >> 2U & 0xffffU) == entity.at("home").get<std::uint64_t>());
+      CHECK((id & 3U) == (entity.at("migratable").get<bool>() ? 3U : 2U));
+    }
+  }
+}
+
+TEST_CASE("files as vt writes them are read, one a rank", "[balance][lb_datafile]") {
+  const auto phases = parse_lb_datafiles({{"data.0.json", rank_0}, {"data.1.json", rank_1}});
+  REQUIRE(phases.size() == 1);
+  const Snapshot& s = phases[0].snapshot;
+  REQUIRE(s.pes.size() == 2);
+  REQUIRE(s.elements.size() == 3);
+  CHECK(s.elements.key[0] == ElementKey{CollectionId{7}, 3});
+  CHECK(s.elements.key[2] == ElementKey{CollectionId{7}, 524295});
+  CHECK(s.elements.load == std::vector<double>{0.25, 0, 0.5});
+  CHECK(s.elements.migratable == std::vector<std::uint8_t>{1, 0, 1});
+  CHECK(s.elements.position.empty());
+  CHECK(s.edges == std::vector<Edge>{{0, 2, 100, 2}});
+}
+
+TEST_CASE("a damaged file is refused in one line with file, place and remedy",
+          "[balance][lb_datafile]") {
+  const json good = json::parse(write_lb_datafile({{0, stencil(3, 2, 1)}}));
+  const auto broken = [&](const char* pointer, const json& value) {
+    json file = good;
+    file[json::json_pointer(pointer)] = value;
+    return complaint(file.dump());
+  };
+  CHECK_THAT(complaint("{\"phases\": [{"), Catch::Contains("data.0.json: not JSON from byte"));
+  CHECK_THAT(complaint("[1]"), Catch::Contains("data.0.json: is not an object"));
+  CHECK_THAT(complaint("{}"), Catch::Contains("lacks 'phases'"));
+  CHECK_THAT(complaint(rank_0), Catch::Contains("communications 0 to has no task"));
+  CHECK_THAT(broken("/phases/0/tasks/1/time", -1.0),
+             Catch::Contains("data.0.json: phases 0 tasks 1 time is below 0"));
+  CHECK_THAT(broken("/phases/0/tasks/1/time", "long"), Catch::Contains("time is not a number"));
+  CHECK_THAT(broken("/phases/0/tasks/1/node", -4), Catch::Contains("node is not a whole number"));
+  CHECK_THAT(broken("/phases/0/tasks/1/node", 4000000000), Catch::Contains("node is 4000000000"));
+  CHECK_THAT(broken("/phases/0/tasks/1/entity", json::object()), Catch::Contains("lacks 'type'"));
+  CHECK_THAT(broken("/phases/0/tasks/1", good["phases"][0]["tasks"][0]),
+             Catch::Contains("tasks 1 entity is there twice"));
+  CHECK_THAT(broken("/phases/0/user_defined/pe_speed/0", 0.0), Catch::Contains("is not above 0"));
+
+  const std::string text = write_lb_datafile({{0, mod_seven(Start::blocks)}});
+  for (std::size_t cut = 1; cut + 2 < text.size(); cut += 97) {
+    const std::string message = complaint(text.substr(0, cut));
+    REQUIRE_FALSE(message.empty());
+    REQUIRE(message.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("a file that is not there is named", "[balance][lb_datafile]") {
+  CHECK_THROWS_WITH(read_lb_datafiles({"no/such.json"}), Catch::Contains("no/such.json: cannot"));
+}

@@ -1,0 +1,244 @@
+// What the coordinator of rounds decides, from reports alone: no runtime.
+#include "runtime/balance/rounds/coordinator.hpp"
+#include "runtime/core/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <string>
+
+namespace {
+
+using namespace tess;
+using namespace tess::balance;
+
+/// PEs with elements of these loads; element keys are 100 · (its first PE) + position there.
+class Phases {
+ public:
+  explicit Phases(std::vector<std::vector<double>> loads) {
+    for (std::size_t pe = 0; pe < loads.size(); ++pe) {
+      PeReport report;
+      for (std::size_t i = 0; i < loads[pe].size(); ++i) {
+        report.keys.push_back({CollectionId{7}, 100 * pe + i});
+        report.seconds.push_back(loads[pe][i]);
+        report.measured.push_back(1);
+        report.migratable.push_back(1);
+        report.size_bytes.push_back(10);
+      }
+      reports.push_back(std::move(report));
+    }
+  }
+  void move(const std::vector<std::vector<Move>>& moves) {
+    std::vector<PeReport> next(reports.size());
+    for (std::size_t pe = 0; pe < reports.size(); ++pe) {
+      for (std::size_t i = 0; i < reports[pe].keys.size(); ++i) {
+        std::size_t to = pe;
+        for (const Move& one : moves[pe])
+          if (one.element == i) to = slot(one.to);
+        next[to].keys.push_back(reports[pe].keys[i]);
+        next[to].seconds.push_back(reports[pe].seconds[i]);
+        next[to].measured.push_back(1);
+        next[to].migratable.push_back(1);
+        next[to].size_bytes.push_back(10);
+      }
+    }
+    reports = std::move(next);
+  }
+  void set_load(std::uint64_t element, double seconds) {
+    for (PeReport& report : reports)
+      for (std::size_t i = 0; i < report.keys.size(); ++i)
+        if (report.keys[i].element == element) report.seconds[i] = seconds;
+  }
+  [[nodiscard]] std::size_t pe_of(std::uint64_t element) const {
+    for (std::size_t pe = 0; pe < reports.size(); ++pe)
+      for (const ElementKey& key : reports[pe].keys)
+        if (key.element == element) return pe;
+    return reports.size();
+  }
+  [[nodiscard]] PhaseSums sums() const {
+    PhaseSums all;
+    for (const PeReport& report : reports) {
+      double seconds = report.background;
+      for (const double one : report.seconds) seconds += one;
+      all = MergeSums()(all, {seconds, seconds, 1, seconds, report.seconds.size(), 0});
+    }
+    return all;
+  }
+  std::vector<PeReport> reports;
+};
+
+std::size_t count(const std::vector<std::vector<Move>>& moves) {
+  std::size_t n = 0;
+  for (const auto& of_pe : moves) n += of_pe.size();
+  return n;
+}
+
+BalanceOptions automatic() {
+  BalanceOptions options;
+  options.strategy = "greedy";
+  options.when = BalanceWhen::automatic;
+  return options;
+}
+
+std::string message_of(const char* text) {
+  try {
+    (void)parse_balance(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a round tells what the one before gained, against the same phase without its moves",
+          "[balance][rounds]") {
+  Phases phases({{1, 1, 1, 1}, {}});
+  BalanceOptions options;
+  options.strategy = "refine";
+  Coordinator coordinator(options, {});
+  const auto moves = coordinator.decide(phases.reports);
+  CHECK(count(moves) == 2);
+  phases.move(moves);
+  coordinator.finish(1e-3, 1);
+  CHECK(coordinator.history().at(0).before == Approx(2));
+  CHECK(coordinator.history().at(0).predicted == Approx(1));
+  CHECK(coordinator.history().at(0).moved_bytes == 20);
+  CHECK(count(coordinator.decide(phases.reports)) == 0);
+  CHECK(coordinator.history().at(0).measured == Approx(1));
+  CHECK(coordinator.history().at(0).gain == Approx(0.5));
+}
+
+TEST_CASE("a round moves nothing while no load is known, and counts unknown ones as the mean",
+          "[balance][rounds]") {
+  Phases phases({{3, 3, 0, 0}, {}});
+  BalanceOptions options;
+  options.strategy = "greedy";
+  for (std::uint8_t& one : phases.reports[0].measured) one = 0;
+  Coordinator blind(options, {});
+  CHECK(count(blind.decide(phases.reports)) == 0);
+  CHECK(blind.history().at(0).skipped);
+  CHECK(blind.history().at(0).n_unknown == 4);
+
+  phases.reports[0].measured = {1, 1, 0, 0};
+  Coordinator coordinator(options, {});
+  const auto moves = coordinator.decide(phases.reports);
+  CHECK(coordinator.history().at(0).before == Approx(2));  // 12 s of work, all on the first
+  CHECK(coordinator.history().at(0).predicted == Approx(1));
+  for (const Move& one : moves[0]) CHECK(one.element < 2);
+  CHECK(count(moves) == 2);
+}
+
+TEST_CASE("an automatic round waits until a load is known", "[balance][rounds]") {
+  Coordinator coordinator(automatic(), {});
+  CHECK_FALSE(coordinator.worth({5, 5, 2, 0, 0, 10}));
+  CHECK(coordinator.worth({5, 5, 2, 5, 1, 0}));
+}
+
+TEST_CASE("a prediction leaves out phases in which a load was not known", "[balance][rounds]") {
+  Phases phases(std::vector<std::vector<double>>{{5}});
+  Predictor predictor(Prediction::moving_average);
+  phases.reports[0].measured = {0};
+  const Snapshot unknown = snapshot_of(phases.reports, {});
+  CHECK_FALSE(unknown.elements.knows_load(0));
+  predictor.record(unknown);
+  CHECK(predictor.n_known() == 0);
+  phases.reports[0].measured = {1};
+  predictor.record(snapshot_of(phases.reports, {}));
+  CHECK(predictor.predict(unknown).elements.load[0] == Approx(5));
+  CHECK(predictor.predict(unknown).elements.knows_load(0));
+}
+
+TEST_CASE("automatic waits until what imbalance lost is what a round costs", "[balance][rounds]") {
+  Phases phases({{3, 3}, {2, 2}});  // slowest 6, average 5
+  Coordinator coordinator(automatic(), {});
+  REQUIRE(coordinator.worth(phases.sums()));  // nothing is known of the cost yet
+  (void)coordinator.decide(phases.reports);
+  coordinator.finish(10, 6);  // dear: 10 s
+  // Judging the round takes one collection; after it nothing was lost yet.
+  if (coordinator.history().back().n_moved != 0) {
+    REQUIRE(coordinator.worth(phases.sums()));
+    (void)coordinator.decide(phases.reports);
+    coordinator.finish(0.1, 6);
+  }
+  // The floor is what that round left: now a phase that loses 3 s more than that.
+  Phases worse({{9, 4}, {1, 1}});  // slowest 13, average 7.5
+  int n_phases = 0;
+  while (!coordinator.worth(worse.sums())) REQUIRE(++n_phases < 100);
+  CHECK(n_phases >= 1);
+  CHECK(n_phases <= 5);
+}
+
+TEST_CASE("automatic does not ask for rounds in vain", "[balance][rounds]") {
+  Phases phases({{10}, {1}});  // one element is the imbalance: nothing helps
+  Coordinator coordinator(automatic(), {});
+  int n_rounds = 0;
+  for (int phase = 0; phase < 200; ++phase) {
+    if (!coordinator.worth(phases.sums())) continue;
+    ++n_rounds;
+    CHECK(count(coordinator.decide(phases.reports)) == 0);
+    coordinator.finish(20, 10);
+  }
+  // 4.4 s are lost a phase, of which a tenth counts: a round of 20 s each 45 phases.
+  CHECK(n_rounds >= 2);
+  CHECK(n_rounds <= 8);
+}
+
+TEST_CASE("automatic undoes a round that made it worse", "[balance][rounds]") {
+  Phases phases({{4, 4}, {1, 1}});
+  Coordinator coordinator(automatic(), {});
+  REQUIRE(coordinator.worth(phases.sums()));
+  const auto moves = coordinator.decide(phases.reports);
+  REQUIRE(count(moves) > 0);
+  coordinator.finish(1e-3, 8);
+  const Phases before = phases;
+  phases.move(moves);
+  // The loads turn: what the round brought together on PE 1 is heavy, what it took away light.
+  for (const std::uint64_t element : {0U, 1U, 100U, 101U})
+    phases.set_load(element, phases.pe_of(element) == 1 ? 9 : 1);
+  const PhaseSums now = phases.sums();
+  REQUIRE(coordinator.worth(now));
+  const auto back = coordinator.decide(phases.reports);
+  const Round& round = coordinator.history().back();
+  REQUIRE(coordinator.history().at(0).gain < -0.01);
+  REQUIRE(round.rolled_back);
+  phases.move(back);
+  for (const std::uint64_t element : {0U, 1U, 100U, 101U})
+    CHECK(phases.pe_of(element) == before.pe_of(element));
+}
+
+TEST_CASE("a report names elements in one snapshot; parcels to strangers are left out",
+          "[balance][rounds]") {
+  Phases phases({{1, 2}, {3}});
+  phases.reports[0].parcels = {{1, {CollectionId{7}, 100}, 50, 2},
+                               {0, {CollectionId{8}, 100}, 60, 1}};
+  phases.reports[0].positions = {{1, 2, 3}, {4, 5, 6}};
+  BalanceOptions options;
+  options.speeds = {2, 1};
+  const Snapshot s = snapshot_of(phases.reports, options);
+  CHECK(s.elements.load == std::vector<double>{2, 4, 3});  // work at speed 1
+  REQUIRE(s.edges.size() == 1);
+  CHECK(s.edges[0] == balance::Edge{1, 2, 50, 2});
+  CHECK(s.elements.position.empty());  // one PE gave none: a strategy needs all
+}
+
+TEST_CASE("balance options in one line of text", "[balance][rounds]") {
+  const BalanceOptions options = parse_balance(
+      "refine,when=periodic,period=2.5ms,prediction=linear_trend,window=3,seed=9,report");
+  CHECK(options.strategy == "refine");
+  CHECK(options.when == BalanceWhen::periodic);
+  CHECK(options.period == std::chrono::microseconds(2500));
+  CHECK(options.prediction == "linear_trend");
+  CHECK(options.window == 3);
+  CHECK(options.seed == 9);
+  CHECK(options.lines == RoundLines::print);
+  CHECK(message_of("gredy").find("no balance strategy 'gredy'") != std::string::npos);
+  CHECK(message_of("greedy,when=later").find("later is none of at_sync") != std::string::npos);
+  CHECK(message_of("greedy,when=periodic").find("period") != std::string::npos);
+  CHECK(message_of("greedy,period=5").find("5 is no time") != std::string::npos);
+  CHECK(message_of("greedy,window=0").find("window") != std::string::npos);
+  CHECK(message_of("greedy,often").find("unknown key often") != std::string::npos);
+  BalanceOptions three;
+  three.speeds = {1, 2, 3};
+  CHECK_THROWS_AS(validate(three, 2), Error);
+  three.speeds = {1, 0};
+  CHECK_THROWS_AS(validate(three, 2), Error);
+}
