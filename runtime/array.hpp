@@ -81,10 +81,10 @@ class Array final : public ArrayOf<typename C::Index> {
         Reader ar(state);
         const auto index = ar.template take<Index>();
         {
-          const Pe::Birth birth(this->pe_, &index, this);
+          const Pe::Construction construction(this->pe_, &index, this);
           arrival.element = make_chare<C>();
           // What its constructor asks for, it had done when it was born.
-          this->drop_after_birth();
+          this->drop_after_construction();
           own(*arrival.element).migrate_to_ = PeId{-1};
           own(*arrival.element).doomed_ = false;
         }
@@ -301,7 +301,7 @@ class ElementProxy {
 
  private:
   [[nodiscard]] Array<C>& branch(Pe& pe) const {
-    Collection* collection = pe.find(collection_);
+    Collection* collection = find_collection(pe, collection_);
     TESS_CHECK(collection != nullptr, "the array of this proxy is not known on ", pe.id(),
                ": it was created by a message that has not arrived");
     return *static_cast<Array<C>*>(collection);
@@ -320,7 +320,8 @@ class ElementProxy {
   }
   void post_letter(Pe& pe, ElementMessage<Index>* letter) const {
     pe.completion().sent(letter->epoch);
-    if (Collection* collection = pe.find(collection_); collection != nullptr) [[likely]] {
+    if (Collection* collection = find_collection(pe, collection_); collection != nullptr)
+        [[likely]] {
       static_cast<Array<C>*>(collection)->post(letter);
     } else {
       pe.send_here(letter);  // it waits until the array is known here
@@ -408,7 +409,7 @@ class ArrayProxy {
 
   /// The part of the array on this PE: its local elements, for libraries and tests.
   [[nodiscard]] Array<C>& here() const {
-    Collection* collection = current_pe().find(id_);
+    Collection* collection = find_collection(current_pe(), id_);
     TESS_CHECK(collection != nullptr, "the array of this proxy ",
                current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
                current_pe().id());
@@ -451,7 +452,7 @@ template <class C, class... Args>
 void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
   auto made = std::make_unique<Array<C>>(pe, m.id, m.range);
   Array<C>& array = *made;
-  pe.add(m.id, std::move(made));
+  pe.add(std::move(made));
   std::apply([&array](const Args&... args) { array.make_initial(args...); }, m.args);
   pe.completion().processed(m.epoch);
 }

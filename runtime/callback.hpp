@@ -3,8 +3,8 @@
 #pragma once
 
 #include "runtime/core/check.hpp"
+#include "runtime/core/registry.hpp"
 #include "runtime/core/serialize.hpp"
-#include "runtime/messages/registry.hpp"
 
 #include <algorithm>
 #include <array>

@@ -29,7 +29,7 @@ class Chare : public IndexedElement<IndexType> {
   [[nodiscard]] ArrayProxy<Derived> array() const {
     // In the constructor the element is not listed yet.
     const Collection* mine =
-        this->collection_ != nullptr ? this->collection_ : current_pe().birth_collection();
+        this->collection_ != nullptr ? this->collection_ : constructing_collection(current_pe());
     return ArrayProxy<Derived>(mine->id());
   }
 
@@ -51,7 +51,7 @@ class Chare : public IndexedElement<IndexType> {
     static_assert(ResumesFromSync<Derived>,
                   "a chare that calls at_sync() has a member function resume_from_sync()");
     if (this->collection_ == nullptr) [[unlikely]] {
-      Element::after_birth("at_sync()", [this] { at_sync(); });
+      Element::after_construction("at_sync()", [this] { at_sync(); });
     } else {
       this->collection_->at_sync(*this);
     }
@@ -80,7 +80,7 @@ class Chare : public IndexedElement<IndexType> {
   void contribute(Op op, T value, Callback<T> target) {
     if (this->collection_ == nullptr) [[unlikely]] {
       const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
-      Element::after_birth("contribute()", [this, op, held] {
+      Element::after_construction("contribute()", [this, op, held] {
         contribute(op, std::move(held->first), std::move(held->second));
       });
       return;

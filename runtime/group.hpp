@@ -32,7 +32,7 @@ class Group : public Element {
   void contribute(Op op, T value, Callback<T> target) {
     if (this->collection_ == nullptr) [[unlikely]] {
       const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
-      Element::after_birth("contribute()", [this, op, held] {
+      Element::after_construction("contribute()", [this, op, held] {
         contribute(op, std::move(held->first), std::move(held->second));
       });
       return;
@@ -41,7 +41,7 @@ class Group : public Element {
   }
 
  protected:
-  Group() : pe_(current_pe().id()), id_(current_pe().birth_collection()->id()) {}
+  Group() : pe_(current_pe().id()), id_(constructing_collection(current_pe())->id()) {}
 
  private:
   const PeId pe_;
@@ -56,12 +56,12 @@ class GroupOf final : public Collection {
   GroupOf(Pe& pe, CollectionId id, const Args&... args)
       : Collection(pe, id, plain_name(name_of_type<G>)) {
     {
-      const Pe::Birth birth(pe, this, this);
+      const Pe::Construction construction(pe, this, this);
       member_.reset(make_chare<G>(args...));
     }
     born(*member_);
     list(*member_);
-    run_after_birth();
+    run_after_construction();
   }
 
   [[nodiscard]] G& member() { return *member_; }
@@ -80,7 +80,7 @@ class GroupOf final : public Collection {
                " neither migrate nor end");
   }
   [[nodiscard]] bool migratable() const override { return false; }
-  [[nodiscard]] std::string birth_text(const void* /*index*/) const override {
+  [[nodiscard]] std::string constructed_text(const void* /*index*/) const override {
     return text(name(), "[", pe_.id(), "]");
   }
   [[nodiscard]] std::string index_text_of(const Element& /*element*/) const override {
@@ -108,7 +108,7 @@ struct GroupCall final : Envelope {
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* call = static_cast<GroupCall*>(envelope);
-    Collection* collection = pe.find(call->collection);
+    Collection* collection = find_collection(pe, call->collection);
     if (collection == nullptr) {
       pe.keep_early(call->collection, envelope, &drop);
       return;
@@ -229,7 +229,7 @@ class GroupProxy {
 
   /// The member on this PE, or null where the group is not known yet or was destroyed.
   [[nodiscard]] G* local_or_null() const {
-    Collection* collection = current_pe().find(id_);
+    Collection* collection = find_collection(current_pe(), id_);
     return collection == nullptr ? nullptr : &static_cast<GroupOf<G>*>(collection)->member();
   }
   /// The member on this PE.
@@ -291,9 +291,8 @@ struct CreateGroup {
 
 template <class G, class... Args>
 void create_group_arrives(Pe& pe, CreateGroup<G, Args...>&& m) {
-  std::apply(
-      [&](const Args&... args) { pe.add(m.id, std::make_unique<GroupOf<G>>(pe, m.id, args...)); },
-      m.args);
+  std::apply([&](const Args&... args) { pe.add(std::make_unique<GroupOf<G>>(pe, m.id, args...)); },
+             m.args);
   pe.completion().processed(m.epoch);
 }
 

@@ -1,5 +1,6 @@
 #include "runtime/run.hpp"
 
+#include "runtime/collections/element.hpp"
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
@@ -144,7 +145,7 @@ Setup take_options(int& argc, char** argv) {
 
 int run_on(Setup& setup, std::function<void()> main) {
   setup.started = true;
-  Runtime runtime(*setup.machine, setup.options, std::move(main));
+  Runtime runtime(*setup.machine, setup.options, &element_text, std::move(main));
   return runtime.run();
 }
 

@@ -64,19 +64,8 @@ void suspend(Task::Handle task, std::function<std::string()> waits_for) {
   TaskAccount& account = task.promise().account;
   account.hold();
   account.entry = {account.context.element, account.context.action, account.context.epoch,
-                   std::move(waits_for), task.address()};
+                   std::move(waits_for),    task.address(),         &task.promise().detached};
   account.pe->suspended().insert(account.entry);
-}
-
-void end_all(SuspendedList& list) {
-  // Those that no Task holds: with a frame end the tasks that it holds.
-  std::vector<Task::Handle> roots;
-  for (const Suspended* one = list.first(); one != nullptr; one = one->after) {
-    const auto task = Task::Handle::from_address(one->frame);
-    if (task.promise().detached) roots.push_back(task);
-  }
-  list.clear();
-  for (const Task::Handle task : roots) task.destroy();
 }
 
 void resume_later(Task::Handle task) {

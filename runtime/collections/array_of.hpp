@@ -19,9 +19,9 @@
 #pragma once
 
 #include "runtime/collections/collection_action.hpp"
+#include "runtime/collections/element_message.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/index.hpp"
-#include "runtime/location/element_message.hpp"
 #include "runtime/location/index_table.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
@@ -47,7 +47,7 @@ class IndexedElement : public Element {
   template <class, class>
   friend class Chare;
   [[nodiscard]] static const void* birth() {
-    const void* index = current_pe().birth();
+    const void* index = current_pe().constructed_index();
     TESS_CHECK(index != nullptr,
                "a chare is made by its array alone: create<C>(…) or array[index].insert(…)");
     return index;
@@ -145,7 +145,7 @@ class ArrayOf : public Collection {
 
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;
-  [[nodiscard]] std::string birth_text(const void* index) const override {
+  [[nodiscard]] std::string constructed_text(const void* index) const override {
     return name() + index_text(*static_cast<const Index*>(index));
   }
 
@@ -202,7 +202,7 @@ class ArrayOf : public Collection {
   template <class Make>
   void bear(const Index& index, Version version, const Make& make) {
     Indexed* element = [&] {
-      const Pe::Birth birth(pe_, &index, this);
+      const Pe::Construction construction(pe_, &index, this);
       return make();
     }();
     element->state_.version = version;
@@ -210,9 +210,9 @@ class ArrayOf : public Collection {
     table_.at(index).set_here(*element);
     list(*element);
     if (element->migrate_to_.value >= 0 || element->doomed_) [[unlikely]]
-      after_birth([this, element] { settle(*element); });  // its constructor asked for it
-    if (has_after_birth() && !makes_initial_) [[unlikely]]
-      run_after_birth();
+      after_construction([this, element] { settle(*element); });  // its constructor asked for it
+    if (has_after_construction() && !makes_initial_) [[unlikely]]
+      run_after_construction();
   }
   /// Makes the first elements, which are all born at once.
   template <class Make>
@@ -220,7 +220,7 @@ class ArrayOf : public Collection {
     makes_initial_ = true;
     make_all();
     makes_initial_ = false;
-    run_after_birth();
+    run_after_construction();
   }
 
   /// Takes in an element that comes from another PE.

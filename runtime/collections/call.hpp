@@ -60,7 +60,7 @@ struct TypedLetter : ElementMessage<typename C::Index> {
   }
   static void run(Pe& pe, Envelope* envelope) {
     auto* letter = static_cast<Derived*>(envelope);
-    Collection* collection = pe.find(letter->collection);
+    Collection* collection = find_collection(pe, letter->collection);
     if (collection == nullptr) [[unlikely]] {
       pe.keep_early(letter->collection, envelope, &drop);
       return;
@@ -181,7 +181,7 @@ struct Arrival final : Envelope {
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* arrival = static_cast<Arrival*>(envelope);
-    Collection* collection = pe.find(arrival->collection);
+    Collection* collection = find_collection(pe, arrival->collection);
     if (collection == nullptr) {
       pe.keep_early(arrival->collection, envelope, &drop);
       return;

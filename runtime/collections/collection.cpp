@@ -8,17 +8,16 @@ std::string element_text(const Element& element) {
   return element.collection_->name() + element.collection_->index_text_of(element);
 }
 
-void Element::after_birth(const char* what, std::function<void()> call) {
-  Collection* collection = current_pe().birth_collection();
+void Element::after_construction(const char* what, std::function<void()> call) {
+  Collection* collection = constructing_collection(current_pe());
   TESS_CHECK(collection != nullptr, what,
              " belongs into an entry method or the constructor; serialize() is neither");
-  collection->after_birth(std::move(call));
+  collection->after_construction(std::move(call));
 }
 
 Collection::Collection(Pe& pe, CollectionId id, std::string name)
-    : pe_(pe),
-      id_(id),
-      name_(std::move(name)),
+    : HostedCollection(id, std::move(name)),
+      pe_(pe),
       broadcasts_(pe, *this),
       reductions_(pe, *this, Track::own, root(),
                   {"reduction", [this](std::uint32_t number) { return elements_before(number); }}) {
@@ -69,8 +68,8 @@ void Collection::born(Element& element) {
   reductions_.born(element.state_.next_reduction);
 }
 
-void Collection::run_after_birth() {
-  const auto calls = std::exchange(after_birth_, {});
+void Collection::run_after_construction() {
+  const auto calls = std::exchange(after_construction_, {});
   for (const auto& call : calls) call();
 }
 

@@ -41,18 +41,13 @@ class ElementWatcher {
   virtual void collection_ends() = 0;
 };
 
-class Collection {
+class Collection : public HostedCollection {
  public:
   Collection(Pe& pe, CollectionId id, std::string name);
-  Collection(const Collection&) = delete;
-  Collection& operator=(const Collection&) = delete;
-  virtual ~Collection() = default;
 
   [[nodiscard]] Pe& pe() { return pe_; }
-  [[nodiscard]] CollectionId id() const { return id_; }
-  [[nodiscard]] const std::string& name() const { return name_; }
   /// The PE that numbers broadcasts and completes reductions.
-  [[nodiscard]] PeId root() const { return root_of(id_, pe_.n_pes()); }
+  [[nodiscard]] PeId root() const { return root_of(id(), pe_.n_pes()); }
 
   [[nodiscard]] BroadcastLog& broadcasts() { return broadcasts_; }
   [[nodiscard]] ReductionTree& reductions() { return reductions_; }
@@ -62,7 +57,6 @@ class Collection {
 
   /// Local elements; a slot may be empty while elements leave in the middle of a broadcast.
   [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
-  [[nodiscard]] std::size_t n_local() const { return n_local_; }
 
   /// Calls one element on account of a broadcast.
   void call(Element& element, const NumberedCall& call);
@@ -94,7 +88,7 @@ class Collection {
 
   /// The broadcast of a collection that led to what runs; 0 if none did.
   [[nodiscard]] static std::uint32_t led_by(const Context& context, CollectionId collection) {
-    return context.element != nullptr && context.element->collection_->id_ == collection
+    return context.element != nullptr && context.element->collection_->id() == collection
                ? context.led_by
                : 0;
   }
@@ -144,9 +138,9 @@ class Collection {
 
   /// A constructor of an element asks for something that needs the element to be listed: `call`
   /// runs once it is. Of the elements that an array is created with: once all of this PE are.
-  void after_birth(std::function<void()> call) { after_birth_.push_back(std::move(call)); }
-  /// "Block[3,4]" of the index that Pe::birth() names.
-  [[nodiscard]] virtual std::string birth_text(const void* index) const = 0;
+  void after_construction(std::function<void()> call) {
+    after_construction_.push_back(std::move(call));
+  }
 
   /// Ends it on this PE: what it holds is dropped, and its elements are destroyed but for those
   /// that have a coroutine that waits (they follow one by one, and free_later() the last). It is in
@@ -157,8 +151,8 @@ class Collection {
   /// True if elements can be packed and made again elsewhere.
   [[nodiscard]] virtual bool migratable() const = 0;
   [[nodiscard]] virtual std::string index_text_of(const Element& element) const = 0;
-  /// Appends a line for each thing here that waits for something that never came.
-  virtual void describe_waiting(std::vector<std::string>& lines) const;
+  [[nodiscard]] bool was_called() const override { return broadcasts_.applied() != 0; }
+  void describe_waiting(std::vector<std::string>& lines) const override;
   /// The first few local elements that have not contributed to `number` − 1 and below, as text.
   [[nodiscard]] std::string elements_before(std::uint32_t number) const;
 
@@ -170,10 +164,10 @@ class Collection {
   /// No epoch waits any more for an element that waits at its balancer's barrier: it ends.
   void end_wait(Element& element);
   /// Runs what constructors have asked for.
-  void run_after_birth();
-  [[nodiscard]] bool has_after_birth() const { return !after_birth_.empty(); }
+  void run_after_construction();
+  [[nodiscard]] bool has_after_construction() const { return !after_construction_.empty(); }
   /// An element was made to be read from bytes: what its constructor asks for it has done before.
-  void drop_after_birth() { after_birth_.clear(); }
+  void drop_after_construction() { after_construction_.clear(); }
   /// Registers a new element as born here and now.
   void born(Element& element);
 
@@ -189,14 +183,11 @@ class Collection {
     return {element.state_.seen_broadcast, context.element == &element ? context.led_by : 0};
   }
 
-  const CollectionId id_;
-  const std::string name_;
   std::vector<Element*> elements_;
-  std::vector<std::function<void()>> after_birth_;
+  std::vector<std::function<void()>> after_construction_;
   std::int64_t n_away_ = 0;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
-  std::size_t n_local_ = 0;
   std::size_t n_newborn_ = 0;  // local elements that have not contributed since their birth
   unsigned applying_ = 0;
   bool ended_ = false;
@@ -247,5 +238,14 @@ class ElementScope {
   Meter* const meter_;
   Meter::Scope outer_;
 };
+
+/// The part of a collection on this PE; null if it is not known yet, or has ended.
+[[nodiscard]] inline Collection* find_collection(Pe& pe, CollectionId id) {
+  return static_cast<Collection*>(pe.find(id));
+}
+/// The collection whose element is constructed now; null between.
+[[nodiscard]] inline Collection* constructing_collection(const Pe& pe) {
+  return static_cast<Collection*>(pe.constructing_collection());
+}
 
 }  // namespace tess

@@ -35,7 +35,7 @@ struct CollectionAction {
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* message = static_cast<Held*>(envelope);
-    Collection* collection = pe.find(message->payload.collection);
+    Collection* collection = find_collection(pe, message->payload.collection);
     if (collection == nullptr) {
       pe.keep_early(message->payload.collection, envelope, &drop);
       return;

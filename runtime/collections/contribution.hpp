@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/collections/collection.hpp"
+#include "runtime/collections/typed_partial.hpp"
 #include "runtime/reduction.hpp"
 
 #include <memory>

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
+#include "runtime/location/version.hpp"
 
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,14 +19,6 @@ struct BalanceRecord;
 /// Frees a record; out of line, for most elements have none.
 struct EndRecord {
   void operator()(BalanceRecord* record) const;
-};
-
-/// Which life of an index (incarnation) and which place of that life (epoch, one more for each
-/// migration). Later knowledge has the greater version; {0, 0} is no knowledge.
-struct Version {
-  std::uint32_t incarnation = 0;
-  std::uint32_t epoch = 0;
-  friend constexpr auto operator<=>(const Version&, const Version&) = default;
 };
 
 /// The part of an element that travels with it besides the user's members.
@@ -48,7 +40,7 @@ class Element {
 
   /// Runs `call` once the element that is constructed now is known to its collection. `what` needs
   /// that.
-  static void after_birth(const char* what, std::function<void()> call);
+  static void after_construction(const char* what, std::function<void()> call);
 
  private:
   friend class Collection;

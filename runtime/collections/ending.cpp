@@ -20,7 +20,7 @@ struct Free {
 
 void ending_arrives(Collection& collection, End&& m) {
   Pe& pe = collection.pe();
-  std::unique_ptr<Collection> ending = pe.take_out(collection.id());
+  std::unique_ptr<HostedCollection> ending = pe.take_out(collection.id());
   collection.end();
   if (collection.n_local() != 0) {
     pe.keep_ending(std::move(ending), m.epoch);
@@ -32,7 +32,9 @@ void ending_arrives(Collection& collection, End&& m) {
 
 void freeing_arrives(Pe& pe, Free&& m) {
   const Pe::Ending ending = pe.take_ending(m.id);
-  ending.collection->reductions().end();  // the last coroutines may have contributed
+  static_cast<Collection&>(*ending.collection)
+      .reductions()
+      .end();  // the last coroutines may have contributed
   pe.completion().processed(ending.epoch);
 }
 

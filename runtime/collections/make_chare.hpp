@@ -1,7 +1,7 @@
 // Where chares and group members are constructed, so that an exception there can be reported.
 #pragma once
 
-#include "runtime/messages/registry.hpp"
+#include "runtime/core/registry.hpp"
 #include "runtime/scheduler/pe.hpp"
 
 #include <string>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
+#include "runtime/core/registry.hpp"
 #include "runtime/core/serialize.hpp"
 #include "runtime/messages/read_all.hpp"
-#include "runtime/messages/registry.hpp"
 
 #include <cstdint>
 #include <memory>

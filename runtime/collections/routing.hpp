@@ -56,7 +56,7 @@ void ArrayOf<Index>::learn(const Index& index, const Place& place) {
 /// `record`: what this PE knows of the index, or null.
 template <class Index>
 void ArrayOf<Index>::route(Letter* letter, Record* record) {
-  if (pe_.birth() != nullptr) [[unlikely]] {
+  if (pe_.constructed_index() != nullptr) [[unlikely]] {
     // A constructor sent it: it may be to an element that is made next, or to its own.
     arrive_later(letter);
     return;

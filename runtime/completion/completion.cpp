@@ -1,51 +1,25 @@
 #include "runtime/completion/completion.hpp"
 
 #include "runtime/core/check.hpp"
-#include "runtime/scheduler/pe.hpp"
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/core/text.hpp"
 
 namespace tess {
 namespace {
-
-// Control messages of epoch 0 are not counted as hops: they would keep alive what they measure.
-void report_arrives(Pe& pe, Completion::Report&& m) {
-  pe.completion().on_report(m);
-}
-void answer_arrives(Pe& pe, Completion::Answer&& m) {
-  pe.completion().on_answer(m);
-}
-void wave_arrives(Pe& pe, Completion::Wave&& m) {
-  pe.completion().on_wave(m);
-}
-void echo_arrives(Pe& pe, Completion::Echo&& m) {
-  pe.completion().on_echo(m);
-}
-void end_arrives(Pe& pe, Completion::End&& m) {
-  pe.completion().on_end(m);
-}
 
 /// The PE that opened the epoch; of the run, PE 0.
 PeId coordinator_of(EpochId epoch) {
   return PeId{static_cast<std::int32_t>(epoch.value & 0xffffffU)};
 }
 
-template <auto Handler, class Payload>
-void send_control(Pe& pe, PeId to, const Payload& payload) {
-  if (payload.epoch.value == 0) {
-    send_uncounted<Handler>(pe, to, payload);
-  } else {
-    send_system<Handler>(pe, to, payload);
-  }
-}
-
 }  // namespace
 
-Completion::Completion(Pe& pe) : pe_(pe) {
-  if (pe.id().value == 0) coordinated_[EpochId{}].closed = true;
+Completion::Completion(CompletionMessages& messages, PeId here, std::int32_t n_pes)
+    : messages_(messages), here_(here), n_pes_(n_pes) {
+  if (here.value == 0) coordinated_[EpochId{}].closed = true;
 }
 
 SpanningTree Completion::tree_of(EpochId epoch) const {
-  return {pe_.id(), coordinator_of(epoch), pe_.n_pes()};
+  return {here_, coordinator_of(epoch), n_pes_};
 }
 
 Tally* Completion::find(EpochId epoch) {
@@ -68,7 +42,7 @@ void Completion::find_own(EpochId epoch) {
 }
 
 EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
-  const EpochId epoch{(++n_opened_ << 24U) | static_cast<std::uint64_t>(pe_.id().value)};
+  const EpochId epoch{(++n_opened_ << 24U) | static_cast<std::uint64_t>(here_.value)};
   Coordinated& of = coordinated_[epoch];
   of.parent = parent;
   of.on_done = std::move(on_done);
@@ -104,7 +78,7 @@ bool Completion::report_epochs() {
 }
 
 bool Completion::is_over(EpochId epoch) const {
-  return coordinator_of(epoch) == pe_.id() && !coordinated_.contains(epoch);
+  return coordinator_of(epoch) == here_ && !coordinated_.contains(epoch);
 }
 
 bool Completion::report(EpochId epoch, Tally& tally) {
@@ -115,22 +89,22 @@ bool Completion::report(EpochId epoch, Tally& tally) {
   const SpanningTree tree = tree_of(epoch);
   bool any = tally.owed != 0;
   for (std::int32_t slot = 0; tally.owed != 0; ++slot, tally.owed >>= 1U)
-    if ((tally.owed & 1U) != 0) send_control<&answer_arrives>(pe_, tree.child(slot), Answer{epoch});
+    if ((tally.owed & 1U) != 0) messages_.send(tree.child(slot), Answer{epoch});
   const Counters sum = tally.sum();
   if (sum == tally.reported || tally.unanswered) return any;
   tally.reported = sum;
-  if (coordinator_of(epoch) == pe_.id()) {
+  if (coordinator_of(epoch) == here_) {
     check(epoch, sum);
   } else {
     tally.unanswered = true;
-    send_control<&report_arrives>(pe_, tree.parent(), Report{epoch, pe_.id(), sum});
+    messages_.send(tree.parent(), Report{epoch, here_, sum});
   }
   return true;
 }
 
 void Completion::on_report(const Report& report) {
   if (is_over(report.epoch)) {  // the runtime's own work may still be counted there
-    send_system<&end_arrives>(pe_, report.from, End{report.epoch});
+    messages_.send(report.from, End{report.epoch});
     return;
   }
   if (report.epoch.value != 0) forget_last();
@@ -160,7 +134,7 @@ void Completion::check(EpochId epoch, Counters sum) {
   of.wave_runs = true;
   of.again = false;
   of.processed_before_wave = sum.processed;
-  on_wave(Wave{epoch, pe_.id(), ++of.wave});
+  on_wave(Wave{epoch, here_, ++of.wave});
 }
 
 Counters Completion::reading(EpochId epoch) const {
@@ -171,9 +145,9 @@ Counters Completion::reading(EpochId epoch) const {
 
 void Completion::on_wave(const Wave& wave) {
   Relay relay{wave, reading(wave.epoch), 0};
-  for (const PeId child : SpanningTree(pe_.id(), wave.root, pe_.n_pes()).children()) {
+  for (const PeId child : SpanningTree(here_, wave.root, n_pes_).children()) {
     ++relay.waiting;
-    send_control<&wave_arrives>(pe_, child, wave);
+    messages_.send(child, wave);
   }
   if (relay.waiting == 0) {
     echo(relay);
@@ -195,9 +169,9 @@ void Completion::on_echo(const Echo& message) {
 
 void Completion::echo(Relay& relay) {
   const EpochId epoch = relay.wave.epoch;
-  if (relay.wave.root != pe_.id()) {
-    const PeId parent = SpanningTree(pe_.id(), relay.wave.root, pe_.n_pes()).parent();
-    send_control<&echo_arrives>(pe_, parent, Echo{epoch, relay.wave.number, relay.sum});
+  if (relay.wave.root != here_) {
+    const PeId parent = SpanningTree(here_, relay.wave.root, n_pes_).parent();
+    messages_.send(parent, Echo{epoch, relay.wave.number, relay.sum});
     return;
   }
   Coordinated& of = coordinated_.at(epoch);
@@ -207,7 +181,7 @@ void Completion::echo(Relay& relay) {
     return;
   }
   if (epoch.value == 0) {
-    pe_.quiescent();
+    messages_.quiescent();
     return;
   }
   end(epoch);
@@ -225,7 +199,7 @@ void Completion::end(EpochId epoch) {
   const SpanningTree tree = tree_of(epoch);
   for (std::int32_t slot = 0; slot < tree.n_children(); ++slot)
     if ((static_cast<unsigned>(at->second.heard) >> static_cast<unsigned>(slot) & 1U) != 0)
-      send_system<&end_arrives>(pe_, tree.child(slot), End{epoch});
+      messages_.send(tree.child(slot), End{epoch});
   forget_last();
   tallies_.erase(epoch);
 }
@@ -239,7 +213,7 @@ void Completion::describe_open(std::vector<std::string>& lines) const {
     if (epoch.value == 0) continue;
     const auto at = tallies_.find(epoch);
     const Counters sum = at == tallies_.end() ? Counters{} : at->second.sum();
-    lines.push_back(text("epoch ", epoch.value >> 24U, " opened on ", pe_.id(), ": ", sum.sent,
+    lines.push_back(text("epoch ", epoch.value >> 24U, " opened on ", here_, ": ", sum.sent,
                          " messages sent, ", sum.processed, " done"));
   }
 }

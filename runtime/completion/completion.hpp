@@ -40,8 +40,6 @@
 
 namespace tess {
 
-class Pe;
-
 /// Messages sent and processed on account of one epoch.
 struct Counters {
   std::uint64_t sent = 0;
@@ -69,10 +67,62 @@ struct Tally {
   }
 };
 
+/// What the PEs send each other about epochs.
+namespace completion {
+struct Report {
+  EpochId epoch;
+  PeId from;
+  Counters counters;
+};
+struct Answer {
+  EpochId epoch;
+};
+struct Wave {
+  EpochId epoch;
+  PeId root;
+  std::uint64_t number;
+};
+struct Echo {
+  EpochId epoch;
+  std::uint64_t number;
+  Counters sum;
+};
+struct End {
+  EpochId epoch;
+};
+}  // namespace completion
+
+/// How a PE's Completion sends; the scheduler implements it. What it sends of epoch 0 is no hop of
+/// epoch 0: it would keep alive what it measures.
+class CompletionMessages {
+ public:
+  CompletionMessages() = default;
+  CompletionMessages(const CompletionMessages&) = delete;
+  CompletionMessages& operator=(const CompletionMessages&) = delete;
+
+  virtual void send(PeId to, const completion::Report& report) = 0;
+  virtual void send(PeId to, const completion::Answer& answer) = 0;
+  virtual void send(PeId to, const completion::Wave& wave) = 0;
+  virtual void send(PeId to, const completion::Echo& echo) = 0;
+  virtual void send(PeId to, const completion::End& end) = 0;
+  /// Epoch 0 is done; on PE 0.
+  virtual void quiescent() = 0;
+
+ protected:
+  ~CompletionMessages() = default;
+};
+
 /// One PE's part in the completion of all epochs.
 class Completion {
  public:
-  explicit Completion(Pe& pe);
+  using Report = completion::Report;
+  using Answer = completion::Answer;
+  using Wave = completion::Wave;
+  using Echo = completion::Echo;
+  using End = completion::End;
+
+  /// Of the PE `here` of `n_pes`.
+  Completion(CompletionMessages& messages, PeId here, std::int32_t n_pes);
 
   /// Epoch 0: every hop of every message. Inline, on the path of each message.
   void hop_sent() { ++run_.own.sent; }
@@ -104,28 +154,7 @@ class Completion {
   /// One line for each epoch that this PE opened and that is not done.
   void describe_open(std::vector<std::string>& lines) const;
 
-  // Control messages.
-  struct Report {
-    EpochId epoch;
-    PeId from;
-    Counters counters;
-  };
-  struct Answer {
-    EpochId epoch;
-  };
-  struct Wave {
-    EpochId epoch;
-    PeId root;
-    std::uint64_t number;
-  };
-  struct Echo {
-    EpochId epoch;
-    std::uint64_t number;
-    Counters sum;
-  };
-  struct End {
-    EpochId epoch;
-  };
+  // The messages arrive.
   void on_report(const Report& report);
   void on_answer(const Answer& answer);
   void on_wave(const Wave& wave);
@@ -170,7 +199,9 @@ class Completion {
   void end(EpochId epoch);
   [[nodiscard]] Counters reading(EpochId epoch) const;
 
-  Pe& pe_;
+  CompletionMessages& messages_;
+  const PeId here_;
+  const std::int32_t n_pes_;
   Tally run_;                                                              // of epoch 0
   boost::unordered_flat_map<EpochId, Tally, std::hash<EpochId>> tallies_;  // of the others
   std::vector<EpochId> changed_;  // something to report or to answer

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "runtime/core/serialize.hpp"
-#include "runtime/messages/registry.hpp"
+#include "runtime/core/type_name.hpp"
 
 #include <algorithm>
 #include <string>

@@ -17,9 +17,9 @@
 //     attached:  | the numbers of the vector |
 #pragma once
 
-#include "runtime/base/buffer.hpp"
-#include "runtime/base/uninitialised.hpp"
+#include "runtime/core/buffer.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/uninitialised.hpp"
 
 #include <boost/pfr/core.hpp>
 

@@ -15,8 +15,9 @@
 #pragma once
 
 #include "runtime/base/huge_pages.hpp"
-#include "runtime/collections/element.hpp"
+#include "runtime/core/ids.hpp"
 #include "runtime/core/index.hpp"
+#include "runtime/location/version.hpp"
 
 #include <array>
 #include <cstddef>

@@ -13,9 +13,9 @@
 //     receiver:  place(head, sizes) → message, places    …parts come…    placed(message)
 #pragma once
 
-#include "runtime/base/buffer.hpp"
 #include "runtime/base/bundle.hpp"
 #include "runtime/base/link.hpp"
+#include "runtime/core/buffer.hpp"
 #include "runtime/core/ids.hpp"
 
 #include <chrono>

@@ -9,9 +9,9 @@
 
 #include "runtime/base/link.hpp"
 #include "runtime/core/ids.hpp"
+#include "runtime/core/registry.hpp"
 #include "runtime/core/serialize.hpp"
 #include "runtime/machine/machine.hpp"
-#include "runtime/messages/registry.hpp"
 
 #include <atomic>
 #include <cstdint>

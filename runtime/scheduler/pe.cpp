@@ -1,6 +1,5 @@
 #include "runtime/scheduler/pe.hpp"
 
-#include "runtime/collections/collection.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/block.hpp"
@@ -46,7 +45,8 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       n_here_(machine.pes_per_process()),
       bundle_ticks_(static_cast<std::uint64_t>(bundle_seconds / seconds_per_tick())),
       packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),
-      completion_(*this),
+      completion_messages_(*this),
+      completion_(completion_messages_, id_, n_pes_),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
       outbox_(id, machine, messages, statistics_.bytes_sent),
       bundles_(machine.takes_bundles() ? static_cast<std::size_t>(n_here_) : 0) {}
@@ -284,7 +284,7 @@ void Pe::drop_all() {
   end_all(suspended_);
 }
 
-Collection* Pe::find_slow(CollectionId id) {
+HostedCollection* Pe::find_slow(CollectionId id) {
   const auto at = collections_.find(id);
   if (at == collections_.end()) return nullptr;
   last_id_ = id;
@@ -292,7 +292,8 @@ Collection* Pe::find_slow(CollectionId id) {
   return last_;
 }
 
-void Pe::add(CollectionId id, std::unique_ptr<Collection> collection) {
+void Pe::add(std::unique_ptr<HostedCollection> collection) {
+  const CollectionId id = collection->id();
   TESS_CHECK(!collections_.contains(id), id, " exists already on ", id_);
   collections_.emplace(id, std::move(collection));
   last_id_ = CollectionId{~std::uint64_t{0}};
@@ -314,16 +315,16 @@ void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe
   early_[id].push_back(message);
 }
 
-std::unique_ptr<Collection> Pe::take_out(CollectionId id) {
+std::unique_ptr<HostedCollection> Pe::take_out(CollectionId id) {
   const auto at = collections_.find(id);
-  std::unique_ptr<Collection> collection = std::move(at->second);
+  std::unique_ptr<HostedCollection> collection = std::move(at->second);
   collections_.erase(at);
   last_id_ = CollectionId{~std::uint64_t{0}};
   ended_.add(id);
   return collection;
 }
 
-void Pe::keep_ending(std::unique_ptr<Collection> collection, EpochId epoch) {
+void Pe::keep_ending(std::unique_ptr<HostedCollection> collection, EpochId epoch) {
   ending_.push_back({std::move(collection), epoch});
 }
 
@@ -335,14 +336,10 @@ Pe::Ending Pe::take_ending(CollectionId id) {
   return taken;
 }
 
-std::vector<Collection*> Pe::collections() const {
-  std::vector<Collection*> all;
+std::vector<HostedCollection*> Pe::collections() const {
+  std::vector<HostedCollection*> all;
   for (const auto& [id, collection] : collections_) all.push_back(collection.get());
   return all;
-}
-
-void Pe::quiescent() {
-  runtime_.quiescent(*this);
 }
 
 PeId Pe::whim() {
@@ -355,8 +352,9 @@ std::vector<std::string> Pe::census() const {
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
     lines.push_back(text(
-        one.element != nullptr ? element_text(*one.element) : text("the main program"), " on ", id_,
-        ": ", one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
+        one.element != nullptr ? runtime_.element_text(*one.element) : text("the main program"),
+        " on ", id_, ": ",
+        one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
         " waits for ", one.waits_for()));
   }
   for (const auto& [id, collection] : collections_) collection->describe_waiting(lines);

@@ -5,11 +5,12 @@
 
 #include "runtime/base/pool.hpp"
 #include "runtime/base/ticks.hpp"
-#include "runtime/completion/completion.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/completion_messages.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
+#include "runtime/scheduler/hosted_collection.hpp"
 #include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
@@ -29,7 +30,6 @@
 
 namespace tess {
 
-class Collection;
 class Element;
 class Runtime;
 
@@ -126,29 +126,29 @@ class Pe {
 
   // Collections.
 
-  [[nodiscard]] Collection* find(CollectionId id) {
+  [[nodiscard]] HostedCollection* find(CollectionId id) {
     if (last_id_ == id) return last_;
     return find_slow(id);
   }
   /// Enters a collection; messages that came before it are sent on.
-  void add(CollectionId id, std::unique_ptr<Collection> collection);
+  void add(std::unique_ptr<HostedCollection> collection);
   /// Keeps a message whose collection is not known here yet. One whose collection has ended here is
   /// dropped: `drop` settles its accounts and returns how many user messages are lost with it.
   void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
   [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
   /// Takes a collection out of the table: it ends here, and messages to it are dropped from now on.
-  [[nodiscard]] std::unique_ptr<Collection> take_out(CollectionId id);
+  [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);
   /// Keeps a collection that was taken out until the coroutines of its elements are done.
-  void keep_ending(std::unique_ptr<Collection> collection, EpochId epoch);
+  void keep_ending(std::unique_ptr<HostedCollection> collection, EpochId epoch);
   struct Ending {
-    std::unique_ptr<Collection> collection;
+    std::unique_ptr<HostedCollection> collection;
     EpochId epoch{};  ///< waits for it
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted) {
     return collection_numbers_.next(id_, late);
   }
-  [[nodiscard]] std::vector<Collection*> collections() const;
+  [[nodiscard]] std::vector<HostedCollection*> collections() const;
 
   // Called by the machine through the runtime.
 
@@ -181,9 +181,6 @@ class Pe {
   /// The run is over, and what waited is freed.
   [[nodiscard]] bool dropping() const { return dropping_; }
 
-  /// Epoch 0 is done (on PE 0).
-  void quiescent();
-
   /// What waits on this PE for something that must come from elsewhere, a line each.
   [[nodiscard]] std::vector<std::string> census() const;
 
@@ -215,27 +212,29 @@ class Pe {
   void note_constructor(const std::string& name);
 
   /// The index (and array) of the element that is constructed right now; null between.
-  [[nodiscard]] const void* birth() const { return birth_index_; }
-  [[nodiscard]] Collection* birth_collection() const { return birth_collection_; }
+  [[nodiscard]] const void* constructed_index() const { return constructed_index_; }
+  [[nodiscard]] HostedCollection* constructing_collection() const {
+    return constructing_collection_;
+  }
   /// Marks a constructor's run; they nest where a constructor creates a collection.
-  class Birth {
+  class Construction {
    public:
-    Birth(Pe& pe, const void* index, Collection* collection)
-        : pe_(pe), index_(pe.birth_index_), collection_(pe.birth_collection_) {
-      pe.birth_index_ = index;
-      pe.birth_collection_ = collection;
+    Construction(Pe& pe, const void* index, HostedCollection* collection)
+        : pe_(pe), index_(pe.constructed_index_), collection_(pe.constructing_collection_) {
+      pe.constructed_index_ = index;
+      pe.constructing_collection_ = collection;
     }
-    Birth(const Birth&) = delete;
-    Birth& operator=(const Birth&) = delete;
-    ~Birth() {
-      pe_.birth_index_ = index_;
-      pe_.birth_collection_ = collection_;
+    Construction(const Construction&) = delete;
+    Construction& operator=(const Construction&) = delete;
+    ~Construction() {
+      pe_.constructed_index_ = index_;
+      pe_.constructing_collection_ = collection_;
     }
 
    private:
     Pe& pe_;
     const void* index_;
-    Collection* collection_;
+    HostedCollection* collection_;
   };
 
   /// Calls that the schedule makes wait until the end of the current message (element surgery).
@@ -261,7 +260,7 @@ class Pe {
   void repay(PeId sender, std::uint32_t charge);
   void run_traced(Envelope* message);
   void exception(const char* what, int exit_code);
-  Collection* find_slow(CollectionId id);
+  HostedCollection* find_slow(CollectionId id);
 
   const PeId id_;
   const std::int32_t n_pes_;
@@ -279,11 +278,12 @@ class Pe {
   std::uint64_t n_futures_ = 0;
   boost::unordered_flat_map<std::uint64_t, void*> futures_;
   std::string place_;  // where the exception on its way was thrown
-  const void* birth_index_ = nullptr;
-  Collection* birth_collection_ = nullptr;
+  const void* constructed_index_ = nullptr;
+  HostedCollection* constructing_collection_ = nullptr;
   ReadyQueue ready_;
   Context of_message_;  // of the message that runs
   Context* context_ = &of_message_;
+  CompletionMessagesOfPe completion_messages_;
   Completion completion_;
   SuspendedList suspended_;
   PeStatistics statistics_;
@@ -303,9 +303,10 @@ class Pe {
   std::vector<Bundle*> bundles_;                   // empty where the machine takes none
   std::vector<std::int32_t> opened_;               // those of bundles_ that hold something
   CollectionId last_id_{~std::uint64_t{0}};
-  Collection* last_ = nullptr;
+  HostedCollection* last_ = nullptr;
   CollectionNumbers collection_numbers_;
-  boost::unordered_flat_map<CollectionId, std::unique_ptr<Collection>, std::hash<CollectionId>>
+  boost::unordered_flat_map<CollectionId, std::unique_ptr<HostedCollection>,
+                            std::hash<CollectionId>>
       collections_;
   boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
   EndedCollections ended_;

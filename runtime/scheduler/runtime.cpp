@@ -1,6 +1,5 @@
 #include "runtime/scheduler/runtime.hpp"
 
-#include "runtime/collections/collection.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
@@ -55,9 +54,11 @@ std::string context_of_this_thread() {
 
 }  // namespace
 
-Runtime::Runtime(Machine& machine, const RuntimeOptions& options, std::function<void()> main)
+Runtime::Runtime(Machine& machine, const RuntimeOptions& options, ElementText name_of,
+                 std::function<void()> main)
     : machine_(machine),
       options_(options),
+      element_text_(name_of),
       main_(std::move(main)),
       first_{machine.process().value * machine.pes_per_process()},
       reserve_(std::make_unique_for_overwrite<std::byte[]>(reserve_bytes)) {
@@ -129,7 +130,7 @@ void Runtime::print_statistics(PeId id) {
   const double busy = of.meter()->seconds(of.meter()->busy()) +
                       seconds(machine_.message_cost()) * static_cast<double>(s.messages);
   std::size_t chares = 0;
-  for (const Collection* collection : of.collections()) chares += collection->n_local();
+  for (const HostedCollection* collection : of.collections()) chares += collection->n_local();
   error_line(fmt::format(
       "stats: PE {} messages {} sent {} bytes {} busy {:.6f} s idle {:.6f} s chares {} forwards {} "
       "migrations {} dead letters {}",
@@ -165,8 +166,9 @@ void Runtime::error_line(const std::string& line) {
 std::string Runtime::describe(Pe& pe) const {
   const Context& context = pe.context();
   std::string out = text("on ", pe.id());
-  if (pe.birth() != nullptr)
-    return out + text(", ", pe.birth_collection()->birth_text(pe.birth()), ", in the constructor");
+  if (pe.constructed_index() != nullptr)
+    return out + text(", ", pe.constructing_collection()->constructed_text(pe.constructed_index()),
+                      ", in the constructor");
   if (context.element != nullptr) out += text(", ", element_text(*context.element));
   if (context.action != nullptr) out += text(", in ", plain_name(context.action->name()));
   if (context.epoch.value != 0) out += text(", epoch ", context.epoch.value >> 24U);
@@ -230,8 +232,8 @@ void Runtime::quiescent(Pe& pe) {
 
 void Runtime::on_census_asked(Pe& pe) {
   std::vector<EmptyArray> empty;
-  for (Collection* collection : pe.collections())
-    if (collection->n_local() == 0 && collection->broadcasts().applied() != 0)
+  for (HostedCollection* collection : pe.collections())
+    if (collection->n_local() == 0 && collection->was_called())
       empty.push_back({collection->id(), collection->name()});
   send_uncounted<&census_arrives>(
       pe, PeId{0},

@@ -35,7 +35,8 @@ struct RuntimeOptions {
 
 class Runtime final : public Program {
  public:
-  Runtime(Machine& machine, const RuntimeOptions& options, std::function<void()> main);
+  Runtime(Machine& machine, const RuntimeOptions& options, ElementText name_of,
+          std::function<void()> main);
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
   ~Runtime() override;
@@ -52,6 +53,9 @@ class Runtime final : public Program {
   void quiescent(Pe& pe);
   /// Memory is at its end: one line a process, however many PEs meet it, and exit code 2.
   void out_of_memory(Pe& pe, const std::string& place);
+  [[nodiscard]] std::string element_text(const Element& element) const {
+    return element_text_(element);
+  }
   /// "Block[3], Block::step on PE 2".
   [[nodiscard]] std::string describe(Pe& pe) const;
   /// Prints whole lines to standard error, never mixed with those of another thread.
@@ -99,6 +103,7 @@ class Runtime final : public Program {
 
   Machine& machine_;
   const RuntimeOptions options_;
+  const ElementText element_text_;
   const std::function<void()> main_;
   const PeId first_;
   std::unique_ptr<std::byte[]> reserve_;  // given up when memory ends, for the messages of the end

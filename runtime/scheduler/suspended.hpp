@@ -20,6 +20,7 @@ struct Suspended {
   EpochId epoch{};
   std::function<std::string()> waits_for;
   void* frame = nullptr;
+  const bool* detached = nullptr;  ///< in the frame: no Task holds the coroutine
   Suspended* before = nullptr;
   Suspended* after = nullptr;
 };

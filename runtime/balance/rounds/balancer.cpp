@@ -44,12 +44,12 @@ struct MergeOutcomes {
 
 Balancer::Balancer(const Plan& plan)
     : plan_(plan),
-      barrier_(current_pe(), *current_pe().birth_collection(), plan.coordinator,
+      barrier_(current_pe(), *constructing_collection(current_pe()), plan.coordinator,
                group()[plan.coordinator].target<&Balancer::reached>()),
       measured_(current_pe()) {
   Pe& pe = current_pe();
   // At once where the array is known: what was sent after start_balancing() comes later.
-  if (Collection* array = pe.find(plan_.array); array != nullptr) watch(*array);
+  if (Collection* array = find_collection(pe, plan_.array); array != nullptr) watch(*array);
   const Attach attach{group().id(), plan_.array, plan_.epoch};
   pe.completion().sent(plan_.epoch);
   if (plan_.distributed == DistributedStrategy::none) {

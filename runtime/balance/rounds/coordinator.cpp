@@ -3,7 +3,7 @@
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/unknown_loads.hpp"
-#include "runtime/messages/registry.hpp"
+#include "runtime/core/registry.hpp"
 
 #include <algorithm>
 #include <chrono>

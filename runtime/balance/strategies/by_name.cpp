@@ -1,5 +1,3 @@
-#include "runtime/balance/strategy.hpp"
-
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/strategies/diffusion.hpp"
 #include "runtime/balance/strategies/gossip.hpp"
@@ -11,6 +9,7 @@
 #include "runtime/balance/strategies/rcb.hpp"
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategies/simple.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "runtime/balance/unknown_loads.hpp"
 #include "runtime/core/error.hpp"
 

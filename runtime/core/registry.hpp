@@ -4,8 +4,9 @@
 // binaries that differ are found before the first message.
 #pragma once
 
+#include "runtime/core/type_name.hpp"
+
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -44,30 +45,5 @@ class Registry {
   friend class Registered;
   static std::vector<Registered*>& all();
 };
-
-namespace naming {
-// g++ writes "… [with T = Block; std::string_view = …]".
-[[nodiscard]] constexpr std::string_view between(std::string_view name, std::string_view begin) {
-  const auto from = name.find(begin) + begin.size();
-  auto to = name.rfind("; std::string_view");
-  if (to == std::string_view::npos) to = name.size() - 1;
-  return name.substr(from, to - from);
-}
-template <class T>
-[[nodiscard]] constexpr std::string_view type() {
-  return between(__PRETTY_FUNCTION__, "T = ");
-}
-template <auto Value>
-[[nodiscard]] constexpr std::string_view value() {
-  return between(__PRETTY_FUNCTION__, "Value = ");
-}
-}  // namespace naming
-
-/// The name of a type as the compiler spells it: "Block".
-template <class T>
-inline constexpr std::string_view name_of_type = naming::type<T>();
-
-/// A function's or member function's name without the compiler's decoration: "Block::step".
-[[nodiscard]] std::string plain_name(std::string_view compiler_name);
 
 }  // namespace tess

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Checks every include against layers.txt; `--picture` prints rooms, floors and upward arrows of each module instead.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*.[hc]pp' 'apps/*.[hc]pp' 'tests/*.[hc]pp' |
+  xargs grep -nE '^#include "(runtime|collide|m2m|apps|tests)/' /dev/null |
+  awk -v picture="${1:-}" -v lines="cmake/layers.txt" '
+    function room_of(path,  folder) {
+      if (path in member) return member[path]
+      folder = path
+      sub(/\/[^\/]*$/, "", folder)
+      return folder
+    }
+    function refuse(text) { print text; failed = 1 }
+    function module_of(room) { sub(/\/.*/, "", room); return room }
+    function floor_of(room,  below, highest, parts, n, i) {
+      if (room in floor) return floor[room]
+      highest = 0
+      n = split(arrows[room], parts, " ")
+      for (i = 1; i <= n; ++i)
+        if (module_of(parts[i]) == module_of(room) && (below = floor_of(parts[i])) > highest) highest = below
+      return floor[room] = highest + 1
+    }
+    BEGIN {
+      while ((getline line < lines) > 0) {
+        sub(/#.*/, "", line)
+        if (line !~ /[^ ]/) continue
+        if (split(line, halves, ":") != 2) { refuse(lines ": no ROOM : ROOM… in: " line); continue }
+        n = split(halves[1], left, " ")
+        if (left[1] in known) refuse(lines ": " left[1] " stands twice")
+        for (i = 2; i <= n; ++i) member[left[i]] = left[1]
+        n = split(halves[2], right, " ")
+        for (i = 1; i <= n; ++i) {
+          if (!(right[i] in known)) refuse(lines ": " left[1] " may not stand on " right[i] ", which is no earlier line")
+          allowed[left[1], right[i]] = 1
+        }
+        known[left[1]] = 1
+      }
+    }
+    {
+      split($0, at, ":")
+      target = $0
+      sub(/^[^"]*"/, "", target); sub(/".*/, "", target)
+      from = room_of(at[1]); to = room_of(target)
+      rooms[from] = rooms[to] = 1
+      if (from == to) next
+      if (!((from, to) in seen)) { seen[from, to] = 1; arrows[from] = arrows[from] " " to }
+      if (!(from in known)) { if (!(from in missing)) refuse(at[1] ": " lines " has no line for " from); missing[from] = 1 }
+      else if (!((from, to) in allowed)) { ++upward[module_of(from)]; if (!picture) refuse(at[1] ":" at[2] ": " from " may not include " to " (" target ")") }
+    }
+    END {
+      if (picture) {
+        printf "%-10s %6s %7s %7s %s\n", "module", "rooms", "floors", "arrows", "not allowed"
+        for (room in rooms) { ++n_rooms[module_of(room)]; if (floor_of(room) > top[module_of(room)]) top[module_of(room)] = floor_of(room) }
+        for (key in seen) { split(key, pair, SUBSEP); if (module_of(pair[1]) == module_of(pair[2])) ++n_arrows[module_of(pair[1])] }
+        for (module in n_rooms) printf "%-10s %6d %7d %7d %d\n", module, n_rooms[module], top[module], n_arrows[module], upward[module]
+      } else if (!failed) print "layers: every include is allowed"
+      exit failed
+    }'
