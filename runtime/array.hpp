@@ -22,6 +22,10 @@ namespace tess {
 template <class C>
 concept Migratable = std::is_default_constructible_v<C> && serialization::HasSerialize<C>;
 
+/// A member of a group.
+template <class C>
+concept OnePerPe = requires { C::one_per_pe; };
+
 template <class C>
 class Array final : public ArrayOf<typename C::Index> {
  public:
@@ -55,7 +59,10 @@ class Array final : public ArrayOf<typename C::Index> {
     if constexpr (Coordinates<Index>) {
       const auto size = static_cast<std::int64_t>(this->range().size());
       std::int64_t first = 0, last = size;
-      if constexpr (!requires(Index i) { C::place(i, 1); }) {
+      if constexpr (OnePerPe<C>) {
+        first = this->pe_.id().value;
+        last = first + 1;
+      } else if constexpr (!requires(Index i) { C::place(i, 1); }) {
         const auto rank = static_cast<std::int64_t>(this->pe_.id().value);
         const std::int64_t n_pes = this->pe_.n_pes();
         first = (rank * size + n_pes - 1) / n_pes;
@@ -168,7 +175,20 @@ class Array final : public ArrayOf<typename C::Index> {
     return count.n_bytes();
   }
 
-  [[nodiscard]] bool migratable() const override { return Migratable<C>; }
+  [[nodiscard]] bool migratable() const override { return Migratable<C> && !OnePerPe<C>; }
+
+  void end() override {
+    if constexpr (requires(C& member) { member.group_ends(); })
+      for (Element* element : this->elements()) static_cast<C*>(element)->group_ends();
+    Base::end();
+  }
+  [[nodiscard]] std::string index_text_of(const Element& element) const override {
+    return OnePerPe<C> ? text("[", this->pe_.id(), "]") : Base::index_text_of(element);
+  }
+  [[nodiscard]] std::string constructed_text(const void* index) const override {
+    return OnePerPe<C> ? text(this->name(), "[", this->pe_.id(), "]")
+                       : Base::constructed_text(index);
+  }
 
  protected:
   Indexed* construct_default() override {
@@ -314,8 +334,9 @@ class ElementProxy {
     auto* letter = Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
     letter->demand = demand;
     letter->ask = demand == Demand::here;
-    if (Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages()) [[unlikely]]
-      meter->sent({collection_, IndexHash<Index>()(index_)}, payload_bytes(letter->arguments));
+    if constexpr (!OnePerPe<C>)  // a balancer has no say in where members are
+      if (Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages()) [[unlikely]]
+        meter->sent({collection_, IndexHash<Index>()(index_)}, payload_bytes(letter->arguments));
     post_letter(pe, letter);
   }
   void post_letter(Pe& pe, ElementMessage<Index>* letter) const {
@@ -457,6 +478,31 @@ void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
   pe.completion().processed(m.epoch);
 }
 
+/// Messages to an ended collection of C are dead letters, unless the class says otherwise.
+template <class C>
+constexpr LateMessages late_messages_of() {
+  if constexpr (requires { C::late_messages; }) {
+    return C::late_messages;
+  } else {
+    return LateMessages::counted;
+  }
+}
+
+template <class C, class... Args>
+CollectionId create_collection(const Range& range, Args&&... args) {
+  Pe& pe = current_pe();
+  using Create = CreateArray<C, std::decay_t<Args>...>;
+  const CollectionId id = pe.new_collection_id(late_messages_of<C>());
+  Create message{id, range, pe.context().epoch, {std::forward<Args>(args)...}};
+  constexpr auto handler = &create_arrives<C, std::decay_t<Args>...>;
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
+    pe.completion().sent(message.epoch);
+    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
+  }
+  handler(pe, std::move(message));  // here at once: the proxy is good from now on
+  return id;
+}
+
 }  // namespace detail
 
 /// Creates an array on all PEs; each element of the range is made with these arguments on the home
@@ -470,17 +516,7 @@ ArrayProxy<C> create(const Range& range, Args&&... args) {
     TESS_CHECK(range.n_axes == 0,
                "an array with this type of index starts sparse: create<C>(tess::sparse)");
   }
-  Pe& pe = current_pe();
-  using Create = detail::CreateArray<C, std::decay_t<Args>...>;
-  Create message{pe.new_collection_id(), range, pe.context().epoch, {std::forward<Args>(args)...}};
-  constexpr auto handler = &detail::create_arrives<C, std::decay_t<Args>...>;
-  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
-    pe.completion().sent(message.epoch);
-    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
-  }
-  const CollectionId id = message.id;
-  handler(pe, std::move(message));  // here at once: the proxy is good from now on
-  return ArrayProxy<C>(id);
+  return ArrayProxy<C>(detail::create_collection<C>(range, std::forward<Args>(args)...));
 }
 
 }  // namespace tess

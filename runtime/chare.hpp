@@ -27,10 +27,7 @@ class Chare : public IndexedElement<IndexType> {
 
   /// The array it is an element of.
   [[nodiscard]] ArrayProxy<Derived> array() const {
-    // In the constructor the element is not listed yet.
-    const Collection* mine =
-        this->collection_ != nullptr ? this->collection_ : constructing_collection(current_pe());
-    return ArrayProxy<Derived>(mine->id());
+    return ArrayProxy<Derived>(this->collection_id());
   }
 
   /// Moves this element to a PE once what runs of it, and what waits, is done. The epoch that runs
@@ -78,14 +75,7 @@ class Chare : public IndexedElement<IndexType> {
   /// result of the last one is known), insert elements while none is under way.
   template <class Op, class T>
   void contribute(Op op, T value, Callback<T> target) {
-    if (this->collection_ == nullptr) [[unlikely]] {
-      const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
-      Element::after_construction("contribute()", [this, op, held] {
-        contribute(op, std::move(held->first), std::move(held->second));
-      });
-      return;
-    }
-    contribute_as(index(), *this, *this->collection_, op, std::move(value), std::move(target));
+    Contribution::give(index(), *this, op, std::move(value), std::move(target));
   }
 };
 

@@ -37,7 +37,14 @@ class IndexedElement : public Element {
   virtual ~IndexedElement() = default;
 
  protected:
-  IndexedElement() : index_(*static_cast<const Index*>(birth())) {}
+  IndexedElement() : index_(*static_cast<const Index*>(constructed())) {}
+
+  /// The collection it is an element of; also in its constructor, where it is not listed yet.
+  [[nodiscard]] CollectionId collection_id() const {
+    return (this->collection_ != nullptr ? this->collection_
+                                         : constructing_collection(current_pe()))
+        ->id();
+  }
 
  private:
   template <class>
@@ -46,7 +53,9 @@ class IndexedElement : public Element {
   friend class Array;
   template <class, class>
   friend class Chare;
-  [[nodiscard]] static const void* birth() {
+  template <class>
+  friend class Group;
+  [[nodiscard]] static const void* constructed() {
     const void* index = current_pe().constructed_index();
     TESS_CHECK(index != nullptr,
                "a chare is made by its array alone: create<C>(…) or array[index].insert(…)");

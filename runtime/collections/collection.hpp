@@ -1,5 +1,5 @@
 // One collection (array or group) on one PE: its local elements, its part in broadcasts and
-// reductions. What depends on the type of index and chare is in ArrayOf, Array and GroupOf.
+// reductions. What depends on the type of index and chare is in ArrayOf and Array.
 #pragma once
 
 #include "runtime/collections/balance_record.hpp"

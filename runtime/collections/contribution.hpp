@@ -43,4 +43,20 @@ void contribute_as(const Key& key, Element& element, Collection& collection, InO
       element, std::make_unique<OrderedPartial<T, Op, Key>>(std::move(values), std::move(target)));
 }
 
+/// How the bases of elements contribute. A constructor's contribution waits until the element is
+/// listed.
+struct Contribution {
+  template <class Key, class Op, class T>
+  static void give(const Key& key, Element& element, Op op, T value, Callback<T> target) {
+    if (element.collection_ == nullptr) [[unlikely]] {
+      const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
+      Element::after_construction("contribute()", [&key, &element, op, held] {
+        give(key, element, op, std::move(held->first), std::move(held->second));
+      });
+      return;
+    }
+    contribute_as(key, element, *element.collection_, op, std::move(value), std::move(target));
+  }
+};
+
 }  // namespace tess

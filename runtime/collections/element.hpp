@@ -49,12 +49,13 @@ class Element {
   template <class>
   friend class Array;
   template <class>
-  friend class GroupOf;
+  friend class IndexedElement;
   friend class ElementScope;
   template <class, class>
   friend class Chare;
   template <class>
   friend class Group;
+  friend struct Contribution;
   friend struct TaskAccount;
   friend std::string element_text(const Element& element);
 
