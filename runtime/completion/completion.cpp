@@ -74,7 +74,7 @@ bool Completion::report_epochs() {
     forget_last();  // each time: reporting one epoch may have counted for the next of this list
     any = report(epoch, at->second) || any;
   }
-  return any || !changed_.empty();
+  return any;
 }
 
 bool Completion::is_over(EpochId epoch) const {

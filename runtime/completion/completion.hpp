@@ -142,7 +142,7 @@ class Completion {
   void close(EpochId epoch);
 
   /// Reports what changed of the scoped epochs, and answers reports. True if anything was sent or
-  /// done, or is to be reported still.
+  /// done.
   bool report_epochs();
   /// True if there is something of the run (epoch 0) to report or to answer.
   [[nodiscard]] bool run_changed() const { return run_.owed != 0 || run_.sum() != run_.reported; }
@@ -151,6 +151,8 @@ class Completion {
   /// if anything was sent or done.
   bool report_run() { return report(EpochId{}, run_); }
 
+  /// Epochs that this PE keeps counters of.
+  [[nodiscard]] std::size_t n_epochs() const { return tallies_.size(); }
   /// One line for each epoch that this PE opened and that is not done.
   void describe_open(std::vector<std::string>& lines) const;
 
