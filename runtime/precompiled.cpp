@@ -1,0 +1,1 @@
+// The precompiled header runtime.hpp belongs to this source.
