@@ -1,0 +1,96 @@
+// The meter by itself: whose time it is, and that stolen time counts for none.
+#include "runtime/scheduler/meter.hpp"
+
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+
+#include <chrono>
+#include <thread>
+
+namespace {
+
+using namespace tess;
+
+/// Works for so long, as the clock of this thread sees it.
+void work(Meter& meter, double seconds) {
+  const std::uint64_t end = meter.now() + meter.ticks(seconds);
+  while (meter.now() < end) {
+  }
+}
+
+}  // namespace
+
+TEST_CASE("time in which the thread did not run is taken back from the call that it fell in",
+          "[runtime][meter]") {
+  const auto machine = make_threads_machine(1);
+  Meter meter(*machine, PeId{0});
+  LoadRecord works, waits;
+  meter.step_begins();
+  {
+    const Meter::Scope outer = meter.enter({&works, nullptr});
+    work(meter, 2e-3);
+    meter.leave(outer);
+  }
+  {
+    const Meter::Scope outer = meter.enter({&waits, nullptr});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // as when another program runs
+    meter.leave(outer);
+  }
+  meter.step_ends();
+  CHECK(meter.seconds(waits.ticks) < 10e-3);
+  CHECK(meter.seconds(works.ticks) > 1e-3);
+  CHECK(meter.seconds(meter.busy()) < 30e-3);
+}
+
+TEST_CASE("the innermost scope has the time", "[runtime][meter]") {
+  SimulatedOptions options;
+  options.n_pes = 1;
+  options.cost = Time(0);
+  const auto machine = make_simulated_machine(options);
+  Meter meter(*machine, PeId{0});
+  const auto pass = [&](int ns) { machine->charge(PeId{0}, Time(ns)); };
+  LoadRecord outer_record, inner_record;
+  meter.step_begins();
+  const Meter::Scope none = meter.enter({&outer_record, nullptr});
+  pass(10);
+  const Meter::Scope outer = meter.enter({&inner_record, nullptr});
+  pass(200);
+  meter.leave(outer);
+  pass(3000);
+  meter.leave(none);
+  pass(40'000);
+  meter.step_ends();
+  CHECK(outer_record.ticks == 3010);
+  CHECK(inner_record.ticks == 200);
+  CHECK(meter.busy() == 43'210);
+}
+
+TEST_CASE("an alarm rings once per period, after a call with a record", "[runtime][meter]") {
+  SimulatedOptions options;
+  options.n_pes = 1;
+  options.cost = Time(0);
+  const auto machine = make_simulated_machine(options);
+  Meter meter(*machine, PeId{0});
+  LoadRecord record;
+  int n_rings = 0;
+  meter.add_alarm(1000, &n_rings, [&n_rings] { ++n_rings; });
+  const auto call = [&](LoadRecord* of, int ns) {
+    const Meter::Scope outer = meter.enter({of, nullptr});
+    machine->charge(PeId{0}, Time(ns));
+    meter.leave(outer);
+  };
+  call(&record, 999);
+  CHECK(n_rings == 0);
+  call(nullptr, 1);
+  CHECK(n_rings == 0);  // it has no record
+  call(&record, 1);
+  CHECK(n_rings == 1);
+  call(&record, 999);
+  CHECK(n_rings == 1);
+  call(&record, 5000);
+  CHECK(n_rings == 2);
+  meter.remove_alarms(&n_rings);
+  call(&record, 5000);
+  CHECK(n_rings == 2);
+}

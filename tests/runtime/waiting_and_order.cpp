@@ -1,0 +1,84 @@
+// Promises of order that a program can see: which coroutine a message goes to, and in which order a
+// reduction combines.
+#include "runtime/machine/simulated.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+#include <numeric>
+
+namespace {
+
+int simulate(std::uint64_t seed, std::function<void()> main) {
+  tess::SimulatedOptions options;
+  options.n_pes = 3;
+  options.cost = tess::Time(100);
+  options.seed = seed;
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(options);
+  return tess::run(setup, std::move(main));
+}
+
+struct Note {
+  int key = 0;
+  int number = 0;
+};
+std::vector<int> served;  // one thread runs all simulated PEs
+
+class Waiter : public tess::Chare<Waiter, tess::Index1> {
+ public:
+  tess::Task read(int waiter) {
+    const Note note = co_await notes_.take(7);
+    served.push_back(10 * waiter + note.number);
+  }
+  void put(int number) { notes_.put(Note{7, number}); }
+
+ private:
+  tess::Mailbox<&Note::key> notes_;
+};
+
+class Giver : public tess::Chare<Giver, tess::Index1> {
+ public:
+  void give(tess::Callback<std::vector<int>> to) {
+    contribute(tess::in_order(tess::concatenate), std::vector<int>{index().x}, to);
+  }
+};
+
+tess::Task gather(std::vector<int>& gathered, int n) {
+  const auto members = tess::create<Giver>(tess::sparse);
+  co_await tess::epoch([&] {
+    for (int i = 0; i < n; ++i) members[{(i * 37) % n}].insert_on(tess::PeId{i % 3});
+  });
+  tess::Future<std::vector<int>> result;
+  members.broadcast<&Giver::give>(result.callback());
+  gathered = co_await result;
+}
+
+}  // namespace
+
+TEST_CASE("a message goes to the coroutine that has waited longest", "[runtime][mailbox]") {
+  served.clear();
+  // In one PE, without a seed, messages keep their order.
+  tess::SimulatedOptions options;
+  options.n_pes = 1;
+  options.cost = tess::Time(100);
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(options);
+  const auto main = [] {
+    const auto waiters = tess::create<Waiter>(tess::range(1));
+    for (int i = 1; i <= 4; ++i) waiters[{0}].send<&Waiter::read>(i);
+    for (int i = 1; i <= 4; ++i) waiters[{0}].send<&Waiter::put>(i);
+  };
+  REQUIRE(tess::run(setup, main) == 0);
+  CHECK(served == std::vector<int>{11, 22, 33, 44});
+}
+
+TEST_CASE("in_order combines in the order of indices, wherever the elements are",
+          "[runtime][reduction]") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    std::vector<int> gathered;
+    REQUIRE(simulate(seed, [&gathered]() -> tess::Task { return gather(gathered, 50); }) == 0);
+    std::vector<int> expected(50);
+    std::iota(expected.begin(), expected.end(), 0);
+    CHECK(gathered == expected);
+  }
+}
