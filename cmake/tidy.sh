@@ -13,9 +13,7 @@ mkdir -p "$stamps"
 sources=("$@")
 # The core: what every program runs on. The balance strategies and the libraries are checked by name, by hand.
 if ((${#sources[@]} == 0)); then
-  for library in tess_core tess_runtime tess_balancer machine/CMakeFiles/tess_machine; do
-    sources+=("$build/runtime/${library/#tess/CMakeFiles\/tess}.dir/Unity"/*.cxx)
-  done
+  mapfile -t sources < <(find "$build/runtime" -path '*/Unity/*.cxx' ! -path '*/tess_balance.dir/*' | sort)
 fi
 
 # OBJECT FILE… a line: what each object of the release build was made from, as far as it is the project's.
