@@ -11,7 +11,7 @@
 #include <limits>
 #include <span>
 
-namespace tess {
+namespace tess::collide {
 
 using Point = std::array<double, 3>;
 
@@ -68,4 +68,4 @@ struct Aabb {
   return true;
 }
 
-}  // namespace tess
+}  // namespace tess::collide

@@ -1,6 +1,6 @@
 #include "collide/collider.hpp"
 
-namespace tess {
+namespace tess::collide {
 
 Collider make_collider(const ColliderOptions& options) {
   const VoxelGrid checked(options.origin, options.size);
@@ -17,11 +17,11 @@ void start_collision(const Collider& collider, const Report& report) {
   collider.voxels.broadcast<&Voxel::start_collision>(Collision{o.origin, o.size, o.rules, report});
 }
 
-Task collide(Collider collider, Report report) {
+Task run_collision(Collider collider, Report report) {
   const auto deliver = [&collider] { start_delivery(collider); };
   const auto collide_all = [&collider, &report] { start_collision(collider, report); };
   co_await epoch(deliver);
   co_await epoch(collide_all);
 }
 
-}  // namespace tess
+}  // namespace tess::collide

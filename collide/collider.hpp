@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::collide {
 
 /// The grid and which pairs are hits.
 struct ColliderOptions {
@@ -54,10 +54,10 @@ struct Collider {
 
 /// One collision of all that was submitted; awaited, it is done when the owners have handled all
 /// hits.
-Task collide(Collider collider, Report report);
+Task run_collision(Collider collider, Report report);
 
 /// The two halves of collide(), for callers that time them: each inside an epoch of the caller.
 void start_delivery(const Collider& collider);
 void start_collision(const Collider& collider, const Report& report);
 
-}  // namespace tess
+}  // namespace tess::collide

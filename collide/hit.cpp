@@ -2,7 +2,7 @@
 
 #include "runtime/core/error.hpp"
 
-namespace tess {
+namespace tess::collide {
 
 void check_boxes(std::span<const Item> items) {
   for (const Item& item : items) {
@@ -15,4 +15,4 @@ void check_boxes(std::span<const Item> items) {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::collide

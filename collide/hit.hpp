@@ -10,7 +10,7 @@
 #include <span>
 #include <type_traits>
 
-namespace tess {
+namespace tess::collide {
 
 /// Who owns an object and is told of its hits: a chare, a client, a file. Opaque here.
 enum class OwnerId : std::uint64_t {};
@@ -58,4 +58,4 @@ struct PairRules {
 /// Throws the Error that names the first item whose box has a NaN, an infinity or lo > hi.
 void check_boxes(std::span<const Item> items);
 
-}  // namespace tess
+}  // namespace tess::collide

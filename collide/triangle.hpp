@@ -4,7 +4,7 @@
 
 #include "collide/aabb.hpp"
 
-namespace tess {
+namespace tess::collide {
 
 /// Three corners; degenerate triangles are allowed.
 struct Triangle {
@@ -19,4 +19,4 @@ struct Triangle {
   return merged(merged(box_of(a), box_of(b)), box_of(c));
 }
 
-}  // namespace tess
+}  // namespace tess::collide

@@ -5,7 +5,7 @@
 namespace tess::m2m {
 
 Aabb bounds(const TetMesh& mesh) {
-  return box_around(mesh.points);
+  return collide::box_around(mesh.points);
 }
 
 double signed_volume(const TetMesh& mesh, std::size_t tet) {

@@ -15,8 +15,8 @@
 
 namespace tess::m2m {
 
-using tess::Aabb;
-using tess::Point;
+using collide::Aabb;
+using collide::Point;
 /// A vertex within one mesh or one part.
 using VertexId = std::int32_t;
 /// A vertex or tetrahedron in the numbering of the whole mesh.

@@ -18,7 +18,7 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   const Time start = pe.now();
   TransferSetup setup{{}, {}, source.workers, target.workers};
   co_await epoch([&] {
-    setup.collider = make_collider({options.voxel_origin, options.voxel_size, {}});
+    setup.collider = collide::make_collider({options.voxel_origin, options.voxel_size, {}});
     setup.id = TransferId{setup.collider.voxels.id().value};  // one collider, one transfer
   });
   co_await epoch([&] {
@@ -26,8 +26,8 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
     target.workers.broadcast<&Worker::submit_points>(setup);
   });
   // Named: g++ 12 destroys an aggregate that is written inside a co_await expression twice.
-  const Report to_target{report_to_target(target.workers, setup.id), target_model};
-  co_await collide(setup.collider, to_target);
+  const collide::Report to_target{report_to_target(target.workers, setup.id), target_model};
+  co_await collide::run_collision(setup.collider, to_target);
   setup.collider.destroy();
   const Time broad = pe.now();
   enter("narrow");

@@ -1,10 +1,10 @@
 // Serial collision of the specification's scenes: nanoseconds an object, median of several runs.
 // Each count of pairs is checked against another method on another grid before it is printed.
 //     bench_collide_serial [RUNS]
-#include "collide/serial/collide_serial.hpp"
+#include "collide/collide_serial.hpp"
 
-#include "collide/serial/voxel_size.hpp"
 #include "collide/triangle.hpp"
+#include "collide/voxel_size.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-using namespace tess;
+using namespace tess::collide;
 
 namespace {
 

@@ -2,22 +2,22 @@
 
 #include <utility>
 
-namespace tess {
+namespace tess::collide {
 
 void Manager::submit(std::vector<Item> items) {
-  CellBounds bounds = bounds_;
-  for (const Item& item : items) bounds.add(cells_of(item, grid_), item);
+  serial::CellBounds bounds = bounds_;
+  for (const Item& item : items) bounds.add(serial::cells_of(item, grid_), item);
   bounds_ = bounds;
   if (!items.empty()) lists_.push_back(std::move(items));
 }
 
 void Manager::deliver() {
   const auto lists = std::exchange(lists_, {});
-  CellNumbers numbers(std::exchange(bounds_, {}));
+  serial::CellNumbers numbers(std::exchange(bounds_, {}));
   const auto for_each_entry = [&](auto&& visit) {
     for (const std::vector<Item>& items : lists)
       for (const Item& item : items)
-        numbers.for_each(cells_of(item, grid_), [&](std::uint32_t v) { visit(v, item); });
+        numbers.for_each(serial::cells_of(item, grid_), [&](std::uint32_t v) { visit(v, item); });
   };
 
   std::vector<std::uint32_t> n_items;
@@ -37,4 +37,4 @@ void Manager::deliver() {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::collide

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tess {
+namespace tess::collide {
 
 class Manager : public Group<Manager> {
  public:
@@ -33,8 +33,8 @@ class Manager : public Group<Manager> {
   const VoxelGrid grid_;
   const ArrayProxy<Voxel> voxels_;
   std::vector<std::vector<Item>> lists_;  // as they were submitted
-  CellBounds bounds_;                     // of their cells
+  serial::CellBounds bounds_;             // of their cells
   std::uint64_t n_delivered_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::collide

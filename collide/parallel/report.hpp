@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace tess {
+namespace tess::collide {
 
 /// One hit between an object of the owner that is told and an object of the other.
 struct LocalPair {
@@ -63,4 +63,4 @@ template <auto F, class C>
   return Callback<Hits>(detail::owner_kind<C, F>, to_bytes(owners.id()));
 }
 
-}  // namespace tess
+}  // namespace tess::collide

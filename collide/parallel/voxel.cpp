@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace tess {
+namespace tess::collide {
 namespace {
 
 /// Gathers the hits of one voxel by (owner, other). Hits come in runs of one pair of owners, so the
@@ -65,7 +65,7 @@ void Voxel::start_collision(const Collision& collision) {
   const VoxelGrid grid(collision.origin, collision.size);
   const Cell here{index().x, index().y, index().z};
   const std::optional<ModelId> only = collision.report.only;
-  PairSearch search(collision.rules);
+  serial::PairSearch search(collision.rules);
   Sorter sorter;
   search.for_each_pair(items, here, grid, [&](const Item& a, const Item& b) {
     if (!only || a.id.model == *only) sorter.add(a.id, b.id);
@@ -75,4 +75,4 @@ void Voxel::start_collision(const Collision& collision) {
   sorter.send(collision.report.call);
 }
 
-}  // namespace tess
+}  // namespace tess::collide

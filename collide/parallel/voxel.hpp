@@ -12,7 +12,7 @@
 #include <array>
 #include <vector>
 
-namespace tess {
+namespace tess::collide {
 
 /// What a collision is run with, the same for all voxels.
 struct Collision {
@@ -50,4 +50,4 @@ class Voxel : public Chare<Voxel, Index3> {
   std::vector<Item> items_;
 };
 
-}  // namespace tess
+}  // namespace tess::collide

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace tess {
+namespace tess::collide::serial {
 
 Slices::Slices(std::span<const Item> sample, std::size_t n_items) {
   constexpr std::size_t kSample = 32;
@@ -38,4 +38,4 @@ void BucketOrder::settle() {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::collide::serial

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::collide::serial {
 
 /// Slices of the widest axis of some boxes: monotone in the coordinate.
 class Slices {
@@ -69,4 +69,4 @@ class BucketOrder {
   std::vector<std::uint32_t> next_;
 };
 
-}  // namespace tess
+}  // namespace tess::collide::serial

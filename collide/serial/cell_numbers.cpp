@@ -2,7 +2,7 @@
 
 #include "runtime/core/error.hpp"
 
-namespace tess {
+namespace tess::collide::serial {
 
 void CellBounds::refuse(double n_cells, const Item& item) {
   fail(ErrorCode::bad_value, "gridding: object ", static_cast<std::uint32_t>(item.id.local),
@@ -37,4 +37,4 @@ void CellNumbers::grow() {
   for (std::uint32_t i = 0; i < cells_.size(); ++i) find(cells_[i]) = i;
 }
 
-}  // namespace tess
+}  // namespace tess::collide::serial

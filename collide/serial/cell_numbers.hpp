@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace tess {
+namespace tess::collide::serial {
 
 /// The cells that the box of an item touches. Errors that name the item: a box that is none, a
 /// coordinate that has no cell.
@@ -106,4 +106,4 @@ class CellNumbers {
   std::vector<Cell> cells_;           // by number, where not dense
 };
 
-}  // namespace tess
+}  // namespace tess::collide::serial

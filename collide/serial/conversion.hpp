@@ -12,7 +12,7 @@
 #include <immintrin.h>
 #endif
 
-namespace tess::conversion {
+namespace tess::collide::serial::conversion {
 
 /// The grid for x y z x y z, and two lanes that are not used.
 struct Constants {
@@ -89,4 +89,4 @@ inline constexpr double kLeast = -2147483648.0, kMost = 2147483647.0;
 #endif
 }
 
-}  // namespace tess::conversion
+}  // namespace tess::collide::serial::conversion

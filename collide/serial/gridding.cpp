@@ -2,7 +2,7 @@
 
 #include "collide/serial/cell_numbers.hpp"
 
-namespace tess {
+namespace tess::collide::serial {
 namespace {
 
 /// The models of the items of a voxel, as far as it matters.
@@ -64,4 +64,4 @@ VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid, K
   return out;
 }
 
-}  // namespace tess
+}  // namespace tess::collide::serial

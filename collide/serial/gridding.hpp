@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace tess {
+namespace tess::collide::serial {
 
 /// Which voxels are kept. On one PE a voxel of a single model can be dropped before anything is
 /// copied; a Manager does not know what others send to a voxel and keeps all.
@@ -38,4 +38,4 @@ class VoxelGroups {
 [[nodiscard]] VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid,
                                          KeepVoxels keep = KeepVoxels::all);
 
-}  // namespace tess
+}  // namespace tess::collide::serial

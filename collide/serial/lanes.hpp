@@ -14,7 +14,7 @@
 #include <immintrin.h>
 #endif
 
-namespace tess {
+namespace tess::collide::serial {
 
 class Lanes {
  public:
@@ -143,4 +143,4 @@ class Probe {
   std::uint32_t model_;
 };
 
-}  // namespace tess
+}  // namespace tess::collide::serial

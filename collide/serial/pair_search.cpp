@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tess {
+namespace tess::collide::serial {
 
 PairSearch::Models PairSearch::count_models(std::span<const Item> items) noexcept {
   const ModelId first = items.front().id.model;
@@ -75,4 +75,4 @@ std::optional<std::array<std::vector<PairSearch::Entry>, 2>> PairSearch::halves(
   return std::nullopt;
 }
 
-}  // namespace tess
+}  // namespace tess::collide::serial

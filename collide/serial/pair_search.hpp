@@ -18,9 +18,14 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::collide {
 
+/// How the pairs of one voxel are found. `automatic` chooses by the number of objects and models.
 enum class SerialMethod { automatic, brute_force, sweep, bisection };
+
+}  // namespace tess::collide
+
+namespace tess::collide::serial {
 
 class PairSearch {
  public:
@@ -186,4 +191,4 @@ class PairSearch {
   std::vector<Item> gathered_;
 };
 
-}  // namespace tess
+}  // namespace tess::collide::serial

@@ -18,7 +18,7 @@
 
 #include <algorithm>
 
-namespace tess {
+namespace tess::collide::serial {
 
 /// The voxel that reports the pair whose lower corners lie in cells `a` and `b`.
 [[nodiscard]] inline Cell responsible(const Cell& a, const Cell& b) noexcept {
@@ -37,4 +37,4 @@ namespace tess {
   return (a_below & b_below) == 0;
 }
 
-}  // namespace tess
+}  // namespace tess::collide::serial

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tess {
+namespace tess::collide {
 
 VoxelGrid::VoxelGrid(const Point& origin, const Point& size)
     : origin_(origin), size_(size), per_voxel_{1 / size[0], 1 / size[1], 1 / size[2]} {
@@ -31,4 +31,4 @@ std::int32_t VoxelGrid::index(double x, std::size_t axis) const {
   return static_cast<std::int32_t>(cell);
 }
 
-}  // namespace tess
+}  // namespace tess::collide

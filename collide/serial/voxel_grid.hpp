@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace tess {
+namespace tess::collide {
 
 /// Where a voxel stands in the grid.
 struct Cell {
@@ -68,10 +68,12 @@ class VoxelGrid {
   /// The same without an error: false for a box that is not valid or has no cells.
   [[nodiscard]] bool find_cells(const Aabb& box, CellRange& range) const noexcept {
     static_assert(sizeof box == 6 * sizeof(double) && sizeof range == 6 * sizeof(std::int32_t));
-    return conversion::convert(constants_, box.lo.data(), &range.lo.x);
+    return serial::conversion::convert(constants_, box.lo.data(), &range.lo.x);
   }
   /// What the conversion reads.
-  [[nodiscard]] const conversion::Constants& constants() const noexcept { return constants_; }
+  [[nodiscard]] const serial::conversion::Constants& constants() const noexcept {
+    return constants_;
+  }
 
  private:
   [[nodiscard]] std::int32_t index(double x, std::size_t axis) const;
@@ -79,14 +81,14 @@ class VoxelGrid {
   Point origin_;
   Point size_;
   Point per_voxel_;
-  conversion::Constants constants_{};
+  serial::conversion::Constants constants_{};
 };
 
-}  // namespace tess
+}  // namespace tess::collide
 
 template <>
-struct std::hash<tess::Cell> {
-  std::size_t operator()(const tess::Cell& c) const noexcept {
+struct std::hash<tess::collide::Cell> {
+  std::size_t operator()(const tess::collide::Cell& c) const noexcept {
     const auto bits = [](std::int32_t v) { return std::uint64_t{static_cast<std::uint32_t>(v)}; };
     std::uint64_t h = (bits(c.x) | bits(c.y) << 32) * 0x9E3779B97F4A7C15u;
     h = (h ^ (h >> 32) ^ bits(c.z)) * 0xD6E8FEB86659FD93u;

@@ -59,7 +59,7 @@ bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& v
         twice_area(corners[faces[i][0]], corners[faces[i][1]], corners[faces[i][2]]);
     if (!(std::abs(volume[i]) <= reach * area)) return false;
   }
-  return overlap(search_box(corners), box_of(p), Touching::counts);
+  return overlap(search_box(corners), collide::box_of(p), collide::Touching::counts);
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corne
 }
 
 Aabb search_box(const std::array<Point, 4>& corners) {
-  Aabb box = box_around(corners);
+  Aabb box = collide::box_around(corners);
   const double pad = 2 * tolerance(corners);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.lo[axis] -= pad;

@@ -21,13 +21,13 @@ class Worker;
 enum class TransferId : std::uint64_t {};
 
 /// The two sides of a collision, as models.
-inline constexpr ModelId source_model{1};
-inline constexpr ModelId target_model{2};
+inline constexpr collide::ModelId source_model{1};
+inline constexpr collide::ModelId target_model{2};
 
 /// What begins a transfer at all Workers of both meshes.
 struct TransferSetup {
   TransferId id{};
-  Collider collider;
+  collide::Collider collider;
   ArrayProxy<Worker> source;
   ArrayProxy<Worker> target;
 };

@@ -5,21 +5,22 @@
 namespace tess::m2m {
 namespace {
 
-Item item_of(const Aabb& box, Index1 owner, std::size_t local, ModelId model) {
-  return Item{box, ObjectId{owner_of(owner), static_cast<LocalId>(local), model}};
+collide::Item item_of(const Aabb& box, Index1 owner, std::size_t local, collide::ModelId model) {
+  return collide::Item{box, collide::ObjectId{collide::owner_of(owner),
+                                              static_cast<collide::LocalId>(local), model}};
 }
 
-std::int32_t as_row(LocalId id) {
+std::int32_t as_row(collide::LocalId id) {
   return static_cast<std::int32_t>(id);
 }
 
-void call_target(const Callback<Hits>& callback, Hits&& hits) {
+void call_target(const Callback<collide::Hits>& callback, collide::Hits&& hits) {
   const auto [target, transfer] =
       from_bytes<std::tuple<CollectionId, TransferId>>(callback.where());
-  const Index1 owner = index_of(hits.owner);
+  const Index1 owner = collide::index_of(hits.owner);
   ArrayProxy<Worker>(target)[owner].send<&Worker::receive_hits>(transfer, std::move(hits));
 }
-const Callback<Hits>::Kind target_kind{naming::value<&call_target>(), &call_target};
+const Callback<collide::Hits>::Kind target_kind{naming::value<&call_target>(), &call_target};
 
 }  // namespace
 
@@ -30,8 +31,8 @@ Outcome JoinOutcomes::operator()(Outcome a, const Outcome& b) const {
   return a;
 }
 
-Callback<Hits> report_to_target(ArrayProxy<Worker> target, TransferId transfer) {
-  return Callback<Hits>(target_kind, to_bytes(std::tuple(target.id(), transfer)));
+Callback<collide::Hits> report_to_target(ArrayProxy<Worker> target, TransferId transfer) {
+  return Callback<collide::Hits>(target_kind, to_bytes(std::tuple(target.id(), transfer)));
 }
 
 void Worker::load(PartLoad load) {
@@ -60,7 +61,7 @@ void Worker::put(Incoming& to, std::int32_t point, const double* values) const {
 
 void Worker::submit_tets(const TransferSetup& setup) {
   outgoing_.emplace(setup.id, Outgoing{setup});
-  std::vector<Item> items;
+  std::vector<collide::Item> items;
   items.reserve(part_.tets.size());
   for (std::size_t t = 0; t < part_.tets.size(); ++t)
     items.push_back(
@@ -74,14 +75,14 @@ void Worker::submit_points(const TransferSetup& setup) {
   to.claims.resize(n_owned);
   to.values.resize(values_.size());
   to.is_new.resize(part_.points.size());
-  std::vector<Item> items;
+  std::vector<collide::Item> items;
   items.reserve(n_owned);
   for (std::size_t v = 0; v < n_owned; ++v)
-    items.push_back(item_of(box_of(part_.points[v]), index(), v, target_model));
+    items.push_back(item_of(collide::box_of(part_.points[v]), index(), v, target_model));
   setup.collider.submit(std::move(items));
 }
 
-void Worker::receive_hits(TransferId transfer, Hits hits) {
+void Worker::receive_hits(TransferId transfer, collide::Hits hits) {
   Incoming& to = incoming(transfer);
   to.n_candidates += hits.pairs.size();
   to.hits.push_back(std::move(hits));
@@ -89,9 +90,10 @@ void Worker::receive_hits(TransferId transfer, Hits hits) {
 
 void Worker::ask_sources(TransferId transfer) {
   Incoming& to = incoming(transfer);
-  std::vector<Hits> all = std::exchange(to.hits, {});
+  std::vector<collide::Hits> all = std::exchange(to.hits, {});
   std::vector<Query> queries;
-  std::vector<OwnerId> sources;  // whom each query asks; few, so that they are sought one by one
+  std::vector<collide::OwnerId>
+      sources;  // whom each query asks; few, so that they are sought one by one
   std::vector<std::uint32_t> query_of(all.size());
   std::vector<std::size_t> n_pairs;
   for (std::size_t h = 0; h < all.size(); ++h) {
@@ -116,7 +118,7 @@ void Worker::ask_sources(TransferId transfer) {
     query.pairs.reserve(n_pairs[q]);
     query.rows.reserve(std::min(n_owned, n_pairs[q]));
     for (const std::uint32_t h : hits_of[q]) {
-      for (const LocalPair& pair : all[h].pairs) {
+      for (const collide::LocalPair& pair : all[h].pairs) {
         std::int32_t& at = place[static_cast<std::size_t>(pair.mine)];
         if (at < 0) {
           at = static_cast<std::int32_t>(query.rows.size());
@@ -131,7 +133,7 @@ void Worker::ask_sources(TransferId transfer) {
       query.points.push_back(part_.points[static_cast<std::size_t>(row)]);
       place[static_cast<std::size_t>(row)] = -1;
     }
-    to.setup.source[index_of(sources[q])].send<&Worker::answer>(std::move(query));
+    to.setup.source[collide::index_of(sources[q])].send<&Worker::answer>(std::move(query));
   }
 }
 
@@ -191,9 +193,9 @@ void Worker::settle(const Settlement& settlement) {
     for (const std::int32_t v : outside) put(to, v, given_row.data());
     return;
   }
-  Aabb box = box_of(part_.points[static_cast<std::size_t>(outside.front())]);
+  Aabb box = collide::box_of(part_.points[static_cast<std::size_t>(outside.front())]);
   for (const std::int32_t v : outside)
-    box = merged(box, box_of(part_.points[static_cast<std::size_t>(v)]));
+    box = collide::merged(box, collide::box_of(part_.points[static_cast<std::size_t>(v)]));
   to.nearest_parts = NearestParts(settlement.source_boxes, box);
   to.nearest.resize(to.claims.size());
   ask_nearest(to, outside);

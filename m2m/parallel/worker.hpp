@@ -35,7 +35,7 @@ class Worker : public Chare<Worker, Index1> {
   // Broad phase: the begin.
   void submit_tets(const TransferSetup& setup);
   void submit_points(const TransferSetup& setup);
-  void receive_hits(TransferId transfer, Hits hits);
+  void receive_hits(TransferId transfer, collide::Hits hits);
 
   // Narrow phase.
   void ask_sources(TransferId transfer);
@@ -76,7 +76,7 @@ class Worker : public Chare<Worker, Index1> {
   /// A transfer that writes to this part.
   struct Incoming {
     TransferSetup setup;
-    std::vector<Hits> hits{};
+    std::vector<collide::Hits> hits{};
     std::uint64_t n_candidates = 0;
     std::vector<Candidate> claims{};      // the best so far of each owned point
     std::vector<NearestClaim> nearest{};  // of each owned point, where one is outside
@@ -105,7 +105,8 @@ class Worker : public Chare<Worker, Index1> {
                                           // a migration
 };
 
-/// Hits of a collision go to the Workers of a target, under a transfer's id.
-[[nodiscard]] Callback<Hits> report_to_target(ArrayProxy<Worker> target, TransferId transfer);
+/// collide::Hits of a collision go to the Workers of a target, under a transfer's id.
+[[nodiscard]] Callback<collide::Hits> report_to_target(ArrayProxy<Worker> target,
+                                                       TransferId transfer);
 
 }  // namespace tess::m2m

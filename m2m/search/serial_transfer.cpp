@@ -42,7 +42,8 @@ std::vector<Winner> search(const TetMesh& source, const TetMesh& target,
   for (std::size_t v = 0; v < target.n_points(); ++v) {
     const Point& p = target.points[v];
     for (const std::int32_t t : grid.items(grid.cell_of(p))) {
-      if (overlap(boxes[static_cast<std::size_t>(t)], box_of(p), Touching::counts))
+      if (overlap(boxes[static_cast<std::size_t>(t)], collide::box_of(p),
+                  collide::Touching::counts))
         pairs.push_back({t, static_cast<std::int32_t>(v)});
     }
     if (pairs.size() > 2048) flush();

@@ -1,7 +1,7 @@
 // The serial collision against all pairs by overlap() alone.
-#include "collide/serial/collide_serial.hpp"
+#include "collide/collide_serial.hpp"
 
-#include "collide/serial/voxel_size.hpp"
+#include "collide/voxel_size.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -11,6 +11,7 @@
 #include <random>
 
 using namespace tess;
+using namespace tess::collide;
 
 namespace {
 
@@ -115,15 +116,15 @@ TEST_CASE("the lattice that other libraries lose pairs of has 93 556", "[collide
 
 TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
   const auto items = random_scene(8, 64, 0, 1, true);
-  Lanes lanes;
+  serial::Lanes lanes;
   lanes.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i)
     lanes.set(i, items[i],
-              axes_below({static_cast<int>(i % 2), static_cast<int>(i % 3), 0}, {0, 0, 0}),
+              serial::axes_below({static_cast<int>(i % 2), static_cast<int>(i % 3), 0}, {0, 0, 0}),
               static_cast<std::uint32_t>(i));
   for (std::size_t i = 0; i < items.size(); ++i) {
-    const Probe<Touching::counts, WithinModel::skip> closed(lanes, i);
-    const Probe<Touching::does_not_count, WithinModel::test> open(lanes, i);
+    const serial::Probe<Touching::counts, WithinModel::skip> closed(lanes, i);
+    const serial::Probe<Touching::does_not_count, WithinModel::test> open(lanes, i);
     for (std::size_t j = 0; j < items.size(); ++j) {
       REQUIRE(closed.overlaps(lanes, j) == closed.overlaps_plain(lanes, j));
       REQUIRE(open.overlaps(lanes, j) == open.overlaps_plain(lanes, j));
@@ -162,12 +163,12 @@ TEST_CASE("conversions of all widths agree bit for bit, also on what they refuse
         if (box[k] > box[k + 3]) std::swap(box[k], box[k + 3]);
     if (i % 4 == 0) box[1] = box[4] = -1e9 + 1e-7 * uniform(random);
     std::array<std::int32_t, 6> plain{}, wide{};
-    const bool good = conversion::convert_plain(grid.constants(), box.data(), plain.data());
+    const bool good = serial::conversion::convert_plain(grid.constants(), box.data(), plain.data());
     n_good += good ? 1u : 0u;
-    REQUIRE(conversion::convert(grid.constants(), box.data(), wide.data()) == good);
+    REQUIRE(serial::conversion::convert(grid.constants(), box.data(), wide.data()) == good);
     REQUIRE(wide == plain);
 #ifdef __AVX2__
-    REQUIRE(conversion::convert_avx2(grid.constants(), box.data(), wide.data()) == good);
+    REQUIRE(serial::conversion::convert_avx2(grid.constants(), box.data(), wide.data()) == good);
     REQUIRE(wide == plain);
 #endif
     if (good) {
@@ -198,7 +199,7 @@ TEST_CASE("bad boxes, coordinates and voxel sizes are refused by name", "[collid
   for (const Aabb& box :
        {Aabb{{0, nan, 0}, {1, 1, 1}}, Aabb{{0, 0, 0}, {inf, 1, 1}}, Aabb{{2, 0, 0}, {1, 1, 1}}}) {
     const std::vector<Item> items{item(box, 42, 0)};
-    REQUIRE_THROWS_WITH(group_by_voxel(items, VoxelGrid(1)),
+    REQUIRE_THROWS_WITH(serial::group_by_voxel(items, VoxelGrid(1)),
                         Catch::Contains("object 42 of owner 7"));
   }
   REQUIRE_THROWS_WITH(VoxelGrid(1).cell_of({1, -3e9, 0}), Catch::Contains("-3e+09"));
@@ -209,7 +210,8 @@ TEST_CASE("bad boxes, coordinates and voxel sizes are refused by name", "[collid
   REQUIRE_THROWS_AS(VoxelGrid(nan), Error);
   REQUIRE_THROWS_AS(VoxelGrid(1e-310), Error);
   const std::vector<Item> huge{item({{0, 0, 0}, {1e6, 1e6, 1e6}}, 3, 0)};
-  REQUIRE_THROWS_WITH(group_by_voxel(huge, VoxelGrid(1)), Catch::Contains("take larger voxels"));
+  REQUIRE_THROWS_WITH(serial::group_by_voxel(huge, VoxelGrid(1)),
+                      Catch::Contains("take larger voxels"));
 }
 
 TEST_CASE("the responsible voxel received both objects", "[collide]") {
@@ -219,8 +221,8 @@ TEST_CASE("the responsible voxel received both objects", "[collide]") {
     for (const Item& b : items) {
       if (!overlap(a.box, b.box, Touching::counts)) continue;
       const CellRange at = grid.cells_of(a.box), bt = grid.cells_of(b.box);
-      REQUIRE(at.contains(responsible(at.lo, bt.lo)));
-      REQUIRE(bt.contains(responsible(at.lo, bt.lo)));
+      REQUIRE(at.contains(serial::responsible(at.lo, bt.lo)));
+      REQUIRE(bt.contains(serial::responsible(at.lo, bt.lo)));
     }
 }
 

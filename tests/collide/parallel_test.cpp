@@ -11,6 +11,7 @@
 #include <random>
 
 using namespace tess;
+using namespace tess::collide;
 
 namespace {
 
@@ -156,7 +157,7 @@ Task collide_rounds(Problem& problem) {
   const Report report{report_to<&Client::receive>(clients), problem.only};
   for (scene.round = 0; scene.round < kRounds; ++scene.round) {
     co_await epoch([&] { clients.broadcast<&Client::submit>(collider, scene); });
-    co_await collide(collider, report);
+    co_await run_collision(collider, report);
     Future<AllTold> all;
     clients.broadcast<&Client::gather>(all.callback());
     problem.rounds.push_back(in_order(co_await all));
@@ -177,7 +178,7 @@ Task collide_bad(Problem& problem) {
   });
   co_await epoch([&] { clients.broadcast<&Client::submit_bad>(collider, problem.scene); });
   const Report report{report_to<&Client::receive>(clients), {}};
-  co_await collide(collider, report);
+  co_await run_collision(collider, report);
   Future<std::int64_t> refused;
   clients.broadcast<&Client::count_refused>(refused.callback());
   problem.n_refused = co_await refused;

@@ -69,10 +69,10 @@ TEST_CASE(
     std::vector<NearestVertex> trees;
     for (const MeshPart& part : parts) {
       const auto own = std::span(part.points).first(static_cast<std::size_t>(part.n_owned));
-      boxes.push_back(tess::box_around(own));
+      boxes.push_back(tess::collide::box_around(own));
       trees.emplace_back(own);
     }
-    const NearestParts order(boxes, tess::box_around(points));
+    const NearestParts order(boxes, tess::collide::box_around(points));
     std::size_t n_questions = 0;
     for (const Point& p : points) {
       double reach = INFINITY;

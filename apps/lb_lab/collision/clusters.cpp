@@ -55,9 +55,10 @@ Clusters::Pose Clusters::pose(std::uint64_t cluster, std::int32_t iteration) con
   return {drift(width_, 0), drift(height_, 2), std::cos(angle), std::sin(angle)};
 }
 
-std::vector<tess::Item> Clusters::items(std::uint64_t first, std::uint64_t last,
-                                        tess::OwnerId owner, std::int32_t iteration) const {
-  std::vector<tess::Item> result;
+std::vector<tess::collide::Item> Clusters::items(std::uint64_t first, std::uint64_t last,
+                                                 tess::collide::OwnerId owner,
+                                                 std::int32_t iteration) const {
+  std::vector<tess::collide::Item> result;
   result.reserve(last - first);
   for (std::uint64_t cluster = 0; cluster < n_clusters; ++cluster) {
     const Pose at = pose(cluster, iteration);
@@ -67,17 +68,19 @@ std::vector<tess::Item> Clusters::items(std::uint64_t first, std::uint64_t last,
       const double r = radius_ * std::sqrt(drawn(hash)),
                    phi = 2 * std::numbers::pi * drawn(hash + 1);
       const double dx = r * std::cos(phi), dy = r * std::sin(phi);
-      const tess::Point low{at.x + dx * at.cosine - dy * at.sine,
-                            at.y + dx * at.sine + dy * at.cosine, (1 - edge_) * drawn(hash + 2)};
+      const tess::collide::Point low{at.x + dx * at.cosine - dy * at.sine,
+                                     at.y + dx * at.sine + dy * at.cosine,
+                                     (1 - edge_) * drawn(hash + 2)};
       const auto number = static_cast<std::uint32_t>(i);
       result.push_back({{low, {low[0] + edge_, low[1] + edge_, low[2] + edge_}},
-                        {owner, tess::LocalId{number}, tess::ModelId{0}}});
+                        {owner, tess::collide::LocalId{number}, tess::collide::ModelId{0}}});
     }
   }
   return result;
 }
 
-std::uint64_t answer_of_pair(tess::LocalId a, tess::LocalId b, std::int32_t iteration) {
+std::uint64_t answer_of_pair(tess::collide::LocalId a, tess::collide::LocalId b,
+                             std::int32_t iteration) {
   const auto low = static_cast<std::uint64_t>(std::min(a, b));
   const auto high = static_cast<std::uint64_t>(std::max(a, b));
   return tess::mix((low << 32U | high) ^ tess::mix(static_cast<std::uint64_t>(iteration)));

@@ -25,8 +25,9 @@ class Clusters {
   [[nodiscard]] double seconds_a_pair() const { return seconds_a_pair_; }
 
   /// Objects first … last − 1 of an owner in an iteration; the local id is the number.
-  [[nodiscard]] std::vector<tess::Item> items(std::uint64_t first, std::uint64_t last,
-                                              tess::OwnerId owner, std::int32_t iteration) const;
+  [[nodiscard]] std::vector<tess::collide::Item> items(std::uint64_t first, std::uint64_t last,
+                                                       tess::collide::OwnerId owner,
+                                                       std::int32_t iteration) const;
 
  private:
   /// A cluster in an iteration.
@@ -43,10 +44,11 @@ class Clusters {
 };
 
 /// All colliding pairs are different boxes whose closures meet.
-inline constexpr tess::PairRules pair_rules{tess::Touching::counts, tess::WithinModel::test};
+inline constexpr tess::collide::PairRules pair_rules{tess::collide::Touching::counts,
+                                                     tess::collide::WithinModel::test};
 
 /// A pair's part of the answer, in an iteration. Which of the two is first says nothing.
-[[nodiscard]] std::uint64_t answer_of_pair(tess::LocalId a, tess::LocalId b,
+[[nodiscard]] std::uint64_t answer_of_pair(tess::collide::LocalId a, tess::collide::LocalId b,
                                            std::int32_t iteration);
 
 }  // namespace lb_lab

@@ -3,8 +3,8 @@
 #include "apps/lb_lab/collision/owner.hpp"
 #include "apps/lb_lab/run/balanced.hpp"
 #include "apps/lb_lab/run/stepped.hpp"
-#include "collide/serial/collide_serial.hpp"
-#include "collide/serial/voxel_size.hpp"
+#include "collide/collide_serial.hpp"
+#include "collide/voxel_size.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ class Collision final : public Stepped {
     const Domain& domain = experiment_.plan.problem.domain;
     const double columns = domain.columns, rows = domain.rows;
     // Two deep: all boxes are in one layer.
-    collider_ = tess::make_collider(
+    collider_ = tess::collide::make_collider(
         {.size = {domain.width / columns, domain.height / rows, 2}, .rules = pair_rules});
     const std::int32_t n = owners_a_pe * tess::current_pe().n_pes();
     owners_ = tess::create<Owner>(tess::range(n), stations_, n);
@@ -32,21 +32,21 @@ class Collision final : public Stepped {
   tess::Task begin() override { co_return; }
   tess::Task step(std::int32_t iteration) override {
     co_await tess::epoch([&] { owners_.broadcast<&Owner::submit>(collider_, iteration); });
-    const tess::Report report = report_to(owners_, stations_);
-    co_await tess::collide(collider_, report);
+    const tess::collide::Report report = report_to(owners_, stations_);
+    co_await tess::collide::run_collision(collider_, report);
   }
   tess::Task end() override {
     co_await tess::epoch([this] { owners_.broadcast<&Owner::end>(); });
     // Nothing is submitted: every voxel is empty, and ends.
-    const tess::Report nobody;
-    co_await tess::collide(collider_, nobody);
+    const tess::collide::Report nobody;
+    co_await tess::collide::run_collision(collider_, nobody);
   }
 
  private:
   const Experiment& experiment_;
   const tess::GroupProxy<Station> stations_;
   Outcome& outcome_;
-  tess::Collider collider_;
+  tess::collide::Collider collider_;
   tess::ArrayProxy<Owner> owners_;
 };
 
@@ -61,12 +61,12 @@ std::uint64_t serial_answer_of_collision(const Problem& p) {
   const Clusters clusters(p);
   std::uint64_t answer = 0;
   for (std::int32_t t = 0; t < p.n_iterations; ++t) {
-    const std::vector<tess::Item> items = clusters.items(0, clusters.n_objects(), {}, t);
-    const tess::VoxelGrid grid(tess::suggested_voxel_size(items));
-    const auto found = [&](const tess::Item& a, const tess::Item& b) {
+    const std::vector<tess::collide::Item> items = clusters.items(0, clusters.n_objects(), {}, t);
+    const tess::collide::VoxelGrid grid(tess::collide::suggested_voxel_size(items));
+    const auto found = [&](const tess::collide::Item& a, const tess::collide::Item& b) {
       answer += answer_of_pair(a.id.local, b.id.local, t);
     };
-    tess::collide_serial(items, grid, pair_rules, found);
+    tess::collide::collide_serial(items, grid, pair_rules, found);
   }
   return answer;
 }

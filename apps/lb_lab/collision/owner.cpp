@@ -9,31 +9,32 @@ namespace {
 using Where = std::tuple<tess::CollectionId, tess::CollectionId>;  // owners, stations
 
 /// Runs in the voxel, which tells both owners: the lesser counts, the other is not sent.
-void tell(const tess::Callback<tess::Hits>& callback, tess::Hits&& hits) {
+void tell(const tess::Callback<tess::collide::Hits>& callback, tess::collide::Hits&& hits) {
   if (hits.owner > hits.other) return;
   const auto [owners, stations] = tess::from_bytes<Where>(callback.where());
   Station& here = tess::GroupProxy<Station>(stations).local();
   const double nominal =
       static_cast<double>(hits.pairs.size()) * Clusters(here.plan().problem).seconds_a_pair();
   here.worked(nominal, nominal);
-  const tess::Index1 owner = tess::index_of(hits.owner);
+  const tess::Index1 owner = tess::collide::index_of(hits.owner);
   tess::ArrayProxy<Owner>(owners)[owner].send<&Owner::told>(std::move(hits));
 }
 
-const tess::Callback<tess::Hits>::Kind lesser_owner{"lb_lab: pairs to the lesser owner", &tell};
+const tess::Callback<tess::collide::Hits>::Kind lesser_owner{"lb_lab: pairs to the lesser owner",
+                                                             &tell};
 
 }  // namespace
 
-void Owner::submit(const tess::Collider& collider, std::int32_t iteration) {
+void Owner::submit(const tess::collide::Collider& collider, std::int32_t iteration) {
   iteration_ = iteration;
   const Clusters clusters(stations_.local().plan().problem);
   const auto n = static_cast<std::uint64_t>(n_owners_), me = static_cast<std::uint64_t>(index().x);
   collider.submit(clusters.items(me * clusters.n_objects() / n, (me + 1) * clusters.n_objects() / n,
-                                 tess::owner_of(index()), iteration));
+                                 tess::collide::owner_of(index()), iteration));
 }
 
-void Owner::told(const tess::Hits& hits) {
-  for (const tess::LocalPair& pair : hits.pairs)
+void Owner::told(const tess::collide::Hits& hits) {
+  for (const tess::collide::LocalPair& pair : hits.pairs)
     answer_ += answer_of_pair(pair.mine, pair.theirs, iteration_);
 }
 
@@ -42,8 +43,11 @@ void Owner::end() {
   destroy();
 }
 
-tess::Report report_to(tess::ArrayProxy<Owner> owners, tess::GroupProxy<Station> stations) {
-  return {tess::Callback<tess::Hits>(lesser_owner, std::in_place, owners.id(), stations.id()), {}};
+tess::collide::Report report_to(tess::ArrayProxy<Owner> owners,
+                                tess::GroupProxy<Station> stations) {
+  return {
+      tess::Callback<tess::collide::Hits>(lesser_owner, std::in_place, owners.id(), stations.id()),
+      {}};
 }
 
 }  // namespace lb_lab

@@ -17,8 +17,8 @@ class Owner : public tess::Chare<Owner, tess::Index1> {
       : stations_(stations), n_owners_(n_owners) {}
 
   // Entry methods.
-  void submit(const tess::Collider& collider, std::int32_t iteration);
-  void told(const tess::Hits& hits);
+  void submit(const tess::collide::Collider& collider, std::int32_t iteration);
+  void told(const tess::collide::Hits& hits);
   void end();
 
   template <class Ar>
@@ -34,7 +34,7 @@ class Owner : public tess::Chare<Owner, tess::Index1> {
 
 /// A report of hits to owners: to one of the two owners of a pair, once. The PE where the voxel is
 /// has its station charged.
-[[nodiscard]] tess::Report report_to(tess::ArrayProxy<Owner> owners,
-                                     tess::GroupProxy<Station> stations);
+[[nodiscard]] tess::collide::Report report_to(tess::ArrayProxy<Owner> owners,
+                                              tess::GroupProxy<Station> stations);
 
 }  // namespace lb_lab

@@ -36,8 +36,8 @@ Problem problem(const char* workload, std::int32_t per_pe = 8) {
 std::set<std::pair<int, int>> touched(const Problem& p, std::int32_t iteration) {
   std::set<std::pair<int, int>> cells;
   const Clusters clusters(p);
-  for (const tess::Item& item : clusters.items(0, clusters.n_objects(), {}, iteration)) {
-    REQUIRE(tess::is_valid(item.box));
+  for (const tess::collide::Item& item : clusters.items(0, clusters.n_objects(), {}, iteration)) {
+    REQUIRE(tess::collide::is_valid(item.box));
     REQUIRE((item.box.lo[0] >= 0 && item.box.hi[0] <= p.domain.width));
     REQUIRE((item.box.lo[1] >= 0 && item.box.hi[1] <= p.domain.height));
     REQUIRE((item.box.lo[2] >= 0 && item.box.hi[2] <= 1));
@@ -66,10 +66,10 @@ TEST_CASE("the answer of a collision has every pair that brute force finds, once
   const Clusters clusters(p);
   std::uint64_t answer = 0, n_pairs = 0;
   for (std::int32_t t = 0; t < p.n_iterations; ++t) {
-    const std::vector<tess::Item> items = clusters.items(0, clusters.n_objects(), {}, t);
+    const std::vector<tess::collide::Item> items = clusters.items(0, clusters.n_objects(), {}, t);
     for (std::size_t i = 0; i < items.size(); ++i)
       for (std::size_t j = i + 1; j < items.size(); ++j)
-        if (tess::overlap(items[i].box, items[j].box, tess::Touching::counts)) {
+        if (tess::collide::overlap(items[i].box, items[j].box, tess::collide::Touching::counts)) {
           answer += answer_of_pair(items[j].id.local, items[i].id.local, t);
           ++n_pairs;
         }
@@ -83,11 +83,11 @@ TEST_CASE("the answer of a collision has every pair that brute force finds, once
 TEST_CASE("objects are where they are, whoever owns them", "[lb_lab]") {
   const Clusters clusters(problem("collision"));
   const std::uint64_t n = clusters.n_objects();
-  const std::vector<tess::Item> all = clusters.items(0, n, {}, 3);
+  const std::vector<tess::collide::Item> all = clusters.items(0, n, {}, 3);
   REQUIRE(all.size() == n);
-  std::vector<tess::Item> parts;
+  std::vector<tess::collide::Item> parts;
   for (std::uint64_t k = 0; k < 7; ++k) {
-    const std::vector<tess::Item> part = clusters.items(k * n / 7, (k + 1) * n / 7, {}, 3);
+    const std::vector<tess::collide::Item> part = clusters.items(k * n / 7, (k + 1) * n / 7, {}, 3);
     parts.insert(parts.end(), part.begin(), part.end());
   }
   REQUIRE(parts.size() == n);

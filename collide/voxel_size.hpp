@@ -5,11 +5,11 @@
 
 #include "collide/hit.hpp"
 
-namespace tess {
+namespace tess::collide {
 
 /// An edge for cubic voxels: twice the median over the items of their longest extent, so that half
 /// the objects touch at most two voxels an axis. Points alone: from their number and bounds. Looks
 /// at no more than 4 096 items, evenly taken. Always positive and finite, also for no items.
 [[nodiscard]] double suggested_voxel_size(std::span<const Item> items);
 
-}  // namespace tess
+}  // namespace tess::collide

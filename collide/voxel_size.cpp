@@ -1,8 +1,8 @@
-#include "collide/serial/voxel_size.hpp"
+#include "collide/voxel_size.hpp"
 
 #include <vector>
 
-namespace tess {
+namespace tess::collide {
 
 double suggested_voxel_size(std::span<const Item> items) {
   constexpr std::size_t kSample = 4096;
@@ -36,4 +36,4 @@ double suggested_voxel_size(std::span<const Item> items) {
   return size;
 }
 
-}  // namespace tess
+}  // namespace tess::collide
