@@ -47,7 +47,7 @@ Field sample(const TetMesh& mesh, const std::string& name, const Formula& formul
       const Point& p = mesh.points[v];
       fail(ErrorCode::bad_value, "field ", name, " is ", field.values[v], " at vertex ", v, " of ",
            mesh.name, " (", p[0], ", ", p[1], ", ", p[2],
-           "); choose a formula that is finite there");
+           "); choose a formula that is finite on both meshes");
     }
   }
   return field;
@@ -57,7 +57,8 @@ ErrorNorms error_norms(const TetMesh& mesh, std::span<const double> values,
                        std::span<const double> truth, const std::vector<bool>& counts) {
   TESS_CHECK(values.size() == mesh.n_points() && truth.size() == mesh.n_points() &&
                  (counts.empty() || counts.size() == mesh.n_points()),
-             "expected ", mesh.n_points(), " values, got ", values.size(), " and ", truth.size());
+             "expected ", mesh.n_points(), " values, one per vertex, got ", values.size(), " and ",
+             truth.size());
   std::vector<double> mass(mesh.n_points(), 0.0);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
     const double quarter = std::abs(signed_volume(mesh, t)) / 4;
@@ -71,7 +72,7 @@ ErrorNorms error_norms(const TetMesh& mesh, std::span<const double> values,
     weighted += mass[v] * error * error;
     reference += mass[v] * truth[v] * truth[v];
     plain += error * error;
-    // A NaN is the worst of errors, not the least.
+    // A NaN counts as the largest error.
     if (norms.n_vertices++ == 0 || error > norms.linf ||
         (std::isnan(error) && !std::isnan(norms.linf))) {
       norms.linf = error;

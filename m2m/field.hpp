@@ -1,6 +1,6 @@
-// Values at the vertices of a mesh: several components a vertex, row-major, in the mesh's vertex
-// order. What a transfer moves. A manufactured field is a formula in x, y, z, so that a result can
-// be compared with the truth anywhere.
+// Values at the vertices of a mesh. A transfer moves fields from one mesh to another. A manufactured
+// field is a formula in x, y and z, so that the result of a transfer can be compared with the exact
+// value at any point.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -16,40 +16,44 @@ namespace tess::m2m {
 struct Field {
   std::string name;
   std::size_t n_components = 1;
-  std::vector<double> values;  ///< n_points × n_components, row-major
+  std::vector<double> values;  ///< n_points × n_components, row-major, in the order of the vertices
 };
 
-/// A scalar function of the place.
+/// A scalar function of a point.
 using Formula = std::function<double(const Point&)>;
 
-/// "gaussian" (exp(-|r|²), where r runs from -2 to 2 over `domain`'s longest side, from its
-/// centre), "linear" (1 + 2x - 3y + 5z), "sin" (sin kx sin ky sin kz, one period over the longest
-/// side from its low corner), or an expression such as "x^2 + sin(pi*y)" (fields/expression.hpp).
-/// Throws Error (bad_argument) naming the place of the mistake.
+/// `name` is one of these, or an expression such as "x^2 + sin(pi*y)" (fields/expression.hpp):
+///
+///     gaussian   exp(-|r|²); r runs from -2 to 2 over the longest side of `domain`
+///     linear     1 + 2x - 3y + 5z
+///     sin        sin kx sin ky sin kz; one period over the longest side of `domain`
+///
+/// Throws Error (bad_argument) with the position of the mistake in the expression.
 [[nodiscard]] Formula make_formula(const std::string& name, const Aabb& domain);
 
-/// The formula at every vertex. Throws Error (bad_value) where it is not finite, naming the vertex.
+/// Evaluates the formula at every vertex. Throws Error (bad_value) with the vertex if a value is not
+/// finite.
 [[nodiscard]] Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula);
 
-/// How far a scalar transferred field is from the truth, over some vertices: e = value - truth.
+/// Norms of the error e = value - truth of a scalar field, over some or all vertices. The mass m of
+/// a vertex is a quarter of the volume of its tetrahedra.
 struct ErrorNorms {
-  double l2 = 0;  ///< sqrt(sum m e²), m the lumped mass of a vertex: a quarter of the volume of its
-                  ///< tetrahedra
-  double l2_relative = 0;      ///< l2 / sqrt(sum m truth²); l2 where the truth is zero
+  double l2 = 0;               ///< sqrt(sum m e²)
+  double l2_relative = 0;      ///< l2 / sqrt(sum m truth²); l2 if the truth is zero everywhere
   double rms = 0;              ///< sqrt(mean of e²)
-  double linf = 0;             ///< greatest |e|
-  GlobalId worst = 0;          ///< the vertex where |e| is greatest, the first of several
-  std::size_t n_vertices = 0;  ///< that count; of none, the norms are NaN
+  double linf = 0;             ///< maximum of |e|
+  GlobalId worst = 0;          ///< the vertex with the largest |e|; the first if there are several
+  std::size_t n_vertices = 0;  ///< vertices included; without any, the norms are NaN
 };
 
-/// Norms of values - truth on the mesh that holds the values. `values`, `truth`: one number a
-/// vertex. `counts`: which vertices count; empty: all of them.
+/// `values`, `truth`: one number per vertex. `counts`: true for each vertex that is included; an
+/// empty vector includes all vertices.
 [[nodiscard]] ErrorNorms error_norms(const TetMesh& mesh, std::span<const double> values,
                                      std::span<const double> truth,
                                      const std::vector<bool>& counts = {});
 
-/// FNV-1a (64 bits) over the bits of the values, byte by byte from the low end, in order: one
-/// number for a result.
+/// FNV-1a (64 bits) over the bits of the values in order, each value from its lowest byte on. The
+/// result of one call can be the `start` of the next.
 [[nodiscard]] std::uint64_t result_hash(std::span<const double> values,
                                         std::uint64_t start = 0xcbf29ce484222325U) noexcept;
 

@@ -16,7 +16,8 @@ OutsidePolicy parse_policy(const std::string& text) {
     const auto [last, error] = std::from_chars(text.data() + 6, end, policy.value);
     if (error == std::errc() && last == end && std::isfinite(policy.value)) return policy;
   }
-  fail(ErrorCode::bad_argument, "policy '", text, "': expected keep, nearest or value:NUMBER");
+  fail(ErrorCode::bad_argument, "policy '", text,
+       "' is unknown; choose keep, nearest or value:NUMBER");
 }
 
 }  // namespace tess::m2m

@@ -1,5 +1,5 @@
-// What a target vertex outside the source mesh gets. Its status is `outside` whatever the policy,
-// and it is counted.
+// The value of a target vertex that lies outside the source mesh. Its status is `outside` under
+// every policy, and the report counts it.
 #pragma once
 
 #include <string>
@@ -7,18 +7,18 @@
 
 namespace tess::m2m {
 
-/// The value it had before.
+/// The vertex keeps the value that it had before the transfer.
 struct Keep {};
-/// A given value, in every component.
+/// Every component gets the given value.
 struct UseValue {
   double value = 0;
 };
-/// The value of the nearest source vertex; of several as near, the one of lowest global id.
+/// The vertex gets the value of the nearest source vertex. Ties go to the lowest global id.
 struct Nearest {};
 
 using OutsidePolicy = std::variant<Keep, UseValue, Nearest>;
 
-/// "keep", "value:0.5" or "nearest"; throws Error (bad_argument) otherwise.
+/// "keep", "value:0.5" or "nearest". Throws Error (bad_argument) for any other text.
 [[nodiscard]] OutsidePolicy parse_policy(const std::string& text);
 
 }  // namespace tess::m2m

@@ -6,10 +6,12 @@
 #include <cmath>
 
 namespace tess::m2m {
+
 Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
               TransferSummary* summary) {
   TESS_CHECK(source.n_components == target.n_components, "the source has ", source.n_components,
-             " components a vertex, the target ", target.n_components);
+             " components per vertex, the target ", target.n_components,
+             "; scatter both meshes with the same number of components");
   Pe& pe = current_pe();
   const auto enter = [&options](const char* phase) {
     if (options.on_phase) options.on_phase(phase);
@@ -19,13 +21,13 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   TransferSetup setup{{}, {}, source.workers, target.workers};
   co_await epoch([&] {
     setup.collider = collide::make_collider({options.voxel_origin, options.voxel_size, {}});
-    setup.id = TransferId{setup.collider.voxels.id().value};  // one collider, one transfer
+    setup.id = TransferId{setup.collider.voxels.id().value};  // a transfer has its own collider
   });
   co_await epoch([&] {
     source.workers.broadcast<&Worker::submit_tets>(setup);
     target.workers.broadcast<&Worker::submit_points>(setup);
   });
-  // Named: g++ 12 destroys an aggregate that is written inside a co_await expression twice.
+  // Named, because g++ 12 destroys an aggregate twice if it is written in a co_await expression.
   const collide::Report to_target{report_to_target(target.workers, setup.id), target_model};
   co_await collide::run_collision(setup.collider, to_target);
   setup.collider.destroy();
@@ -34,13 +36,13 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(setup.id); });
   const Time narrow = pe.now();
   enter("report");
-  Settlement settlement{setup.id, options.policy, {}};
-  if (std::holds_alternative<Nearest>(options.policy)) settlement.source_boxes = source.boxes;
-  co_await epoch([&] { target.workers.broadcast<&Worker::settle>(settlement); });
-  co_await epoch([&] { target.workers.broadcast<&Worker::share>(setup.id); });
+  OutsideRequest request{setup.id, options.policy, {}};
+  if (std::holds_alternative<Nearest>(options.policy)) request.source_boxes = source.boxes;
+  co_await epoch([&] { target.workers.broadcast<&Worker::resolve_outside>(request); });
+  co_await epoch([&] { target.workers.broadcast<&Worker::send_ghosts>(setup.id); });
   Future<Tally> tally;
-  target.workers.broadcast<&Worker::take_over>(setup.id, tally.callback());
-  source.workers.broadcast<&Worker::forget>(setup.id);
+  target.workers.broadcast<&Worker::commit>(setup.id, tally.callback());
+  source.workers.broadcast<&Worker::release>(setup.id);
   const Tally all = co_await tally;
   const Time report = pe.now();
   if (summary != nullptr)
@@ -58,12 +60,11 @@ Point suggest_voxel_size(const TetMesh& source, const TetMesh& target) {
                          std::abs(other.lo[axis]), std::abs(other.hi[axis])});
   }
   for (std::size_t axis = 0; axis < 3; ++axis)
-    volume *= std::max((box.hi[axis] - box.lo[axis]) / longest,
-                       1e-3);  // a flat mesh has some thickness
+    volume *= std::max((box.hi[axis] - box.lo[axis]) / longest, 1e-3);  // the mesh may be flat
   const double by_density =
       longest * std::cbrt(volume * tets_per_voxel / static_cast<double>(source.n_tets()));
-  const double least =
-      std::max(farthest * 0x1p-29, std::abs(longest) * 0x1p-20);  // indices are 32 bits
+  // Cell indices have 32 bits.
+  const double least = std::max(farthest * 0x1p-29, std::abs(longest) * 0x1p-20);
   const double size = std::max({by_density, least, std::numeric_limits<double>::min()});
   return {size, size, size};
 }

@@ -1,5 +1,7 @@
-// Moving fields from one distributed mesh to another that overlaps it (the five steps of the ExaM2M
-// slides).
+// Moves fields from one distributed mesh to another that overlaps it (the five steps of the ExaM2M
+// slides). Call these functions in a coroutine, on one PE:
+//
+// Sample: tests/samples/transfer.cpp
 //
 //     DistributedMesh source, target;
 //     const auto place = [&] {
@@ -15,22 +17,25 @@
 //     target.workers.broadcast<&Worker::gather>(outcome.callback());
 //     const Outcome all = co_await outcome;
 //
-// The answer depends on the two meshes and fields alone: not on PEs, parts, voxel size, origin or
-// any order. A mesh may be source and target of any number of transfers, also of several at once:
+// The result depends only on the two meshes and the fields: not on the number of PEs or parts, the
+// voxels, or the order of messages. A mesh can be source and target of any number of transfers,
+// also at the same time:
 //
-//     Task first = transfer(a, b, …), second = transfer(a, c, …);
+// Sample: tests/samples/transfer.cpp
+//
+//     Task first = transfer(a, b, options, nullptr);
+//     Task second = transfer(a, c, options, nullptr);
 //     co_await first;
 //     co_await second;
 //
-// Of transfers that run at once, one that reads what another one writes reads it wholly or not at
-// all, and where two write one vertex the value of one of them stays; which one is not promised.
-// Where that matters, await the first before the second.
+// If one of two concurrent transfers reads the mesh that the other writes, it sees the result of the
+// other completely or not at all. If both write to the same vertex, one of the two values remains,
+// and it is not defined which. Await the first transfer before the second if that matters.
 #pragma once
 
 #include "m2m/parallel/scatter.hpp"
 #include "m2m/parallel/worker.hpp"
 
-#include <array>
 #include <functional>
 
 namespace tess::m2m {
@@ -39,26 +44,26 @@ struct TransferOptions {
   Point voxel_origin{0, 0, 0};
   Point voxel_size{1, 1, 1};
   OutsidePolicy policy = Keep{};
-  /// Told the name of each phase ("broad", "narrow", "report") when it starts; may be empty.
+  /// Called with the name of each phase ("broad", "narrow", "report") when it starts; may be empty.
   std::function<void(const char*)> on_phase{};
 };
 
-/// What one transfer did. Wall-clock seconds are measured on the PE that runs it.
+/// Times and counts of one transfer. Times are wall-clock seconds on the calling PE.
 struct TransferSummary {
-  double broad = 0;   ///< seconds: boxes to voxels, candidates to the target's Workers
-  double narrow = 0;  ///< seconds: questions and answers
-  double report = 0;  ///< seconds: vertices outside, new values to all parts that hold them
-  Tally tally;        ///< of the target's vertices
+  double broad = 0;   ///< boxes to voxels, candidate pairs to the target
+  double narrow = 0;  ///< point location and interpolation
+  double report = 0;  ///< vertices outside, ghosts, end
+  Tally tally;        ///< of the target vertices
 };
 
-/// Moves all fields of `source` to `target`; awaited, it is done when every target vertex has its
-/// value. `summary` may be null. Both have equally many components.
+/// Moves all fields of `source` to `target`, which must have equally many components. When the task
+/// is done, every target vertex has its value. `summary` may be null.
 Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
               TransferSummary* summary);
 
-/// A voxel size for a transfer between these meshes: about 100 source tetrahedra a voxel (measured:
-/// 30 costs a third more, 200 no less), and not more than the bound on the number of voxels that a
-/// coordinate can name. Depends on the meshes alone.
+/// A voxel size for a transfer between these meshes: about 100 source tetrahedra per voxel, and not
+/// so small that cell indices exceed 32 bits. (Measured: with 30 tetrahedra a transfer takes a third
+/// longer, with 200 as long.) It depends only on the meshes.
 [[nodiscard]] Point suggest_voxel_size(const TetMesh& source, const TetMesh& target);
 
 }  // namespace tess::m2m

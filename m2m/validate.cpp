@@ -1,4 +1,4 @@
-// What a mesh must be before anything is done with it.
+// Checks a mesh before it is used.
 #include "m2m/mesh.hpp"
 #include "runtime/core/error.hpp"
 
@@ -14,7 +14,7 @@ void validate_groups(const TetMesh& mesh) {
   for (const Block& block : mesh.blocks) n_in_blocks += block.n_tets;
   if (!mesh.blocks.empty() && n_in_blocks != mesh.n_tets())
     fail(ErrorCode::bad_mesh, mesh.name, ": its blocks have ", n_in_blocks, " of ", mesh.n_tets(),
-         " tetrahedra; give all, or no blocks");
+         " tetrahedra; list blocks for all tetrahedra, or none");
   for (const SideSet& set : mesh.side_sets) {
     for (const Side& side : set.entries) {
       if (side.tet < 0 || side.tet >= static_cast<GlobalId>(mesh.n_tets()) || side.side < 1 ||
@@ -40,10 +40,10 @@ std::array<Point, 4> corners_of(const TetMesh& mesh, std::size_t tet) {
   return corners;
 }
 
-/// Tetrahedra too short for their coordinates, or for any computation.
+/// Counts tetrahedra that are too short for their coordinates, or for any computation.
 class Collapse {
  public:
-  void look_at(const std::array<Point, 4>& corners) {
+  void add(const std::array<Point, 4>& corners) {
     double longest = 0, largest = 0;  // per axis
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double low = corners[0][axis], high = low;
@@ -59,15 +59,15 @@ class Collapse {
     if (n_++ == 0) first_ = {longest, largest, rounded};
   }
 
-  /// Throws where they are more than a tenth.
+  /// Throws if more than a tenth of the tetrahedra are too short.
   void refuse(const TetMesh& mesh) const {
     if (n_ <= mesh.n_tets() / 10) return;
     const std::string where = text(mesh.name, ": ", n_, " of ", mesh.n_tets(),
                                    " tetrahedra have collapsed: the first is ", first_.longest);
     if (first_.rounded)
       fail(ErrorCode::bad_mesh, where, " long at coordinates of ", first_.largest,
-           ", where numbers lie ", first_.largest * ulp,
-           " apart; shift the mesh towards the origin before it is rounded");
+           ", where neighbouring numbers differ by ", first_.largest * ulp,
+           "; shift the mesh towards the origin before its coordinates are rounded");
     fail(ErrorCode::bad_mesh, where, " long, and lengths below ", least_edge,
          " have no volume in floating point; rescale the mesh");
   }
@@ -98,13 +98,13 @@ MeshCensus validate(const TetMesh& mesh) {
     fail(ErrorCode::bad_mesh, mesh.name, ": has ", n,
          " vertices; at most 2147483647 fit in one mesh, split it");
   }
-  constexpr double largest = 1e100;  // beyond, volumes (cubes of lengths) leave the range of double
+  constexpr double largest = 1e100;  // volumes (cubes of lengths) stay in the range of double
   for (std::size_t v = 0; v < n; ++v) {
     const Point& p = mesh.points[v];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(p[axis]) || std::abs(p[axis]) > largest) {
         fail(ErrorCode::bad_mesh, mesh.name, ": vertex ", v, " has ", "xyz"[axis], " = ", p[axis],
-             "; coordinates must be finite and within 1e100: repair or rescale the mesh");
+             "; coordinates must be finite and at most 1e100: repair or rescale the mesh");
       }
     }
   }
@@ -119,15 +119,16 @@ MeshCensus validate(const TetMesh& mesh) {
       }
       used[static_cast<std::size_t>(v)] = 1;
     }
-    collapse.look_at(corners_of(mesh, t));
+    collapse.add(corners_of(mesh, t));
     const double volume = signed_volume(mesh, t);
     census.n_flat += volume == 0;
     census.n_inverted += volume < 0;
   }
   collapse.refuse(mesh);
   if (census.n_flat == mesh.n_tets())
-    fail(ErrorCode::bad_mesh, mesh.name,
-         ": no tetrahedron has a volume; give a mesh in three dimensions, with more digits");
+    fail(
+        ErrorCode::bad_mesh, mesh.name,
+        ": no tetrahedron has a volume; give a mesh in three dimensions, written with more digits");
   census.n_unused = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
   census.bounds = bounds(mesh);
   return census;

@@ -5,7 +5,7 @@
 #include "apps/m2m_transfer/picture.hpp"
 #include "apps/m2m_transfer/study.hpp"
 #include "apps/plot/write_file.hpp"
-#include "m2m/io/exodus_writer.hpp"
+#include "m2m/write_exodus.hpp"
 
 #include <cstdio>
 

@@ -40,7 +40,8 @@ std::string explain(const Problem& problem, Output output) {
   if (!std::holds_alternative<Nearest>(problem.policy))
     out += "  the search for nearest vertices (--policy nearest)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
-  if (!overlap(problem.source_census.bounds, problem.target_census.bounds, tess::collide::Touching::counts))
+  if (!overlap(problem.source_census.bounds, problem.target_census.bounds,
+               tess::collide::Touching::counts))
     out += "the boxes of the meshes do not meet: every vertex will be outside\n";
   return out;
 }

@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/problem.hpp"
 
-#include "m2m/io/read_mesh.hpp"
+#include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/core/error.hpp"
 

@@ -5,7 +5,7 @@
 #include "apps/m2m_transfer/report.hpp"
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
-#include "m2m/partition/partition.hpp"
+#include "m2m/partition_method.hpp"
 #include "m2m/policy.hpp"
 #include "runtime/machine/machine.hpp"
 

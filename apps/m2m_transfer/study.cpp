@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/study.hpp"
 
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

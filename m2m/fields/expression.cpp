@@ -39,19 +39,20 @@ class Parser {
   std::vector<Expression::Step> parse() {
     sum();
     blanks();
-    if (at_ != text_.size()) wrong("an operator expected");
+    if (at_ != text_.size()) wrong("expected an operator");
     return std::move(steps_);
   }
 
  private:
   [[noreturn]] void wrong(std::string_view what) const {
     fail(ErrorCode::bad_argument, "expression '", text_, "', position ", at_ + 1, ": ", what,
-         "; use numbers, x y z pi, + - * / ^, brackets, sin cos tan exp log sqrt abs min max pow");
+         "; allowed are numbers, x y z pi, + - * / ^, brackets, sin cos tan exp log sqrt abs min "
+         "max pow");
   }
 
   void emit(Op op, double number = 0) {
     depth_ += is_operand(op) ? 1 : is_unary(op) ? 0 : -1;
-    if (depth_ > static_cast<int>(Expression::deepest)) wrong("too deep");
+    if (depth_ > static_cast<int>(Expression::deepest)) wrong("nested too deeply");
     steps_.push_back({op, number});
   }
 
@@ -65,7 +66,7 @@ class Parser {
     return true;
   }
   void expect(char c) {
-    if (!take(c)) wrong(std::string("'") + c + "' expected");
+    if (!take(c)) wrong(std::string("expected '") + c + "'");
   }
 
   void sum() {
@@ -99,7 +100,7 @@ class Parser {
   }
 
   void with_sign() {
-    if (++nesting_ > Expression::deepest) wrong("too deep");
+    if (++nesting_ > Expression::deepest) wrong("nested too deeply");
     if (take('-')) {
       with_sign();
       emit(Op::negate);
@@ -141,7 +142,7 @@ class Parser {
       return emit(function.op);
     }
     at_ = begin;
-    wrong(name.empty() ? std::string("a value expected")
+    wrong(name.empty() ? std::string("expected a value")
                        : "unknown name '" + std::string(name) + "'");
   }
 
@@ -149,7 +150,7 @@ class Parser {
     double value = 0;
     const auto [end, error] =
         std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    if (error != std::errc()) wrong("a number expected");
+    if (error != std::errc()) wrong("expected a number");
     at_ = static_cast<std::size_t>(end - text_.data());
     emit(Op::number, value);
   }

@@ -1,11 +1,12 @@
-// A formula in x, y, z given as text: read once by recursive descent into a list of steps for a
-// stack, which evaluates without allocation. Pure and cheap to copy; an error names the position in
-// the text.
+// A formula in x, y and z, given as text. A recursive-descent parser reads it once into steps for a
+// stack machine, which evaluates without allocation. An Expression is cheap to copy. An error names
+// its position in the text.
 //
-//   sum     := product (('+' | '-') product)*        power := atom ('^' signed)?      right to
-//   left: 2^3^2 = 2^9 product := signed (('*' | '/') signed)*          atom  := number | x | y | z
-//   | pi | name '(' sum (',' sum)* ')' | '(' sum ')' signed  := ('+' | '-') signed | power -x^2 =
-//   -(x^2)
+//     sum     := product (('+' | '-') product)*
+//     product := signed (('*' | '/') signed)*
+//     signed  := ('+' | '-') signed | power            -x^2 is -(x^2)
+//     power   := atom ('^' signed)?                    right to left: 2^3^2 is 2^9
+//     atom    := number | 'x' | 'y' | 'z' | 'pi' | '(' sum ')' | name '(' sum (',' sum)? ')'
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -18,37 +19,24 @@ namespace tess::m2m {
 
 class Expression {
  public:
-  /// Functions: sin cos tan exp log sqrt abs (one argument), min max pow (two). Throws Error
+  /// Functions of one argument: sin cos tan exp log sqrt abs; of two: min max pow. Throws Error
   /// (bad_argument).
   explicit Expression(const std::string& text);
   [[nodiscard]] double operator()(const Point& p) const;
 
+  // clang-format off
   enum class Op : std::uint8_t {
-    number,
-    x,
-    y,
-    z,
-    negate,
-    add,
-    subtract,
-    multiply,
-    divide,
-    power,
-    sin,
-    cos,
-    tan,
-    exp,
-    log,
-    sqrt,
-    abs,
-    min,
-    max
+    number, x, y, z,
+    negate, add, subtract, multiply, divide, power,
+    sin, cos, tan, exp, log, sqrt, abs,
+    min, max
   };
+  // clang-format on
   struct Step {
     Op op;
     double number = 0;
   };
-  static constexpr std::size_t deepest = 64;  ///< operands on the stack, and nesting of brackets
+  static constexpr std::size_t deepest = 64;  ///< operands on the stack, and nested brackets
 
  private:
   std::vector<Step> steps_;

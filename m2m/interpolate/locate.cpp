@@ -8,15 +8,15 @@
 namespace tess::m2m {
 namespace {
 
-/// The faces opposite to the corners, turned so that all four volumes have the sign of the
-/// tetrahedron for a point inside.
+/// The faces opposite to the corners, oriented so that for a point inside all four volumes have the
+/// sign of the tetrahedron.
 constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-/// Bounds the sum of absolute products in a volume: six products, each at most the product of the
-/// reaches along x, y, z.
+/// Bounds the rounding error of a volume relative to the product of the reaches along x, y and z: a
+/// volume is a sum of six products, and none of them exceeds the product of the reaches.
 constexpr double volume_bound = 6 * orientation_bound;
-/// Where the sum of volumes exceeds this times the product of the reaches, rounding moves no weight
-/// by 1e-12.
+/// If the sum of the volumes exceeds this multiple of the product of the reaches, the rounding error
+/// of each weight is below 1e-12.
 constexpr double flat_limit = 4 * volume_bound * 1e12;
 
 double largest_coordinate(const Point& p) {
@@ -41,15 +41,15 @@ double twice_area(const Point& a, const Point& b, const Point& c) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-/// How far outside a face a point snaps.
+/// The distance from a face up to which a point outside snaps.
 double tolerance(const std::array<Point, 4>& corners) {
   double largest = 0;
   for (const Point& p : corners) largest = std::max(largest, largest_coordinate(p));
   return snap_edges * longest_edge(corners) + snap_ulps * largest;
 }
 
-/// A point outside: near enough to every face that it is outside of, and inside the padded box (at
-/// a sharp edge the planes of two faces are near long after the tetrahedron has ended).
+/// True if a point outside snaps: it must be near to the plane of every face that it is outside of,
+/// and lie in the padded box. (At a sharp edge both planes are near even far from the tetrahedron.)
 bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& volume,
            double total) {
   const double reach = tolerance(corners);
@@ -114,15 +114,15 @@ Aabb search_box(const std::array<Point, 4>& corners) {
 
 namespace {
 
-/// Pairs handled together: two registers of eight doubles.
+/// Number of pairs computed together: two registers of eight doubles.
 constexpr std::size_t width = 16;
 
 struct alignas(64) Lanes {
-  double corner[12][width];  ///< corner - point, x y z of the four corners
+  double corner[12][width];  ///< corner - point: x, y, z of the four corners
   double size[width];        ///< largest coordinate of the point
   double volume[4][width];   ///< of the point with the four faces
   double total[width];       ///< their sum
-  double verdict[width];     ///< -1 outside, 0 to be looked at exactly, 1 inside
+  double verdict[width];     ///< -1 outside, 0 undecided: locate() decides, 1 inside
 };
 
 void classify(Lanes& lanes) {
@@ -130,7 +130,7 @@ void classify(Lanes& lanes) {
     const auto c = [&](std::size_t corner, std::size_t axis) {
       return lanes.corner[3 * corner + axis][l];
     };
-    // Exactly the operations of orientation(), so that the weights have the same bits.
+    // The same operations as in orientation(), so the weights have the same bits.
     const auto volume = [&](std::size_t i, std::size_t j, std::size_t k) {
       const double bycz = c(j, 1) * c(k, 2), bzcy = c(j, 2) * c(k, 1), bzcx = c(j, 2) * c(k, 0);
       const double bxcz = c(j, 0) * c(k, 2), bxcy = c(j, 0) * c(k, 1), bycx = c(j, 1) * c(k, 0);
@@ -149,14 +149,14 @@ void classify(Lanes& lanes) {
     const double r = largest(largest(x, y), z);
     const double product = x * y * z;
     const double error = 1.01 * volume_bound * product;
-    // An edge is at most sqrt(12) r, twice an area at most its square; the corners' coordinates at
-    // most size + r.
+    // Upper bounds: an edge has at most the length sqrt(12) r, twice an area is at most its square,
+    // and a coordinate of a corner is at most size + r.
     const double snap =
         error + 12.01 * (r * r) * (snap_edges * 3.5 * r + snap_ulps * (lanes.size[l] + r));
     const double low = least(least(v0, v1), least(v2, v3));
     const double high = largest(largest(v0, v1), largest(v2, v3));
     const double volume_found = std::abs(total);
-    const double within = largest(low, -high);  // least volume, turned to positive orientation
+    const double within = largest(low, -high);  // smallest volume, for positive orientation
     const double sure = least(within - error, volume_found - flat_limit * product);
     const double far = least(-low, high) - snap;
     lanes.verdict[l] = far > 0 ? -1.0 : (sure > 0 ? 1.0 : 0.0);
@@ -178,7 +178,9 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
     const std::size_t n = std::min(width, pairs.size() - first);
 #pragma GCC unroll 1
     for (std::size_t l = 0; l < n; ++l) {
-      asm volatile("" ::: "memory");  // lane by lane: vectorised, g++ 12 shuffles for 5 ns a pair
+      asm volatile(
+          "" ::
+              : "memory");  // keeps g++ 12 from vectorising this loop: its shuffles take 5 ns per pair
       const PointPair& pair = pairs[first + l];
       const Point& p = queries[static_cast<std::size_t>(pair.point)];
       const Tet& tet = tets[static_cast<std::size_t>(pair.tet)];

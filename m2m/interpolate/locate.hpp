@@ -1,13 +1,15 @@
-// Point in tetrahedron and barycentric weights, from the signed volumes of the four tetrahedra that
-// the point forms with the faces. All differences are taken to the query point first, so that an
-// offset of 1e9 loses no digit that the coordinates hold. Pure functions of their arguments: the
-// same bits on every PE and in every batch.
+// Decides whether a point lies in a tetrahedron, and computes its barycentric weights, from the
+// signed volumes of the four tetrahedra that the point forms with the faces. All coordinates are
+// taken relative to the point first, so an offset of 1e9 loses no digit that the coordinates hold.
+// The functions are pure: they give the same bits on every PE and in every batch.
 //
-// Guaranteed, for edges from 1e-80 to 1e100 and any flatness: inside, boundary and outside are
-// decided exactly; weights are within 1e-12 of the exact ones; a point equal to a vertex has the
-// weights 1, 0, 0, 0; a tetrahedron without volume claims no other point. A point outside, but
-// within the tolerance, snaps: its weights extrapolate over that distance, so that a linear field
-// stays exact and one weight may be slightly negative.
+// Guarantees, for edges from 1e-80 to 1e100 and any flatness:
+//   - inside, boundary and outside are decided exactly;
+//   - weights are within 1e-12 of the exact ones;
+//   - a point equal to a vertex has the weight 1 there, and 0 at the others;
+//   - a tetrahedron without volume holds no point except its corners.
+// A point outside, but within the tolerance, snaps to the tetrahedron. Its weights extrapolate over
+// that distance: a linear field stays exact, and one weight may be slightly negative.
 #pragma once
 
 #include "m2m/interpolate/candidate.hpp"
@@ -21,51 +23,51 @@
 
 namespace tess::m2m {
 
-/// A point outside snaps up to this distance from each face: a part of the longest edge, plus some
-/// ulps of the largest coordinate of the tetrahedron.
+/// A point outside snaps up to this distance from each face: snap_edges times the longest edge, plus
+/// snap_ulps times the largest coordinate of the tetrahedron.
 inline constexpr double snap_edges = 1e-10;
 inline constexpr double snap_ulps = 4 * 0x1p-52;
 
 using Weights = std::array<double, 4>;
 
-/// A point within a tetrahedron, or so near that it snaps.
+/// The position of a point that lies in a tetrahedron or snaps to it.
 struct Location {
-  Weights weights;   ///< sum 1, of the tetrahedron's vertices in its order
-  double violation;  ///< max(0, -least weight)
+  Weights weights;   ///< per vertex of the tetrahedron, in its order; their sum is 1
+  double violation;  ///< max(0, -smallest weight)
   Status status;     ///< inside, boundary or snapped
   Place place = Place::elsewhere;
 };
 
-/// The claim of the tetrahedron of that global number, where the point is located in it.
-[[nodiscard]] inline Candidate claim_of(const Location& location, GlobalId tet) noexcept {
+/// The location as a candidate of the tetrahedron with the global id `tet`.
+[[nodiscard]] inline Candidate candidate_of(const Location& location, GlobalId tet) noexcept {
   return {location.violation, tet, location.status, location.place};
 }
 
-/// Where `p` lies with respect to the tetrahedron of these corners; nothing where it is outside
-/// beyond the tolerance.
+/// The location of `p` in the tetrahedron with these corners. Empty if `p` is outside and does not
+/// snap.
 [[nodiscard]] std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corners);
 
-/// Pairs a source tetrahedron with a target point that may lie in it; both index the spans given
-/// beside.
+/// A source tetrahedron and a target point that may lie in it, as indices into the spans that
+/// locate_pairs() takes.
 struct PointPair {
   std::int32_t tet;
   std::int32_t point;
 };
 
-/// A pair of the batch whose point lies in (or snaps to) the tetrahedron.
+/// A pair of a batch whose point lies in the tetrahedron or snaps to it.
 struct Found {
   std::int32_t pair;  ///< index into the batch
   Location location;
 };
 
-/// locate() for many pairs at once, vectorised; appends the pairs that hold, in order. The same
-/// bits as locate().
+/// Calls locate() for many pairs at once, vectorised, with the same bits. Appends the pairs that have
+/// a location to `found`, in order.
 void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
                   std::span<const Point> queries, std::span<const PointPair> pairs,
                   std::vector<Found>& found);
 
-/// The box of a tetrahedron, padded so that it holds every point that locate() would snap to it:
-/// the source's boxes for the broad phase. Target points need no padding.
+/// The box of a tetrahedron, padded so that it holds every point that snaps to the tetrahedron. The
+/// broad phase uses it for the source; target points need no padding.
 [[nodiscard]] Aabb search_box(const std::array<Point, 4>& corners);
 
 /// The four points of a tetrahedron.
@@ -75,10 +77,10 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
   return {at(0), at(1), at(2), at(3)};
 }
 
-/// One component of a field at a location: values[vertex * stride]. A weight of 1 copies the value
-/// bit for bit.
-[[nodiscard]] inline double weigh(const Weights& weights, const Tet& tet, const double* values,
-                                  std::size_t stride) {
+/// Interpolates one component of a field; the value of a vertex is values[vertex * stride]. A weight
+/// of 1 copies the value bit for bit.
+[[nodiscard]] inline double interpolated(const Weights& weights, const Tet& tet,
+                                         const double* values, std::size_t stride) {
   const auto value = [&](std::size_t corner) {
     return values[static_cast<std::size_t>(tet[corner]) * stride];
   };

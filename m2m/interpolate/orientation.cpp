@@ -21,7 +21,7 @@ Pair two_product(double a, double b) {
   return {product, std::fma(a, b, -product)};
 }
 
-/// A sum of doubles that do not overlap, smallest first, without zeros: an exact number.
+/// An exact number: the sum of doubles that do not overlap, smallest first, without zeros.
 template <std::size_t N>
 struct Expansion {
   std::array<double, N> part;
@@ -30,7 +30,7 @@ struct Expansion {
   void push(double x) {
     if (x != 0) part[n++] = x;
   }
-  /// The rounded value: from the small end.
+  /// The rounded value, summed from the smallest part on.
   [[nodiscard]] double value() const {
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) sum += part[i];
@@ -38,7 +38,7 @@ struct Expansion {
   }
 };
 
-/// this + x (Shewchuk, Grow-Expansion with zero elimination).
+/// e += x, exactly (Shewchuk, Grow-Expansion with zero elimination).
 template <std::size_t N>
 void grow(Expansion<N>& e, double x) {
   std::size_t n = 0;
@@ -63,7 +63,7 @@ void add_product(Expansion<N>& sum, const Expansion<A>& a, const Expansion<2>& b
   }
 }
 
-/// a - b exactly.
+/// a - b, exactly.
 Expansion<2> difference(double a, double b) {
   const Pair d = two_sum(a, -b);
   Expansion<2> e;
@@ -80,7 +80,7 @@ double orientation_exact(const Point& p, const Point& a, const Point& b, const P
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t k = 0; k < 3; ++k) m[r][k] = difference((*rows[r])[k], p[k]);
   }
-  Expansion<192> det;  // three products of 16 by 2 parts, two doubles each
+  Expansion<192> det;  // three products of 16 by 2 parts, two doubles per product
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t u = (k + 1) % 3;
     const std::size_t v = (k + 2) % 3;

@@ -1,4 +1,4 @@
-// What a reader does with an element type of ExodusII. Types are free text there: programs write
+// Classifies the element types of ExodusII for the reader. A type is free text: programs write
 // TETRA, TET4 or tetrahedra, and TRI, TRI3 or TRIANGLE, in upper or lower case.
 #pragma once
 
@@ -9,12 +9,12 @@
 namespace tess::m2m {
 
 enum class ExodusElement {
-  tetrahedron,  ///< of four vertices
+  tetrahedron,  ///< with four vertices: read
   no_volume,    ///< surfaces, lines and points: skipped
   other         ///< solids that are not supported, and unknown types
 };
 
-/// `type` in upper case.
+/// `type`: in upper case.
 [[nodiscard]] constexpr ExodusElement exodus_element(std::string_view type,
                                                      std::int64_t n_vertices) {
   constexpr std::string_view digits = "0123456789";

@@ -20,8 +20,9 @@
 namespace tess::m2m {
 namespace {
 
-/// Sends standard error nowhere while it lives. The whole process is affected, so it lives for one
-/// call only: libexodusII prints with no way to turn it off where a NetCDF-4 file cannot be opened.
+/// Discards standard error while the object lives. libexodusII prints a message if it cannot open a
+/// NetCDF-4 file, and has no option against it. The whole process is affected, so an object lives
+/// only during one call.
 class Silence {
  public:
   Silence() : kept_(::dup(STDERR_FILENO)) {
@@ -49,7 +50,7 @@ class ExodusReader {
   ExodusReader(const std::string& path, bool classic) : path_(path) {
     std::optional<Silence> silence;
     if (!classic) silence.emplace();
-    ex_opts(0);  // the library keeps its messages to itself: ours say more
+    ex_opts(0);  // the library prints no messages of its own
     int compute_bytes = sizeof(double);
     int stored_bytes = 0;
     float version = 0;
@@ -69,9 +70,9 @@ class ExodusReader {
     const std::int64_t n_axes = inquire(EX_INQ_DIM);
     if (n_axes != 3) {
       fail(ErrorCode::bad_mesh, path_, ": has ", n_axes,
-           " dimensions; only meshes in 3 are transferred");
+           " dimensions; give a mesh in 3 dimensions");
     }
-    // Compressed NetCDF-4 may hold more than its size shows; 1 000 times more it does not.
+    // Compressed NetCDF-4 holds more than its size shows, but never 1 000 times more.
     const auto most =
         static_cast<std::int64_t>(std::min<std::size_t>(file_bytes, SIZE_MAX / 2000) * 1000);
     const std::int64_t n = inquire(EX_INQ_NODES);
@@ -91,33 +92,33 @@ class ExodusReader {
   }
 
  private:
-  /// Names may be longer than the 32 characters that the library returns by itself.
+  /// Without this call the library cuts names to 32 characters.
   void set_name_length() {
     constexpr std::int64_t longest = 255;
     const std::int64_t used = ex_inquire_int(id_, EX_INQ_DB_MAX_USED_NAME_LENGTH);
     ex_set_max_name_length(id_, static_cast<int>(std::clamp<std::int64_t>(used, 32, longest)));
   }
 
-  /// Numbers of blocks or sets, in file order. Each occurs once.
+  /// The numbers of the blocks or sets in file order. Throws if a number occurs twice.
   [[nodiscard]] std::vector<std::int64_t> ids_of(ex_entity_type type, std::int64_t n) const {
     std::vector<std::int64_t> ids(static_cast<std::size_t>(n));
     if (n > 0) check(ex_get_ids(id_, type, ids.data()), "ex_get_ids");
     std::vector<std::int64_t> sorted = ids;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-      damaged("a number that two blocks or sets have", -1);
+      damaged("two blocks or sets with the same number", -1);
     return ids;
   }
 
   [[nodiscard]] std::string name_of(ex_entity_type type, std::int64_t id) const {
     std::array<char, 512> name{};
-    if (ex_get_name(id_, type, id, name.data()) < 0) return {};  // files before names
+    if (ex_get_name(id_, type, id, name.data()) < 0) return {};  // an old file without names
     return name.data();
   }
 
   [[noreturn]] void damaged(const char* call, int code) const {
-    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (", call, " gives ", code,
-         "); write the mesh again");
+    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (", call, " failed with code ",
+         code, "); write the mesh again");
   }
   void check(int code, const char* call) const {
     if (code < 0) damaged(call, code);
@@ -158,7 +159,7 @@ class ExodusReader {
     if (element == ExodusElement::other) {
       fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", type, " with ",
            block.num_nodes_per_entry,
-           " vertices; only TET4 is read: mesh it with linear tetrahedra");
+           " vertices; only TET4 is supported: mesh it with linear tetrahedra");
     }
     if (element == ExodusElement::no_volume) return skip(mesh, type, block.num_entry);
     mesh.blocks.push_back(
@@ -196,8 +197,8 @@ class ExodusReader {
     element_runs_.push_back({n_elements_, std::nullopt});
   }
 
-  /// The tetrahedron that is this element of the file (counted from 1 over all blocks); -1 for an
-  /// element that was skipped, -2 for one that is not there.
+  /// The tetrahedron of an element of the file (counted from 1 over all blocks): -1 for an element
+  /// that was skipped, -2 for an element that does not exist.
   [[nodiscard]] GlobalId tet_of(std::int64_t element) const {
     const auto run = std::partition_point(element_runs_.begin(), element_runs_.end(),
                                           [&](const Run& r) { return r.last < element; });
@@ -213,7 +214,7 @@ class ExodusReader {
     for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id, most);
   }
 
-  /// How many entries and distribution factors a set has.
+  /// The number of entries and of distribution factors of a set.
   [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type, std::int64_t id,
                                                             std::int64_t most) const {
     std::int64_t n = 0, n_factors = 0;
@@ -229,8 +230,8 @@ class ExodusReader {
     return factors;
   }
 
-  /// Sides of skipped elements are left out, and with them the set's factors, which are not told
-  /// apart by side.
+  /// Leaves out the sides of skipped elements. The factors of such a set are left out too, because
+  /// the file does not say which factor belongs to which side.
   void read_side_set(TetMesh& mesh, std::int64_t id, std::int64_t most) const {
     const auto [n, n_factors] = size_of(EX_SIDE_SET, id, most);
     std::vector<std::int64_t> elements(n), sides(n);
@@ -267,12 +268,12 @@ class ExodusReader {
   /// The elements of a block of the file.
   struct Run {
     std::int64_t last;              // of the file's elements, counted from 1
-    std::optional<GlobalId> shift;  // from element - 1 to tetrahedron; none where they were skipped
+    std::optional<GlobalId> shift;  // from element - 1 to tetrahedron; none if skipped
   };
 
   const std::string& path_;
   int id_ = -1;
-  std::int64_t n_elements_ = 0;    // read so far, skipped ones included
+  std::int64_t n_elements_ = 0;    // read so far, including skipped ones
   std::vector<Run> element_runs_;  // in file order
 };
 

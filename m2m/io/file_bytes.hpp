@@ -1,4 +1,4 @@
-// The bytes of a file, mapped for reading while this object lives. Used by the readers alone.
+// The bytes of a file, mapped for reading while this object lives. Only the readers use it.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace tess::m2m {
 
 class FileBytes {
  public:
-  /// Maps the file; throws Error (bad_file) where it is missing, unreadable, not a regular file, or
+  /// Maps the file. Throws Error (bad_file) if it is missing, unreadable, not a regular file, or
   /// empty.
   explicit FileBytes(const std::string& path);
   ~FileBytes();

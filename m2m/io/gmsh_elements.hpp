@@ -1,5 +1,4 @@
-// The element types of gmsh's MSH format: number, name, dimension, vertices (gmsh reference manual,
-// section 10.1).
+// The element types of gmsh's MSH format (gmsh reference manual, section 10.1).
 #pragma once
 
 #include <string_view>
@@ -30,7 +29,7 @@ inline constexpr GmshElement gmsh_elements[] = {
     {38, "quad36", 2, 36},     {92, "hex64", 3, 64},      {93, "hex125", 3, 125},
 };
 
-/// The type of that number, or null.
+/// The type with this number, or null if there is none.
 constexpr const GmshElement* gmsh_element(int number) {
   for (const GmshElement& element : gmsh_elements) {
     if (element.number == number) return &element;

@@ -13,7 +13,7 @@
 namespace tess::m2m {
 namespace {
 
-/// From node tags, which may have gaps of any size, to places in the list of points.
+/// Maps node tags, which may have gaps of any size, to positions in the list of points.
 class TagMap {
  public:
   void build(const std::vector<std::uint64_t>& tags, const GmshScanner& file) {
@@ -37,7 +37,7 @@ class TagMap {
     }
   }
 
-  /// -1 where no node has the tag.
+  /// The position, or -1 if no node has the tag.
   [[nodiscard]] VertexId find(std::uint64_t tag) const {
     if (dense_) return tag < place_.size() ? place_[tag] : -1;
     const auto found = std::lower_bound(sorted_.begin(), sorted_.end(),
@@ -86,7 +86,7 @@ class GmshReader {
       } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
         file_.skip_to("$End" + section.substr(1));
       } else {
-        file_.damaged("a section such as $Nodes expected");
+        file_.damaged("expected a section such as $Nodes");
       }
     }
     if (!have_nodes) file_.damaged("$Nodes is missing");
@@ -109,12 +109,12 @@ class GmshReader {
     const int word_bytes = file_.number_as_text<int>();
     if (version != 2.2 && version != 4.1) {
       file_.refuse("is MSH ", version,
-                   "; only 2.2 and 4.1 are read: save it with gmsh -save -format msh41");
+                   "; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
     }
     if (kind != 0 && kind != 1) file_.damaged("file type ", kind);
     if (word_bytes != 8)
       file_.refuse("has numbers of ", word_bytes,
-                   " bytes; only 8 are read: save it again with gmsh");
+                   " bytes; only 8 are supported: save it again with gmsh");
     legacy_ = version == 2.2;
     binary_ = kind == 1;
     if (binary_) {
@@ -122,7 +122,8 @@ class GmshReader {
       file_.set_binary(true);
       const int one = file_.number<int>();
       file_.set_binary(false);
-      if (one == 0x01000000) file_.refuse("was written in another byte order; save it as ASCII");
+      if (one == 0x01000000)
+        file_.refuse("has another byte order than this machine; save it as ASCII");
       if (one != 1) file_.damaged("the byte-order mark is ", one);
     }
     file_.close("$EndMeshFormat");
@@ -144,7 +145,7 @@ class GmshReader {
     return {x, y, z};
   }
 
-  /// Version 2.2 writes the count as text also in binary files.
+  /// Version 2.2 writes counts as text, also in binary files.
   std::size_t count_22(std::string_view what, std::size_t bytes_each) {
     const auto n = file_.number_as_text<std::uint64_t>();
     if (binary_) file_.end_of_line();
@@ -187,14 +188,15 @@ class GmshReader {
       file_.damaged(n, " nodes announced, ", mesh_.points.size(), " found");
   }
 
-  /// The type with that number; volume elements other than tet4 and unknown ones end here.
+  /// The type with this number. Refuses unknown types and volume elements other than tet4.
   const GmshElement& element_type(int number) const {
     const GmshElement* const type = gmsh_element(number);
     if (type == nullptr)
-      file_.refuse("has elements of unknown gmsh type ", number, "; only tet4 volumes are read");
+      file_.refuse("has elements of unknown gmsh type ", number,
+                   "; only tet4 volumes are supported");
     if (type->dimension == 3 && number != gmsh_tet4) {
       file_.refuse("has elements of type ", type->name,
-                   "; only tet4 volumes are read: mesh it with linear tetrahedra");
+                   "; only tet4 volumes are supported: mesh it with linear tetrahedra");
     }
     return *type;
   }
@@ -211,7 +213,7 @@ class GmshReader {
       vertex = tag < Tag{0} ? -1 : tags_.find(static_cast<std::uint64_t>(tag));
       if (vertex < 0) {
         file_.refuse("tetrahedron ", mesh_.n_tets(), " names node ", tag,
-                     ", which is not there; write the mesh again");
+                     ", which does not exist; write the mesh again");
       }
     }
     mesh_.tets.push_back(tet);
@@ -267,7 +269,7 @@ class GmshReader {
   TetMesh mesh_;
   std::vector<std::uint64_t> node_tags_;
   TagMap tags_;
-  std::array<std::uint64_t, 128> n_skipped_{};  // by number of type
+  std::array<std::uint64_t, 128> n_skipped_{};  // per type number
   bool have_format_ = false;
   bool legacy_ = false;
   bool binary_ = false;

@@ -1,6 +1,6 @@
-// The bytes of one MSH file read in order: numbers as text or binary, whichever the file holds, and
-// section names. Every read is checked against the end; a failure is one line with the byte where
-// it happened. Used by gmsh_reader.cpp.
+// Reads the bytes of one MSH file in order: section names, and numbers as text or binary, as the
+// mode of the file requires. Every read is checked against the end of the file. A failure is one
+// line of error with the byte position. Only gmsh_reader.cpp uses it.
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -45,31 +45,31 @@ class GmshScanner {
     return bytes_.substr(begin, at_ - begin);
   }
 
-  /// A number as text, whatever the mode.
+  /// A number as text, in either mode.
   template <class T>
   T number_as_text() {
     const std::string_view text = word();
     T value{};
     const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || last != text.data() + text.size()) {
-      damaged("a number expected, '", printable(text), "' found");
+      damaged("expected a number, found '", printable(text), "'");
     }
     return value;
   }
 
-  /// The next number, as the file's mode says; in binary it has exactly the width of T.
+  /// The next number in the current mode; in binary it has exactly the width of T.
   template <class T>
   T number() {
     static_assert(std::is_arithmetic_v<T>);
     if (!binary_) return number_as_text<T>();
-    if (left() < sizeof(T)) damaged(sizeof(T), " bytes expected, ", left(), " left");
+    if (left() < sizeof(T)) damaged("expected ", sizeof(T), " bytes, only ", left(), " are left");
     T value;
     std::memcpy(&value, bytes_.data() + at_, sizeof(T));
     at_ += sizeof(T);
     return value;
   }
 
-  /// A count of things that take at least `bytes_each` bytes (two as text: a digit and a blank).
+  /// A count of items of at least `bytes_each` bytes each (as text: two, a digit and a blank).
   template <class T>
   std::size_t count(std::string_view what, std::size_t bytes_each) {
     const T n = number<T>();
@@ -84,33 +84,33 @@ class GmshScanner {
     return static_cast<std::size_t>(n);
   }
 
-  /// Over `n` numbers of type T that nobody wants.
+  /// Skips `n` numbers of type T.
   template <class T>
   void skip(std::size_t n) {
     if (!binary_) {
       for (std::size_t i = 0; i < n; ++i) {
-        if (word().empty()) damaged("a number expected");
+        if (word().empty()) damaged("expected a number");
       }
     } else {
-      if (left() / sizeof(T) < n) damaged(n, " numbers expected");
+      if (left() / sizeof(T) < n) damaged("expected ", n, " numbers");
       at_ += n * sizeof(T);
     }
   }
 
-  /// One line break after a header, where binary data begin.
+  /// Reads the one line break after a header, where binary data begins.
   void end_of_line() {
     if (at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
-    if (at_ >= bytes_.size() || bytes_[at_] != '\n') damaged("end of line expected");
+    if (at_ >= bytes_.size() || bytes_[at_] != '\n') damaged("expected the end of a line");
     ++at_;
   }
 
-  /// Over the tag that closes a section.
+  /// Reads the tag that closes a section.
   void close(std::string_view tag) {
     const std::string_view found = word();
-    if (found != tag) damaged(tag, " expected, '", printable(found), "' found");
+    if (found != tag) damaged("expected ", tag, ", found '", printable(found), "'");
   }
 
-  /// Over everything up to and with the tag.
+  /// Skips everything up to and including the tag.
   void skip_to(const std::string& tag) {
     const std::size_t found = bytes_.find(tag, at_);
     if (found == std::string_view::npos) damaged(tag, " is missing");

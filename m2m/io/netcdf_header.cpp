@@ -25,7 +25,7 @@ class Header {
     at_ = 4;
     n_records_ = count();
     if (n_records_ == (wide() ? UINT64_MAX : UINT32_MAX))
-      n_records_ = 0;  // being written: take no record for granted
+      n_records_ = 0;  // the file was not closed: the number of records is unknown
     dimensions();
     attributes(true);
     variables();
@@ -41,7 +41,8 @@ class Header {
   }
 
   void need(std::uint64_t n) const {
-    if (n > bytes_.size() - at_) damaged(n, " bytes expected, ", bytes_.size() - at_, " left");
+    if (n > bytes_.size() - at_)
+      damaged("expected ", n, " bytes, only ", bytes_.size() - at_, " are left");
   }
 
   std::uint64_t integer(std::size_t n_bytes) {
@@ -63,7 +64,7 @@ class Header {
     return text;
   }
 
-  /// Over n bytes and their padding to a multiple of four.
+  /// Skips n bytes and their padding to a multiple of four.
   void skip(std::uint64_t n) {
     need(n);
     const std::uint64_t padded = n + (4 - n % 4) % 4;
@@ -71,14 +72,13 @@ class Header {
     at_ += padded;
   }
 
-  /// The length of a list: a tag, or twice zero where there is none.
+  /// Reads the tag and the length of a list. An absent list is two zeros.
   std::uint64_t list(std::uint64_t tag, std::uint64_t bytes_an_item) {
     const std::uint64_t found = word();
     const std::uint64_t n = count();
-    if (found != tag && !(found == 0 && n == 0))
-      damaged("list ", tag, " expected, ", found, " found");
+    if (found != tag && !(found == 0 && n == 0)) damaged("expected list ", tag, ", found ", found);
     if (n > (bytes_.size() - at_) / bytes_an_item)
-      damaged("a list of ", n, " items does not fit in the file");
+      damaged("a list of ", n, " items exceeds the file");
     return n;
   }
 
@@ -105,7 +105,7 @@ class Header {
       const std::uint64_t size = size_of_type(word());
       const std::uint64_t length = count();
       if (length > bytes_.size()) damaged("attribute ", called, " of length ", length);
-      // What ex_open reads into single variables.
+      // ex_open reads these into single variables.
       constexpr std::array<std::string_view, 7> scalars{
           "version",   "api_version",  "floating_point_word_size", "floating point word size",
           "file_size", "int64_status", "maximum_name_length"};
@@ -133,7 +133,7 @@ class Header {
       }
       attributes(false);
       const std::uint64_t size = size_of_type(word());
-      count();  // the declared size saturates in large files: computed from the shape instead
+      count();  // the declared size saturates in large files; the shape gives the size
       const std::uint64_t begin = integer(version_ == 1 ? 4 : 8);
       inside(called, shape, size, begin);
       expected_shape(called, shape);
@@ -146,7 +146,7 @@ class Header {
     for (std::size_t d = 0; d < shape.size(); ++d) {
       std::uint64_t length = dimensions_[shape[d]].length;
       if (length == 0) {
-        if (d != 0) damaged("variable ", called, " has the record dimension in place ", d);
+        if (d != 0) damaged("variable ", called, " has the record dimension at position ", d);
         if (n_records_ == 0) return;
         length = 1;  // one record at least
       }

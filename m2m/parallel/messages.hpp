@@ -1,5 +1,5 @@
-// The messages of a transfer between Workers. Each names the transfer that it belongs to, for a
-// Worker takes part in any number of transfers at once.
+// The messages of a transfer between Workers. A Worker can take part in several transfers at once,
+// so each message names its transfer.
 #pragma once
 
 #include "collide/collider.hpp"
@@ -17,14 +17,14 @@ namespace tess::m2m {
 
 class Worker;
 
-/// A transfer, unique within the run.
+/// A transfer; unique within the run.
 enum class TransferId : std::uint64_t {};
 
 /// The two sides of a collision, as models.
 inline constexpr collide::ModelId source_model{1};
 inline constexpr collide::ModelId target_model{2};
 
-/// What begins a transfer at all Workers of both meshes.
+/// Starts a transfer at all Workers of both meshes.
 struct TransferSetup {
   TransferId id{};
   collide::Collider collider;
@@ -32,39 +32,39 @@ struct TransferSetup {
   ArrayProxy<Worker> target;
 };
 
-/// The part of a mesh that a Worker carries, with its values.
+/// The part of a mesh that a Worker holds, with its values.
 struct PartLoad {
   MeshPart part;
   std::uint64_t n_components = 0;
   std::vector<double> values;  ///< part.points.size() × n_components, row-major
 };
 
-/// Questions of one target Worker to one source Worker.
+/// From a target Worker to a source Worker: which of these points lie in which tetrahedra?
 struct Query {
   TransferId transfer{};
   Index1 from;                     ///< the target Worker
-  std::vector<std::int32_t> rows;  ///< of its points; parallel to points
+  std::vector<std::int32_t> rows;  ///< per point: its row in the target Worker
   std::vector<Point> points;
   std::vector<PointPair> pairs;  ///< (tetrahedron of the source Worker, index into points)
 };
 
-/// The best claim of one source Worker for each point that it holds.
+/// The reply: the best candidate of the source Worker per point that it holds.
 struct Answer {
   TransferId transfer{};
   std::vector<std::int32_t> rows;
-  std::vector<Candidate> claims;
-  std::vector<double> values;  ///< rows.size() × n_components, row-major
+  std::vector<Candidate> candidates;  ///< per row
+  std::vector<double> values;         ///< rows.size() × n_components, row-major
 };
 
-/// Which vertices are nearest to some points: asked of one source Worker.
+/// From a target Worker to a source Worker: which of your vertices are nearest to these points?
 struct NearestQuery {
   TransferId transfer{};
   Index1 from;
   std::vector<std::int32_t> rows;
   std::vector<Point> points;
-  std::vector<double> squared_reaches;  ///< of each point: what is farther does not matter
+  std::vector<double> squared_reaches;  ///< per point: farther vertices are not of interest
 };
-/// The nearest vertices of one source Worker; vertex -1 where none is within reach.
+/// The reply: the nearest vertex per point; -1 if none is within reach.
 struct NearestAnswer {
   TransferId transfer{};
   std::vector<std::int32_t> rows;  ///< those of the query
@@ -73,26 +73,26 @@ struct NearestAnswer {
   std::vector<double> values;  ///< rows.size() × n_components, row-major
 };
 
-/// What vertices outside get.
-struct Settlement {
+/// Gives vertices outside the source their values.
+struct OutsideRequest {
   TransferId transfer{};
   OutsidePolicy policy;
-  std::vector<Aabb> source_boxes;  ///< of the source's parts, where the policy is Nearest
+  std::vector<Aabb> source_boxes;  ///< of the parts of the source, if the policy is Nearest
 };
 
-/// New values of vertices that another Worker owns.
+/// New values for the ghosts that a Worker holds.
 struct GhostRows {
   TransferId transfer{};
   std::vector<std::int32_t> rows;  ///< of the receiver
   std::vector<double> values;      ///< rows.size() × n_components, row-major
 };
 
-/// How many vertices of a target have each Status, and how many candidates were looked at.
+/// The number of target vertices per Status, and the number of candidate pairs tested.
 struct Tally {
   std::array<std::uint64_t, 4> counts{};
   std::uint64_t n_candidates = 0;
 };
-/// Adds tallies; for reductions.
+/// Adds tallies in a reduction.
 struct AddTallies {
   Tally operator()(Tally a, const Tally& b) const {
     for (std::size_t s = 0; s < a.counts.size(); ++s) a.counts[s] += b.counts[s];
@@ -101,14 +101,14 @@ struct AddTallies {
   }
 };
 
-/// What a Worker knows of the vertices it owns, for whoever gathers it. Before the first transfer
-/// into the mesh every vertex has the status `outside`.
+/// The vertices that a Worker owns, with status and values, as gathered from a mesh. Before the
+/// first transfer into the mesh every status is `outside`.
 struct Outcome {
   std::vector<GlobalId> points;
-  std::vector<Status> status;  ///< by the transfer into the mesh that ended last
+  std::vector<Status> status;  ///< per vertex, from the transfer into the mesh that ended last
   std::vector<double> values;  ///< points.size() × n_components, row-major
 };
-/// Joins outcomes; for reductions.
+/// Joins outcomes in a reduction.
 struct JoinOutcomes {
   Outcome operator()(Outcome a, const Outcome& b) const;
 };

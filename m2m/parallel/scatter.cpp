@@ -1,5 +1,7 @@
 #include "m2m/parallel/scatter.hpp"
 
+#include "m2m/partition/partition.hpp"
+#include "m2m/partition/split.hpp"
 #include "runtime/core/check.hpp"
 
 #include <span>
@@ -7,7 +9,7 @@
 namespace tess::m2m {
 namespace {
 
-/// The rows of all fields side by side, for the points of a part.
+/// The values of all fields at the points of a part; a row holds the components of all fields.
 std::vector<double> rows_of(const MeshPart& part, const std::vector<Field>& fields,
                             std::size_t n_components) {
   std::vector<double> rows(part.points.size() * n_components);

@@ -1,12 +1,11 @@
-// A mesh as an array of chares: one Worker for each part. The array is virtualised: any number of
-// Workers a PE.
+// A distributed mesh: an array of Workers, one per part. The number of parts is independent of the
+// number of PEs.
 #pragma once
 
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
 #include "m2m/parallel/worker.hpp"
-#include "m2m/partition/partition.hpp"
-#include "m2m/partition/split.hpp"
+#include "m2m/partition_method.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -14,22 +13,19 @@
 
 namespace tess::m2m {
 
-/// A distributed mesh: the proxies to its Workers and what all need to know. A value that can be
-/// sent.
+/// A handle to a distributed mesh. It can be copied and sent.
 struct DistributedMesh {
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 0;
   std::size_t n_components = 0;  ///< of all fields together
-  std::vector<Aabb> boxes{};     ///< of each part's own vertices; lo > hi where it has none
+  std::vector<Aabb> boxes{};     ///< per part: of the vertices it owns; lo > hi if it owns none
 
-  /// Ends the mesh, between two transfers: its Workers are freed on all PEs. The epoch that runs
-  /// waits for that.
+  /// Frees the Workers on all PEs. No transfer may be running. The enclosing epoch includes this.
   void destroy() const { workers.destroy(); }
 };
 
-/// Sends the parts of a mesh, with their rows of the fields, to new Workers, spread evenly over all
-/// PEs. Inside an epoch, the mesh is in place when the epoch is done. Partitions by tetrahedra
-/// (partition.hpp).
+/// Partitions the mesh by tetrahedra, creates the Workers, spread evenly over all PEs, and sends each
+/// its part with the rows of the fields. The mesh is in place when the enclosing epoch is done.
 [[nodiscard]] DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields,
                                       std::int32_t n_parts, PartitionMethod method);
 

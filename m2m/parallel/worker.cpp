@@ -44,17 +44,17 @@ void Worker::load(PartLoad load) {
 
 Worker::Outgoing& Worker::outgoing(TransferId transfer) {
   const auto at = outgoing_.find(transfer);
-  TESS_CHECK(at != outgoing_.end(), "a transfer that this Worker is no source of");
+  TESS_CHECK(at != outgoing_.end(), "this Worker is not a source of the transfer");
   return at->second;
 }
 
 Worker::Incoming& Worker::incoming(TransferId transfer) {
   const auto at = incoming_.find(transfer);
-  TESS_CHECK(at != incoming_.end(), "a transfer that this Worker is no target of");
+  TESS_CHECK(at != incoming_.end(), "this Worker is not a target of the transfer");
   return at->second;
 }
 
-void Worker::put(Incoming& to, std::int32_t point, const double* values) const {
+void Worker::set_row(Incoming& to, std::int32_t point, const double* values) const {
   std::copy_n(values, n_components_, row(to.values, point));
   to.is_new[static_cast<std::size_t>(point)] = 1;
 }
@@ -72,7 +72,7 @@ void Worker::submit_tets(const TransferSetup& setup) {
 void Worker::submit_points(const TransferSetup& setup) {
   const auto n_owned = static_cast<std::size_t>(part_.n_owned);
   Incoming& to = incoming_.emplace(setup.id, Incoming{setup}).first->second;
-  to.claims.resize(n_owned);
+  to.best.resize(n_owned);
   to.values.resize(values_.size());
   to.is_new.resize(part_.points.size());
   std::vector<collide::Item> items;
@@ -92,8 +92,7 @@ void Worker::ask_sources(TransferId transfer) {
   Incoming& to = incoming(transfer);
   std::vector<collide::Hits> all = std::exchange(to.hits, {});
   std::vector<Query> queries;
-  std::vector<collide::OwnerId>
-      sources;  // whom each query asks; few, so that they are sought one by one
+  std::vector<collide::OwnerId> sources;  // per query; few, so a linear search is enough
   std::vector<std::uint32_t> query_of(all.size());
   std::vector<std::size_t> n_pairs;
   for (std::size_t h = 0; h < all.size(); ++h) {
@@ -107,7 +106,7 @@ void Worker::ask_sources(TransferId transfer) {
   }
   queries.resize(sources.size());
   const auto n_owned = static_cast<std::size_t>(part_.n_owned);
-  std::vector<std::int32_t> place(n_owned, -1);  // of a row in the query at hand
+  std::vector<std::int32_t> place(n_owned, -1);  // per row: its index in the current query
   std::vector<std::vector<std::uint32_t>> hits_of(sources.size());
   for (std::size_t h = 0; h < all.size(); ++h)
     hits_of[query_of[h]].push_back(static_cast<std::uint32_t>(h));
@@ -147,15 +146,16 @@ void Worker::answer(Query query) {
   for (const Found& f : found) {
     const PointPair& pair = query.pairs[static_cast<std::size_t>(f.pair)];
     const auto point = static_cast<std::size_t>(pair.point);
-    const Candidate claim = claim_of(f.location, part_.tet_ids[static_cast<std::size_t>(pair.tet)]);
-    if (!better(claim, best[point])) continue;
-    best[point] = claim;
+    const Candidate candidate =
+        candidate_of(f.location, part_.tet_ids[static_cast<std::size_t>(pair.tet)]);
+    if (!better(candidate, best[point])) continue;
+    best[point] = candidate;
     winner[point] = &f;
   }
   Answer answer{query.transfer, {}, {}, {}};
   const std::size_t n = n_components_;
   answer.rows.reserve(best.size());
-  answer.claims.reserve(best.size());
+  answer.candidates.reserve(best.size());
   answer.values.reserve(best.size() * n);
   for (std::size_t point = 0; point < best.size(); ++point) {
     if (winner[point] == nullptr) continue;
@@ -163,9 +163,9 @@ void Worker::answer(Query query) {
     const Tet& tet =
         part_.tets[static_cast<std::size_t>(query.pairs[static_cast<std::size_t>(f.pair)].tet)];
     answer.rows.push_back(query.rows[point]);
-    answer.claims.push_back(best[point]);
+    answer.candidates.push_back(best[point]);
     for (std::size_t c = 0; c < n; ++c)
-      answer.values.push_back(weigh(f.location.weights, tet, values.data() + c, n));
+      answer.values.push_back(interpolated(f.location.weights, tet, values.data() + c, n));
   }
   if (!answer.rows.empty())
     from.setup.target[query.from].send<&Worker::receive_answer>(std::move(answer));
@@ -174,37 +174,37 @@ void Worker::answer(Query query) {
 void Worker::receive_answer(const Answer& answer) {
   Incoming& to = incoming(answer.transfer);
   for (std::size_t i = 0; i < answer.rows.size(); ++i) {
-    Candidate& mine = to.claims[static_cast<std::size_t>(answer.rows[i])];
-    if (!better(answer.claims[i], mine)) continue;
-    mine = answer.claims[i];
-    put(to, answer.rows[i], answer.values.data() + i * n_components_);
+    Candidate& mine = to.best[static_cast<std::size_t>(answer.rows[i])];
+    if (!better(answer.candidates[i], mine)) continue;
+    mine = answer.candidates[i];
+    set_row(to, answer.rows[i], answer.values.data() + i * n_components_);
   }
 }
 
-void Worker::settle(const Settlement& settlement) {
-  Incoming& to = incoming(settlement.transfer);
-  if (std::holds_alternative<Keep>(settlement.policy)) return;
+void Worker::resolve_outside(const OutsideRequest& request) {
+  Incoming& to = incoming(request.transfer);
+  if (std::holds_alternative<Keep>(request.policy)) return;
   std::vector<std::int32_t> outside;
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(part_.n_owned); ++v)
-    if (to.claims[static_cast<std::size_t>(v)].status == Status::outside) outside.push_back(v);
+    if (to.best[static_cast<std::size_t>(v)].status == Status::outside) outside.push_back(v);
   if (outside.empty()) return;
-  if (const auto* given = std::get_if<UseValue>(&settlement.policy)) {
+  if (const auto* given = std::get_if<UseValue>(&request.policy)) {
     const std::vector<double> given_row(n_components_, given->value);
-    for (const std::int32_t v : outside) put(to, v, given_row.data());
+    for (const std::int32_t v : outside) set_row(to, v, given_row.data());
     return;
   }
   Aabb box = collide::box_of(part_.points[static_cast<std::size_t>(outside.front())]);
   for (const std::int32_t v : outside)
     box = collide::merged(box, collide::box_of(part_.points[static_cast<std::size_t>(v)]));
-  to.nearest_parts = NearestParts(settlement.source_boxes, box);
-  to.nearest.resize(to.claims.size());
+  to.nearest_parts = NearestParts(request.source_boxes, box);
+  to.nearest.resize(to.best.size());
   ask_nearest(to, outside);
 }
 
 void Worker::ask_nearest(Incoming& to, std::span<const std::int32_t> rows) {
   std::map<std::int32_t, NearestQuery> queries;  // by part
   for (const std::int32_t v : rows) {
-    NearestClaim& mine = to.nearest[static_cast<std::size_t>(v)];
+    NearestSoFar& mine = to.nearest[static_cast<std::size_t>(v)];
     const Point& point = part_.points[static_cast<std::size_t>(v)];
     const NearestParts::Part next = to.nearest_parts.next(point, mine.asked);
     if (next == NearestParts::none || next.squared_distance > mine.squared_distance) continue;
@@ -245,7 +245,7 @@ void Worker::answer_nearest(NearestQuery query) {
 void Worker::receive_nearest(const NearestAnswer& answer) {
   Incoming& to = incoming(answer.transfer);
   for (std::size_t i = 0; i < answer.rows.size(); ++i) {
-    NearestClaim& mine = to.nearest[static_cast<std::size_t>(answer.rows[i])];
+    NearestSoFar& mine = to.nearest[static_cast<std::size_t>(answer.rows[i])];
     const double d = answer.squared_distances[i];
     const GlobalId vertex = answer.vertices[i];
     if (vertex < 0 || d > mine.squared_distance ||
@@ -253,12 +253,12 @@ void Worker::receive_nearest(const NearestAnswer& answer) {
       continue;
     mine.squared_distance = d;
     mine.vertex = vertex;
-    put(to, answer.rows[i], answer.values.data() + i * n_components_);
+    set_row(to, answer.rows[i], answer.values.data() + i * n_components_);
   }
   ask_nearest(to, answer.rows);
 }
 
-void Worker::share(TransferId transfer) {
+void Worker::send_ghosts(TransferId transfer) {
   Incoming& to = incoming(transfer);
   for (const Ghosts& ghosts : part_.ghosts) {
     GhostRows message{transfer, {}, {}};
@@ -277,10 +277,10 @@ void Worker::share(TransferId transfer) {
 void Worker::receive_ghosts(const GhostRows& ghosts) {
   Incoming& to = incoming(ghosts.transfer);
   for (std::size_t i = 0; i < ghosts.rows.size(); ++i)
-    put(to, ghosts.rows[i], ghosts.values.data() + i * n_components_);
+    set_row(to, ghosts.rows[i], ghosts.values.data() + i * n_components_);
 }
 
-void Worker::take_over(TransferId transfer, Callback<Tally> tally) {
+void Worker::commit(TransferId transfer, Callback<Tally> tally) {
   Incoming to = std::move(incoming(transfer));
   incoming_.erase(transfer);
   for (auto& [id, from] : outgoing_)
@@ -292,13 +292,13 @@ void Worker::take_over(TransferId transfer, Callback<Tally> tally) {
   }
   Tally mine{{}, to.n_candidates};
   for (std::size_t v = 0; v < status_.size(); ++v) {
-    status_[v] = to.claims[v].status;
+    status_[v] = to.best[v].status;
     ++mine.counts[static_cast<std::size_t>(status_[v])];
   }
   contribute(AddTallies{}, mine, std::move(tally));
 }
 
-void Worker::forget(TransferId transfer) {
+void Worker::release(TransferId transfer) {
   outgoing_.erase(transfer);
 }
 

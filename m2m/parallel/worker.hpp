@@ -1,18 +1,25 @@
-// A part of a mesh with the values at its vertices, as a chare. It takes part in any number of
-// transfers at once, as source, as target or as both; each has a state of its own here, keyed by
-// its TransferId, from its begin to its end. The steps of one transfer, an epoch each:
+// A chare that holds one part of a mesh and the values at its vertices. A Worker can take part in
+// several transfers at once, as source, as target or as both. It keeps a state per transfer, by
+// TransferId, from the start of the transfer to its end. A transfer has five steps, one epoch each:
 //
-//   broad    both sides submit boxes; voxels report candidates (vertex, tetrahedron) to the target
-//   narrow   a target Worker asks each source Worker that has candidates, in one message; the
-//            source Worker decides, interpolates, and answers with its best claim of each point
-//   settle   vertices outside get their values by the policy
-//   share    new values go to the other Workers that hold the vertices as ghosts
-//   end      the target takes the new values over; both sides forget the transfer
+//   step     entry methods                       what happens
+//   ------   ---------------------------------   -------------------------------------------------
+//   broad    submit_tets, submit_points,         both meshes submit boxes; voxels report candidate
+//            receive_hits                        pairs (vertex, tetrahedron) to the target
+//   narrow   ask_sources, answer,                a target Worker sends one query per source Worker
+//            receive_answer                      with candidates; the source Worker locates the
+//                                                points, interpolates, and replies with its best
+//                                                candidate per point
+//   policy   resolve_outside, answer_nearest,    vertices outside get values by the policy
+//            receive_nearest
+//   ghosts   send_ghosts, receive_ghosts         owners send new values to the ghosts
+//   end      commit, release                     the target replaces its values; both meshes drop
+//                                                the state of the transfer
 //
-// Begin and end are broadcasts, which all Workers of a mesh meet in one order. A transfer reads the
-// values that its source has at its begin, and its target's values change at its end alone: so a
-// transfer reads another one's result wholly or not at all. Claims are merged by a total order
-// (candidate.hpp): the answer depends on no order of arrival.
+// The first and the last step are broadcasts, which all Workers of a mesh receive in the same order.
+// A transfer reads the values that its source has at the start, and changes the values of its target
+// only at the end. So a transfer sees the result of another one completely or not at all. Candidates
+// are merged by a total order (candidate.hpp), so the result does not depend on the order of arrival.
 #pragma once
 
 #include "m2m/parallel/messages.hpp"
@@ -32,7 +39,7 @@ class Worker : public Chare<Worker, Index1> {
  public:
   void load(PartLoad load);
 
-  // Broad phase: the begin.
+  // Broad phase.
   void submit_tets(const TransferSetup& setup);
   void submit_points(const TransferSetup& setup);
   void receive_hits(TransferId transfer, collide::Hits hits);
@@ -43,17 +50,17 @@ class Worker : public Chare<Worker, Index1> {
   void receive_answer(const Answer& answer);
 
   // Policy.
-  void settle(const Settlement& settlement);
+  void resolve_outside(const OutsideRequest& request);
   void answer_nearest(NearestQuery query);
   void receive_nearest(const NearestAnswer& answer);
 
-  // The end.
-  void share(TransferId transfer);
+  // Ghosts and end.
+  void send_ghosts(TransferId transfer);
   void receive_ghosts(const GhostRows& ghosts);
-  void take_over(TransferId transfer, Callback<Tally> tally);
-  void forget(TransferId transfer);
+  void commit(TransferId transfer, Callback<Tally> tally);
+  void release(TransferId transfer);
 
-  /// Gives its vertices and values to a reduction.
+  /// Contributes the owned vertices with their values to a reduction.
   void gather(Callback<Outcome> target);
 
   template <class Ar>
@@ -65,10 +72,10 @@ class Worker : public Chare<Worker, Index1> {
   /// A transfer that reads this part.
   struct Outgoing {
     TransferSetup setup;
-    std::optional<std::vector<double>> values{};  // those of its begin, once the part's changed
+    std::optional<std::vector<double>> values{};  // at its start; set if values_ changed since
   };
-  /// The nearest vertex known so far of a point outside, and the part asked last.
-  struct NearestClaim {
+  /// The nearest vertex found so far for a point outside, and the part that was asked last.
+  struct NearestSoFar {
     double squared_distance = std::numeric_limits<double>::infinity();
     GlobalId vertex = std::numeric_limits<GlobalId>::max();
     NearestParts::Part asked{};
@@ -78,11 +85,11 @@ class Worker : public Chare<Worker, Index1> {
     TransferSetup setup;
     std::vector<collide::Hits> hits{};
     std::uint64_t n_candidates = 0;
-    std::vector<Candidate> claims{};      // the best so far of each owned point
-    std::vector<NearestClaim> nearest{};  // of each owned point, where one is outside
+    std::vector<Candidate> best{};        // per owned point: the best candidate so far
+    std::vector<NearestSoFar> nearest{};  // per owned point; empty if no point is outside
     NearestParts nearest_parts{};
-    std::vector<double> values{};        // new rows of all points, where they are new
-    std::vector<std::uint8_t> is_new{};  // of each point
+    std::vector<double> values{};        // rows of all points; valid where is_new
+    std::vector<std::uint8_t> is_new{};  // per point
   };
 
   [[nodiscard]] Outgoing& outgoing(TransferId transfer);
@@ -90,22 +97,22 @@ class Worker : public Chare<Worker, Index1> {
   [[nodiscard]] double* row(std::vector<double>& values, std::int32_t point) const {
     return values.data() + static_cast<std::size_t>(point) * n_components_;
   }
-  /// Asks for each of these points the next part that may hold a nearer vertex, if there is one.
+  /// Sends a query for each of these points to the next part that may hold a nearer vertex, if any.
   void ask_nearest(Incoming& to, std::span<const std::int32_t> rows);
-  /// Sets the new row of a point.
-  void put(Incoming& to, std::int32_t point, const double* values) const;
+  /// Sets the new values of a point.
+  void set_row(Incoming& to, std::int32_t point, const double* values) const;
 
   MeshPart part_;
   std::uint64_t n_components_ = 0;
   std::vector<double> values_;  // of all points, row-major
-  std::vector<Status> status_;  // of each owned point
+  std::vector<Status> status_;  // per owned point
   std::map<TransferId, Outgoing> outgoing_;
   std::map<TransferId, Incoming> incoming_;
-  std::optional<NearestVertex> nearest_;  // of owned points; made when first asked for, again after
-                                          // a migration
+  // Of owned points; built on first use, and again after a migration.
+  std::optional<NearestVertex> nearest_;
 };
 
-/// collide::Hits of a collision go to the Workers of a target, under a transfer's id.
+/// Sends the hits of a collision to the Workers of a target, with the transfer they belong to.
 [[nodiscard]] Callback<collide::Hits> report_to_target(ArrayProxy<Worker> target,
                                                        TransferId transfer);
 

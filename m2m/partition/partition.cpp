@@ -14,38 +14,40 @@
 namespace tess::m2m {
 namespace {
 
-/// While one lives, the leak checker passes over what Open MPI allocates and keeps. Its plug-ins
-/// are unloaded before the checker runs, so that no suppression by name would match.
+/// While an object lives, the leak checker ignores what Open MPI allocates and keeps. Open MPI unloads
+/// its plug-ins before the checker runs, so suppressions by name do not match.
 #ifdef __SANITIZE_ADDRESS__
-using NotOurLeaks = __lsan::ScopedDisabler;
+using IgnoreLeaks = __lsan::ScopedDisabler;
 #else
-struct NotOurLeaks {
-  NotOurLeaks() noexcept {}
+struct IgnoreLeaks {
+  IgnoreLeaks() noexcept {}
 };
 #endif
 
-/// Zoltan and the MPI below it are one per process, and neither is reentrant: one call at a time.
+/// Zoltan and MPI are not reentrant: one call at a time per process.
 std::mutex& zoltan_turn() {
   static std::mutex turn;
   return turn;
 }
 
-/// Initialises MPI as a singleton where that has not been done, and finalises it at exit then. Call
-/// it in turn.
+/// Initialises MPI as a singleton if it is not initialised yet; it is then finalised at exit. The
+/// caller holds zoltan_turn().
 void need_mpi() {
   int up = 0;
   MPI_Initialized(&up);
   if (up != 0) return;
-  const NotOurLeaks of_init;
-  // A lone process needs no daemon: Open MPI would start one and wait for it, half a second at
-  // best.
+  const IgnoreLeaks of_init;
+  // A single process needs no daemon. Open MPI would start one and wait for it, for at least half a
+  // second.
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   int provided = 0;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS) {
-    fail(ErrorCode::environment, "MPI_Init_thread failed, and Zoltan needs MPI; run with one part");
+    fail(ErrorCode::environment,
+         "MPI_Init_thread failed, but Zoltan needs MPI; use one part per mesh, or start with "
+         "mpirun");
   }
   std::atexit([] {
-    const NotOurLeaks of_finalize;
+    const IgnoreLeaks of_finalize;
     int down = 0;
     MPI_Finalized(&down);
     if (down == 0) MPI_Finalize();
@@ -54,7 +56,7 @@ void need_mpi() {
 
 void check(int code, const char* call) {
   if (code != ZOLTAN_OK && code != ZOLTAN_WARN)
-    fail(ErrorCode::environment, "Zoltan: ", call, " gives ", code);
+    fail(ErrorCode::environment, "Zoltan: ", call, " failed with code ", code);
 }
 
 std::vector<Point> centroids(const TetMesh& mesh) {
@@ -72,11 +74,11 @@ const std::vector<Point>& objects(void* centres) {
   return *static_cast<const std::vector<Point>*>(centres);
 }
 
-/// Zoltan's context, freed with everything in it.
+/// Owns a Zoltan context.
 class Zoltan {
  public:
   Zoltan() : context_(Zoltan_Create(MPI_COMM_SELF)) {
-    if (context_ == nullptr) fail(ErrorCode::environment, "Zoltan: Zoltan_Create fails");
+    if (context_ == nullptr) fail(ErrorCode::environment, "Zoltan: Zoltan_Create failed");
   }
   ~Zoltan() { Zoltan_Destroy(&context_); }
   Zoltan(const Zoltan&) = delete;
@@ -117,19 +119,13 @@ void give_objects(Zoltan& zoltan, std::vector<Point>& centres) {
 
 }  // namespace
 
-PartitionMethod parse_partition_method(const std::string& name) {
-  if (name == "rcb") return PartitionMethod::rcb;
-  if (name == "hsfc") return PartitionMethod::hsfc;
-  fail(ErrorCode::bad_argument, "partition method '", name, "': expected rcb or hsfc");
-}
-
 std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
                                     PartitionMethod method) {
   if (n_parts < 1)
-    fail(ErrorCode::bad_argument, "a partition into ", n_parts, " parts: give at least 1");
+    fail(ErrorCode::bad_argument, "cannot cut a mesh into ", n_parts, " parts; choose at least 1");
   if (mesh.n_tets() > INT32_MAX) {
     fail(ErrorCode::bad_mesh, mesh.name, ": has ", mesh.n_tets(),
-         " tetrahedra; Zoltan takes 2147483647 from one process");
+         " tetrahedra, but Zoltan accepts at most 2147483647 from one process; split the mesh");
   }
   std::vector<std::int32_t> parts(mesh.n_tets(), 0);
   if (n_parts == 1) return parts;
@@ -161,7 +157,8 @@ std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
   Zoltan_LB_Free_Part(&export_gids, &export_lids, &export_procs, &export_parts);
   check(code, "Zoltan_LB_Partition");
   if (n_export != static_cast<int>(mesh.n_tets())) {
-    fail(ErrorCode::environment, "Zoltan placed ", n_export, " of ", mesh.n_tets(), " tetrahedra");
+    fail(ErrorCode::environment, "Zoltan assigned only ", n_export, " of ", mesh.n_tets(),
+         " tetrahedra to parts");
   }
   return parts;
 }

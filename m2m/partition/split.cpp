@@ -8,7 +8,7 @@
 namespace tess::m2m {
 namespace {
 
-/// Tells the owners of all parts' ghosts of them.
+/// Lists the ghosts of all parts at their owners.
 void list_ghosts(std::vector<MeshPart>& parts, std::span<const std::int32_t> owner) {
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const MeshPart& user = parts[p];
@@ -29,14 +29,14 @@ void list_ghosts(std::vector<MeshPart>& parts, std::span<const std::int32_t> own
 
 std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> parts,
                             std::int32_t n_parts) {
-  TESS_CHECK(parts.size() == mesh.n_tets(), "expected ", mesh.n_tets(), " parts, got ",
-             parts.size());
-  constexpr std::int32_t nobody = std::numeric_limits<std::int32_t>::max();
+  TESS_CHECK(parts.size() == mesh.n_tets(), "expected ", mesh.n_tets(),
+             " entries, one per tetrahedron, got ", parts.size());
+  constexpr std::int32_t no_owner = std::numeric_limits<std::int32_t>::max();
   const std::size_t n = mesh.n_points();
   std::vector<MeshPart> result(static_cast<std::size_t>(n_parts));
-  std::vector<std::int32_t> owner(n, nobody);
+  std::vector<std::int32_t> owner(n, no_owner);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    TESS_CHECK(parts[t] >= 0 && parts[t] < n_parts, "tetrahedron ", t, " in part ", parts[t],
+    TESS_CHECK(parts[t] >= 0 && parts[t] < n_parts, "tetrahedron ", t, " is in part ", parts[t],
                " of ", n_parts);
     result[static_cast<std::size_t>(parts[t])].tet_ids.push_back(static_cast<GlobalId>(t));
     for (const VertexId v : mesh.tets[t]) {
@@ -45,7 +45,7 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
     }
   }
   for (std::size_t v = 0; v < n; ++v) {
-    if (owner[v] != nobody) continue;  // used by no tetrahedron: spread over the parts
+    if (owner[v] != no_owner) continue;  // no tetrahedron uses it: spread over the parts
     owner[v] = static_cast<std::int32_t>(v * static_cast<std::size_t>(n_parts) / n);
     result[static_cast<std::size_t>(owner[v])].point_ids.push_back(static_cast<GlobalId>(v));
   }
@@ -78,16 +78,6 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
   }
   list_ghosts(result, owner);
   return result;
-}
-
-std::vector<double> values_of(const MeshPart& part, const Field& field) {
-  std::vector<double> values;
-  values.reserve(part.point_ids.size() * field.n_components);
-  for (const GlobalId v : part.point_ids) {
-    const auto row = field.values.begin() + v * static_cast<std::ptrdiff_t>(field.n_components);
-    values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(field.n_components));
-  }
-  return values;
 }
 
 }  // namespace tess::m2m

@@ -5,7 +5,7 @@
 namespace tess::m2m {
 namespace {
 
-/// The least and the greatest squared distance between points of two boxes.
+/// The smallest and the largest squared distance between points of two boxes.
 struct Range {
   double least, greatest;
 };
@@ -22,14 +22,14 @@ Range distances(const Aabb& a, const Aabb& b) {
 
 }  // namespace
 
-NearestParts::NearestParts(std::span<const Aabb> boxes, const Aabb& questions) {
+NearestParts::NearestParts(std::span<const Aabb> boxes, const Aabb& queries) {
   const auto is_empty = [](const Aabb& box) { return box.lo[0] > box.hi[0]; };
   double bound = std::numeric_limits<double>::infinity();
   for (const Aabb& box : boxes)
-    if (!is_empty(box)) bound = std::min(bound, distances(box, questions).greatest);
-  bound *= 1 + 1e-12;  // rounding
+    if (!is_empty(box)) bound = std::min(bound, distances(box, queries).greatest);
+  bound *= 1 + 1e-12;  // for rounding
   for (std::size_t part = 0; part < boxes.size(); ++part) {
-    if (is_empty(boxes[part]) || distances(boxes[part], questions).least > bound) continue;
+    if (is_empty(boxes[part]) || distances(boxes[part], queries).least > bound) continue;
     boxes_.push_back(boxes[part]);
     numbers_.push_back(static_cast<std::int32_t>(part));
   }

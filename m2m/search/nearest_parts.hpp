@@ -1,6 +1,6 @@
-// In which order the parts of a mesh are asked for the vertex nearest to a point: by the distance
-// of their boxes. Asked so, with the best distance found so far, hardly more than the parts are
-// asked that the point is near to. Travels with the Worker that asks.
+// The order in which the parts of a mesh are searched for the vertex nearest to a point: by the
+// distance of their boxes. The search ends when the next box is farther than the best vertex found,
+// so few parts are searched per point. A Worker holds this list and migrates with it.
 #pragma once
 
 #include "m2m/search/nearest_vertex.hpp"
@@ -14,7 +14,7 @@ namespace tess::m2m {
 
 class NearestParts {
  public:
-  /// A part and the distance of its box from some point.
+  /// A part, and the distance of its box from a given point.
   struct Part {
     double squared_distance = -1;
     std::int32_t number = -1;
@@ -24,12 +24,12 @@ class NearestParts {
                              std::numeric_limits<std::int32_t>::max()};
 
   NearestParts() = default;
-  /// `boxes`: of all parts, lo > hi for a part without vertices. `questions`: a box around all
-  /// points that will be asked about.
-  NearestParts(std::span<const Aabb> boxes, const Aabb& questions);
+  /// `boxes`: of all parts; lo > hi for a part without vertices. `queries`: a box around all points
+  /// of later calls of next().
+  NearestParts(std::span<const Aabb> boxes, const Aabb& queries);
 
-  /// The part that comes after `last` in the order of (distance of box, number), or `none`. Begin
-  /// with Part{}.
+  /// The part that follows `last` in the order of (distance of box, number), or `none` at the end.
+  /// The first call takes Part{}.
   [[nodiscard]] Part next(const Point& p, const Part& last) const;
 
   template <class Ar>
@@ -38,7 +38,7 @@ class NearestParts {
   }
 
  private:
-  std::vector<Aabb> boxes_;  // of parts that may hold a nearest vertex of any question
+  std::vector<Aabb> boxes_;  // of the parts that may hold the nearest vertex of some query
   std::vector<std::int32_t> numbers_;
 };
 

@@ -29,7 +29,7 @@ NearestVertex::NearestVertex(std::span<const Point> points)
   for (std::size_t i = 0; i < vertices_.size(); ++i) points_[i] = points[at(vertices_[i])];
 }
 
-/// Orders vertices_ alone: points_ are in their first order until all is built.
+/// Sorts only vertices_; the constructor reorders points_ at the end.
 void NearestVertex::build(std::int32_t first, std::int32_t last) {
   const std::size_t self = nodes_.size();
   const auto begin = vertices_.begin() + first, end = vertices_.begin() + last;
@@ -50,15 +50,15 @@ void NearestVertex::build(std::int32_t first, std::int32_t last) {
 NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) const {
   Answer best{-1, squared_reach};
   if (nodes_.empty()) return best;
-  struct Later {
+  struct Pending {
     std::int32_t node;
     double squared_distance;
   };
-  std::array<Later, 64> stack;  // the tree halves, so that it is at most 32 deep
+  std::array<Pending, 64> stack;  // each level halves the range, so the depth is at most 32
   std::size_t n = 0;
   stack[n++] = {0, squared_distance(p, nodes_[0].box)};
   while (n > 0) {
-    Later next = stack[--n];
+    Pending next = stack[--n];
     while (next.squared_distance <= best.squared_distance) {
       const Node& node = nodes_[at(next.node)];
       if (node.second < 0) {
@@ -71,8 +71,8 @@ NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) 
         }
         break;
       }
-      Later near{next.node + 1, squared_distance(p, nodes_[at(next.node + 1)].box)};
-      Later far{node.second, squared_distance(p, nodes_[at(node.second)].box)};
+      Pending near{next.node + 1, squared_distance(p, nodes_[at(next.node + 1)].box)};
+      Pending far{node.second, squared_distance(p, nodes_[at(node.second)].box)};
       if (far.squared_distance < near.squared_distance) std::swap(near, far);
       stack[n++] = far;
       next = near;

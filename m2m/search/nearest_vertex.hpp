@@ -1,7 +1,8 @@
-// The vertex nearest to a point, by a k-d tree with the box of each node (Bentley 1975; boxes prune
-// points far outside, where a grid would look at all its cells). For the policy `nearest`, and for
-// one part of a source mesh as well: the nearest of several parts is the least (distance, global
-// id). Built once, immutable after that.
+// Finds the vertex nearest to a point, with a k-d tree that stores the box of each node (Bentley
+// 1975). The boxes also prune the search for points far outside, for which a grid would visit all
+// its cells. The tree serves the policy `nearest`. Each part of a source mesh has one; over several
+// parts the nearest vertex is the minimum of (distance, global id). The tree does not change after
+// it is built.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -14,8 +15,8 @@
 
 namespace tess::m2m {
 
-/// The squared distance of a point to a box; 0 within. Never more than squared_distance() to a
-/// point of the box, in the same arithmetic.
+/// The squared distance of a point from a box; 0 inside. It never exceeds the squared_distance() to a
+/// point of the box, also after rounding.
 [[nodiscard]] inline double squared_distance(const Point& p, const Aabb& box) {
   const auto gap = [&](std::size_t axis) {
     return std::max(std::max(box.lo[axis] - p[axis], p[axis] - box.hi[axis]), 0.0);
@@ -32,22 +33,22 @@ namespace tess::m2m {
 class NearestVertex {
  public:
   struct Answer {
-    std::int32_t vertex;      ///< index into the points; of several as near, the lowest
-    double squared_distance;  ///< from coordinate differences
+    std::int32_t vertex;  ///< index into the points; the lowest if several are equally near
+    double squared_distance;
   };
-  /// Takes a copy of the points. n log n.
+  /// Copies the points. O(n log n).
   explicit NearestVertex(std::span<const Point> points);
 
-  /// The vertex nearest to `p` among those not farther than `reach`; vertex -1 where there is none.
+  /// The vertex nearest to `p` within the reach (inclusive); vertex -1 if there is none.
   [[nodiscard]] Answer find(const Point& p,
                             double squared_reach = std::numeric_limits<double>::infinity()) const;
 
  private:
-  /// Some of the vertices, and the two nodes that they are divided among.
+  /// A range of vertices. An inner node divides it between two children.
   struct Node {
     Aabb box;
-    std::int32_t first, last;  // places in the tree's order
-    std::int32_t second = -1;  // the second child; the first one follows its parent. -1: a leaf
+    std::int32_t first, last;  // positions in the tree's order
+    std::int32_t second = -1;  // second child, -1 in a leaf; the first child follows its parent
   };
   void build(std::int32_t first, std::int32_t last);
 

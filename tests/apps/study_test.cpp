@@ -1,8 +1,8 @@
 #include "apps/m2m_transfer/study.hpp"
 
 #include "apps/m2m_transfer/driver.hpp"
-#include "m2m/io/exodus_writer.hpp"
-#include "m2m/io/kuhn.hpp"
+#include "m2m/write_exodus.hpp"
+#include "m2m/kuhn.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/apps/xml.hpp"
 #include "tests/m2m/scratch.hpp"

@@ -1,7 +1,7 @@
 #include "m2m/interpolate/locate.hpp"
 
 #include "m2m/interpolate/orientation.hpp"
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
 #include "m2m/search/nearest_parts.hpp"

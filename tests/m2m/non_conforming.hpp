@@ -3,7 +3,7 @@
 // a vertex of the last one inside.
 #pragma once
 
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 
 namespace tess::test {
 

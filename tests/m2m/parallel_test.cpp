@@ -1,11 +1,11 @@
 // The transfer through chares against the transfer in one thread: the same bits on every machine
 // and schedule.
-#include "m2m/io/read_mesh.hpp"
-#include "m2m/search/serial_transfer.hpp"
+#include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/non_conforming.hpp"
+#include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -14,6 +14,8 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using tess::test::SerialReport;
+using tess::test::transfer_serial;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // A program of its own: MPI has not been initialised when the first chares partition.
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 #include "m2m/partition/partition.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"

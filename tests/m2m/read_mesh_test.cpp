@@ -1,6 +1,6 @@
-#include "m2m/io/read_mesh.hpp"
+#include "m2m/read_mesh.hpp"
 
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"

@@ -1,10 +1,10 @@
 // Several transfers on the same meshes, one after another and at once, against chains of transfers
 // in one thread: the same bits on every machine and schedule.
-#include "m2m/io/read_mesh.hpp"
-#include "m2m/search/serial_transfer.hpp"
+#include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
+#include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using tess::test::transfer_serial;
 
 namespace {
 

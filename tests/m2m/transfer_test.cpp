@@ -1,10 +1,10 @@
 #include "m2m/interpolate/locate.hpp"
-#include "m2m/io/kuhn.hpp"
-#include "m2m/io/read_mesh.hpp"
-#include "m2m/search/serial_transfer.hpp"
+#include "m2m/kuhn.hpp"
+#include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/scratch.hpp"
+#include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -17,7 +17,9 @@
 using namespace tess::m2m;
 using tess::test::message_of;
 using tess::test::Scratch;
+using tess::test::SerialReport;
 using tess::test::shared_data;
+using tess::test::transfer_serial;
 
 namespace {
 
@@ -274,7 +276,7 @@ TEST_CASE("points outside are counted and get what the policy says", "[m2m][tran
   }
   for (const char* text : {"", "value:", "value:x", "value:nan", "value:1 ", "drop"}) {
     CHECK_THAT(message_of([&] { (void)parse_policy(text); }),
-               Catch::Contains("expected keep, nearest or value:NUMBER"));
+               Catch::Contains("choose keep, nearest or value:NUMBER"));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "m2m/io/exodus_writer.hpp"
+#include "m2m/write_exodus.hpp"
 
 #include "runtime/core/check.hpp"
 
@@ -16,9 +16,9 @@
 namespace tess::m2m {
 namespace {
 
-constexpr std::size_t longest_name = 255;  // what ParaView and the library agree on
+constexpr std::size_t longest_name = 255;  // the limit of ParaView and of the library
 
-/// One component of a field, as Exodus sees it.
+/// A variable of ExodusII: one component of a field.
 struct Variable {
   std::string name;
   const Field* field;
@@ -41,7 +41,7 @@ std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_row
       }
       if (name.empty() || name.size() > longest_name) {
         fail(ErrorCode::bad_value, path, ": field name '", name, "' has ", name.size(),
-             " characters; 1 to ", longest_name, " can be written");
+             " characters; choose a name of 1 to ", longest_name);
       }
       result.push_back({std::move(name), &field, c});
     }
@@ -49,7 +49,7 @@ std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_row
   return result;
 }
 
-/// The file under its other name; gone with this object unless finish() has renamed it.
+/// The file under its temporary name. The destructor removes it unless finish() has renamed it.
 class PartFile {
  public:
   explicit PartFile(const std::string& path)
@@ -62,7 +62,7 @@ class PartFile {
     if (id_ < 0) {
       fail(ErrorCode::bad_file, path_, ": cannot be written (",
            std::generic_category().message(errno),
-           "); check that its folder is there and may be written");
+           "); check that its folder exists and is writable");
     }
   }
   ~PartFile() {
@@ -75,7 +75,8 @@ class PartFile {
   [[nodiscard]] int id() const { return id_; }
   void check(int code, const char* call) const {
     if (code >= 0) return;
-    fail(ErrorCode::environment, path_, ": ", call, " gives ", code, "; is the disk full?");
+    fail(ErrorCode::environment, path_, ": ", call, " failed with code ", code,
+         "; check that the disk has space");
   }
   void finish() {
     const int code = ex_close(id_);
@@ -94,7 +95,7 @@ class PartFile {
   int id_ = -1;
 };
 
-/// The mesh's blocks, or one for all.
+/// The blocks of the mesh, or one block of all tetrahedra.
 std::vector<Block> blocks_of(const TetMesh& mesh) {
   return mesh.blocks.empty() ? std::vector{Block{1, {}, mesh.n_tets()}} : mesh.blocks;
 }
@@ -181,7 +182,7 @@ void name_variables(const PartFile& file, ex_entity_type type, const std::vector
   }
 }
 
-/// Values of some consecutive rows: of all vertices, or of the tetrahedra of a block.
+/// A range of rows of the fields: all vertices, or the tetrahedra of one block.
 struct Rows {
   ex_entity_type type;
   std::int64_t id;
@@ -201,12 +202,12 @@ void put_variables(const PartFile& file, const std::vector<Variable>& all, const
   }
 }
 
-/// Numbers of blocks and sets are 32 bits in this kind of file, names have an end.
+/// The file format has 32-bit numbers of blocks and sets, and a maximum length of names.
 void check_groups(const TetMesh& mesh, const std::vector<Block>& blocks, const std::string& path) {
   const auto check = [&](const char* kind, std::int64_t id, const std::string& name) {
     if (id < 0 || id > std::numeric_limits<std::int32_t>::max() || name.size() > longest_name)
       fail(ErrorCode::bad_value, path, ": ", kind, " ", id, " '", name,
-           "' cannot be written; numbers reach from 0 to 2147483647, names have at most ",
+           "' cannot be written; choose a number from 0 to 2147483647 and a name of at most ",
            longest_name, " characters");
   };
   for (const Block& block : blocks) check("block", block.id, block.name);

@@ -1,17 +1,20 @@
-#include "m2m/search/serial_transfer.hpp"
+#include "tests/m2m/serial_transfer.hpp"
 
 #include "m2m/interpolate/locate.hpp"
-#include "m2m/search/cell_grid.hpp"
 #include "m2m/search/nearest_vertex.hpp"
 #include "runtime/core/check.hpp"
+#include "tests/m2m/cell_grid.hpp"
 
 #include <algorithm>
 #include <optional>
 
-namespace tess::m2m {
+namespace tess::test {
+
+using namespace m2m;
+
 namespace {
 
-/// The best tetrahedron of every target vertex.
+/// The best candidate for a target vertex.
 struct Winner {
   Candidate candidate;
   Weights weights{};
@@ -33,7 +36,7 @@ std::vector<Winner> search(const TetMesh& source, const TetMesh& target,
     for (const Found& f : found) {
       const PointPair& pair = pairs[static_cast<std::size_t>(f.pair)];
       Winner& winner = winners[static_cast<std::size_t>(pair.point)];
-      const Candidate candidate = claim_of(f.location, pair.tet);
+      const Candidate candidate = candidate_of(f.location, pair.tet);
       if (better(candidate, winner.candidate)) winner = {candidate, f.location.weights};
     }
     n_candidates += pairs.size();
@@ -70,7 +73,7 @@ SerialReport transfer_serial(const TetMesh& source, std::span<const Field> sourc
                    source_fields[f].values.size() == n * source.n_points() &&
                    target_fields[f].values.size() == n * target.n_points(),
                "field ", source_fields[f].name, ": expected ", n,
-               " components at every vertex of both meshes");
+               " components per vertex on both meshes");
   }
   SerialReport report;
   const std::vector<Winner> winners = search(source, target, report.n_candidates);
@@ -88,7 +91,7 @@ SerialReport transfer_serial(const TetMesh& source, std::span<const Field> sourc
         const std::size_t n = source_fields[f].n_components;
         for (std::size_t c = 0; c < n; ++c) {
           target_fields[f].values[v * n + c] =
-              weigh(winner.weights, tet, source_fields[f].values.data() + c, n);
+              interpolated(winner.weights, tet, source_fields[f].values.data() + c, n);
         }
       }
     } else if (const auto* given = std::get_if<UseValue>(&policy)) {
@@ -105,4 +108,4 @@ SerialReport transfer_serial(const TetMesh& source, std::span<const Field> sourc
   return report;
 }
 
-}  // namespace tess::m2m
+}  // namespace tess::test

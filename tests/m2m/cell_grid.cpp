@@ -1,9 +1,9 @@
-#include "m2m/search/cell_grid.hpp"
+#include "tests/m2m/cell_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tess::m2m {
+namespace tess::test {
 
 CellGrid::CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb> items)
     : low_(domain.lo) {
@@ -13,7 +13,7 @@ CellGrid::CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb
     side[axis] = domain.hi[axis] - domain.lo[axis];
     longest = std::max(longest, side[axis]);
   }
-  // Thin directions count as one cell, so that the others keep the cells.
+  // A thin direction gets one cell, and the others share the cells.
   double product = 1;
   for (double& s : side) product *= std::max(s / longest, 1e-3);
   const double cell =
@@ -24,7 +24,7 @@ CellGrid::CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb
     if (!(side[axis] > 0)) continue;
     shape_[axis] =
         static_cast<std::int32_t>(std::clamp(std::floor(side[axis] / cell), 1.0, 1024.0));
-    cells_a_length_[axis] = shape_[axis] / side[axis];
+    cells_per_length_[axis] = shape_[axis] / side[axis];
   }
   begin_.assign(static_cast<std::size_t>(shape_[0]) * static_cast<std::size_t>(shape_[1]) *
                         static_cast<std::size_t>(shape_[2]) +
@@ -55,8 +55,8 @@ CellGrid::CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb
 CellGrid::Cell CellGrid::cell_of(const Point& p) const {
   Cell cell;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double at = (p[axis] - low_[axis]) *
-                      cells_a_length_[axis];  // monotonic: a point in a box is in its cells
+    // Monotonic in p, so a point in a box lies in a cell of the box.
+    const double at = (p[axis] - low_[axis]) * cells_per_length_[axis];
     cell[axis] =
         static_cast<std::int32_t>(std::clamp(at, 0.0, static_cast<double>(shape_[axis] - 1)));
   }
@@ -76,4 +76,4 @@ std::size_t CellGrid::index(const Cell& cell) const {
               static_cast<std::size_t>(shape_[1]) * static_cast<std::size_t>(cell[2]));
 }
 
-}  // namespace tess::m2m
+}  // namespace tess::test

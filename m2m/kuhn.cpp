@@ -1,4 +1,4 @@
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 
 #include "runtime/core/error.hpp"
 
@@ -9,10 +9,10 @@
 namespace tess::m2m {
 namespace {
 
-constexpr std::int32_t largest_n = 700;  // 6 n³ tetrahedra still count in 31 bits
+constexpr std::int32_t largest_n = 700;  // 6 n³ fits in 31 bits
 constexpr double largest_jitter = 0.2;   // keeps every tetrahedron positive
 
-/// A number in [-1, 1) from a vertex and an axis (finaliser of splitmix64).
+/// A hash of a vertex and an axis as a number in [-1, 1) (finaliser of splitmix64).
 double noise(std::uint64_t vertex, std::uint64_t axis) {
   std::uint64_t z = (vertex * 3 + axis + 1) * 0x9e3779b97f4a7c15U;
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -21,8 +21,8 @@ double noise(std::uint64_t vertex, std::uint64_t axis) {
   return static_cast<double>(z >> 11U) * 0x1p-52 - 1.0;
 }
 
-/// The six paths from corner 0 to corner 7 of a cube (bits zyx); odd permutations have their middle
-/// swapped, so that all orientations are positive.
+/// The six paths from corner 0 to corner 7 of a cube (bits zyx). The middle corners of odd
+/// permutations are swapped, so that all orientations are positive.
 constexpr int corners_of_tets[6][4] = {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7},
                                        {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}};
 
@@ -51,7 +51,7 @@ KuhnBox parse_kuhn(std::string_view name) {
 TetMesh kuhn_mesh(KuhnBox box) {
   if (box.n < 1 || box.n > largest_n || !(box.jitter >= 0 && box.jitter <= largest_jitter)) {
     fail(ErrorCode::bad_argument, "kuhn box of n = ", box.n, " and jitter ", box.jitter,
-         ": n is from 1 to ", largest_n, ", jitter from 0 to ", largest_jitter);
+         "; choose n from 1 to ", largest_n, " and jitter from 0 to ", largest_jitter);
   }
   TetMesh mesh;
   mesh.name =

@@ -1,9 +1,9 @@
-#include "m2m/io/read_mesh.hpp"
+#include "m2m/read_mesh.hpp"
 
 #include "m2m/io/exodus_reader.hpp"
 #include "m2m/io/file_bytes.hpp"
 #include "m2m/io/gmsh_reader.hpp"
-#include "m2m/io/kuhn.hpp"
+#include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 
 #include <string_view>
@@ -23,8 +23,8 @@ TetMesh read_mesh(const std::string& name) {
       mesh = read_gmsh(name, bytes);
     } else {
       fail(ErrorCode::bad_file, name,
-           ": is neither ExodusII (NetCDF) nor gmsh (begins with $MeshFormat); convert it to one "
-           "of them");
+           ": is neither an ExodusII file (NetCDF) nor a gmsh file (starts with $MeshFormat); "
+           "convert it to one of these formats");
     }
   }
   validate(mesh);

@@ -1,0 +1,13 @@
+#include "m2m/partition_method.hpp"
+
+#include "runtime/core/error.hpp"
+
+namespace tess::m2m {
+
+PartitionMethod parse_partition_method(const std::string& name) {
+  if (name == "rcb") return PartitionMethod::rcb;
+  if (name == "hsfc") return PartitionMethod::hsfc;
+  fail(ErrorCode::bad_argument, "partition method '", name, "' is unknown; choose rcb or hsfc");
+}
+
+}  // namespace tess::m2m

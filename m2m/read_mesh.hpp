@@ -1,0 +1,16 @@
+// Reads a mesh from a file, or generates one by name. The first bytes of the file decide its format,
+// not its extension. Whatever the bytes are, the result is a mesh that has passed validate(), or an
+// Error (bad_file, bad_mesh) of one line that names the file, the place in it and the remedy.
+#pragma once
+
+#include "m2m/mesh.hpp"
+
+#include <string>
+
+namespace tess::m2m {
+
+/// `name` is "kuhn:8" or "kuhn:8@0.2" (kuhn.hpp), or the path of an ExodusII file or of a gmsh file
+/// of version 2.2 or 4.1, ASCII or binary. Global ids follow the order of the file.
+[[nodiscard]] TetMesh read_mesh(const std::string& name);
+
+}  // namespace tess::m2m
