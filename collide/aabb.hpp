@@ -1,8 +1,7 @@
-// An axis-aligned bounding box, and what it means for two of them to touch. Boxes are closed unless
-// asked otherwise: [lo, hi] contains both corners, so that boxes that share a face, an edge or a
-// corner overlap. A point is a box of zero size. Only comparisons decide an overlap, never
-// arithmetic: the answer is exact. Invariant of a valid box: all six numbers finite, lo <= hi on
-// each axis (see is_valid()).
+// Axis-aligned bounding boxes and their overlap. By default a box is closed: [lo, hi] contains both
+// corners, so boxes that share a face, an edge or a corner overlap. A point is a box of zero size.
+// An overlap is decided by comparisons, without arithmetic, so the answer is exact. In a valid box
+// all six numbers are finite, and lo <= hi on each axis (is_valid()).
 #pragma once
 
 #include <algorithm>
@@ -18,7 +17,7 @@ using Point = std::array<double, 3>;
 /// Whether boxes that share only a face, an edge or a corner overlap.
 enum class Touching { counts, does_not_count };
 
-/// Closed box [lo, hi]; a plain aggregate of 48 bytes that travels as bytes.
+/// The closed box [lo, hi]: an aggregate of 48 bytes that is sent as bytes.
 struct Aabb {
   Point lo;
   Point hi;
@@ -31,7 +30,7 @@ struct Aabb {
   return {point, point};
 }
 
-/// The smallest box that holds both.
+/// The smallest box that contains both.
 [[nodiscard]] inline Aabb merged(const Aabb& a, const Aabb& b) noexcept {
   Aabb out = a;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -41,7 +40,7 @@ struct Aabb {
   return out;
 }
 
-/// The smallest box that holds all points; of none, lo = +inf and hi = -inf.
+/// The smallest box that contains all points. Without points: lo = +inf, hi = -inf.
 [[nodiscard]] inline Aabb box_around(std::span<const Point> points) noexcept {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Aabb out{{inf, inf, inf}, {-inf, -inf, -inf}};
@@ -49,7 +48,7 @@ struct Aabb {
   return out;
 }
 
-/// False for a NaN, an infinity, or lo > hi on any axis.
+/// False if a number is NaN or infinite, or if lo > hi on an axis.
 [[nodiscard]] inline bool is_valid(const Aabb& box) noexcept {
   for (std::size_t k = 0; k < 3; ++k)
     if (!std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k]) || box.lo[k] > box.hi[k])
@@ -57,8 +56,8 @@ struct Aabb {
   return true;
 }
 
-/// Do two valid boxes overlap? A point strictly within an open box does; two equal points only
-/// where touching counts.
+/// True if two valid boxes overlap. If touching does not count, a point overlaps the boxes that it
+/// is strictly inside of, and two equal points do not overlap.
 [[nodiscard]] inline bool overlap(const Aabb& a, const Aabb& b, Touching touching) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     const bool apart = touching == Touching::counts ? a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]

@@ -1,5 +1,5 @@
-// The whole collision in one thread: gridding, then the serial step voxel by voxel. What the
-// parallel collider must reproduce, and what benchmarks time.
+// A collision in one thread, without the runtime: assigns the items to voxels, then finds the pairs
+// voxel by voxel. Tests compare the parallel collider with it, and benchmarks time it.
 #pragma once
 
 #include "collide/serial/gridding.hpp"
@@ -7,8 +7,8 @@
 
 namespace tess::collide {
 
-/// Calls found(const Item&, const Item&) exactly once for each pair of items that overlap under the
-/// rules, whatever the grid. Errors: as group_by_voxel(), before the first call.
+/// Calls found(const Item&, const Item&) exactly once per pair of items that overlap under the
+/// rules, for any grid. Throws Error as group_by_voxel() does, before the first call of `found`.
 template <class Found>
 void collide_serial(std::span<const Item> items, const VoxelGrid& grid, PairRules rules,
                     Found&& found, SerialMethod method = SerialMethod::automatic) {

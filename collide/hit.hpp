@@ -1,6 +1,6 @@
-// What goes into a collision and what comes out: an Item is a box with the name of the object it
-// bounds, a Hit is two such names. Both are plain bytes without padding, so that messages and
-// hashes of them are exact. The collision never looks into a name except to compare models.
+// The input and the output of a collision. An Item is a box with the id of the object that it
+// bounds; a Hit is a pair of ids. Both are plain bytes without padding, so messages and hashes of
+// them are exact. The collision uses only the model of an id; owner and number are opaque to it.
 #pragma once
 
 #include "collide/aabb.hpp"
@@ -12,14 +12,14 @@
 
 namespace tess::collide {
 
-/// Who owns an object and is told of its hits: a chare, a client, a file. Opaque here.
+/// The owner of an object, which receives its hits: for example an element of an array.
 enum class OwnerId : std::uint64_t {};
-/// Which of its owner's objects.
+/// The number of an object at its owner.
 enum class LocalId : std::uint32_t {};
-/// Pairs within one model are not tested, unless self-collision is asked for.
+/// The model that an object belongs to. Pairs within a model are tested only on request.
 enum class ModelId : std::uint32_t {};
 
-/// The name of an object. Names must be unique in one collision; nothing else is asked of them.
+/// The id of an object. Ids must be unique within a collision.
 struct ObjectId {
   OwnerId owner{};
   LocalId local{};
@@ -28,13 +28,13 @@ struct ObjectId {
   friend auto operator<=>(const ObjectId&, const ObjectId&) = default;
 };
 
-/// An object as the broad phase sees it: one cache line, sent to each voxel that its box touches.
+/// An object of the broad phase: one cache line, sent to each voxel that its box touches.
 struct Item {
   Aabb box;
   ObjectId id;
 };
 
-/// Two objects whose boxes overlap; which one is first says nothing.
+/// Two objects whose boxes overlap. Their order has no meaning.
 struct Hit {
   ObjectId first;
   ObjectId second;
@@ -49,13 +49,13 @@ static_assert(std::has_unique_object_representations_v<Hit>);
 /// Whether pairs within one model are tested.
 enum class WithinModel { skip, test };
 
-/// Which pairs are hits.
+/// Decides which pairs are hits.
 struct PairRules {
   Touching touching = Touching::counts;
   WithinModel within_model = WithinModel::skip;
 };
 
-/// Throws the Error that names the first item whose box has a NaN, an infinity or lo > hi.
+/// Throws Error (bad_value) with the first item whose box is not valid.
 void check_boxes(std::span<const Item> items);
 
 }  // namespace tess::collide

@@ -30,8 +30,8 @@ double suggested_voxel_size(std::span<const Item> items) {
     std::nth_element(extents.begin(), middle, extents.end());
     size = 2 * *middle;
   }
-  // Indices must fit 32 bits, with room for what the sample missed; sizes and inverses must be
-  // finite.
+  // Indices must fit in 32 bits, with a margin for items outside the sample. The size and its
+  // inverse must be finite.
   size = std::clamp(std::max(size, largest / (1 << 28)), 1e-300, 1e300);
   return size;
 }

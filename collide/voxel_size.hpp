@@ -1,15 +1,16 @@
-// A voxel size for given boxes: too small sends each object to many voxels, too large leaves no
-// parallelism and tests everything with everything (Lawlor and Kalé 2002, section 5.1, leave the
-// choice to the user). Pure: the same boxes give the same size.
+// Suggests a voxel size for given boxes. If voxels are too small, each object is sent to many of
+// them; if they are too large, there is no parallelism, and most pairs are tested. (Lawlor and Kalé
+// 2002, section 5.1, leave the choice to the user.)
 #pragma once
 
 #include "collide/hit.hpp"
 
 namespace tess::collide {
 
-/// An edge for cubic voxels: twice the median over the items of their longest extent, so that half
-/// the objects touch at most two voxels an axis. Points alone: from their number and bounds. Looks
-/// at no more than 4 096 items, evenly taken. Always positive and finite, also for no items.
+/// The edge of cubic voxels: twice the median of the longest extents of the items, so that half of
+/// the objects touch at most two voxels per axis. If all items are points, their number and bounds
+/// give the size. At most 4 096 items, evenly spaced in the list, are examined. The result is
+/// positive and finite, also without items, and depends only on the items.
 [[nodiscard]] double suggested_voxel_size(std::span<const Item> items);
 
 }  // namespace tess::collide

@@ -1,6 +1,6 @@
-// Values at the vertices of a mesh. A transfer moves fields from one mesh to another. A manufactured
-// field is a formula in x, y and z, so that the result of a transfer can be compared with the exact
-// value at any point.
+// Values at the vertices of a mesh. A transfer moves fields from one mesh to another. A
+// manufactured field is a formula in x, y and z, so that the result of a transfer can be compared
+// with the exact value at any point.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -31,8 +31,8 @@ using Formula = std::function<double(const Point&)>;
 /// Throws Error (bad_argument) with the position of the mistake in the expression.
 [[nodiscard]] Formula make_formula(const std::string& name, const Aabb& domain);
 
-/// Evaluates the formula at every vertex. Throws Error (bad_value) with the vertex if a value is not
-/// finite.
+/// Evaluates the formula at every vertex. Throws Error (bad_value) with the vertex if a value is
+/// not finite.
 [[nodiscard]] Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula);
 
 /// Norms of the error e = value - truth of a scalar field, over some or all vertices. The mass m of

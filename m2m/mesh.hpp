@@ -1,8 +1,8 @@
 // A tetrahedral mesh: points and tetrahedra in file order. The readers (read_mesh.hpp) or the
-// application create it. validate() checks it once; it does not change after that. The position of a
-// vertex or tetrahedron in these lists is its global id; hashes, ties and output follow the global
-// ids. Counts have 64 bits. Vertex ids within a mesh have 32 bits, so a mesh holds at most 2^31 - 1
-// vertices.
+// application create it. validate() checks it once; it does not change after that. The position of
+// a vertex or tetrahedron in these lists is its global id; hashes, ties and output follow the
+// global ids. Counts have 64 bits. Vertex ids within a mesh have 32 bits, so a mesh holds at most
+// 2^31 - 1 vertices.
 #pragma once
 
 #include "collide/aabb.hpp"

@@ -1,6 +1,7 @@
-// Reads a mesh from a file, or generates one by name. The first bytes of the file decide its format,
-// not its extension. Whatever the bytes are, the result is a mesh that has passed validate(), or an
-// Error (bad_file, bad_mesh) of one line that names the file, the place in it and the remedy.
+// Reads a mesh from a file, or generates one by name. The first bytes of the file decide its
+// format, not its extension. Whatever the bytes are, the result is a mesh that has passed
+// validate(), or an Error (bad_file, bad_mesh) of one line that names the file, the place in it and
+// the remedy.
 #pragma once
 
 #include "m2m/mesh.hpp"

@@ -28,9 +28,9 @@
 //     co_await first;
 //     co_await second;
 //
-// If one of two concurrent transfers reads the mesh that the other writes, it sees the result of the
-// other completely or not at all. If both write to the same vertex, one of the two values remains,
-// and it is not defined which. Await the first transfer before the second if that matters.
+// If one of two concurrent transfers reads the mesh that the other writes, it sees the result of
+// the other completely or not at all. If both write to the same vertex, one of the two values
+// remains, and it is not defined which. Await the first transfer before the second if that matters.
 #pragma once
 
 #include "m2m/parallel/scatter.hpp"
@@ -62,8 +62,8 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
               TransferSummary* summary);
 
 /// A voxel size for a transfer between these meshes: about 100 source tetrahedra per voxel, and not
-/// so small that cell indices exceed 32 bits. (Measured: with 30 tetrahedra a transfer takes a third
-/// longer, with 200 as long.) It depends only on the meshes.
+/// so small that cell indices exceed 32 bits. (Measured: with 30 tetrahedra a transfer takes a
+/// third longer, with 200 as long.) It depends only on the meshes.
 [[nodiscard]] Point suggest_voxel_size(const TetMesh& source, const TetMesh& target);
 
 }  // namespace tess::m2m

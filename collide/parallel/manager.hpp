@@ -1,6 +1,5 @@
-// The group beside the voxels, one member on each PE (Lawlor and Kalé 2002, section 3.3): clients
-// of the PE hand it their objects; it finds the voxels that each touches and sends one message to
-// each voxel.
+// A group with one member per PE (Lawlor and Kalé 2002, section 3.3). Clients on the PE pass their
+// objects to it. It finds the voxels that each object touches, and sends one message per voxel.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -19,21 +18,21 @@ class Manager : public Group<Manager> {
   Manager(const Point& origin, const Point& size, ArrayProxy<Voxel> voxels)
       : grid_(origin, size), voxels_(voxels) {}
 
-  /// Takes objects of a client on this PE. Throws Error that names the object for a box that is
-  /// none, and for one that the grid has no cells for: nothing of this list is taken then.
+  /// Accepts objects of a client on this PE. Throws Error with the object if a box is not valid or
+  /// exceeds the range of cell indices; then no object of the list is accepted.
   void submit(std::vector<Item> items);
 
-  /// Sends all that was submitted to the voxels it touches, one message a voxel.
+  /// Sends the submitted objects to the voxels that they touch, one message per voxel.
   void deliver();
 
-  /// Objects sent to voxels so far, each counted once for each voxel.
+  /// Number of (object, voxel) pairs sent so far.
   [[nodiscard]] std::uint64_t n_delivered() const { return n_delivered_; }
 
  private:
   const VoxelGrid grid_;
   const ArrayProxy<Voxel> voxels_;
-  std::vector<std::vector<Item>> lists_;  // as they were submitted
-  serial::CellBounds bounds_;             // of their cells
+  std::vector<std::vector<Item>> lists_;  // one per call of submit()
+  serial::CellBounds bounds_;             // of the cells of all lists
   std::uint64_t n_delivered_ = 0;
 };
 

@@ -1,6 +1,5 @@
-// What a collision tells the owners of objects, and how: pieces of the list of hits go straight
-// from the voxel that found them to the chare that owns the object. Nobody ever holds the whole
-// list.
+// Reports hits to the owners of the objects. A voxel sends its hits directly to the chares that own
+// the objects, in one message per pair of owners. The complete list of hits is never in one place.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -12,7 +11,7 @@
 
 namespace tess::collide {
 
-/// One hit between an object of the owner that is told and an object of the other.
+/// A hit between an object of the receiving owner and an object of the other owner.
 struct LocalPair {
   LocalId mine{};
   LocalId theirs{};
@@ -21,16 +20,16 @@ struct LocalPair {
 
 /// Hits between two owners, found in one voxel.
 struct Hits {
-  OwnerId owner{};  ///< who is told
+  OwnerId owner{};  ///< the receiver
   OwnerId other{};
   std::vector<LocalPair> pairs;
 };
 
-/// Who is told of a hit.
+/// The receivers of hits.
 struct Report {
-  Callback<Hits> call;  ///< called for each (voxel, owner, other) that has hits
-  std::optional<ModelId>
-      only;  ///< tell the owner of the object of this model alone; otherwise both owners
+  Callback<Hits> call;  ///< called per (voxel, owner, other) with hits
+  /// If set, only the owner of the object of this model receives a hit; otherwise both owners do.
+  std::optional<ModelId> only;
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -38,7 +37,7 @@ struct Report {
   }
 };
 
-/// The owner id of an element of a one-dimensional array; report_to() finds the element by it.
+/// The owner id of an element of a one-dimensional array, for report_to().
 [[nodiscard]] inline OwnerId owner_of(Index1 index) {
   return static_cast<OwnerId>(static_cast<std::uint32_t>(index.x));
 }
@@ -57,7 +56,8 @@ template <class C, auto F>
 inline const Callback<Hits>::Kind owner_kind{naming::value<&call_owner<C, F>>(), &call_owner<C, F>};
 }  // namespace detail
 
-/// Hits go to entry method F(Hits) of the elements of an array whose objects carry owner_of(index).
+/// Sends hits to the entry method F(Hits) of the elements of an array. An object of an element has
+/// the owner id owner_of(index).
 template <auto F, class C>
 [[nodiscard]] Callback<Hits> report_to(const ArrayProxy<C>& owners) {
   return Callback<Hits>(detail::owner_kind<C, F>, to_bytes(owners.id()));

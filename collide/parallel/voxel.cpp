@@ -10,8 +10,8 @@
 namespace tess::collide {
 namespace {
 
-/// Gathers the hits of one voxel by (owner, other). Hits come in runs of one pair of owners, so the
-/// list in use is looked for again only where a run ends.
+/// Sorts the hits of one voxel by (owner, other). Most hits have the same owners as the hit before,
+/// so the list is looked up again only if the owners change.
 class Sorter {
  public:
   void add(const ObjectId& mine, const ObjectId& theirs) {
@@ -32,11 +32,11 @@ class Sorter {
     }
   };
   void select(OwnerId owner, OwnerId other) {
-    constexpr std::size_t kRoom = 64;
+    constexpr std::size_t capacity = 64;
     const auto [at, is_new] = where_.try_emplace({owner, other}, lists_.size());
     if (is_new) lists_.push_back(Hits{owner, other, {}});
     pairs_ = &lists_[at->second].pairs;
-    if (is_new) pairs_->reserve(kRoom);
+    if (is_new) pairs_->reserve(capacity);
     owner_ = owner;
     other_ = other;
   }

@@ -1,8 +1,9 @@
-// A voxel: a chare of a sparse three-dimensional array, created by the first objects that touch it,
-// on the PE they come from (Lawlor and Kalé 2002, section 3.3). Once all objects are delivered it
-// is a serial problem by itself. What does not touch anything costs nothing: empty voxels do not
-// exist, and one that a collision finds empty, for its objects have moved on, ends; one whose
-// objects are all of one model skips the serial step (section 4.2).
+// A voxel is an element of a sparse three-dimensional array. The first objects that touch it create
+// it, on the PE that they come from (Lawlor and Kalé 2002, section 3.3). When all objects are
+// delivered, each voxel solves a serial problem of its own. Empty space costs nothing: it has no
+// voxels, and a voxel that is empty in a collision, because its objects have moved on, is
+// destroyed. A voxel with objects of a single model skips the search if pairs within a model do not
+// count (section 4.2).
 #pragma once
 
 #include "collide/hit.hpp"
@@ -14,7 +15,7 @@
 
 namespace tess::collide {
 
-/// What a collision is run with, the same for all voxels.
+/// The parameters of a collision, the same for all voxels.
 struct Collision {
   Point origin{};  ///< of the grid
   Point size{};    ///< of a voxel
@@ -29,14 +30,14 @@ struct Collision {
 
 class Voxel : public Chare<Voxel, Index3> {
  public:
-  /// Takes objects that touch this voxel.
+  /// Adds objects that touch this voxel.
   void add(std::vector<Item> items);
 
-  /// Finds the pairs that this voxel is responsible for, tells their owners, and lets go of the
-  /// objects. A voxel without objects ends.
+  /// Finds the pairs that this voxel is responsible for, sends them to the owners, and drops the
+  /// objects. A voxel without objects is destroyed.
   void start_collision(const Collision& collision);
 
-  /// For a balancer: in units of voxels.
+  /// The position for load balancing, in units of voxels.
   [[nodiscard]] std::array<double, 3> balance_position() const {
     return {1.0 * index().x, 1.0 * index().y, 1.0 * index().z};
   }

@@ -5,8 +5,8 @@
 namespace tess::collide::serial {
 
 Slices::Slices(std::span<const Item> sample, std::size_t n_items) {
-  constexpr std::size_t kSample = 32;
-  const std::size_t stride = sample.size() / kSample + 1;
+  constexpr std::size_t n_sample = 32;
+  const std::size_t stride = sample.size() / n_sample + 1;
   constexpr double inf = std::numeric_limits<double>::infinity();
   Aabb all{{inf, inf, inf}, {-inf, -inf, -inf}};
   for (std::size_t i = 0; i < sample.size(); i += stride) all = merged(all, sample[i].box);
@@ -20,13 +20,13 @@ Slices::Slices(std::span<const Item> sample, std::size_t n_items) {
   }
   const std::size_t wanted = std::clamp<std::size_t>(n_items / 4, 1, 1 << 16);
   const double per_slice = static_cast<double>(wanted) / widest;
-  if (!(per_slice < inf)) return;  // no extent to speak of: one slice
+  if (!(per_slice < inf)) return;  // no extent: one slice
   size_ = wanted;
   low_ = all.lo[axis_];
   per_slice_ = per_slice;
 }
 
-void BucketOrder::settle() {
+void BucketOrder::finish_count() {
   const std::size_t n = reach_.size();
   for (std::size_t s = 0; s < n; ++s) begin_[s + 1] += begin_[s];
   next_.assign(begin_.begin(), begin_.end() - 1);

@@ -1,7 +1,8 @@
-// Boxes in order of slices along one axis: what a sweep needs, without a comparison sort. The slice
-// of a coordinate is a monotone function, so of all boxes that may overlap one from lo to hi, the
-// lower corners lie in no later slice than hi, and none stands before first(lo). A sweep tests that
-// run of neighbours and nothing else. How the slices are chosen affects speed only.
+// Sorts boxes into slices along one axis, for a sweep, without a comparison sort. The slice is a
+// monotone function of the coordinate. So if a box may overlap a box that reaches from lo to hi,
+// its lower corner lies in the slice of hi or an earlier one, and its position is not before
+// first(lo). The sweep tests only this range of positions. The choice of the slices affects only
+// the speed.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -13,11 +14,10 @@
 
 namespace tess::collide::serial {
 
-/// Slices of the widest axis of some boxes: monotone in the coordinate.
+/// Slices along the axis on which the boxes spread most.
 class Slices {
  public:
-  /// About a fourth as many slices as there are items, over the axis on which they spread most. A
-  /// sample decides.
+  /// One slice per four items. A sample of the items decides the axis and the bounds.
   explicit Slices(std::span<const Item> sample, std::size_t n_items);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -40,12 +40,11 @@ class Slices {
   double per_slice_ = 0;
 };
 
-/// Where each item stands in the order of slices, and where the run of possible partners lies.
-/// Scratch: it keeps its memory.
+/// The order of items by slice, and the range of possible partners. It keeps its memory for reuse.
 class BucketOrder {
  public:
-  /// Puts items in order: afterwards place(i) is the position of the i-th that was counted. Call
-  /// count() for all items, then settle(), then place() for the same items in the same order.
+  /// Usage: call start(), then count() for every item, then finish_count(), then place() for the
+  /// same items in the same order; place() returns the position of the item.
   void start(const Slices& slices) {
     begin_.assign(slices.size() + 1, 0);
     reach_.assign(slices.size(), 0);
@@ -54,17 +53,17 @@ class BucketOrder {
     ++begin_[lo_slice + 1];
     reach_[lo_slice] = std::max(reach_[lo_slice], hi_slice);
   }
-  void settle();
+  void finish_count();
   [[nodiscard]] std::uint32_t place(std::uint32_t lo_slice) noexcept { return next_[lo_slice]++; }
 
-  /// The first position whose box may reach into this slice or beyond.
+  /// The first position whose box may reach this slice or a later one.
   [[nodiscard]] std::uint32_t first(std::uint32_t slice) const noexcept { return first_[slice]; }
-  /// One past the last position whose box begins in this slice or before.
+  /// One past the last position whose box begins in this slice or an earlier one.
   [[nodiscard]] std::uint32_t end(std::uint32_t slice) const noexcept { return begin_[slice + 1]; }
 
  private:
-  std::vector<std::uint32_t> begin_;  // by slice; then one past the last
-  std::vector<std::uint32_t> reach_;  // the greatest slice that a box of this slice reaches
+  std::vector<std::uint32_t> begin_;  // first position per slice, then the total
+  std::vector<std::uint32_t> reach_;  // per slice: the last slice that its boxes reach
   std::vector<std::uint32_t> first_;
   std::vector<std::uint32_t> next_;
 };

@@ -5,9 +5,9 @@
 namespace tess::collide::serial {
 
 void CellBounds::refuse(double n_cells, const Item& item) {
-  fail(ErrorCode::bad_value, "gridding: object ", static_cast<std::uint32_t>(item.id.local),
+  fail(ErrorCode::bad_value, "collision: object ", static_cast<std::uint32_t>(item.id.local),
        " of owner ", static_cast<std::uint64_t>(item.id.owner), " touches ", n_cells,
-       " voxels (at most 2^24 each, 2^32 in all): take larger voxels");
+       " voxels (the limits are 2^24 per object and 2^32 for all objects); take larger voxels");
 }
 
 CellNumbers::CellNumbers(const CellBounds& bounds) : low_(bounds.range.lo) {
@@ -21,7 +21,7 @@ CellNumbers::CellNumbers(const CellBounds& bounds) : low_(bounds.range.lo) {
   }
   std::size_t n = 64;
   while (static_cast<double>(n) < bounds.n_entries / 4) n *= 2;
-  slots_.assign(n, kNone);
+  slots_.assign(n, no_number);
 }
 
 Cell CellNumbers::cell(std::uint32_t number) const noexcept {
@@ -33,7 +33,7 @@ Cell CellNumbers::cell(std::uint32_t number) const noexcept {
 }
 
 void CellNumbers::grow() {
-  slots_.assign(2 * slots_.size(), kNone);
+  slots_.assign(2 * slots_.size(), no_number);
   for (std::uint32_t i = 0; i < cells_.size(); ++i) find(cells_[i]) = i;
 }
 

@@ -1,8 +1,8 @@
-// Cells of a collision, numbered 0, 1, 2 … so that voxels can be counted and filled in plain
-// arrays. Where the cells in use fill their bounding range well, the number is the place in that
-// range, z fastest, and costs two multiplications; otherwise a hash table numbers the cells as they
-// first appear, and empty space costs nothing. Which of the two is chosen depends on the input
-// alone.
+// Numbers the cells of a collision 0, 1, 2, … so that voxels can be counted and filled in plain
+// arrays. If the cells in use fill their bounding range well, the number is the position in that
+// range, z fastest, and costs two multiplications (dense numbering). Otherwise a hash table numbers
+// the cells in the order of their first use, and empty space costs nothing. The choice depends only
+// on the input.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -15,18 +15,18 @@
 
 namespace tess::collide::serial {
 
-/// The cells that the box of an item touches. Errors that name the item: a box that is none, a
-/// coordinate that has no cell.
+/// The cells that the box of an item touches. Throws Error with the item if its box is not valid,
+/// or if a coordinate exceeds the range of cell indices.
 [[nodiscard]] inline CellRange cells_of(const Item& item, const VoxelGrid& grid) {
   CellRange range;
   if (!grid.find_cells(item.box, range)) [[unlikely]] {
     check_boxes({&item, 1});
-    range = grid.cells_of(item.box);  // refuses it
+    range = grid.cells_of(item.box);  // throws
   }
   return range;
 }
 
-/// The range that holds all cells added, and how many cells were.
+/// The range that contains all cells that were added, and their number.
 struct CellBounds {
   CellRange range{
       {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
@@ -35,7 +35,7 @@ struct CellBounds {
        std::numeric_limits<std::int32_t>::min()}};
   double n_entries = 0;
 
-  /// Errors: an item of more than 2^24 cells, or 2^32 entries in all.
+  /// Throws Error if the item has more than 2^24 cells, or all items together 2^32.
   void add(const CellRange& cells, const Item& item) {
     const double n_cells = cells.n_cells();
     n_entries += n_cells;
@@ -53,16 +53,16 @@ struct CellBounds {
 
 class CellNumbers {
  public:
-  /// For cells within these bounds.
+  /// For cells within `bounds`.
   explicit CellNumbers(const CellBounds& bounds);
 
-  /// Numbers are below this. In a dense numbering it is the number of cells of the range.
+  /// All numbers are below this. In a dense numbering it is the number of cells of the range.
   [[nodiscard]] std::size_t size() const noexcept {
     return slots_.empty() ? n_dense_ : cells_.size();
   }
   [[nodiscard]] Cell cell(std::uint32_t number) const noexcept;
 
-  /// Calls visit(number) for each cell of `range`, x slowest. Cells without a number get one.
+  /// Calls visit(number) per cell of `range`, x slowest. A cell without a number gets one.
   template <class Visit>
   void for_each(const CellRange& range, Visit&& visit) {
     for (std::int64_t x = range.lo.x; x <= range.hi.x; ++x)
@@ -80,12 +80,12 @@ class CellNumbers {
   }
 
  private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t no_number = std::numeric_limits<std::uint32_t>::max();
 
   std::uint32_t number(const Cell& cell) {
     if (2 * cells_.size() >= slots_.size()) grow();
     std::uint32_t& slot = find(cell);
-    if (slot == kNone) {
+    if (slot == no_number) {
       slot = static_cast<std::uint32_t>(cells_.size());
       cells_.push_back(cell);
     }
@@ -94,7 +94,7 @@ class CellNumbers {
   std::uint32_t& find(const Cell& cell) {
     const std::size_t mask = slots_.size() - 1;
     std::size_t at = std::hash<Cell>{}(cell)&mask;
-    while (slots_[at] != kNone && cells_[slots_[at]] != cell) at = (at + 1) & mask;
+    while (slots_[at] != no_number && cells_[slots_[at]] != cell) at = (at + 1) & mask;
     return slots_[at];
   }
   void grow();
@@ -102,8 +102,8 @@ class CellNumbers {
   Cell low_;
   std::int64_t n_y_ = 0, n_z_ = 0;
   std::size_t n_dense_ = 0;
-  std::vector<std::uint32_t> slots_;  // open addressing, at most half full; empty where dense
-  std::vector<Cell> cells_;           // by number, where not dense
+  std::vector<std::uint32_t> slots_;  // open addressing, at most half full; empty if dense
+  std::vector<Cell> cells_;           // by number, unless dense
 };
 
 }  // namespace tess::collide::serial

@@ -5,18 +5,18 @@
 namespace tess::collide::serial {
 namespace {
 
-/// The models of the items of a voxel, as far as it matters.
+/// Whether the items of a voxel have no model, one model or several models.
 class ModelsSeen {
  public:
   void add(ModelId model) noexcept {
     const auto code = std::uint64_t{static_cast<std::uint32_t>(model)} + 1;
-    state_ = state_ == 0 || state_ == code ? code : kSeveral;
+    state_ = state_ == 0 || state_ == code ? code : several_models;
   }
-  [[nodiscard]] bool several() const noexcept { return state_ == kSeveral; }
+  [[nodiscard]] bool several() const noexcept { return state_ == several_models; }
 
  private:
-  static constexpr std::uint64_t kSeveral = ~std::uint64_t{0};
-  std::uint64_t state_ = 0;  // 0: none yet; model + 1: only that one
+  static constexpr std::uint64_t several_models = ~std::uint64_t{0};
+  std::uint64_t state_ = 0;  // 0: none; model + 1: only this one
 };
 
 }  // namespace
@@ -43,12 +43,13 @@ VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid, K
     });
 
   VoxelGroups out;
-  constexpr auto kDropped = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t>& next = n_items;  // from here on: where the voxel's next item goes
+  constexpr auto dropped = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t>& next =
+      n_items;  // from here on: the position of the next item of each voxel
   std::uint32_t end = 0;
   for (std::uint32_t v = 0; v < n_items.size(); ++v) {
     const std::uint32_t n = n_items[v];
-    next[v] = kDropped;
+    next[v] = dropped;
     if (n == 0 || (keep == KeepVoxels::of_several_models && !models[v].several())) continue;
     out.cells_.push_back(numbers.cell(v));
     next[v] = end;
@@ -59,7 +60,7 @@ VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid, K
   out.items_.resize(end);
   for (std::uint32_t i = 0; i < items.size(); ++i)
     numbers.for_each(cells_of(items[i], grid), [&](std::uint32_t v) {
-      if (next[v] != kDropped) out.items_[next[v]++] = i;
+      if (next[v] != dropped) out.items_[next[v]++] = i;
     });
   return out;
 }

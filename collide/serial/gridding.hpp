@@ -1,7 +1,7 @@
-// Items grouped by the voxels that their boxes touch. Sparse: a voxel exists only where an item is.
-// Sloppy: an item goes to each cell of its box's range (Lawlor and Kalé 2002, section 2). The
-// Manager sends one message a voxel from it; the serial collider walks it. The order of voxels and
-// of the items in one depends on the input alone: items stand in input order.
+// Groups items by the voxels that their boxes touch, for the serial collision. A voxel exists only
+// if an item touches it. An item goes to every cell of the range of its box (Lawlor and Kalé 2002,
+// section 2). The order of the voxels depends only on the input; the items of a voxel are in the
+// order of the input.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -12,16 +12,16 @@
 
 namespace tess::collide::serial {
 
-/// Which voxels are kept. On one PE a voxel of a single model can be dropped before anything is
-/// copied; a Manager does not know what others send to a voxel and keeps all.
+/// The voxels that are kept. If pairs within a model do not count, voxels with a single model can
+/// be dropped before any item is copied.
 enum class KeepVoxels { all, of_several_models };
 
-/// Voxels and, for each, the indices of its items.
+/// Voxels, with the indices of their items.
 class VoxelGroups {
  public:
   [[nodiscard]] std::size_t size() const noexcept { return cells_.size(); }
   [[nodiscard]] const Cell& cell(std::size_t voxel) const noexcept { return cells_[voxel]; }
-  /// Indices into the items that were grouped, ascending.
+  /// Indices into the grouped items, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> items(std::size_t voxel) const noexcept {
     return std::span(items_).subspan(first_[voxel], first_[voxel + 1] - first_[voxel]);
   }
@@ -33,8 +33,8 @@ class VoxelGroups {
   std::vector<std::uint32_t> items_;
 };
 
-/// Errors: an invalid box, a coordinate without a cell, an object of more than 2^24 cells, or 2^32
-/// entries in all.
+/// Throws Error if a box is not valid, a coordinate exceeds the range of cell indices, an object
+/// has more than 2^24 cells, or all objects together have 2^32.
 [[nodiscard]] VoxelGroups group_by_voxel(std::span<const Item> items, const VoxelGrid& grid,
                                          KeepVoxels keep = KeepVoxels::all);
 

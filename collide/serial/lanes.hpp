@@ -1,7 +1,7 @@
-// The boxes of one voxel, coordinate by coordinate, so that one of them is compared with eight
-// others at a time. A scratch space: filled for a voxel, searched, filled again; it never shrinks.
-// A Probe is the box that is compared; overlaps() has an AVX-512 and a plain form, which both only
-// compare, so they agree bit for bit.
+// The boxes of one voxel as arrays of coordinates, so that a box can be compared with eight others
+// at a time. Lanes is scratch memory: it is filled per voxel and never shrinks. A Probe is the box
+// that is compared. overlaps() has an AVX-512 form and a plain form; both only compare numbers, so
+// they agree bit for bit.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -20,7 +20,8 @@ class Lanes {
  public:
   static constexpr std::size_t width = 8;
 
-  /// Room for `n` boxes and, behind them, `width` that overlap nothing. What was there is gone.
+  /// Makes room for `n` boxes, followed by `width` boxes that overlap nothing. Drops earlier
+  /// contents.
   void resize(std::size_t n) {
     n_ = n;
     if (n + width > stride_) {
@@ -52,8 +53,8 @@ class Lanes {
     model[i] = static_cast<std::uint32_t>(item.id.model);
     source[i] = number;
   }
-  /// Writes the numbers of the boxes j + b whose bit b is set to `out`, where there must be room
-  /// for eight; returns the end of those written.
+  /// For each set bit b, writes the number of box j + b to `out`, which has room for eight. Returns
+  /// the end of the numbers written.
   std::uint32_t* copy_sources(std::size_t j, std::uint32_t bits,
                               std::uint32_t* out) const noexcept {
 #ifdef __AVX512VL__
@@ -70,9 +71,9 @@ class Lanes {
   [[nodiscard]] std::size_t size() const noexcept { return n_; }
 
   std::array<double*, 3> lo{}, hi{};
-  std::uint32_t* below = nullptr;   ///< axes_below() of each box
-  std::uint32_t* model = nullptr;   ///< of each box
-  std::uint32_t* source = nullptr;  ///< the caller's number of each box
+  std::uint32_t* below = nullptr;   ///< per box: axes_below()
+  std::uint32_t* model = nullptr;   ///< per box
+  std::uint32_t* source = nullptr;  ///< per box: the index that the caller gave
 
  private:
   std::unique_ptr<double[]> coordinates_;
@@ -81,7 +82,7 @@ class Lanes {
   std::size_t stride_ = 0;
 };
 
-/// One box, about to be compared with others under fixed rules.
+/// A box that is compared with others under fixed rules.
 template <Touching touching, WithinModel within>
 class Probe {
  public:
@@ -96,8 +97,8 @@ class Probe {
 
   [[nodiscard]] const Aabb& box() const noexcept { return box_; }
 
-  /// Bit b is set where box j + b overlaps this one, is of a model that counts, and the pair is
-  /// this voxel's.
+  /// Bit b is set if box j + b overlaps this box, the models count, and the voxel is responsible
+  /// for the pair.
   [[nodiscard]] std::uint32_t overlaps(const Lanes& lanes, std::size_t j) const noexcept {
 #ifdef __AVX512VL__
     constexpr int le = touching == Touching::counts ? _CMP_LE_OQ : _CMP_LT_OQ;
@@ -121,7 +122,7 @@ class Probe {
 #endif
   }
 
-  /// The same without vector instructions; what the tests hold overlaps() against.
+  /// The same without vector instructions; a test compares it with overlaps().
   [[nodiscard]] std::uint32_t overlaps_plain(const Lanes& lanes, std::size_t j) const noexcept {
     std::uint32_t hits = 0;
     for (std::size_t b = 0; b < Lanes::width; ++b) {

@@ -41,8 +41,8 @@ void PairSearch::fill(std::span<const Item> items, const std::vector<Entry>& nod
 
 std::optional<std::array<std::vector<PairSearch::Entry>, 2>> PairSearch::halves(
     std::span<const Item> items, const std::vector<Entry>& node) {
-  constexpr std::size_t kLeaf = 32;
-  if (node.size() <= kLeaf) return std::nullopt;
+  constexpr std::size_t leaf_size = 32;
+  if (node.size() <= leaf_size) return std::nullopt;
   Point spread{};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto lower = [&](const Entry& e) { return items[e.first].box.lo[k]; };
@@ -66,8 +66,8 @@ std::optional<std::array<std::vector<PairSearch::Entry>, 2>> PairSearch::halves(
       if (box.hi[axis] >= plane)
         out[1].emplace_back(e.first, e.second | (starts_before ? 1u << axis : 0u));
     }
-    // Each half must be a good deal smaller, or the recursion would go deep for nothing: where many
-    // boxes touch the plane, one half can be the whole node again.
+    // A split must make both halves much smaller. If many boxes touch the plane, one half can be
+    // the whole node again, and the recursion would be deep without any gain.
     const std::size_t larger = std::max(out[0].size(), out[1].size());
     if (10 * larger <= 9 * node.size() && 2 * (out[0].size() + out[1].size()) <= 3 * node.size())
       return out;

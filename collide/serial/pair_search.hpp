@@ -1,11 +1,12 @@
-// The serial step inside one voxel: all pairs (the oracle), a sweep over slices of one axis, or
-// recursive coordinate bisection (Lawlor and Kalé 2002, section 3.2), behind one call. Every method
-// reports the same pairs, each once, and only those that are this voxel's (territory.hpp).
+// Finds the pairs within one voxel, by one of three methods: all pairs (the oracle), a sweep over
+// slices along one axis, or recursive coordinate bisection (Lawlor and Kalé 2002, section 3.2).
+// Every method reports the same pairs, each once, and only those that the voxel is responsible for
+// (territory.hpp).
 //
-// Where two models meet and pairs within one do not count, as in a mesh transfer, the sweep is
-// bipartite: the boxes of one model are probes, those of the other stand in lanes, and no pair
-// within a model is ever looked at. A voxel of one model costs a scan. A PairSearch holds scratch
-// memory and serves one thread.
+// If there are two models and pairs within a model do not count, as in a mesh transfer, the sweep
+// is bipartite: it compares each box of one model with the boxes of the other model in lanes, and
+// never looks at a pair within a model. A voxel with a single model costs one pass over its items.
+// A PairSearch holds scratch memory, so each thread needs its own.
 #pragma once
 
 #include "collide/serial/buckets.hpp"
@@ -32,8 +33,8 @@ class PairSearch {
   explicit PairSearch(PairRules rules, SerialMethod method = SerialMethod::automatic)
       : rules_(rules), method_(method) {}
 
-  /// Calls found(const Item&, const Item&) for each pair that voxel `cell` reports. `items` are all
-  /// that it received, valid boxes that touch it.
+  /// Calls found(const Item&, const Item&) per pair that the voxel `cell` reports. `items`: all
+  /// items of the voxel; their boxes are valid and touch it.
   template <class Found>
   void for_each_pair(std::span<const Item> items, const Cell& cell, const VoxelGrid& grid,
                      Found&& found) {
@@ -46,7 +47,7 @@ class PairSearch {
              : search<Touching::does_not_count, WithinModel::test>(items, cell, grid, found);
   }
 
-  /// The same for the items with these numbers.
+  /// The same, for the items with these indices.
   template <class Found>
   void for_each_pair(std::span<const Item> items, std::span<const std::uint32_t> numbers,
                      const Cell& cell, const VoxelGrid& grid, Found&& found) {
@@ -59,13 +60,13 @@ class PairSearch {
   }
 
  private:
-  static constexpr std::size_t kBruteForceUpTo = 16;
+  static constexpr std::size_t brute_force_up_to = 16;
 
-  /// An item of a node of the bisection: its number, and the axes on which its lower corner lies
+  /// An item of a node of the bisection: its index, and the axes on which its lower corner lies
   /// below the node.
   using Entry = std::pair<std::uint32_t, std::uint32_t>;
   struct Models {
-    int n = 0;  ///< 0 not counted, 1, 2, or 3 for more than two
+    int n = 0;  ///< 0: not counted; 3: more than two
     ModelId second{};
     std::size_t n_second = 0;
   };
@@ -77,7 +78,7 @@ class PairSearch {
     if (within == WithinModel::skip && models.n == 1) return;
     set_below(items, cell, grid);
     const auto report = [&](std::uint32_t i, std::uint32_t j) { found(items[i], items[j]); };
-    const bool few = items.size() <= kBruteForceUpTo;
+    const bool few = items.size() <= brute_force_up_to;
     if (method_ == SerialMethod::bisection) {
       bisect<touching, within>(items, whole(items), report);
     } else if (method_ == SerialMethod::brute_force ||
@@ -91,14 +92,14 @@ class PairSearch {
     }
   }
 
-  /// Each box with all behind it.
+  /// Compares each box with all later ones.
   template <Touching touching, WithinModel within, class Report>
   void all_pairs(Report& report) {
     for (std::size_t i = 0; i < lanes_.size(); ++i)
       compare(Probe<touching, within>(lanes_, i), lanes_.source[i], i + 1, lanes_.size(), report);
   }
 
-  /// Each box with those behind it in the order of slices, up to its end.
+  /// Compares each box with the later ones in the order of slices, up to its upper end.
   template <Touching touching, WithinModel within, class Report>
   void sweep(std::span<const Item> items, Report& report) {
     const Slices slices(items, items.size());
@@ -110,7 +111,7 @@ class PairSearch {
     }
   }
 
-  /// Each box of one model with the run of boxes of the other that may reach it.
+  /// Compares each box of one model with the range of boxes of the other model that may reach it.
   template <Touching touching, class Report>
   void sweep_two_models(std::span<const Item> items, const Models& models, Report& report) {
     const Slices slices(items, models.n_second);
@@ -120,13 +121,14 @@ class PairSearch {
       if (in_lanes(items[i])) continue;
       const std::size_t first = order_.first(slices.of_lo(items[i]));
       const std::size_t end = order_.end(slices.of_hi(items[i]));
-      // Of different models for certain: that is not compared again.
+      // The models differ, so the probe need not compare them.
       compare(Probe<touching, WithinModel::test>(items[i], below_[i]), i, first, end, report);
     }
   }
 
-  /// A plane through the median lower corner splits the node; what crosses it goes to both sides.
-  /// A pair is the side's in which the greater of its lower corners lies, as with voxels.
+  /// Splits the node by a plane through the median of the lower corners. A box that crosses the
+  /// plane goes to both halves. A pair belongs to the half that contains the greater of its lower
+  /// corners, as with voxels.
   template <Touching touching, WithinModel within, class Report>
   void bisect(std::span<const Item> items, const std::vector<Entry>& node, Report& report) {
     if (const auto split = halves(items, node)) {
@@ -137,8 +139,8 @@ class PairSearch {
     }
   }
 
-  /// The partners of a probe among the boxes first … end: found without a branch for each hit, then
-  /// reported.
+  /// Finds the partners of a probe among the boxes from first to end, without a branch per hit,
+  /// then reports them.
   template <class Probe, class Report>
   void compare(const Probe& probe, std::uint32_t number, std::size_t first, std::size_t end,
                Report& report) {
@@ -164,7 +166,7 @@ class PairSearch {
   void set_below(std::span<const Item> items, const Cell& cell, const VoxelGrid& grid);
   [[nodiscard]] std::vector<Entry> whole(std::span<const Item> items) const;
   void fill(std::span<const Item> items, const std::vector<Entry>& node);
-  /// The two halves of a node, or nothing where bisecting it does not pay.
+  /// The two halves of a node; empty if a split is not worthwhile.
   [[nodiscard]] static std::optional<std::array<std::vector<Entry>, 2>> halves(
       std::span<const Item> items, const std::vector<Entry>& node);
   template <class In>
@@ -176,7 +178,7 @@ class PairSearch {
       order_.count(slices.of_lo(item), slices.of_hi(item));
       ++n;
     }
-    order_.settle();
+    order_.finish_count();
     resize_lanes(n);
     for (std::uint32_t i = 0; i < items.size(); ++i)
       if (in(items[i])) lanes_.set(order_.place(slices.of_lo(items[i])), items[i], below_[i], i);
@@ -187,7 +189,7 @@ class PairSearch {
   Lanes lanes_;
   BucketOrder order_;
   std::vector<std::uint32_t> below_;
-  std::vector<std::uint32_t> partners_;  // of the probe at hand
+  std::vector<std::uint32_t> partners_;  // of the current probe
   std::vector<Item> gathered_;
 };
 

@@ -1,11 +1,11 @@
-// The regular grid of voxels over all space: coordinate -> cell, 32 bits an axis. Only the
-// arithmetic stands here; no voxel is stored. Every part that asks for a cell (who receives an
-// object, who reports a pair) goes through the one formula floor((x - origin) * per_voxel), each
-// step of which is monotone under rounding:
-//   x <= y  =>  cell(x) <= cell(y).
-// Territory (territory.hpp) needs nothing more, so rounding cannot lose a pair. The public
-// libraries' 15 % loss comes from a second formula, k * size + origin, that rounds differently:
-// there is none here.
+// The regular grid of voxels over all space: it maps a coordinate to a cell, with 32 bits per axis.
+// It stores no voxels. All code that needs a cell uses the same formula, floor((x - origin) *
+// per_voxel). Each step of it is monotone under rounding:
+//
+//     x <= y  =>  cell(x) <= cell(y)
+//
+// The proof in territory.hpp needs only this, so rounding cannot lose a pair. Public libraries that
+// lose 15 % of the pairs use a second formula, k * size + origin, which rounds differently.
 #pragma once
 
 #include "collide/aabb.hpp"
@@ -17,7 +17,7 @@
 
 namespace tess::collide {
 
-/// Where a voxel stands in the grid.
+/// The position of a voxel in the grid.
 struct Cell {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -26,14 +26,14 @@ struct Cell {
   friend auto operator<=>(const Cell&, const Cell&) = default;
 };
 
-/// The cells lo … hi, both included.
+/// The cells from lo to hi, inclusive.
 struct CellRange {
   Cell lo;
   Cell hi;
 
   friend bool operator==(const CellRange&, const CellRange&) = default;
 
-  /// How many cells; a double, because 2^96 cells fit in a range and not in an integer.
+  /// A double, because a range can have 2^96 cells.
   [[nodiscard]] double n_cells() const noexcept {
     return (static_cast<double>(hi.x) - lo.x + 1) * (static_cast<double>(hi.y) - lo.y + 1) *
            (static_cast<double>(hi.z) - lo.z + 1);
@@ -45,32 +45,34 @@ struct CellRange {
 
 class VoxelGrid {
  public:
-  /// Voxels of `size` per axis, one of which has its lower corner at `origin`.
-  /// Error: a size that is not positive and finite (nor its inverse), an origin that is not finite.
+  /// Voxels with these edges; one of them has its lower corner at `origin`. Throws Error unless the
+  /// origin is finite, and the edges and their inverses are positive and finite.
   VoxelGrid(const Point& origin, const Point& size);
-  /// Cubes of edge `size` with a corner at zero.
+  /// Cubes of edge `size`; one has its lower corner at zero.
   explicit VoxelGrid(double size) : VoxelGrid({0, 0, 0}, {size, size, size}) {}
 
   [[nodiscard]] const Point& origin() const noexcept { return origin_; }
   [[nodiscard]] const Point& size() const noexcept { return size_; }
-  /// Voxels a unit of length: what coordinates are multiplied by.
+  /// Voxels per unit of length: the factor of the formula.
   [[nodiscard]] const Point& per_voxel() const noexcept { return per_voxel_; }
 
-  /// The cell of a point. Error: NaN, or an index beyond 32 bits, with the coordinate.
+  /// The cell of a point. Throws Error with the coordinate if it is NaN or its index exceeds 32
+  /// bits.
   [[nodiscard]] Cell cell_of(const Point& point) const {
     return {index(point[0], 0), index(point[1], 1), index(point[2], 2)};
   }
-  /// The cells a closed box touches; a superset of those its interior touches.
+  /// The cells that a closed box touches: a superset of those that its interior touches.
   [[nodiscard]] CellRange cells_of(const Aabb& box) const {
     return {cell_of(box.lo), cell_of(box.hi)};
   }
 
-  /// The same without an error: false for a box that is not valid or has no cells.
+  /// The same without an exception: returns false if the box is not valid or exceeds 32-bit
+  /// indices.
   [[nodiscard]] bool find_cells(const Aabb& box, CellRange& range) const noexcept {
     static_assert(sizeof box == 6 * sizeof(double) && sizeof range == 6 * sizeof(std::int32_t));
     return serial::conversion::convert(constants_, box.lo.data(), &range.lo.x);
   }
-  /// What the conversion reads.
+  /// The input of the conversion.
   [[nodiscard]] const serial::conversion::Constants& constants() const noexcept {
     return constants_;
   }

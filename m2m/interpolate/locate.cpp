@@ -15,8 +15,8 @@ constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}
 /// Bounds the rounding error of a volume relative to the product of the reaches along x, y and z: a
 /// volume is a sum of six products, and none of them exceeds the product of the reaches.
 constexpr double volume_bound = 6 * orientation_bound;
-/// If the sum of the volumes exceeds this multiple of the product of the reaches, the rounding error
-/// of each weight is below 1e-12.
+/// If the sum of the volumes exceeds this multiple of the product of the reaches, the rounding
+/// error of each weight is below 1e-12.
 constexpr double flat_limit = 4 * volume_bound * 1e12;
 
 double largest_coordinate(const Point& p) {
@@ -178,9 +178,8 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
     const std::size_t n = std::min(width, pairs.size() - first);
 #pragma GCC unroll 1
     for (std::size_t l = 0; l < n; ++l) {
-      asm volatile(
-          "" ::
-              : "memory");  // keeps g++ 12 from vectorising this loop: its shuffles take 5 ns per pair
+      // Keeps g++ 12 from vectorising this loop: its shuffles take 5 ns per pair.
+      asm volatile("" ::: "memory");
       const PointPair& pair = pairs[first + l];
       const Point& p = queries[static_cast<std::size_t>(pair.point)];
       const Tet& tet = tets[static_cast<std::size_t>(pair.tet)];

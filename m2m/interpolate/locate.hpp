@@ -23,8 +23,8 @@
 
 namespace tess::m2m {
 
-/// A point outside snaps up to this distance from each face: snap_edges times the longest edge, plus
-/// snap_ulps times the largest coordinate of the tetrahedron.
+/// A point outside snaps up to this distance from each face: snap_edges times the longest edge,
+/// plus snap_ulps times the largest coordinate of the tetrahedron.
 inline constexpr double snap_edges = 1e-10;
 inline constexpr double snap_ulps = 4 * 0x1p-52;
 
@@ -60,8 +60,8 @@ struct Found {
   Location location;
 };
 
-/// Calls locate() for many pairs at once, vectorised, with the same bits. Appends the pairs that have
-/// a location to `found`, in order.
+/// Calls locate() for many pairs at once, vectorised, with the same bits. Appends the pairs that
+/// have a location to `found`, in order.
 void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
                   std::span<const Point> queries, std::span<const PointPair> pairs,
                   std::vector<Found>& found);
@@ -77,8 +77,8 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
   return {at(0), at(1), at(2), at(3)};
 }
 
-/// Interpolates one component of a field; the value of a vertex is values[vertex * stride]. A weight
-/// of 1 copies the value bit for bit.
+/// Interpolates one component of a field; the value of a vertex is values[vertex * stride]. A
+/// weight of 1 copies the value bit for bit.
 [[nodiscard]] inline double interpolated(const Weights& weights, const Tet& tet,
                                          const double* values, std::size_t stride) {
   const auto value = [&](std::size_t corner) {

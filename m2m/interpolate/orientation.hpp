@@ -1,15 +1,15 @@
 // The exact sign of a 3 × 3 determinant of differences. Plain floating point decides if the result
-// exceeds an error bound; otherwise expansions do (Shewchuk 1997, "Adaptive precision floating-point
-// arithmetic and fast robust geometric predicates"). The sign is exact while no intermediate result
-// leaves the range of double, that is for edges from 1e-80 to 1e100.
+// exceeds an error bound; otherwise expansions do (Shewchuk 1997, "Adaptive precision
+// floating-point arithmetic and fast robust geometric predicates"). The sign is exact while no
+// intermediate result leaves the range of double, that is for edges from 1e-80 to 1e100.
 #pragma once
 
 #include "m2m/mesh.hpp"
 
 namespace tess::m2m {
 
-/// det(a - p, b - p, c - p), rounded. Its sign is exact; zero means coplanar. Takes about 5 ns if the
-/// error bound decides.
+/// det(a - p, b - p, c - p), rounded. Its sign is exact; zero means coplanar. Takes about 5 ns if
+/// the error bound decides.
 [[nodiscard]] double orientation(const Point& p, const Point& a, const Point& b, const Point& c);
 
 /// The same determinant to a few ulps, always by expansions. Takes about 0.3 µs.

@@ -24,8 +24,9 @@ struct DistributedMesh {
   void destroy() const { workers.destroy(); }
 };
 
-/// Partitions the mesh by tetrahedra, creates the Workers, spread evenly over all PEs, and sends each
-/// its part with the rows of the fields. The mesh is in place when the enclosing epoch is done.
+/// Partitions the mesh by tetrahedra, creates the Workers, spread evenly over all PEs, and sends
+/// each its part with the rows of the fields. The mesh is in place when the enclosing epoch is
+/// done.
 [[nodiscard]] DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields,
                                       std::int32_t n_parts, PartitionMethod method);
 

@@ -16,10 +16,11 @@
 //   end      commit, release                     the target replaces its values; both meshes drop
 //                                                the state of the transfer
 //
-// The first and the last step are broadcasts, which all Workers of a mesh receive in the same order.
-// A transfer reads the values that its source has at the start, and changes the values of its target
-// only at the end. So a transfer sees the result of another one completely or not at all. Candidates
-// are merged by a total order (candidate.hpp), so the result does not depend on the order of arrival.
+// The first and the last step are broadcasts, which all Workers of a mesh receive in the same
+// order. A transfer reads the values that its source has at the start, and changes the values of
+// its target only at the end. So a transfer sees the result of another one completely or not at
+// all. Candidates are merged by a total order (candidate.hpp), so the result does not depend on the
+// order of arrival.
 #pragma once
 
 #include "m2m/parallel/messages.hpp"

@@ -14,8 +14,8 @@
 namespace tess::m2m {
 namespace {
 
-/// While an object lives, the leak checker ignores what Open MPI allocates and keeps. Open MPI unloads
-/// its plug-ins before the checker runs, so suppressions by name do not match.
+/// While an object lives, the leak checker ignores what Open MPI allocates and keeps. Open MPI
+/// unloads its plug-ins before the checker runs, so suppressions by name do not match.
 #ifdef __SANITIZE_ADDRESS__
 using IgnoreLeaks = __lsan::ScopedDisabler;
 #else

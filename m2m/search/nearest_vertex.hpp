@@ -15,8 +15,8 @@
 
 namespace tess::m2m {
 
-/// The squared distance of a point from a box; 0 inside. It never exceeds the squared_distance() to a
-/// point of the box, also after rounding.
+/// The squared distance of a point from a box; 0 inside. It never exceeds the squared_distance() to
+/// a point of the box, also after rounding.
 [[nodiscard]] inline double squared_distance(const Point& p, const Aabb& box) {
   const auto gap = [&](std::size_t axis) {
     return std::max(std::max(box.lo[axis] - p[axis], p[axis] - box.hi[axis]), 0.0);
