@@ -1,0 +1,52 @@
+// The samples of collide/collider.hpp, compiled and run. tests/samples/check.py compares the text.
+#include "collide/collider.hpp"
+
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+/// Owns one box. The boxes of all clients form a row in which each box overlaps the next.
+class Client : public tess::Chare<Client, tess::Index1> {
+ public:
+  void submit(const tess::collide::Collider& collider) { collider.submit(boxes()); }
+  void receive(const tess::collide::Hits& hits) { n_pairs_ += hits.pairs.size(); }
+  void count(tess::Callback<std::uint64_t> target) {
+    contribute(tess::sum, n_pairs_, std::move(target));
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_pairs_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<tess::collide::Item> boxes() const {
+    const double x = index().x;
+    const auto model = static_cast<tess::collide::ModelId>(index().x % 2);
+    return {{{{x, 0, 0}, {x + 1.5, 1, 1}}, {tess::collide::owner_of(index()), {}, model}}};
+  }
+  std::uint64_t n_pairs_ = 0;
+};
+
+tess::Task find_pairs(std::uint64_t& n_pairs) {
+  const auto collider = tess::collide::make_collider({.size = {1, 1, 1}});
+  const auto clients = tess::create<Client>(tess::range(8));
+  co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
+  const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
+  co_await tess::collide::run_collision(collider, report);
+  tess::Future<std::uint64_t> total;
+  clients.broadcast<&Client::count>(total.callback());
+  n_pairs = co_await total;
+}
+
+}  // namespace
+
+TEST_CASE("the sample of collide/collider.hpp reports each of 7 pairs to both owners",
+          "[collide][sample]") {
+  std::uint64_t n_pairs = 0;
+  tess::Setup setup{tess::make_threads_machine(2), {}};
+  REQUIRE(tess::run(setup, [&]() -> tess::Task { return find_pairs(n_pairs); }) == 0);
+  CHECK(n_pairs == 2 * 7);
+}
