@@ -83,11 +83,8 @@ TEST_CASE("the CSV of a chart is its data, bit for bit", "[apps][plot]") {
   }
 }
 
-TEST_CASE("the SVG of a chart has a curve a series and every text as it is", "[apps][plot]") {
-  if (!has_gnuplot()) {
-    WARN("skipped: gnuplot is not installed");
-    return;
-  }
+TEST_CASE("the SVG of a chart has a curve per series and every text as it is",
+          "[apps][plot][.][gnuplot]") {
   const Scratch scratch;
   REQUIRE(write_svg(scratch.path("a.svg"), two_series()));
   const auto elements = read_xml(slurp(scratch.path("a.svg")));

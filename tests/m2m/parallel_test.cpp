@@ -9,6 +9,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -169,14 +170,35 @@ TEST_CASE("offsets and scales lose no vertex through chares", "[m2m][parallel]")
   }
 }
 
-TEST_CASE("every vertex of the real meshes is found through chares, both ways", "[m2m][parallel]") {
-  const auto coarse = test::shared_data("nalu/3d_tet4_taylor_green_0p4.exo");
-  const auto fine = test::shared_data("nalu/3d_tet4_taylor_green_0p2.exo");
-  if (!coarse || !fine) return;
+namespace {
+
+void check_found_both_ways(const std::string& coarse, const std::string& fine) {
   for (const bool there : {true, false}) {
-    Case c =
-        make_case(read_mesh(there ? *coarse : *fine), read_mesh(there ? *fine : *coarse), Keep{});
+    Case c = make_case(read_mesh(there ? coarse : fine), read_mesh(there ? fine : coarse), Keep{});
     check_on_all_machines(c, 2);
     for (const Status status : serial(c).status) REQUIRE(status != Status::outside);
   }
+}
+
+}  // namespace
+
+TEST_CASE("every vertex of two gmsh cubes is found through chares, both ways",
+          "[m2m][parallel][.][meshes]") {
+  check_found_both_ways(test::made_mesh("cube_0.113"), test::made_mesh("cube_0.08"));
+}
+
+TEST_CASE("a transfer from a box around a shaft to a cube gives the bits of the serial one",
+          "[m2m][parallel][.][meshes]") {
+  // The cube reaches into the shaft and beyond the box.
+  Case c = make_case(read_mesh(test::made_mesh("shaft_coarse")),
+                     read_mesh(test::made_mesh("cube_0.113")), Nearest{});
+  const std::vector<Status> status = serial(c).status;
+  REQUIRE(std::count(status.begin(), status.end(), Status::outside) > 100);
+  check_on_all_machines(c, 4);
+}
+
+TEST_CASE("every vertex of the real meshes is found through chares, both ways",
+          "[m2m][parallel][.][shared_data]") {
+  check_found_both_ways(test::shared_data("nalu/3d_tet4_taylor_green_0p4.exo"),
+                        test::shared_data("nalu/3d_tet4_taylor_green_0p2.exo"));
 }

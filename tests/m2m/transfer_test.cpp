@@ -10,13 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <iostream>
-#include <optional>
 
 using namespace tess::m2m;
+using tess::test::made_mesh;
 using tess::test::message_of;
-using tess::test::Scratch;
 using tess::test::SerialReport;
 using tess::test::shared_data;
 using tess::test::transfer_serial;
@@ -52,35 +49,8 @@ TetMesh moved_by(TetMesh mesh, double scale, double offset) {
   return mesh;
 }
 
-/// A gmsh cube of that edge length, or nothing, with the reason printed.
-std::optional<TetMesh> gmsh_cube(const Scratch& scratch, double h,
-                                 const std::string& options = {}) {
-  const auto geometry = shared_data("geo/cube_pair.geo");
-  if (!geometry) return std::nullopt;
-  if (std::system("gmsh --version >/dev/null 2>&1") != 0) {
-    std::cout << "skipped: gmsh is not installed\n";
-    return std::nullopt;
-  }
-  const std::string path = scratch.path("cube.msh");
-  const std::string command = "gmsh -3 -v 0 -setnumber h " + std::to_string(h) + " " + options +
-                              " " + *geometry + " -o " + path + " >/dev/null 2>&1";
-  if (std::system(command.c_str()) != 0) {
-    std::cout << "skipped: gmsh fails: " << command << "\n";
-    return std::nullopt;
-  }
-  return read_mesh(path);
-}
-
-}  // namespace
-
-TEST_CASE("a mesh onto itself loses nothing and returns the values bit for bit",
-          "[m2m][transfer]") {
-  std::vector<TetMesh> meshes{kuhn_mesh({6}), kuhn_mesh({5, 0.2}),
-                              moved_by(kuhn_mesh({5, 0.2}), 1, 1e9),
-                              moved_by(kuhn_mesh({6}), 1e-9, 0), moved_by(kuhn_mesh({6}), 1e9, 0)};
-  for (const char* name : {"nalu/3d_tet4_taylor_green_0p4.exo", "nalu/3d_tet4_pipe.exo"}) {
-    if (const auto path = shared_data(name)) meshes.push_back(read_mesh(*path));
-  }
+/// Transfers each mesh onto itself.
+void check_onto_itself(const std::vector<TetMesh>& meshes) {
   for (const TetMesh& mesh : meshes) {
     CAPTURE(mesh.name);
     const Moved moved = move_formula(mesh, mesh, "gaussian");
@@ -90,19 +60,44 @@ TEST_CASE("a mesh onto itself loses nothing and returns the values bit for bit",
   }
 }
 
-TEST_CASE(
-    "the two Taylor-Green meshes find all vertices of each other, and a linear field is exact",
-    "[m2m][transfer]") {
-  const auto coarse_path = shared_data("nalu/3d_tet4_taylor_green_0p4.exo");
-  const auto fine_path = shared_data("nalu/3d_tet4_taylor_green_0p2.exo");
-  if (!coarse_path || !fine_path) return;
-  const TetMesh coarse = read_mesh(*coarse_path);
-  const TetMesh fine = read_mesh(*fine_path);
+/// Transfers a linear field between two meshes of the same box, both ways.
+void check_linear_both_ways(const TetMesh& coarse, const TetMesh& fine, double largest) {
   for (const auto& [source, target] : {std::pair(&coarse, &fine), std::pair(&fine, &coarse)}) {
     const Moved moved = move_formula(*source, *target, "linear");
     CHECK(outside(moved) == 0);
-    CHECK(moved.norms.linf < 1e-12 * 32);  // the field reaches 32 in this box
+    CHECK(moved.norms.linf < 1e-12 * largest);
   }
+}
+
+}  // namespace
+
+TEST_CASE("a mesh onto itself loses nothing and returns the values bit for bit",
+          "[m2m][transfer]") {
+  check_onto_itself({kuhn_mesh({6}), kuhn_mesh({5, 0.2}), moved_by(kuhn_mesh({5, 0.2}), 1, 1e9),
+                     moved_by(kuhn_mesh({6}), 1e-9, 0), moved_by(kuhn_mesh({6}), 1e9, 0)});
+}
+
+TEST_CASE("meshes of gmsh onto themselves lose nothing and return the values bit for bit",
+          "[m2m][transfer][.][meshes]") {
+  check_onto_itself({read_mesh(made_mesh("cube_0.113")), read_mesh(made_mesh("shaft_coarse"))});
+}
+
+TEST_CASE("real meshes onto themselves lose nothing and return the values bit for bit",
+          "[m2m][transfer][.][shared_data]") {
+  check_onto_itself({read_mesh(shared_data("nalu/3d_tet4_taylor_green_0p4.exo")),
+                     read_mesh(shared_data("nalu/3d_tet4_pipe.exo"))});
+}
+
+TEST_CASE("two gmsh cubes find all vertices of each other, and a linear field is exact",
+          "[m2m][transfer][.][meshes]") {
+  check_linear_both_ways(read_mesh(made_mesh("cube_0.16")), read_mesh(made_mesh("cube_0.113")), 8);
+}
+
+TEST_CASE(
+    "the two Taylor-Green meshes find all vertices of each other, and a linear field is exact",
+    "[m2m][transfer][.][shared_data]") {
+  check_linear_both_ways(read_mesh(shared_data("nalu/3d_tet4_taylor_green_0p4.exo")),
+                         read_mesh(shared_data("nalu/3d_tet4_taylor_green_0p2.exo")), 32);
 }
 
 TEST_CASE("an offset of 1e9 and scales of 1e-9 and 1e9 lose nothing", "[m2m][transfer]") {
@@ -172,7 +167,6 @@ TEST_CASE("the order of the source's tetrahedra decides ties, their orientation 
 }
 
 TEST_CASE("the sine field converges with order 2", "[m2m][transfer]") {
-  const Scratch scratch;
   const TetMesh target = kuhn_mesh({31, 0.2});
   std::vector<double> errors;
   for (const std::int32_t n : {8, 16, 32, 64})
@@ -183,15 +177,14 @@ TEST_CASE("the sine field converges with order 2", "[m2m][transfer]") {
   }
 }
 
-TEST_CASE("the sine field converges with order 2 over four gmsh cubes", "[m2m][transfer]") {
-  const Scratch scratch;
+TEST_CASE("the sine field converges with order 2 over four gmsh cubes",
+          "[m2m][transfer][.][meshes]") {
   const TetMesh target = kuhn_mesh({23, 0.2});
   std::vector<double> h, errors;
-  for (const double edge : {0.16, 0.113, 0.08, 0.0566}) {
-    const auto source = gmsh_cube(scratch, edge);
-    if (!source) return;
-    h.push_back(std::cbrt(1.0 / static_cast<double>(source->n_tets())));
-    errors.push_back(move_formula(*source, target, "sin").norms.l2);
+  for (const char* name : {"cube_0.16", "cube_0.113", "cube_0.08", "cube_0.0566"}) {
+    const TetMesh source = read_mesh(made_mesh(name));
+    h.push_back(std::cbrt(1.0 / static_cast<double>(source.n_tets())));
+    errors.push_back(move_formula(source, target, "sin").norms.l2);
   }
   CAPTURE(errors);
   CHECK(std::log(errors[0] / errors[3]) / std::log(h[0] / h[3]) == Approx(2).margin(0.1));

@@ -135,11 +135,9 @@ TEST_CASE("a field cut off at its thickness agrees with the whole one within it"
 }
 
 TEST_CASE("real meshes: spot and env, the sign off the surface is that of the exact winding number",
-          "[dn_field]") {
+          "[dn_field][.][shared_data]") {
   for (const auto* name : {"spot/spot.obj", "fcl/env.obj"}) {
-    const auto path = tess::test::shared_data(name);
-    if (!path) return;
-    const Surface surface = read_obj(*path);
+    const Surface surface = read_obj(tess::test::shared_data(name));
     const Bvh tree(surface);
     const Grid grid = grid_around(bounds(surface), 14, 0.05 * norm(bounds(surface).size()));
     const Field field = build_exact(surface, grid);
