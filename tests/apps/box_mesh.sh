@@ -1,4 +1,4 @@
-# box FILE SCALE SHIFT [N]: writes a gmsh mesh of a cube, of 6 N cubed tetrahedra (N: 3). For scripts to source.
+# box FILE SCALE SHIFT [N]: writes a gmsh mesh of a cube with 6 N cubed tetrahedra (default: N = 3). Scripts source this file.
 box() {
   awk -v scale="$2" -v shift="$3" -v n="${4:-3}" 'BEGIN {
     m = n + 1; printf "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", m^3

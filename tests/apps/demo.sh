@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# demo.sh BIN DEMO: runs the demo on small meshes, and checks its answers: the same result under mpirun, second order, and
+# every file that it says it writes.
+set -uo pipefail
+bin=$1 demo=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+if ! bash "$demo" --quick --built "$bin" --into "$scratch/demo" >"$scratch/out" 2>&1; then
+  echo "FAILED: the demo ends with an error:"
+  tail -20 "$scratch/out"
+  exit 1
+fi
+python3 - "$scratch/demo" "$scratch/out" <<'PYTHON'
+import json, os, sys
+folder, log = sys.argv[1], open(sys.argv[2]).read()
+def read(name):
+    return json.load(open(os.path.join(folder, name)))
+pairs = [read(name)["pairs"][0] for name in ("result.json", "result_1.json", "result_2.json")]
+assert [pair["processes"] for pair in pairs] == [1, 1, 2], "processes"
+assert len({pair["result_hash"] for pair in pairs}) == 1, f"hashes differ: {[p['result_hash'] for p in pairs]}"
+for pair in pairs:
+    assert pair["outside"] == 0 and pair["inside"] > 0.4 * pair["targets"], pair
+    assert 0 < pair["l2_relative"] < 0.1, pair["l2_relative"]
+study = read("study/study.json")
+assert len(study["pairs"]) == 3, "pairs of the study"
+order = study["trends"][0]["l2_of_edge"]
+assert 1.7 < order < 2.3, f"order {order}"
+for name in ("result.exo", "result.svg", "study/error_time.csv", "study/error_edge.csv", "study/study.csv"):
+    assert os.path.getsize(os.path.join(folder, name)) > 100, name
+for heading in ("one process", "mpirun -n 1", "mpirun -n 2", "error against run time"):
+    assert f"== {heading}" in log, heading
+print(f"demo: one hash in three runs, order {order:.2f}")
+PYTHON
+code=$?
+((code == 0)) || tail -20 "$scratch/out"
+bash "$demo" --nonsense >/dev/null 2>"$scratch/err"
+if [[ $? -ne 2 ]] || ! grep -q usage "$scratch/err"; then
+  echo "FAILED: the demo accepts --nonsense"
+  code=1
+fi
+exit $code

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# examples.sh BIN: hello, ring and stencil on threads, under mpirun and on the simulated machine, with their answers.
+set -uo pipefail
+bin=$1
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed=0
+passed=0
+mpirun=(mpirun -q --allow-run-as-root --oversubscribe)
+
+# check WHAT CODE: counts a result.
+check() {
+  if (($2 == 0)); then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $1"
+    tail -5 "$scratch/out"
+  fi
+}
+# answers PATTERN COMMAND…: exit code 0, and a line that matches.
+answers() {
+  local pattern=$1
+  shift
+  timeout 60 "$@" >"$scratch/out" 2>&1 && grep -Eq -- "$pattern" "$scratch/out"
+  check "$* does not answer '$pattern'" $?
+}
+
+# hello: eight elements in order, whatever the machine.
+for i in 0 1 2 3 4 5 6 7; do echo "element $i: hello after $i hops"; done >"$scratch/hello"
+greets() {
+  timeout 60 "$@" >"$scratch/out" 2>&1 && sort "$scratch/out" | cmp -s - "$scratch/hello"
+  check "$* prints something else" $?
+}
+greets "$bin/hello" --pes 1
+greets "$bin/hello" --pes 4
+greets "${mpirun[@]}" -n 2 "$bin/hello" --pes 1
+greets "$bin/hello" --sim pes=5,seed=3
+
+# ring: the program compares sum and visits with closed forms, and ends with an error otherwise.
+answers '^300 hops over 3 stations: .* each met once$' "$bin/ring" --pes 3 --rounds 100
+answers '^2800 hops over 7 stations: .* each met once$' "$bin/ring" --pes 2 --stations 7 --rounds 50 --messages 8
+answers '^400 hops over 4 stations: .* each met once$' "${mpirun[@]}" -n 2 "$bin/ring" --pes 2 --rounds 100
+answers '^600 hops over 6 stations: .* each met once$' "$bin/ring" --sim pes=6,cost=100ns,seed=2 --rounds 100
+
+# stencil: at most 1e-12 from the exact iterate (the program checks that), and the same bits for every cut and machine.
+stencil=("$bin/stencil" --size 48 --steps 400)
+hash_of() { grep -o 'hash [0-9a-f]*$' "$scratch/out"; }
+answers '^from the exact iterate [0-9.]+e-1[3-9], ' "${stencil[@]}" --pes 1 --blocks 1
+want=$(hash_of)
+same() {
+  timeout 60 "$@" >"$scratch/out" 2>&1 && [[ -n $want && $(hash_of) == "$want" ]]
+  check "$* has not the $want" $?
+}
+same "${stencil[@]}" --pes 2 --blocks 5
+same "${stencil[@]}" --pes 4 --blocks 7
+same "${mpirun[@]}" -n 2 "${stencil[@]}" --pes 1 --blocks 4
+same "$bin/stencil" --size 48 --steps 400 --sim pes=8,cost=100ns,seed=5 --blocks 6
+# Closer to the solution with every doubling of the points: second order.
+distance() { "$bin/stencil" --size "$1" --steps "$2" --pes 2 | grep -o 'from the solution [0-9.e+-]*' | grep -o '[0-9.e+-]*$'; }
+coarse=$(distance 7 2000) fine=$(distance 15 8000)
+python3 -c "import sys; sys.exit(0 if 3.7 < $coarse / $fine < 4.3 else 1)"
+check "the stencil is not second order: $coarse and $fine from the solution" $?
+
+echo "$passed passed, $failed failed"
+((failed == 0))
