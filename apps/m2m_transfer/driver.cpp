@@ -23,12 +23,13 @@ Problem read(const Request& request, apps::Progress& progress) {
 
 Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   if (options.policies.size() > 1)
-    fail(ErrorCode::bad_argument, "--policy is given more than once: that is for --study");
+    fail(ErrorCode::bad_argument, "--policy is given more than once; give it once, or add --study");
   plot::require_writable("--json", options.json);
   plot::require_writable("--out", options.out);
   plot::require_writable("--picture", options.picture);
   if (options.request.target.empty())
-    fail(ErrorCode::bad_argument, "TARGET is missing (--help lists the arguments)");
+    fail(ErrorCode::bad_argument,
+         "TARGET is missing; give a source and a target mesh (--help lists the arguments)");
   Request request = options.request;
   request.policy = options.policies.front();
   request.repeat = options.repeat.value_or(1);
@@ -49,7 +50,8 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
 
 Task run_study(const DriverOptions& options, apps::Progress& progress) {
   if (!options.out.empty() || !options.picture.empty())
-    fail(ErrorCode::bad_argument, "--out and --picture are for one transfer, not for --study");
+    fail(ErrorCode::bad_argument,
+         "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
   std::vector<Request> requests = plan_study(options.request, options.policies);
   prepare_folder(*options.study);

@@ -1,5 +1,5 @@
-// What the program does, from the command line to the report: one transfer, or a study of several.
-// PE 0 reads, judges and writes; what is wrong with the input is found before anything is sent.
+// Runs one transfer, or a study of several, as the command line asks for. PE 0 reads the input and
+// writes the output. Errors of the input are found before any message is sent.
 #pragma once
 
 #include "apps/m2m_transfer/problem.hpp"
@@ -14,10 +14,10 @@ namespace tess::m2m {
 struct DriverOptions {
   Request request;
   std::vector<std::string> policies{"keep"};
-  std::optional<std::int32_t> repeat;  ///< absent: 1, in a study 3
+  std::optional<std::int32_t> repeat;  ///< default: 1, in a study 3
   std::string out, json, picture;
   bool explain = false;
-  std::optional<std::string> study;  ///< the folder of the study's report
+  std::optional<std::string> study;  ///< the folder for the files of the study
 };
 
 /// Returns the exit code.

@@ -23,26 +23,27 @@ std::string explain(const Problem& problem, Output output) {
   out += mesh_line("target", problem.target, problem.target_census);
   const std::size_t n_fields = problem.source_fields.size();
   out += fmt::format("  {} {} of one component{}\n", n_fields, n_fields == 1 ? "field" : "fields",
-                     n_fields == 1 ? "" : ", side by side: one search for all");
+                     n_fields == 1 ? "" : ", located once for all fields");
   if (r.chares > 1)
-    out += fmt::format("  Zoltan, to cut each mesh into {} chares on {} PEs\n", r.chares, r.pes);
-  out += fmt::format("  voxels of {:.4g}, made where a tetrahedron or a vertex is\n",
+    out +=
+        fmt::format("  Zoltan, which cuts each mesh into {} chares on {} PEs\n", r.chares, r.pes);
+  out += fmt::format("  voxels with edges of {:.4g}, only where there are tetrahedra or vertices\n",
                      problem.voxel[0]);
   if (std::holds_alternative<Nearest>(problem.policy))
-    out += "  the nearest source vertex, for vertices outside (if there are any)\n";
+    out += "  the search for the nearest source vertex, for each vertex outside\n";
   if (output == Output::mesh) out += "  ExodusII output\n";
 
   out += "it leaves out\n";
-  out += "  voxels in empty space, and the serial step in voxels that one mesh alone touches\n";
-  out += "  pairs within a mesh, and telling the source of candidates\n";
+  out += "  voxels in empty space, and the search in voxels that only one of the meshes touches\n";
+  out += "  pairs within a mesh, and reports of candidates to the source\n";
   if (r.chares == 1) out += "  partitioning: each mesh is one chare\n";
-  if (r.processes == 1) out += "  serialisation: within a process messages are moved\n";
+  if (r.processes == 1) out += "  serialisation: within a process messages are moved, not packed\n";
   if (!std::holds_alternative<Nearest>(problem.policy))
     out += "  the search for nearest vertices (--policy nearest)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
   if (!overlap(problem.source_census.bounds, problem.target_census.bounds,
                tess::collide::Touching::counts))
-    out += "the boxes of the meshes do not meet: every vertex will be outside\n";
+    out += "the bounding boxes of the meshes do not overlap: every vertex will be outside\n";
   return out;
 }
 

@@ -1,4 +1,4 @@
-// What a transfer uses and what it leaves out, for --explain.
+// The text of --explain: what a transfer uses, and what it leaves out.
 #pragma once
 
 #include "apps/m2m_transfer/problem.hpp"
@@ -7,10 +7,10 @@
 
 namespace tess::m2m {
 
-/// What is written besides the table: nothing, or the target mesh, too (--out).
+/// The output besides the table: none, or the target mesh (--out).
 enum class Output { report, mesh };
 
-/// Lines for people.
+/// Returns several lines of text.
 [[nodiscard]] std::string explain(const Problem& problem, Output output);
 
 }  // namespace tess::m2m

@@ -27,7 +27,7 @@ void Gauge::read(Callback<Footprint> target) {
   const Machine& machine = here.machine();
   Footprint mine;
   mine.bytes_sent = here.statistics().bytes_sent;
-  // All simulated processes share one memory, that of process 0.
+  // All simulated processes share the memory of process 0.
   if (machine.process_of(pe()) == machine.process() && pe().value % machine.pes_per_process() == 0)
     mine.peak_memory_bytes = mine.greatest_peak_memory_bytes = peak_memory_bytes();
   contribute(JoinFootprints{}, mine, std::move(target));

@@ -1,5 +1,5 @@
-// What a transfer costs besides time, over all processes and PEs: memory and bytes between
-// processes. A member of a group on each PE gives its part to a reduction.
+// The cost of a transfer besides time: the memory of all processes, and the bytes sent between
+// them. A group with one member per PE contributes the numbers to a reduction.
 #pragma once
 
 #include "runtime/runtime.hpp"
@@ -9,19 +9,20 @@
 namespace tess::m2m {
 
 struct Footprint {
-  std::uint64_t peak_memory_bytes = 0;           ///< sum over processes of the most each held
-  std::uint64_t greatest_peak_memory_bytes = 0;  ///< of one process
+  std::uint64_t peak_memory_bytes = 0;           ///< sum of the peaks of all processes
+  std::uint64_t greatest_peak_memory_bytes = 0;  ///< the largest of these peaks
   std::uint64_t bytes_sent = 0;                  ///< between processes since the start, by all PEs
 };
 
-/// For reductions.
+/// Joins footprints in a reduction.
 struct JoinFootprints {
   Footprint operator()(Footprint a, const Footprint& b) const;
 };
 
 class Gauge : public Group<Gauge> {
  public:
-  /// Gives what this PE sent, and on the first PE of a process what the process holds.
+  /// Contributes the bytes that this PE sent; the first PE of a process adds the memory of the
+  /// process.
   void read(Callback<Footprint> target);
 };
 

@@ -9,8 +9,8 @@ double seconds_since(Time start) {
   return seconds(current_pe().now() - start);
 }
 
-/// The values of all vertices, in global order, from the pieces the Workers gave.
-void take(const Outcome& outcome, Problem& problem) {
+/// Stores the gathered values of all vertices in global order.
+void store(const Outcome& outcome, Problem& problem) {
   const std::size_t n_fields = problem.target_fields.size();
   std::vector<double> status(problem.target.n_points());
   for (std::size_t i = 0; i < outcome.points.size(); ++i) {
@@ -22,7 +22,7 @@ void take(const Outcome& outcome, Problem& problem) {
   problem.target_fields.push_back({"status", 1, std::move(status)});
 }
 
-void judge(Problem& problem) {
+void compare_with_truth(Problem& problem) {
   TransferReport& report = problem.report;
   std::uint64_t hash = result_hash({});
   const Field& status = problem.target_fields.back();
@@ -80,8 +80,8 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   progress.phase("comparison with the truth");
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
-  take(co_await outcome, problem);
-  judge(problem);
+  store(co_await outcome, problem);
+  compare_with_truth(problem);
   gauge.broadcast<&Gauge::read>(most.callback());
   const Footprint peak = co_await most;
   report.footprint.peak_memory_bytes = peak.peak_memory_bytes;

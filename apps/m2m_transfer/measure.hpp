@@ -1,5 +1,5 @@
-// Runs a problem on the machine: sets both meshes up, transfers, gathers the result to PE 0, and
-// judges it against the truth.
+// Runs a problem on the machine: distributes both meshes, transfers the fields, gathers the result
+// on PE 0, and compares it with the exact values.
 #pragma once
 
 #include "apps/m2m_transfer/footprint.hpp"
@@ -9,8 +9,9 @@
 
 namespace tess::m2m {
 
-/// Fills in the target's fields (with one more, "status") and the report. The meshes' chares are
-/// gone when it is done. `gauge`: created before, known everywhere. `progress` is told the phases.
+/// Fills in the target fields, with an additional field "status", and the report. Destroys the
+/// chares of the meshes at the end. `gauge`: a group that exists on all PEs. `progress` shows the
+/// phases.
 Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress);
 
 }  // namespace tess::m2m

@@ -1,5 +1,7 @@
 #include "apps/m2m_transfer/picture.hpp"
 
+#include "apps/plot/quoting.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,13 +13,14 @@
 namespace tess::m2m {
 namespace {
 
-/// A plane across one axis, seen along it.
+/// A plane perpendicular to the axis `across`. The axes `right` and `up` span the picture.
 struct Plane {
   std::size_t across = 2, right = 0, up = 1;
   double at = 0;
 };
 
-/// At three tenths: the middle is where a sine is zero, and often a plane of mirror symmetry.
+/// At three tenths of the box. (In the middle a sine is zero, and many meshes have a symmetry
+/// plane.)
 Plane plane_through(const Aabb& box) {
   const auto side = [&](std::size_t axis) { return box.hi[axis] - box.lo[axis]; };
   Plane plane;
@@ -29,11 +32,11 @@ Plane plane_through(const Aabb& box) {
   return plane;
 }
 
-/// Where the plane meets an edge of a tetrahedron.
+/// The intersection of the plane with an edge of a tetrahedron.
 struct Corner {
   double x = 0, y = 0, value = 0;
 };
-/// The polygon in which a plane meets a tetrahedron: no corners, three or four, in order.
+/// The intersection of the plane with a tetrahedron: zero, three or four corners in order.
 struct Polygon {
   std::array<Corner, 4> corners{};
   std::size_t n = 0;
@@ -65,7 +68,7 @@ Polygon cut(const TetMesh& mesh, const Tet& tet, std::span<const double> values,
         mix(p[plane.right], q[plane.right]), mix(p[plane.up], q[plane.up]),
         mix(values[static_cast<std::size_t>(low)], values[static_cast<std::size_t>(high)])};
   };
-  if (n_below == 2) {  // round the quadrilateral
+  if (n_below == 2) {  // around the quadrilateral
     meet(below[0], above[0]);
     meet(below[0], above[1]);
     meet(below[1], above[1]);
@@ -79,7 +82,7 @@ Polygon cut(const TetMesh& mesh, const Tet& tet, std::span<const double> values,
 
 constexpr std::size_t n_colours = 64;
 
-/// Dark blue over green to yellow, evenly perceived (five points of matplotlib's viridis).
+/// From dark blue over green to yellow, perceptually uniform (five points of matplotlib's viridis).
 std::string colour(std::size_t level) {
   constexpr std::array<std::array<double, 3>, 5> stops{
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
@@ -93,22 +96,9 @@ std::string colour(std::size_t level) {
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 constexpr double panel = 480, margin = 30;
 
-/// One panel of the picture, with its colours explained below.
+/// Draws one panel of the picture, with the colour scale below it.
 void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
           const std::string& title, double left) {
   const Aabb box = bounds(mesh);
@@ -143,7 +133,7 @@ void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
                        panel / n_colours + 0.5, colour(level));
   }
   out += fmt::format("<text x=\"{}\" y=\"{}\">{}, {} = {:.4g}</text>\n", left, margin - 10,
-                     escaped(title), "xyz"[plane.across], plane.at);
+                     plot::xml_text(title), "xyz"[plane.across], plane.at);
   out += fmt::format("<text x=\"{}\" y=\"{}\">{:.4g}</text>\n", left, margin + panel + 36, least);
   out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", left + panel,
                      margin + panel + 36, greatest);

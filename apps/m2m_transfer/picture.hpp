@@ -1,5 +1,5 @@
-// A picture of a result: a cut through the target, across its shortest side, coloured by a field
-// and by its error. What a browser shows where no ParaView is at hand.
+// A picture of a result for a web browser: a cut through the target across its shortest side,
+// coloured by the field, and beside it by the error.
 #pragma once
 
 #include "apps/m2m_transfer/problem.hpp"
@@ -8,9 +8,9 @@
 
 namespace tess::m2m {
 
-/// The first field of a problem that was measured, as SVG: the value, and beside it |value -
-/// truth|. Each tetrahedron that the plane meets is one polygon of one colour. Vertices outside
-/// count with what the policy gave.
+/// Draws the first field of a measured problem as SVG: the value, and |value - truth|. Each
+/// tetrahedron that the plane intersects is a polygon with one colour. Vertices outside have the
+/// values of the policy.
 [[nodiscard]] std::string picture(const Problem& problem);
 
 }  // namespace tess::m2m

@@ -10,14 +10,14 @@
 namespace tess::m2m {
 namespace {
 
-/// The edge of a cube that holds six tetrahedra of average volume: 1/N for kuhn:N.
+/// The edge of a cube with the volume of six average tetrahedra: 1/N for kuhn:N.
 double typical_edge(const TetMesh& mesh) {
   double volume = 0;
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) volume += std::abs(signed_volume(mesh, t));
   return std::cbrt(6 * volume / static_cast<double>(mesh.n_tets()));
 }
 
-/// Refuses voxels so small that a coordinate of either mesh has no 32-bit cell.
+/// Refuses voxels so small that a cell index of either mesh exceeds 32 bits.
 void check_voxel(double voxel, const Problem& problem) {
   double farthest = 0;
   for (const Aabb& box : {problem.source_census.bounds, problem.target_census.bounds}) {
@@ -26,8 +26,8 @@ void check_voxel(double voxel, const Problem& problem) {
   }
   const double least = farthest * 0x1p-30;
   if (voxel < least)
-    fail(ErrorCode::bad_argument, "--voxel ", voxel, ": coordinates reach to ", farthest,
-         ", where voxels must be at least ", least);
+    fail(ErrorCode::bad_argument, "--voxel ", voxel, " is too small for coordinates up to ",
+         farthest, "; it must be at least ", least);
 }
 
 }  // namespace

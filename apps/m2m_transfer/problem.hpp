@@ -1,5 +1,5 @@
-// One transfer's input, read and checked: two meshes, the manufactured fields on both, the policy,
-// and how it is cut into chares and voxels. Lives on PE 0, which alone reads files.
+// The input of one transfer, read and checked: two meshes, the manufactured fields on both, the
+// policy, the number of chares and the voxel size. Only PE 0 reads files and holds a Problem.
 #pragma once
 
 #include "apps/m2m_transfer/report.hpp"
@@ -15,16 +15,16 @@
 
 namespace tess::m2m {
 
-/// What to transfer, as the command line says it.
+/// The options of a transfer, as on the command line.
 struct Request {
   std::string source{}, target{};
   std::vector<std::string> fields{"gaussian"};
   std::string policy = "keep";
   std::string partition = "rcb";
-  std::int32_t n_chares = 0;  ///< of each mesh; 0: per_pe on each PE
+  std::int32_t n_chares = 0;  ///< per mesh; 0: per_pe times the number of PEs
   std::int32_t per_pe = 8;
-  double voxel = 0;         ///< edge; 0: chosen from the meshes
-  std::int32_t repeat = 1;  ///< transfers in a row; the fastest counts
+  double voxel = 0;         ///< edge; 0: suggest_voxel_size()
+  std::int32_t repeat = 1;  ///< number of transfers; the fastest counts
 };
 
 struct Problem {
@@ -36,11 +36,10 @@ struct Problem {
   PartitionMethod partition{};
   Point voxel{};
   std::int32_t repeat = 1;
-  TransferReport report{};  ///< with what is known before the run
+  TransferReport report{};  ///< load() fills in what is known before the run
 };
 
-/// Reads the meshes and samples the fields. Throws Error, naming it, for anything that cannot be
-/// used.
+/// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
 [[nodiscard]] Problem load(const Request& request, const Machine& machine);
 
 }  // namespace tess::m2m

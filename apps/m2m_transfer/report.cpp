@@ -18,7 +18,7 @@ nlohmann::ordered_json norms_of(const ErrorNorms& norms) {
           {"linf", norms.linf}};
 }
 
-/// What the numbers mean.
+/// The meaning of a number of the report.
 struct Definition {
   const char* name;
   const char* meaning;
@@ -29,11 +29,12 @@ constexpr std::array definitions{
     Definition{"l2_relative", "l2 / sqrt(sum m truth^2)"},
     Definition{"rms", "sqrt(mean e^2)"},
     Definition{"linf", "max |e|"},
-    Definition{"all",
-               "sums, mean and maximum over all vertices; those outside have what the policy gave"},
+    Definition{
+        "all",
+        "sums, mean and maximum over all vertices; vertices outside have the values of the policy"},
     Definition{"found", "the same over vertices that are inside, boundary or snapped"}};
 
-/// {"vertices": n, "l2": …}; null where no vertex was found.
+/// {"vertices": n, "l2": …}; null if no vertex was found.
 nlohmann::ordered_json found_of(const ErrorNorms& norms) {
   if (norms.n_vertices == 0) return nullptr;
   auto out = norms_of(norms);
@@ -88,14 +89,14 @@ std::string table(const TransferReport& r) {
   };
   out += fmt::format("{} -> {}\n", r.source, r.target);
   line("machine", r.machine);
-  line("chares", fmt::format("{} a mesh, voxels of {:.4g}", r.chares, r.voxel));
+  line("chares", fmt::format("{} per mesh, voxels of {:.4g}", r.chares, r.voxel));
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
   if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
   if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
   line("found", fmt::format("{} inside, {} boundary, {} snapped, {} outside", r.counts[0],
                             r.counts[1], r.counts[2], r.counts[3]));
   line("candidates",
-       fmt::format("{} ({:.2f} a vertex)", r.n_candidates,
+       fmt::format("{} ({:.2f} per vertex)", r.n_candidates,
                    static_cast<double>(r.n_candidates) / static_cast<double>(r.targets)));
   const auto errors = [&](const std::string& title, auto&& norms_of_field) {
     out += fmt::format("  {:<26} {:>11} {:>11} {:>11} {:>11}\n", title, "L2", "relative", "RMS",
@@ -128,11 +129,10 @@ std::string table(const TransferReport& r) {
   line("result", fmt::format("{:016x}", r.result_hash));
   out +=
       "  with e = value - truth and m = a quarter of the volume of a vertex's tetrahedra:\n"
-      "  L2 = sqrt(sum m e^2), relative = L2 / sqrt(sum m truth^2), RMS = sqrt(mean e^2), Linf = "
-      "max "
-      "|e|,\n  over the vertices found (inside, boundary, snapped), and over all (outside: what "
-      "the "
-      "policy gave)\n";
+      "  L2 = sqrt(sum m e^2), relative = L2 / sqrt(sum m truth^2), RMS = sqrt(mean e^2),\n"
+      "  Linf = max |e|; over the vertices found (inside, boundary, snapped), and over all "
+      "vertices\n"
+      "  (those outside have the values of the policy)\n";
   return out;
 }
 

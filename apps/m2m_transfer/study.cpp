@@ -22,14 +22,14 @@ std::vector<std::string> split_at_commas(const std::string& text) {
   return parts;
 }
 
-/// The meshes that each source of a ladder goes to where no target is named: the next finer one,
-/// whose vertices lie anywhere in the source's tetrahedra.
+/// The targets of a ladder without TARGET: for each source the next finer mesh, whose vertices lie
+/// anywhere in the tetrahedra of the source.
 std::vector<std::string> next_finer(const std::vector<std::string>& sources) {
   std::vector<std::string> targets;
   for (const std::string& source : sources) {
     if (!source.starts_with("kuhn:"))
       fail(ErrorCode::bad_argument,
-           "TARGET is missing: only a ladder such as kuhn:8,16,32 brings its own (--help)");
+           "TARGET is missing; only a ladder such as kuhn:8,16,32 implies its targets (--help)");
     const KuhnBox box = parse_kuhn(source);
     targets.push_back(fmt::format("kuhn:{}", box.n + 1));
     if (box.jitter > 0) targets.back() += fmt::format("@{}", box.jitter);
@@ -65,7 +65,7 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
   std::vector<std::string> targets =
       request.target.empty() ? next_finer(sources) : expand(request.target);
   if (sources.size() == 1 && targets.size() == 1 && sources != targets) {
-    sources.push_back(targets.front());  // there and back
+    sources.push_back(targets.front());  // also back
     targets.push_back(sources.front());
   }
   const std::size_t n = std::max(sources.size(), targets.size());
@@ -73,7 +73,7 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
   if (targets.size() == 1) targets.resize(n, targets.front());
   if (sources.size() != targets.size())
     fail(ErrorCode::bad_argument, "--study: ", sources.size(), " source meshes and ",
-         targets.size(), " target meshes: give as many of both, or one of one kind");
+         targets.size(), " target meshes; give the same number of both, or one of them");
   std::vector<Request> requests;
   for (const std::string& policy : policies) {
     (void)parse_policy(policy);
@@ -90,18 +90,18 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
   return requests;
 }
 
-std::optional<double> fitted_power(const std::vector<Sample>& samples) {
-  std::vector<Sample> logs;
-  for (const auto& [x, y] : samples)
+std::optional<double> fitted_power(const std::vector<plot::Point>& points) {
+  std::vector<plot::Point> logs;
+  for (const auto& [x, y] : points)
     if (std::isfinite(x) && std::isfinite(y) && x > 0 && y > 0)
       logs.push_back({std::log(x), std::log(y)});
-  Sample mean;
-  for (const Sample& s : logs) {
+  plot::Point mean;
+  for (const plot::Point& s : logs) {
     mean.x += s.x / static_cast<double>(logs.size());
     mean.y += s.y / static_cast<double>(logs.size());
   }
   double spread = 0, common = 0;
-  for (const Sample& s : logs) {
+  for (const plot::Point& s : logs) {
     spread += (s.x - mean.x) * (s.x - mean.x);
     common += (s.x - mean.x) * (s.y - mean.y);
   }
@@ -116,7 +116,7 @@ std::vector<Trend> trends(const Study& study) {
       return r.policy != first->policy;
     });
     for (std::size_t f = 0; f < first->fields.size(); ++f) {
-      std::vector<Sample> l2_edge, linf_edge, l2_seconds, linf_seconds;
+      std::vector<plot::Point> l2_edge, linf_edge, l2_seconds, linf_seconds;
       bool exact = true;
       for (auto r = first; r != last; ++r) {
         const ErrorNorms& norms = r->fields[f].norms;

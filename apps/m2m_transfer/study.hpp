@@ -1,13 +1,16 @@
-// A study: many transfers that differ in what decides accuracy (meshes, fields, policy), and their
-// error against run time and against the edge length of the source, with fitted orders: as a table,
-// CSV, JSON and pictures.
+// A study runs several transfers with different meshes, fields and policies. It reports their
+// errors against run time and against the edge length of the source, with fitted orders, as a
+// table, CSV, JSON and pictures. The meshes on the command line:
 //
-//     kuhn:8,16,32 TARGET    each source onto the target        a.msh,b.msh TARGET  the same
-//     kuhn:8,16,32           each N onto N+1: both refined      A B                 A -> B, B -> A
+//     kuhn:8,16,32 TARGET    each source onto the target
+//     a.msh,b.msh TARGET     the same
+//     kuhn:8,16,32           each N onto N+1, so that both meshes are refined
+//     A B                    A -> B and B -> A
 #pragma once
 
 #include "apps/m2m_transfer/problem.hpp"
 #include "apps/m2m_transfer/report.hpp"
+#include "apps/plot/chart.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -17,30 +20,27 @@
 namespace tess::m2m {
 
 struct Study {
-  std::vector<TransferReport> reports;  ///< all with the same fields; policy by policy
-  std::int32_t repeat = 1;              ///< transfers each, of which the fastest counts
+  std::vector<TransferReport> reports;  ///< all with the same fields; sorted by policy
+  std::int32_t repeat = 1;              ///< transfers per report; the fastest counts
 };
 
-/// The meshes that a name stands for: "kuhn:8,16@0.2" and "a.msh,b.msh" are two each. Throws Error
-/// (bad_argument) for a ladder that cannot be.
+/// The meshes of a ladder: "kuhn:8,16@0.2" and "a.msh,b.msh" have two. Throws Error (bad_argument)
+/// if the ladder has a mistake.
 [[nodiscard]] std::vector<std::string> expand(const std::string& name);
 
-/// The transfers of a study: every pair of meshes for every policy. Throws Error for ladders that
-/// do not fit, an unknown policy, or a file that does not exist.
+/// The transfers of a study: every pair of meshes under every policy. Throws Error if the ladders
+/// have different lengths, a policy is unknown, or a file does not exist.
 [[nodiscard]] std::vector<Request> plan_study(const Request& request,
                                               const std::vector<std::string>& policies);
 
-struct Sample {
-  double x = 0, y = 0;
-};
-/// The exponent p of y = c x^p that fits best (least squares of the logarithms), over samples that
-/// are finite and positive; none if they have fewer than two different x.
-[[nodiscard]] std::optional<double> fitted_power(const std::vector<Sample>& samples);
+/// The exponent p of the best fit y = c x^p (least squares of the logarithms), over the points that
+/// are finite and positive. Empty if these have fewer than two different x.
+[[nodiscard]] std::optional<double> fitted_power(const std::vector<plot::Point>& points);
 
-/// How the error of one field under one policy falls.
+/// The convergence of the error of one field under one policy.
 struct Trend {
   std::string field, policy;
-  bool exact = false;  ///< relative errors below 1e-12: rounding alone, nothing to fit
+  bool exact = false;  ///< all relative errors are below 1e-12: rounding, not fitted
   std::optional<double> l2_of_edge, linf_of_edge;        ///< orders of convergence
   std::optional<double> l2_of_seconds, linf_of_seconds;  ///< error against run time
 };
@@ -49,13 +49,13 @@ struct Trend {
 [[nodiscard]] std::string table(const Study& study);
 /// {"pairs": [{…}], "trends": [{…}]}
 [[nodiscard]] std::string json(const Study& study);
-/// One line a pair and field.
+/// One line per pair of meshes and field.
 [[nodiscard]] std::string csv(const Study& study);
 
-/// Makes the folder if it is not there. Throws Error (environment) that names it.
+/// Creates the folder if it does not exist. Throws Error (environment) with its name.
 void prepare_folder(const std::string& folder);
-/// Writes study.csv, study.json, error_time.svg and error_edge.svg (with their data) into the
-/// folder; returns a line that says what is there.
+/// Writes study.csv, study.json, error_time.svg and error_edge.svg (with their data as CSV) into
+/// the folder. Returns a line that lists them.
 [[nodiscard]] std::string write(const Study& study, const std::string& folder);
 
 }  // namespace tess::m2m

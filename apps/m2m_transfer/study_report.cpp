@@ -23,7 +23,7 @@ bool several_policies(const Study& study) {
   return study.reports.front().policy != study.reports.back().policy;
 }
 
-/// A line of slope 2 below all points of the chart: what second order looks like.
+/// A line of slope 2 below all points of the chart, as a reference for second order.
 plot::Series second_order(const plot::Chart& chart) {
   double low = 0, high = 0, c = 0;
   for (const plot::Series& series : chart.series) {
@@ -47,7 +47,7 @@ plot::Chart chart_of(const Study& study, Against against) {
       .title = against == Against::seconds ? "transfer: error against run time"
                                            : "transfer: error against the source's edge length",
       .x_label = against == Against::seconds
-                     ? fmt::format("seconds a transfer, PEs: {}", study.reports.front().pes)
+                     ? fmt::format("seconds per transfer, PEs: {}", study.reports.front().pes)
                      : "edge length of the source",
       .y_label = "error",
       .x_log = true,
@@ -55,7 +55,7 @@ plot::Chart chart_of(const Study& study, Against against) {
   std::size_t at = 0;
   for (const Trend& trend : trends(study)) {
     const std::size_t f = at++ % study.reports.front().fields.size();
-    if (trend.exact) continue;  // rounding would set the scale of the axis
+    if (trend.exact) continue;  // rounding errors would dominate the axis
     const std::string name =
         trend.field + (several_policies(study) ? ", " + trend.policy : std::string());
     plot::Series l2{name + ": L2"}, linf{name + ": Linf"};
@@ -171,8 +171,8 @@ void prepare_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder, error))
-    fail(ErrorCode::environment, "--study ", folder, ": is no folder and cannot be made one (",
-         error.message(), "); meshes come before --study");
+    fail(ErrorCode::environment, "--study ", folder, ": the folder cannot be created (",
+         error.message(), "); give the meshes before --study");
 }
 
 std::string write(const Study& study, const std::string& folder) {

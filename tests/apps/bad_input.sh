@@ -54,7 +54,7 @@ refuses policy "${transfer[@]}" kuhn:2 kuhn:2 --policy perhaps
 refuses partition "${transfer[@]}" kuhn:2 kuhn:2 --partition perhaps
 refuses perhaps "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)'
 refuses --voxel "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
-refuses "--voxel 1e-12: .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
+refuses "--voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
 refuses --nonsense "$bin/hello" --nonsense
@@ -69,7 +69,7 @@ study=("$bin/m2m_transfer" --json "$scratch/result.json")
 refuses kuhn:x "${study[@]}" kuhn:2,x --study "$scratch/result.exo"
 refuses missing.msh "${study[@]}" "kuhn:2,4" "$scratch/missing.msh" --study "$scratch/result.exo"
 refuses empty.exo "${study[@]}" kuhn:2,4 kuhn:3 --study "$scratch/empty.exo"
-refuses "are for one transfer" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
+refuses "do not work with --study" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
 
 # A job of several processes prints the error once, and all of them end with 2. (mpirun reports the exit code of the first
 # process that failed; --quiet suppresses its own messages.)

@@ -63,7 +63,7 @@ TEST_CASE("a study pairs its meshes", "[apps][study]") {
 }
 
 TEST_CASE("a power law's exponent is found, zeros and infinities aside", "[apps][study]") {
-  std::vector<Sample> samples;
+  std::vector<plot::Point> samples;
   for (const double x : {0.01, 0.1, 0.5, 3.0}) samples.push_back({x, 7 * std::pow(x, -1.5)});
   CHECK(fitted_power(samples).value() == Approx(-1.5));
   samples.push_back({1, 0});
