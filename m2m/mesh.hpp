@@ -70,7 +70,7 @@ struct TetMesh {
   [[nodiscard]] std::size_t n_tets() const noexcept { return tets.size(); }
 };
 
-/// Properties of a valid mesh that a user may want to know.
+/// Properties of a valid mesh that are worth a report.
 struct MeshCensus {
   std::size_t n_flat = 0;      ///< tetrahedra without volume, for example with two equal vertices
   std::size_t n_inverted = 0;  ///< tetrahedra of negative orientation

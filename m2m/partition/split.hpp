@@ -1,6 +1,6 @@
 // Splits a mesh into parts, one per chare. Each tetrahedron is in exactly one part. A vertex is in
 // every part that uses it; the lowest of these parts owns it, and it is a ghost in the others. Only
-// the owner receives values for a vertex; it knows the ghosts and forwards the new values to them.
+// the owner receives values for a vertex; it lists the ghosts, and sends new values to them.
 // A vertex that no tetrahedron uses is owned by some part.
 #pragma once
 

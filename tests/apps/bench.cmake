@@ -1,12 +1,12 @@
-# bench from outside: on one PE, on two, and on two processes every row that it lists appears, in the CSV and in the
-# JSON, with all its keys; what it cannot measure is one line and exit code 2. Times are not judged.
+# Runs bench on one PE, on two PEs and on two processes. Every row that --list names is in the CSV and in the JSON, with all
+# keys. A row that cannot be measured gives one line of error and exit code 2. The times are not checked.
 #     cmake -D BENCH=… -D MPIRUN=… -D SCRATCH=… -P bench.cmake
 cmake_minimum_required(VERSION 3.25)
 file(MAKE_DIRECTORY "${SCRATCH}")
 set(mpirun ${MPIRUN} --allow-run-as-root --oversubscribe)
 set(keys name median unit least spread limit ratio pes ranks machine preset commit)
 
-# run(OUT COMMAND…): the command succeeds; OUT is its standard output.
+# run(OUT COMMAND…): requires success; OUT is the standard output.
 function(run out)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE text ERROR_VARIABLE errors RESULT_VARIABLE code TIMEOUT 120)
   if(NOT code EQUAL 0)
@@ -15,7 +15,7 @@ function(run out)
   set(${out} "${text}" PARENT_SCOPE)
 endfunction()
 
-# all_rows(PES RANKS LIMITED COMMAND…): LIMITED matches the rows that have a limit there.
+# all_rows(PES RANKS LIMITED COMMAND…): LIMITED matches the rows that have a limit on this machine.
 function(all_rows pes ranks limited)
   run(listed ${ARGN} --list)
   string(REGEX MATCHALL "\n  [A-Za-z0-9_]+" rows "\n${listed}")
@@ -63,7 +63,7 @@ function(all_rows pes ranks limited)
   message(STATUS "${n} rows: ${ARGN}")
 endfunction()
 
-# refused(TEXT COMMAND…): exit code 2 and one line with this text.
+# refused(TEXT COMMAND…): requires exit code 2 and one line with this text.
 function(refused text)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE out ERROR_VARIABLE line RESULT_VARIABLE code TIMEOUT 120)
   string(REGEX MATCHALL "\n" ends "${line}")

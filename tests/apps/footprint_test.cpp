@@ -12,7 +12,7 @@ namespace {
 constexpr int n_rounds = 10;
 constexpr std::size_t n_bytes = 10000;
 
-/// Each member sends the next one the same amount, some times over.
+/// Each member sends the same number of bytes to the next one, several times.
 class Chatter : public Group<Chatter> {
  public:
   void talk(int left) {
@@ -22,7 +22,7 @@ class Chatter : public Group<Chatter> {
     group()[pe()].send<&Chatter::talk>(left - 1);
   }
   void hear(std::vector<std::uint8_t> bytes) {
-    TESS_CHECK(bytes.size() == n_bytes, bytes.size(), " bytes came");
+    TESS_CHECK(bytes.size() == n_bytes, "got ", bytes.size(), " bytes");
   }
 };
 
@@ -39,13 +39,13 @@ Task compare(Footprint& before, Footprint& after) {
 
 }  // namespace
 
-TEST_CASE("what all PEs send between processes is counted, once", "[apps][footprint]") {
+TEST_CASE("bytes that PEs send between processes are counted once", "[apps][footprint]") {
   for (const char* keys : {"pes=4,seed=3", "pes=6,per-process=2,seed=4"}) {
     Setup setup{make_simulated_machine(parse_simulated(keys)), {}};
     const auto n_processes = static_cast<std::uint64_t>(setup.machine->n_processes());
     Footprint before, after;
     REQUIRE(run(setup, [&] { return compare(before, after); }) == 0);
-    // The last PE of each process talks to the next process; the others stay at home.
+    // Only the last PE of each process sends to another process.
     const std::uint64_t said = n_processes * n_rounds * n_bytes;
     const std::uint64_t sent = after.bytes_sent - before.bytes_sent;
     CHECK(sent > said);
@@ -55,14 +55,14 @@ TEST_CASE("what all PEs send between processes is counted, once", "[apps][footpr
   }
 }
 
-TEST_CASE("within a process nothing is sent", "[apps][footprint]") {
+TEST_CASE("messages within a process are not counted", "[apps][footprint]") {
   Setup setup{make_threads_machine(2), {}};
   Footprint before, after;
   REQUIRE(run(setup, [&] { return compare(before, after); }) == 0);
   CHECK(after.bytes_sent == 0);
 }
 
-TEST_CASE("footprints join: sums, and the greatest", "[apps][footprint]") {
+TEST_CASE("joined footprints have the sums, and the largest peak", "[apps][footprint]") {
   const Footprint all = JoinFootprints()({10, 10, 1}, JoinFootprints()({30, 30, 2}, {20, 20, 4}));
   CHECK(all.peak_memory_bytes == 60);
   CHECK(all.greatest_peak_memory_bytes == 30);

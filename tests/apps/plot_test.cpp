@@ -1,5 +1,5 @@
-// What the plot library writes, read back: the CSV holds the data bit for bit, the SVG is
-// well-formed and has a curve for each series, under any name.
+// Reads back the files of the plot library: the CSV has the data bit for bit; the SVG is
+// well-formed and has a curve per series, for any name of a series.
 #include "apps/plot/chart.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/timeline.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* wild = "a&b <c> \"d\", 'e' \\n _x^y{z} @k %d `date` &amp; ]]> é #;";
 
-/// Lines of CSV as fields (RFC 4180).
+/// The fields of each line of a CSV file (RFC 4180).
 std::vector<std::vector<std::string>> read_csv(const std::string& text) {
   std::vector<std::vector<std::string>> lines(1, {""});
   bool quoted = false;
@@ -64,7 +64,7 @@ Chart two_series() {
 
 }  // namespace
 
-TEST_CASE("the CSV of a chart is its data, bit for bit", "[apps][plot]") {
+TEST_CASE("the CSV of a chart has its data bit for bit", "[apps][plot]") {
   const Scratch scratch;
   const Chart chart = two_series();
   write_svg(scratch.path("a.svg"), chart);
@@ -83,7 +83,7 @@ TEST_CASE("the CSV of a chart is its data, bit for bit", "[apps][plot]") {
   }
 }
 
-TEST_CASE("the SVG of a chart has a curve per series and every text as it is",
+TEST_CASE("the SVG of a chart has a curve per series, and every text unchanged",
           "[apps][plot][.][gnuplot]") {
   const Scratch scratch;
   REQUIRE(write_svg(scratch.path("a.svg"), two_series()));
@@ -96,7 +96,8 @@ TEST_CASE("the SVG of a chart has a curve per series and every text as it is",
   CHECK(n_texts(elements, "L2 & Linf") == 1);
 }
 
-TEST_CASE("points without a place on the axes are left out, the rest is drawn", "[apps][plot]") {
+TEST_CASE("points that do not fit on the axes are left out, and the others are drawn",
+          "[apps][plot]") {
   const Scratch scratch;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Chart chart{.title = "logarithms", .x_log = true, .y_log = true};
@@ -110,7 +111,7 @@ TEST_CASE("points without a place on the axes are left out, the rest is drawn", 
   if (has_gnuplot()) CHECK(n_texts(read_xml(slurp(scratch.path("a.svg"))), "0.25") == 1);
 }
 
-TEST_CASE("a path that cannot be written is named", "[apps][plot]") {
+TEST_CASE("the error names a path that cannot be written", "[apps][plot]") {
   const Scratch scratch;
   const std::string path = scratch.path("absent") + "/a.svg";
   CHECK_THAT(message_of([&] { write_svg(path, two_series()); }),
@@ -121,7 +122,7 @@ TEST_CASE("a path that cannot be written is named", "[apps][plot]") {
   CHECK(scratch.n_files() == 0);
 }
 
-TEST_CASE("without gnuplot the data is there, and no picture", "[apps][plot]") {
+TEST_CASE("without gnuplot the data is written, but no picture", "[apps][plot]") {
   const Scratch scratch;
   const char* before = std::getenv("PATH");
   const std::string kept = before != nullptr ? before : "";
@@ -133,7 +134,7 @@ TEST_CASE("without gnuplot the data is there, and no picture", "[apps][plot]") {
   CHECK(read_csv(slurp(scratch.path("a.csv"))).size() == 6);
 }
 
-TEST_CASE("a timeline has a bar for each bar, in its row, to scale", "[apps][plot]") {
+TEST_CASE("a timeline draws each bar in its row, to scale", "[apps][plot]") {
   const Scratch scratch;
   Timeline timeline{.title = wild, .rows = {"PE 0", wild}};
   timeline.bars = {{0, 1.000, 1.002, Activity::busy},
@@ -167,7 +168,7 @@ TEST_CASE("a timeline has a bar for each bar, in its row, to scale", "[apps][plo
   CHECK(lines[4] == std::vector<std::string>{wild, "1.001", "1.004", "busy"});
 }
 
-TEST_CASE("a bar that makes no sense is named", "[apps][plot]") {
+TEST_CASE("the error names a bar that is not valid", "[apps][plot]") {
   const Scratch scratch;
   const auto message = [&](Bar bar) {
     return message_of([&] {
@@ -180,7 +181,7 @@ TEST_CASE("a bar that makes no sense is named", "[apps][plot]") {
   CHECK(scratch.n_files() == 0);
 }
 
-TEST_CASE("bytes that XML cannot hold are replaced", "[apps][plot]") {
+TEST_CASE("bytes that are not valid in XML are replaced", "[apps][plot]") {
   const std::string bad = "\xef\xbf\xbd";
   CHECK(printable("a\x01\nb\x7f") == "a  b ");
   CHECK(printable("\xc3\xa9 \xe2\x86\x92 \xf0\x9f\x9a\x80") ==

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A terminal without a person: what is written to it can be read here.
+/// A pseudo-terminal. The test reads what is written to it.
 class Terminal {
  public:
   Terminal() : reader_(::posix_openpt(O_RDWR | O_NOCTTY)) {
@@ -32,7 +32,7 @@ class Terminal {
   }
   [[nodiscard]] std::FILE* file() const { return writer_; }
 
-  /// Reads on until `text` has come; false if it does not within ten seconds.
+  /// Reads until `text` appears; false if it does not within ten seconds.
   bool shows(const std::string& text) {
     while (seen_.find(text) == std::string::npos) {
       pollfd ready{reader_, POLLIN, 0};
@@ -81,7 +81,7 @@ TEST_CASE("short work shows no progress", "[apps][progress]") {
   CHECK(terminal.silent());
 }
 
-TEST_CASE("a file gets no progress", "[apps][progress]") {
+TEST_CASE("progress writes nothing to a file", "[apps][progress]") {
   const tess::test::Scratch scratch;
   const std::string path = scratch.path("log");
   std::FILE* file = std::fopen(path.c_str(), "w");

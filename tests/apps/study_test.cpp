@@ -35,7 +35,7 @@ Strings pairs_of(const std::string& source, const std::string& target, const Str
 
 }  // namespace
 
-TEST_CASE("a ladder of meshes is the meshes it names", "[apps][study]") {
+TEST_CASE("a ladder of meshes expands to its meshes", "[apps][study]") {
   CHECK(expand("kuhn:8,16@0.2") == Strings{"kuhn:8@0.2", "kuhn:16@0.2"});
   CHECK(expand("kuhn:4") == Strings{"kuhn:4"});
   CHECK(expand("a.msh,b.exo") == Strings{"a.msh", "b.exo"});
@@ -45,7 +45,7 @@ TEST_CASE("a ladder of meshes is the meshes it names", "[apps][study]") {
   CHECK_THAT(message_of([] { (void)expand("kuhn:8,x"); }), Catch::Contains("'kuhn:x'"));
 }
 
-TEST_CASE("a study pairs its meshes", "[apps][study]") {
+TEST_CASE("a study pairs its sources and targets", "[apps][study]") {
   CHECK(pairs_of("kuhn:2,4", "", {"keep"}) == Strings{"kuhn:2 kuhn:3 keep", "kuhn:4 kuhn:5 keep"});
   CHECK(pairs_of("kuhn:2,4", "kuhn:9", {"keep"}) ==
         Strings{"kuhn:2 kuhn:9 keep", "kuhn:4 kuhn:9 keep"});
@@ -62,7 +62,7 @@ TEST_CASE("a study pairs its meshes", "[apps][study]") {
              Catch::Contains("perhaps"));
 }
 
-TEST_CASE("a power law's exponent is found, zeros and infinities aside", "[apps][study]") {
+TEST_CASE("the exponent of a power law is found, without zeros and infinities", "[apps][study]") {
   std::vector<plot::Point> samples;
   for (const double x : {0.01, 0.1, 0.5, 3.0}) samples.push_back({x, 7 * std::pow(x, -1.5)});
   CHECK(fitted_power(samples).value() == Approx(-1.5));
@@ -74,7 +74,7 @@ TEST_CASE("a power law's exponent is found, zeros and infinities aside", "[apps]
   CHECK_FALSE(fitted_power({{1, 2}, {1, 3}}));
 }
 
-TEST_CASE("a study shows second order, and writes what it prints", "[apps][study]") {
+TEST_CASE("a study shows second order, and writes the same numbers to its files", "[apps][study]") {
   const Scratch scratch;
   Setup setup{make_threads_machine(2), {}};
   DriverOptions options;
@@ -83,11 +83,11 @@ TEST_CASE("a study shows second order, and writes what it prints", "[apps][study
   options.request.n_chares = 2;
   options.study = scratch.path("deep/study");
   options.repeat = 1;
-  SECTION("a field that cannot be parsed leaves nothing but the folder") {
+  SECTION("an error in a field leaves only the empty folder") {
     CHECK(drive(setup, options) == 2);
     CHECK(std::filesystem::is_empty(*options.study));
   }
-  SECTION("fields that can") {
+  SECTION("correct fields") {
     options.request.fields.back() = "min(x, 1)";
     REQUIRE(drive(setup, options) == 0);
     const auto report = nlohmann::json::parse(slurp(*options.study + "/study.json"));
@@ -107,7 +107,7 @@ TEST_CASE("a study shows second order, and writes what it prints", "[apps][study
     CHECK(csv.find("\"min(x, 1)\"") != std::string::npos);
     for (const auto& pair : report["pairs"])
       CHECK(csv.find(pair["result_hash"].get<std::string>()) != std::string::npos);
-    // The picture has the field that has an error, in two norms.
+    // The picture shows the only field with an error, in two norms.
     const std::string data = slurp(*options.study + "/error_time.csv");
     CHECK(std::count(data.begin(), data.end(), '\n') == 1 + 2 * 3);
   }
@@ -129,7 +129,7 @@ TEST_CASE("the picture of a study has a curve per norm, and one of order 2",
         }) == 3);
 }
 
-TEST_CASE("norms over found vertices leave out what the policy gave", "[apps][transfer]") {
+TEST_CASE("norms over found vertices leave out values of the policy", "[apps][transfer]") {
   const Scratch scratch;
   TetMesh target = kuhn_mesh({5});
   for (Point& p : target.points) p[0] *= 2;  // half outside
@@ -150,8 +150,8 @@ TEST_CASE("norms over found vertices leave out what the policy gave", "[apps][tr
   CHECK(pair["fields"][0]["found"]["l2"].get<double>() < 1e-12);
   CHECK(pair["linf"].get<double>() > 900);
   CHECK(pair["fields"][0]["l2"].get<double>() > 100);
-  // The picture is the plane across the first of the two short sides, from both ends of the
-  // colours.
+  // The picture shows the plane across the first of the two short sides. It uses both ends of the
+  // colour scale.
   const std::string svg = slurp(options.picture);
   const auto elements = test::read_xml(svg);
   const auto count = [&](const std::string& name) {

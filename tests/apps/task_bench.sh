@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# task_bench from outside: every type and kernel with its inputs checked, on threads, under mpirun and in adversarial
-# order; a wrong input is found; METG and balancing give what the simulated machine's cost model says.
+# task_bench.sh BIN: runs task_bench with every type and kernel, with its inputs checked, on threads, under mpirun and in
+# adversarial order. It finds a wrong input. METG and balancing give the results that follow from the cost model of the
+# simulated machine.
 set -uo pipefail
 bin=$1/task_bench
 scratch=$(mktemp -d)
@@ -9,7 +10,7 @@ passed=0
 failed=0
 mpirun=(mpirun -q --allow-run-as-root --oversubscribe)
 
-# ok WANTED_TEXT COMMAND…: exit code 0 and the text in the output.
+# ok TEXT COMMAND…: requires exit code 0, and the text in the output.
 ok() {
   local want=$1
   shift
@@ -23,7 +24,7 @@ ok() {
     tail -3 "$scratch/out" "$scratch/err"
   fi
 }
-# fails CODE WANTED_TEXT COMMAND…: that exit code, and one line of error that has the text.
+# fails CODE TEXT COMMAND…: requires this exit code, and one line of error with the text.
 fails() {
   local want_code=$1 want=$2
   shift 2
@@ -65,14 +66,14 @@ ok "$checked" "$bin" "${many[@]}" -steps 5 --pes 2 --repeat 3
 ok "Total Tasks 600" "$bin" -steps 10 -width 20 -and -steps 20 -width 20 -type fft --pes 2
 ok "Total Dependencies 522" "$bin" -steps 10 -width 20 -type stencil_1d --pes 2
 
-# A wrong output is found by whoever takes it.
+# The consumer of a wrong output reports it.
 for type in stencil_1d stencil_1d_periodic dom tree fft all_to_all nearest spread; do
   fails 1 "wrong input" "$bin" -steps 20 -width 8 -type $type --spoil 12,3 --pes 2
 done
 fails 1 "wrong input" "$bin" -steps 20 -width 8 -type stencil_1d -output 64 --spoil 12,4 --sim pes=3
 fails 1 "wrong input" "${mpirun[@]}" -n 2 "$bin" -steps 20 -width 8 -type fft --spoil 12,4 --pes 1
 
-# Virtual time is exact: 100 ns a message, one a task of trivial and two of stencil_1d.
+# Virtual time is exact: 100 ns per message, with one message per task of trivial and two of stencil_1d.
 "$bin" -metg -type all -steps 200 --sim pes=4,cost=100ns,latency=0us --repeat 1 --json "$scratch/m.json" \
   --csv "$scratch/rows.csv" --plot "$scratch/m.svg" >"$scratch/out" 2>&1
 python3 - "$scratch/m.json" "$scratch/rows.csv" <<'PYTHON' && passed=$((passed + 1)) || failed=$((failed + 1))
@@ -91,7 +92,7 @@ assert len(rows) == sum(len(one["rows"]) for one in results)
 PYTHON
 [[ -s $scratch/m.csv ]] || { failed=$((failed + 1)); echo "FAILED: no m.csv"; }
 
-# Persistent imbalance and four columns per PE: greedy_refine evens it out, an exact answer of the simulated machine.
+# Persistent imbalance with four columns per PE: greedy_refine removes it. The times of the simulated machine are exact.
 seconds_of() { timeout 60 "$@" | sed -n 's/^Elapsed Time \(.*\) seconds/\1/p'; }
 work=("$bin" -type nearest -steps 200 -width 64 -kernel load_imbalance -imbalance 2 -persistent -iter 2500
   --sim pes=4,cost=100ns)

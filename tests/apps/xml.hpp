@@ -1,5 +1,5 @@
-// A strict reader of small XML documents, for tests of what we write: every tag closed in order,
-// attributes quoted, no character that had to be escaped.
+// A strict reader of small XML documents, for tests of our own output. Every tag must be closed in
+// order, attributes must be quoted, and characters must be escaped where XML requires it.
 #pragma once
 
 #include <cctype>
@@ -16,8 +16,8 @@ struct XmlElement {
   std::string text;        ///< directly in it, entities resolved
 };
 
-/// All elements of a well-formed document, in the order of their start tags. Throws
-/// std::runtime_error for one that is not well-formed.
+/// Returns all elements of a document in the order of their start tags. Throws std::runtime_error
+/// if the document is not well-formed.
 inline std::vector<XmlElement> read_xml(std::string_view in) {
   std::vector<XmlElement> elements;
   std::vector<std::size_t> open;

@@ -1,4 +1,4 @@
-// The serial collision against all pairs by overlap() alone.
+// Compares the serial collision with overlap() of all pairs.
 #include "collide/collide_serial.hpp"
 
 #include "collide/voxel_size.hpp"
@@ -46,7 +46,8 @@ Pairs found(std::span<const Item> items, const VoxelGrid& grid, PairRules rules,
   return out;
 }
 
-/// Compares every method, rule, origin and size; doubles in `found` would show as unequal lists.
+/// Compares every method, rule, origin and size. A pair that is reported twice makes the lists
+/// differ.
 void check_scene(std::span<const Item> items, std::initializer_list<double> sizes, double shift) {
   for (const auto touching : {Touching::counts, Touching::does_not_count})
     for (const auto within : {WithinModel::skip, WithinModel::test}) {
@@ -84,23 +85,23 @@ std::vector<Item> random_scene(unsigned seed, std::size_t n, double offset, doub
 
 }  // namespace
 
-TEST_CASE("random boxes of all sizes: each pair once for every voxel size and origin",
-          "[collide]") {
+TEST_CASE("each pair of random boxes is found once for every voxel size and origin", "[collide]") {
   check_scene(random_scene(1, 300, 0, 1, false), {0.2, 0.7, 1, 20, 1e9}, 0.3);
 }
 
-TEST_CASE("boxes and points exactly on voxel faces: each pair once", "[collide]") {
+TEST_CASE("each pair of boxes and points on voxel faces is found once", "[collide]") {
   check_scene(random_scene(2, 300, 0, 1, true), {0.5, 1, 2, 3}, 0.5);
 }
 
-TEST_CASE("offsets and scales from 1e-310 to 1e30 lose nothing", "[collide]") {
+TEST_CASE("no pair is lost at offsets and scales from 1e-310 to 1e30", "[collide]") {
   check_scene(random_scene(3, 200, 1e9, 1, false), {0.5, 1.7}, 0.9);
   check_scene(random_scene(4, 200, 0, 1e30, false), {1e30, 3e29}, 1e29);
   check_scene(random_scene(5, 200, 0, 1e-9, false), {1e-9, 1}, 1e-9);
   check_scene(random_scene(6, 200, 0, 1e-310, false), {1e-300, 1}, 1e-310);
 }
 
-TEST_CASE("the lattice that other libraries lose pairs of has 93 556", "[collide]") {
+TEST_CASE("all 93 556 pairs of a lattice are found, some of which other libraries lose",
+          "[collide]") {
   std::vector<Item> items;
   for (int x = 0; x < 20; ++x)
     for (int y = 0; y < 20; ++y)
@@ -114,7 +115,7 @@ TEST_CASE("the lattice that other libraries lose pairs of has 93 556", "[collide
             93'556);
 }
 
-TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
+TEST_CASE("the vector form and the plain form of a probe agree", "[collide]") {
   const auto items = random_scene(8, 64, 0, 1, true);
   serial::Lanes lanes;
   lanes.resize(items.size());
@@ -132,7 +133,7 @@ TEST_CASE("eight lanes at a time decide as the plain form does", "[collide]") {
   }
 }
 
-TEST_CASE("bisection ends where all boxes of a node touch the plane", "[collide]") {
+TEST_CASE("bisection ends if all boxes of a node touch the plane", "[collide]") {
   std::vector<Item> items;
   for (int x = 0; x < 40; ++x)
     for (int y = 0; y < 3; ++y) {
@@ -143,7 +144,7 @@ TEST_CASE("bisection ends where all boxes of a node touch the plane", "[collide]
   REQUIRE((found(items, VoxelGrid(10), rules, SerialMethod::bisection) == oracle(items, rules)));
 }
 
-TEST_CASE("conversions of all widths agree bit for bit, also on what they refuse", "[collide]") {
+TEST_CASE("the conversions of all widths agree bit for bit, also on invalid boxes", "[collide]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   const VoxelGrid grid({0.1, -1e9, 0}, {0.3, 1e-7, 1});
@@ -179,7 +180,8 @@ TEST_CASE("conversions of all widths agree bit for bit, also on what they refuse
   REQUIRE(n_good > 1000);
 }
 
-TEST_CASE("a crowded voxel of two models: each pair across once, none within", "[collide]") {
+TEST_CASE("in a crowded voxel of two models only pairs across the models are found, each once",
+          "[collide]") {
   auto items = random_scene(11, 1500, 0, 1, false);
   for (std::size_t i = 0; i < items.size(); ++i) {
     items[i].id.model = static_cast<ModelId>(i % 5 == 0 ? 1 : 0);
@@ -193,7 +195,7 @@ TEST_CASE("a crowded voxel of two models: each pair across once, none within", "
       REQUIRE((found(items, VoxelGrid(size), rules, method) == expected));
 }
 
-TEST_CASE("bad boxes, coordinates and voxel sizes are refused by name", "[collide]") {
+TEST_CASE("errors name bad boxes, coordinates and voxel sizes", "[collide]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const Aabb& box :

@@ -1,7 +1,7 @@
-// Whole collisions on the runtime against all pairs: clients that own boxes, Voxels and Managers on
-// the simulated machine under adversarial order and forced migration, and on threads. Each pair is
-// told once to each of its two owners (once, where one owns both), in every one of several
-// collisions in a row, between which the boxes move.
+// Compares collisions on the runtime with all pairs: on the simulated machine, with adversarial
+// delivery order and forced migration, and on threads. Each pair is reported once to each of its
+// two owners (once, if they are the same). There are several collisions in a row, and the boxes
+// move between them.
 #include "collide/collider.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
@@ -18,13 +18,13 @@ namespace {
 struct Scene {
   std::uint64_t seed = 0;
   std::int32_t n_clients = 1;
-  std::int32_t n_boxes = 0;  ///< of each client
+  std::int32_t n_boxes = 0;  ///< per client
   std::int32_t n_models = 1;
   std::int32_t round = 0;  ///< boxes move from round to round
 };
 
-/// The boxes of a client: a function of the scene, so that the oracle knows them, too. On a coarse
-/// lattice half of the time, where boxes touch each other and the faces of voxels.
+/// The boxes of a client, as a function of the scene, so that the oracle can compute them too. In
+/// half of the scenes they lie on a coarse lattice, and touch each other and the faces of voxels.
 std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
   std::seed_seq seeds{scene.seed, static_cast<std::uint64_t>(scene.round),
                       static_cast<std::uint64_t>(client)};
@@ -47,49 +47,49 @@ std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
   return items;
 }
 
-/// Who was told what.
-struct Told {
+/// A report: one pair, as an owner received it.
+struct Reported {
   std::uint64_t owner = 0, other = 0;
   LocalPair pair;
-  friend auto operator<=>(const Told&, const Told&) = default;
+  friend auto operator<=>(const Reported&, const Reported&) = default;
 };
-using AllTold = std::vector<Told>;
+using Reports = std::vector<Reported>;
 
 struct Join {
-  AllTold operator()(AllTold a, const AllTold& b) const {
+  Reports operator()(Reports a, const Reports& b) const {
     a.insert(a.end(), b.begin(), b.end());
     return a;
   }
 };
 
-Told told(const ObjectId& mine, const ObjectId& theirs) {
+Reported reported(const ObjectId& mine, const ObjectId& theirs) {
   return {static_cast<std::uint64_t>(mine.owner),
           static_cast<std::uint64_t>(theirs.owner),
           {mine.local, theirs.local}};
 }
 
-/// What a pair within one owner is called: which of the two is first says nothing.
-AllTold in_order(AllTold list) {
-  for (Told& t : list)
+/// Sorts the reports, and the two objects of a pair with one owner, whose order has no meaning.
+Reports in_order(Reports list) {
+  for (Reported& t : list)
     if (t.owner == t.other && t.pair.theirs < t.pair.mine) std::swap(t.pair.mine, t.pair.theirs);
   std::sort(list.begin(), list.end());
   return list;
 }
 
-AllTold oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only) {
+Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only) {
   std::vector<Item> all;
   for (std::int32_t c = 0; c < scene.n_clients; ++c) {
     const auto items = boxes_of(scene, c);
     all.insert(all.end(), items.begin(), items.end());
   }
-  AllTold out;
+  Reports out;
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j) {
       const ObjectId &a = all[i].id, &b = all[j].id;
       if (rules.within_model == WithinModel::skip && a.model == b.model) continue;
       if (!overlap(all[i].box, all[j].box, rules.touching)) continue;
-      if (!only || a.model == *only) out.push_back(told(a, b));
-      if (only ? b.model == *only : a.owner != b.owner) out.push_back(told(b, a));
+      if (!only || a.model == *only) out.push_back(reported(a, b));
+      if (only ? b.model == *only : a.owner != b.owner) out.push_back(reported(b, a));
     }
   return in_order(std::move(out));
 }
@@ -97,11 +97,11 @@ AllTold oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only)
 class Client : public Chare<Client, Index1> {
  public:
   void submit(const Collider& collider, const Scene& scene) {
-    told_.clear();
+    reported_.clear();
     n_refused_ = 0;
     collider.submit(boxes_of(scene, index().x));
   }
-  /// The same boxes with a NaN in the last: all of them are refused.
+  /// Submits the same boxes, the last with a NaN. All of them are refused.
   void submit_bad(const Collider& collider, const Scene& scene) {
     std::vector<Item> items = boxes_of(scene, index().x);
     items.back().box.hi[1] = std::numeric_limits<double>::quiet_NaN();
@@ -117,21 +117,21 @@ class Client : public Chare<Client, Index1> {
   void receive(const Hits& hits) {
     TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
     for (const LocalPair& pair : hits.pairs)
-      told_.push_back(
+      reported_.push_back(
           {static_cast<std::uint64_t>(hits.owner), static_cast<std::uint64_t>(hits.other), pair});
   }
-  void gather(Callback<AllTold> target) { contribute(Join{}, told_, std::move(target)); }
+  void gather(Callback<Reports> target) { contribute(Join{}, reported_, std::move(target)); }
   void count_refused(Callback<std::int64_t> target) {
     contribute(sum, n_refused_, std::move(target));
   }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(told_, n_refused_);
+    ar(reported_, n_refused_);
   }
 
  private:
-  AllTold told_;
+  Reports reported_;
   std::int64_t n_refused_ = 0;
 };
 
@@ -139,9 +139,9 @@ struct Problem {
   Scene scene;
   ColliderOptions options;
   std::optional<ModelId> only;
-  std::vector<AllTold> rounds;  ///< what was told in each collision
+  std::vector<Reports> rounds;  ///< the reports of each collision
   std::int64_t n_refused = 0;
-  std::size_t n_left = 0;  ///< collections of PE 0 after the end of all
+  std::size_t n_left = 0;  ///< collections on PE 0 after all are destroyed
 };
 
 constexpr std::int32_t kRounds = 2;
@@ -158,7 +158,7 @@ Task collide_rounds(Problem& problem) {
   for (scene.round = 0; scene.round < kRounds; ++scene.round) {
     co_await epoch([&] { clients.broadcast<&Client::submit>(collider, scene); });
     co_await run_collision(collider, report);
-    Future<AllTold> all;
+    Future<Reports> all;
     clients.broadcast<&Client::gather>(all.callback());
     problem.rounds.push_back(in_order(co_await all));
   }
@@ -182,7 +182,7 @@ Task collide_bad(Problem& problem) {
   Future<std::int64_t> refused;
   clients.broadcast<&Client::count_refused>(refused.callback());
   problem.n_refused = co_await refused;
-  Future<AllTold> all;
+  Future<Reports> all;
   clients.broadcast<&Client::gather>(all.callback());
   problem.rounds.push_back(co_await all);
 }
@@ -195,7 +195,7 @@ int run_with(const std::string& option, Problem& problem, Task (*program)(Proble
   return run(setup, [&problem, program]() -> Task { return program(problem); });
 }
 
-/// A problem of every kind: numbers of clients and models, rules, voxel sizes, drawn from the seed.
+/// Varies the numbers of clients and models, the rules and the voxel size with the seed.
 Problem problem_of(std::uint64_t seed) {
   Problem problem;
   problem.scene = {seed, static_cast<std::int32_t>(1 + seed % 7),
@@ -211,7 +211,7 @@ Problem problem_of(std::uint64_t seed) {
   return problem;
 }
 
-void check_told(const std::string& option, std::uint64_t seed) {
+void check_reports(const std::string& option, std::uint64_t seed) {
   Problem problem = problem_of(seed);
   CAPTURE(option, seed);
   REQUIRE(run_with(option, problem, &collide_rounds) == 0);
@@ -220,7 +220,7 @@ void check_told(const std::string& option, std::uint64_t seed) {
   for (std::int32_t round = 0; round < kRounds; ++round) {
     Scene scene = problem.scene;
     scene.round = round;
-    const AllTold expected = oracle(scene, problem.options.rules, problem.only);
+    const Reports expected = oracle(scene, problem.options.rules, problem.only);
     CAPTURE(round);
     REQUIRE(problem.rounds[static_cast<std::size_t>(round)].size() == expected.size());
     REQUIRE((problem.rounds[static_cast<std::size_t>(round)] == expected));
@@ -234,17 +234,17 @@ std::string simulated(std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("each pair is told once to each owner in any order of delivery and under migration",
+TEST_CASE("each pair is reported once to each owner in any order of delivery and under migration",
           "[collide][parallel]") {
-  for (std::uint64_t seed = 1; seed <= 250; ++seed) check_told(simulated(seed), seed);
+  for (std::uint64_t seed = 1; seed <= 250; ++seed) check_reports(simulated(seed), seed);
 }
 
-TEST_CASE("each pair is told once to each owner on threads", "[collide][parallel]") {
+TEST_CASE("each pair is reported once to each owner on threads", "[collide][parallel]") {
   for (const int pes : {1, 2, 4})
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) check_told(text("--pes=", pes), seed);
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) check_reports(text("--pes=", pes), seed);
 }
 
-TEST_CASE("a list with a NaN box is refused whole, before anything is sent",
+TEST_CASE("a list with a NaN box is refused as a whole, before any message is sent",
           "[collide][parallel]") {
   for (const std::string option : {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
     Problem problem = problem_of(5);

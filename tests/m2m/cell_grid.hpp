@@ -18,8 +18,8 @@ class CellGrid {
  public:
   using Cell = std::array<std::int32_t, 3>;
 
-  /// About `n_cells` cells, nearly cubes if the box allows it. Each of `items` is listed in every cell
-  /// that its box touches.
+  /// About `n_cells` cells, nearly cubes if the box allows it. Each of `items` is listed in every
+  /// cell that its box touches.
   CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb> items);
 
   /// The cell of a point; for a point outside, the nearest cell.

@@ -12,7 +12,7 @@
 using namespace tess::m2m;
 using tess::test::message_of;
 
-TEST_CASE("expressions mean what C++ means", "[m2m][field]") {
+TEST_CASE("an expression has the value of the same expression in C++", "[m2m][field]") {
   const Point p{0.3, -1.5, 2};
   const double x = p[0], y = p[1], z = p[2];
   CHECK(Expression("x+y*z")(p) == x + y * z);
@@ -30,7 +30,7 @@ TEST_CASE("expressions mean what C++ means", "[m2m][field]") {
   CHECK(Expression("min(x, max(y, z)) + pow(z, 3)")(p) == x + 8);
 }
 
-TEST_CASE("a mistake in an expression is named with its position", "[m2m][field]") {
+TEST_CASE("an error in an expression names its position", "[m2m][field]") {
   const auto message = [](const char* text) { return message_of([&] { Expression e{text}; }); };
   CHECK_THAT(message(""), Catch::Contains("position 1: expected a value"));
   CHECK_THAT(message("x +"), Catch::Contains("position 4: expected a value"));
@@ -43,7 +43,8 @@ TEST_CASE("a mistake in an expression is named with its position", "[m2m][field]
   CHECK_THAT(message(std::string(100000, '-').c_str()), Catch::Contains("nested too deeply"));
 }
 
-TEST_CASE("norms are those of a constant error, and a NaN is the worst", "[m2m][field]") {
+TEST_CASE("error norms of a constant error are exact, and a NaN is the largest error",
+          "[m2m][field]") {
   const TetMesh mesh = kuhn_mesh({4, 0.2});
   const std::vector<double> truth(mesh.n_points(), 2.0);
   std::vector<double> values(mesh.n_points(), 2.5);
@@ -56,7 +57,7 @@ TEST_CASE("norms are those of a constant error, and a NaN is the worst", "[m2m][
   CHECK(even.l2 == Approx(0.5));  // the box has volume 1
   CHECK(even.l2_relative == Approx(0.25));
   CHECK(even.rms == Approx(0.5));
-  // Over some vertices: the others change nothing, whatever their values.
+  // Vertices that do not count change nothing.
   std::vector<bool> counts(mesh.n_points(), true);
   counts[17] = counts[30] = false;
   const ErrorNorms some = error_norms(mesh, values, truth, counts);
@@ -72,19 +73,19 @@ TEST_CASE("norms are those of a constant error, and a NaN is the worst", "[m2m][
   CHECK(std::isnan(error_norms(mesh, values, truth).linf));
 }
 
-TEST_CASE("the hash sees every bit and continues over pieces", "[m2m][field]") {
+TEST_CASE("the hash depends on every bit, and can be computed in pieces", "[m2m][field]") {
   const std::vector<double> a{1, 2, 3}, b{1, 2, std::nextafter(3.0, 4)};
   CHECK(result_hash(a) != result_hash(b));
   CHECK(result_hash({}) == 0xcbf29ce484222325U);
   CHECK(result_hash(std::span(a).subspan(1), result_hash(std::span(a).first(1))) == result_hash(a));
-  // FNV-1a of the eight letters "aaaaaaaa", from its definition.
+  // FNV-1a of the text "aaaaaaaa", by its definition.
   std::uint64_t wanted = 0xcbf29ce484222325U;
   for (int i = 0; i < 8; ++i) wanted = (wanted ^ 0x61U) * 0x100000001b3U;
   const std::vector<double> letters{std::bit_cast<double>(0x6161616161616161U)};
   CHECK(result_hash(letters) == wanted);
 }
 
-TEST_CASE("a formula that is not finite somewhere names the vertex", "[m2m][field]") {
+TEST_CASE("the error for a formula that is not finite names the vertex", "[m2m][field]") {
   const TetMesh mesh = kuhn_mesh({2});
   const Formula formula = make_formula("1/(x-0.5)", bounds(mesh));
   CHECK_THAT(message_of([&] { (void)sample(mesh, "f", formula); }),

@@ -24,7 +24,7 @@ void put(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
-/// The mesh as gmsh would write it; the node tags have gaps.
+/// The mesh in the format that gmsh writes. Node tags differ by `gap`.
 std::string as_gmsh(const TetMesh& mesh, bool legacy, bool binary, std::uint64_t gap) {
   std::string out =
       std::string("$MeshFormat\n") + (legacy ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n");
@@ -190,7 +190,7 @@ TEST_CASE("gmsh files of both versions and modes give the same mesh, also with g
   }
 }
 
-TEST_CASE("a written mesh is read back with its fields, and nothing else is left", "[m2m][io]") {
+TEST_CASE("a written mesh is read back with its fields, and no other file remains", "[m2m][io]") {
   const Scratch scratch;
   const TetMesh mesh = kuhn_mesh({3, 0.2});
   const Field scalar =
@@ -200,7 +200,7 @@ TEST_CASE("a written mesh is read back with its fields, and nothing else is left
   const Field part{"part", 1, std::vector<double>(mesh.n_tets(), 3)};
   const std::string path = scratch.path("out.exo");
   write_exodus(path, mesh, std::array{scalar, vector}, std::array{part});
-  write_exodus(path, mesh, std::array{scalar, vector}, std::array{part});  // over itself
+  write_exodus(path, mesh, std::array{scalar, vector}, std::array{part});  // overwrites it
   CHECK(scratch.n_files() == 1);
   const TetMesh read = read_mesh(path);
   CHECK(read.points == mesh.points);
@@ -232,7 +232,7 @@ TEST_CASE("a written mesh is read back with its fields, and nothing else is left
   CHECK(scratch.n_files() == 1);
 }
 
-TEST_CASE("blocks, side and node sets of a written mesh are read back, numbers, names and factors",
+TEST_CASE("blocks, side sets and node sets are read back with numbers, names and factors",
           "[m2m][io]") {
   const Scratch scratch;
   const TetMesh mesh = grouped_mesh();
@@ -314,7 +314,7 @@ TEST_CASE("a real mesh keeps its blocks and sets when it is written", "[m2m][io]
   }
 }
 
-TEST_CASE("cut and flipped gmsh files end in one line of error", "[m2m][io]") {
+TEST_CASE("gmsh files with missing or flipped bits give one line of error", "[m2m][io]") {
   const TetMesh mesh = kuhn_mesh({2});
   for (const bool legacy : {false, true}) {
     for (const bool binary : {false, true})
@@ -322,7 +322,7 @@ TEST_CASE("cut and flipped gmsh files end in one line of error", "[m2m][io]") {
   }
 }
 
-TEST_CASE("cut and flipped ExodusII files end in one line of error", "[m2m][io]") {
+TEST_CASE("ExodusII files with missing or flipped bits give one line of error", "[m2m][io]") {
   const Scratch scratch;
   const TetMesh mesh = grouped_mesh();
   const std::string path = scratch.path("whole.exo");
@@ -330,12 +330,13 @@ TEST_CASE("cut and flipped ExodusII files end in one line of error", "[m2m][io]"
   damage_everywhere("cut.exo", slurp(path), 200, 1500);
 }
 
-TEST_CASE("a cut and flipped ExodusII file of another program ends in one line of error",
-          "[m2m][io][.][shared_data]") {
+TEST_CASE(
+    "an ExodusII file of another program with missing or flipped bits gives one line of error",
+    "[m2m][io][.][shared_data]") {
   damage_everywhere("real.exo", slurp(shared_data("mfem/simple-cube-tet4.e")), 100, 1500);
 }
 
-TEST_CASE("a NetCDF-4 file is read, and a cut one refused", "[m2m][io]") {
+TEST_CASE("a NetCDF-4 file is read, and a truncated one is refused", "[m2m][io]") {
   const Scratch scratch;
   const std::string path = scratch.path("four.exo");
   int compute = 8, stored = 8;

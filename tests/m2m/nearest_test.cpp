@@ -13,7 +13,7 @@ using namespace tess::m2m;
 
 namespace {
 
-/// By looking at all points: of several as near, the lowest.
+/// Brute force. Ties go to the lowest vertex.
 NearestVertex::Answer nearest_by_force(std::span<const Point> points, const Point& p) {
   NearestVertex::Answer best{-1, INFINITY};
   for (std::size_t v = 0; v < points.size(); ++v) {
@@ -23,9 +23,9 @@ NearestVertex::Answer nearest_by_force(std::span<const Point> points, const Poin
   return best;
 }
 
-/// Points in and about the unit cube, many of them as near to several lattice points, and some far
-/// away.
-std::vector<Point> questions() {
+/// Points in and around the unit cube, many of them equally near to several lattice points, and
+/// some far away.
+std::vector<Point> queries() {
   std::vector<Point> points = kuhn_mesh({9}).points;
   for (Point& p : points)
     for (double& x : p) x = 3 * x - 1;
@@ -38,14 +38,14 @@ std::vector<Point> questions() {
 
 }  // namespace
 
-TEST_CASE("the nearest vertex is that of brute force, the lowest of several as near",
+TEST_CASE("the nearest vertex is that of brute force, and ties go to the lowest",
           "[m2m][nearest]") {
   for (const double jitter : {0.0, 0.2}) {
     const TetMesh mesh = kuhn_mesh({6, jitter});
     for (const std::size_t n : {std::size_t{1}, std::size_t{17}, mesh.n_points()}) {
       const std::span points = std::span(mesh.points).first(n);
       const NearestVertex nearest(points);
-      for (const Point& p : questions()) {
+      for (const Point& p : queries()) {
         const auto want = nearest_by_force(points, p);
         if (nearest.find(p).vertex != want.vertex) FAIL("not vertex " << want.vertex);
         if (nearest.find(p, want.squared_distance).vertex != want.vertex)
@@ -58,11 +58,10 @@ TEST_CASE("the nearest vertex is that of brute force, the lowest of several as n
   CHECK(NearestVertex({}).find({0, 0, 0}).vertex == -1);
 }
 
-TEST_CASE(
-    "parts asked in the order of their boxes give the vertex of the whole mesh, few per point",
-    "[m2m][nearest]") {
+TEST_CASE("the search over parts gives the vertex of the whole mesh, with few parts per point",
+          "[m2m][nearest]") {
   const TetMesh mesh = kuhn_mesh({12});
-  const std::vector<Point> points = questions();
+  const std::vector<Point> points = queries();
   for (const std::int32_t n_parts : {1, 8, 64, 300}) {
     const auto parts = split(mesh, partition(mesh, n_parts, PartitionMethod::rcb), n_parts);
     std::vector<Aabb> boxes;
@@ -73,13 +72,13 @@ TEST_CASE(
       trees.emplace_back(own);
     }
     const NearestParts order(boxes, tess::collide::box_around(points));
-    std::size_t n_questions = 0;
+    std::size_t n_queries = 0;
     for (const Point& p : points) {
       double reach = INFINITY;
       GlobalId best = -1;
       for (auto part = order.next(p, {}); part.squared_distance <= reach && part != order.none;
            part = order.next(p, part)) {
-        ++n_questions;
+        ++n_queries;
         const auto found = trees[static_cast<std::size_t>(part.number)].find(p, reach);
         if (found.vertex < 0) continue;
         const GlobalId vertex = parts[static_cast<std::size_t>(part.number)]
@@ -90,7 +89,7 @@ TEST_CASE(
       const auto want = nearest_by_force(mesh.points, p).vertex;
       if (best != want) FAIL("vertex " << best << ", not " << want << ", of " << n_parts);
     }
-    CAPTURE(n_parts, n_questions, points.size());
-    CHECK(n_questions < 2 * points.size());
+    CAPTURE(n_parts, n_queries, points.size());
+    CHECK(n_queries < 2 * points.size());
   }
 }

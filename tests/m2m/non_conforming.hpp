@@ -1,6 +1,6 @@
-// A mesh that does not conform: a coarse box with a finer one behind it. Vertices of the fine one
-// hang in faces and edges of the coarse one, whose tetrahedra come first, and one tetrahedron holds
-// a vertex of the last one inside.
+// A mesh that does not conform: a coarse box next to a fine one. Vertices of the fine box lie on
+// faces and edges of the coarse box, whose tetrahedra come first. The last tetrahedron has a vertex
+// inside another one.
 #pragma once
 
 #include "m2m/kuhn.hpp"

@@ -1,5 +1,5 @@
-// The transfer through chares against the transfer in one thread: the same bits on every machine
-// and schedule.
+// Compares the transfer through chares with the transfer in one thread: both give the same bits on
+// every machine and schedule.
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
@@ -42,7 +42,7 @@ Case make_case(TetMesh source, TetMesh target, OutsidePolicy policy) {
 
 struct Result {
   std::vector<Status> status;
-  std::vector<std::vector<double>> values;  // of each field
+  std::vector<std::vector<double>> values;  // per field
 };
 
 Result serial(const Case& c) {
@@ -81,7 +81,7 @@ void check_same(const Case& c, const Result& want, std::unique_ptr<Machine> mach
   Result got;
   const int code = run(setup, [&]() -> Task { return run_case(c, got); });
   REQUIRE(code == 0);
-  const bool same_status = got.status == want.status;  // not the whole lists in a failure's text
+  const bool same_status = got.status == want.status;  // so that a failure does not print the lists
   REQUIRE(same_status);
   for (std::size_t f = 0; f < 2; ++f)
     REQUIRE(std::memcmp(got.values[f].data(), want.values[f].data(),
@@ -131,9 +131,9 @@ TEST_CASE("a transfer through chares gives the bits of the serial one on every s
   }
 }
 
-TEST_CASE("nearest vertices through chares are those of the serial search, also where several tie",
+TEST_CASE("nearest vertices through chares are those of the serial search, also for ties",
           "[m2m][parallel]") {
-  // Beside the source and beyond it: all vertices outside, or half; lattices, so that many tie.
+  // All vertices lie outside, then half of them. On lattices there are many ties.
   for (const auto& [scale, offset] : {std::pair{1.0, 1.25}, std::pair{2.0, -0.5}}) {
     INFO("scale " << scale << ", offset " << offset);
     Case c = make_case(read_mesh("kuhn:6"), moved(read_mesh("kuhn:8"), scale, offset), Nearest{});

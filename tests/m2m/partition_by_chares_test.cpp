@@ -1,4 +1,4 @@
-// A program of its own: MPI has not been initialised when the first chares partition.
+// A program of its own, so that MPI is not initialised when the first chares partition.
 #include "m2m/kuhn.hpp"
 #include "m2m/partition/partition.hpp"
 #include "runtime/machine/threads.hpp"
@@ -15,7 +15,7 @@ namespace {
 using Parts = std::vector<std::int32_t>;
 
 struct Partitioner : Chare<Partitioner, Index1> {
-  /// Partitions as soon as all PEs of the process are about to.
+  /// Waits until all PEs of the process are here, then partitions.
   void cut(Callback<std::vector<Parts>> target) {
     waiting.fetch_add(1);
     while (waiting.load() < current_pe().n_pes()) std::this_thread::yield();
@@ -44,7 +44,7 @@ Task cut_everywhere(std::vector<Parts>* out) {
 
 }  // namespace
 
-TEST_CASE("chares on all PEs of a process partition at once", "[m2m][partition]") {
+TEST_CASE("chares on all PEs of a process can partition at the same time", "[m2m][partition]") {
   std::vector<Parts> parts;
   Setup setup{make_threads_machine(4), {}};
   REQUIRE(run(setup, [&]() -> Task { return cut_everywhere(&parts); }) == 0);

@@ -10,7 +10,7 @@
 using namespace tess::m2m;
 using tess::test::message_of;
 
-TEST_CASE("parts are balanced, the same each time, and cover the mesh", "[m2m][partition]") {
+TEST_CASE("parts are balanced, and the same in every call", "[m2m][partition]") {
   const TetMesh mesh = kuhn_mesh({6, 0.2});
   for (const PartitionMethod method : {PartitionMethod::rcb, PartitionMethod::hsfc}) {
     for (const std::int32_t n_parts : {1, 2, 3, 8, 64}) {
@@ -32,10 +32,10 @@ TEST_CASE("parts are balanced, the same each time, and cover the mesh", "[m2m][p
              Catch::Contains("'metis'"));
 }
 
-TEST_CASE("a split holds every tetrahedron once, every vertex with one owner that lists its ghosts",
+TEST_CASE("a split has every tetrahedron once, and one owner per vertex, which lists the ghosts",
           "[m2m][partition]") {
   TetMesh mesh = kuhn_mesh({4});
-  mesh.points.push_back({7, 7, 7});  // used by nothing
+  mesh.points.push_back({7, 7, 7});  // unused
   mesh.points.insert(mesh.points.begin(), Point{8, 8, 8});
   for (Tet& tet : mesh.tets) {
     for (VertexId& v : tet) ++v;

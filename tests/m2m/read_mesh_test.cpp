@@ -126,8 +126,7 @@ TEST_CASE("elements that are not linear tetrahedra are refused by name",
   CHECK_THAT(message_of([&] { (void)read_mesh(surface); }), Catch::Contains("cylinder_stokes.msh"));
 }
 
-TEST_CASE("a mesh without tetrahedra, a missing, empty or foreign file is one line that names it",
-          "[m2m][io]") {
+TEST_CASE("a missing, empty or foreign file gives one line of error that names it", "[m2m][io]") {
   Scratch scratch;
   const std::string empty = scratch.write("empty.msh", "");
   const std::string foreign = scratch.write("foreign.exo", "hello, I am not a mesh\n");
@@ -146,7 +145,7 @@ TEST_CASE("a mesh without tetrahedra, a missing, empty or foreign file is one li
   }
 }
 
-TEST_CASE("validate names the element and passes flat and inverted tetrahedra", "[m2m]") {
+TEST_CASE("validate() names a wrong element, and allows flat and inverted tetrahedra", "[m2m]") {
   TetMesh mesh = kuhn_mesh({2});
   mesh.name = "the mesh";
   std::swap(mesh.tets[3][0], mesh.tets[3][1]);
@@ -199,7 +198,7 @@ TEST_CASE("a mesh whose coordinates have collapsed is refused by name, with the 
        {std::pair{1.0, 1e9}, std::pair{1e-9, 0.0}, std::pair{1e9, 0.0}, std::pair{1e-70, 0.0},
         std::pair{1e60, 0.0}, std::pair{1.0, 1e12}})
     CHECK_NOTHROW(validate(moved(scale, shift)));
-  TetMesh graded = moved(1, 0);  // a few collapsed tetrahedra among many
+  TetMesh graded = moved(1, 0);  // one collapsed tetrahedron among many
   graded.tets.push_back({1, 1, 1, 1});
   CHECK(validate(graded).n_flat == 1);
 }

@@ -1,4 +1,4 @@
-// What the tests of meshes and files share: a folder that vanishes, and the message of an Error.
+// Helpers for tests of files: a temporary folder, the message of an Error, the bytes of a file.
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -11,7 +11,7 @@
 
 namespace tess::test {
 
-/// A fresh folder, removed with everything in it at the end of the test.
+/// A new folder. The destructor removes it with its contents.
 class Scratch {
  public:
   Scratch() : folder_((std::filesystem::temp_directory_path() / "tess-m2m-XXXXXX").string()) {
@@ -38,7 +38,7 @@ class Scratch {
   std::string folder_;
 };
 
-/// What the Error thrown by `action` says; empty where none is thrown.
+/// The message of the Error that `action` throws; empty if it throws none.
 template <class Action>
 std::string message_of(Action&& action) {
   try {
@@ -49,7 +49,7 @@ std::string message_of(Action&& action) {
   return {};
 }
 
-/// A whole file.
+/// The bytes of a file.
 inline std::string slurp(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -1,5 +1,5 @@
-// Several transfers on the same meshes, one after another and at once, against chains of transfers
-// in one thread: the same bits on every machine and schedule.
+// Compares several transfers on the same meshes, one after another or at the same time, with
+// transfers in one thread: they give the same bits on every machine and schedule.
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
@@ -41,7 +41,7 @@ std::vector<Status> transfer_alone(const Piece& from, Piece& to, const OutsidePo
       .status;
 }
 
-/// What the Workers of a mesh hold, in global order.
+/// The values and status of a mesh, gathered in global order.
 struct Held {
   std::vector<double> values;
   std::vector<Status> status;
@@ -61,7 +61,7 @@ Task gather(DistributedMesh mesh, Held* held) {
   }
 }
 
-/// How many parts the two meshes of a case are cut into.
+/// The number of parts of the two meshes of a case.
 struct Parts {
   std::int32_t a = 0, b = 0;
 };
@@ -74,7 +74,7 @@ TransferOptions options_of(const Piece& from, const Piece& to, const OutsidePoli
   return {{0.1, 0, 0}, suggest_voxel_size(from.mesh, to.mesh), policy};
 }
 
-/// REQUIREs equality without the whole lists in a failure's text.
+/// Requires equality. A failure does not print the lists.
 void require_same(const Held& got, const Piece& want, const std::vector<Status>& status) {
   const bool same_values = got.values == want.field.values;
   const bool same_status = got.status == status;
@@ -82,7 +82,7 @@ void require_same(const Held& got, const Piece& want, const std::vector<Status>&
   REQUIRE(same_status);
 }
 
-/// Two meshes of which each has vertices outside the other, and a policy.
+/// Two meshes and a policy. Each mesh has vertices outside the other.
 struct MeshPair {
   Piece a = piece("kuhn:4@0.2", 1, 0, "sin");
   Piece b = piece("kuhn:6@0.1", 1.1, -0.05, "gaussian");
@@ -121,7 +121,7 @@ Task there_and_back_and_there(const MeshPair& c, Parts n, HeldBoth* held) {
   co_await gather_both(&meshes, held);
 }
 
-/// Both directions at once.
+/// Transfers in both directions at the same time.
 Task exchange(const MeshPair& c, Parts n, HeldBoth* held) {
   Spread meshes;
   co_await spread_both(c, n, &meshes);
@@ -132,7 +132,7 @@ Task exchange(const MeshPair& c, Parts n, HeldBoth* held) {
   co_await gather_both(&meshes, held);
 }
 
-/// a to two meshes at once, one of them itself.
+/// Transfers from a to two other meshes and to a itself, at the same time.
 Task to_two(const MeshPair& c, Parts n, HeldBoth* held) {
   Spread meshes, others;
   co_await spread_both(c, n, &meshes);
@@ -147,7 +147,7 @@ Task to_two(const MeshPair& c, Parts n, HeldBoth* held) {
   co_await gather(others.b, &held->b);
 }
 
-/// Two sources that do not meet, to one target at once.
+/// Transfers from two sources that do not overlap to one target, at the same time.
 Task from_two(const MeshPair& left, const MeshPair& right, Parts n, HeldBoth* held) {
   Spread meshes, others;
   co_await spread_both(left, n, &meshes);
@@ -159,13 +159,13 @@ Task from_two(const MeshPair& left, const MeshPair& right, Parts n, HeldBoth* he
   co_await gather(meshes.b, &held->a);
 }
 
-/// What to run, and what to require of the result.
+/// A program, and the check of its result.
 struct Scenario {
   std::function<Task(HeldBoth*)> program;
   std::function<void(const HeldBoth&)> judge;
 };
 
-/// Runs a check on many schedules of the simulated machine, which also moves Workers, and on
+/// Runs a scenario on many schedules of the simulated machine, which also migrates Workers, and on
 /// threads, with several numbers of parts.
 void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts)>& make) {
   const auto run_one = [&](std::unique_ptr<Machine> machine, RuntimeOptions options, Parts n) {
@@ -200,7 +200,7 @@ void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts
 
 }  // namespace
 
-TEST_CASE("there and back and there again gives the bits of three serial transfers",
+TEST_CASE("a transfer there, back and there again gives the bits of three serial transfers",
           "[m2m][several]") {
   for (const OutsidePolicy& policy :
        {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}, OutsidePolicy{Nearest{}}}) {
@@ -220,7 +220,8 @@ TEST_CASE("there and back and there again gives the bits of three serial transfe
   }
 }
 
-TEST_CASE("one mesh is the source of three transfers at once, one onto itself", "[m2m][several]") {
+TEST_CASE("a mesh can be the source of three concurrent transfers, one of them onto itself",
+          "[m2m][several]") {
   MeshPair c;
   c.policy = Nearest{};
   MeshPair want = c;
@@ -234,7 +235,7 @@ TEST_CASE("one mesh is the source of three transfers at once, one onto itself", 
   });
 }
 
-TEST_CASE("two transfers into one mesh at once lose no value of each other", "[m2m][several]") {
+TEST_CASE("two concurrent transfers into one mesh keep the values of both", "[m2m][several]") {
   MeshPair left;
   left.a = piece("kuhn:4@0.2", 0.45, 0, "sin");
   MeshPair right = left;
@@ -248,11 +249,11 @@ TEST_CASE("two transfers into one mesh at once lose no value of each other", "[m
   });
 }
 
-TEST_CASE("transfers both ways at once read a mesh before or after it is written, never between",
+TEST_CASE("concurrent transfers both ways read a mesh before or after it is written",
           "[m2m][several]") {
   const MeshPair c;
   std::array<MeshPair, 3> wants{c, c, c};
-  transfer_alone(c.a, wants[0].b, Keep{});  // both read first
+  transfer_alone(c.a, wants[0].b, Keep{});  // both read before either writes
   transfer_alone(c.b, wants[0].a, Keep{});
   transfer_alone(wants[1].a, wants[1].b, Keep{});
   transfer_alone(wants[1].b, wants[1].a, Keep{});

@@ -26,7 +26,7 @@ struct Moved {
   ErrorNorms norms;
 };
 
-/// The formula, sampled on the source, moved to the target, compared with the formula there.
+/// Samples the formula on the source, transfers it, and compares it with the formula on the target.
 Moved move_formula(const TetMesh& source, const TetMesh& target, const std::string& formula,
                    const OutsidePolicy& policy = UseValue{-7}) {
   const Formula truth = make_formula(formula, bounds(source));
@@ -71,18 +71,18 @@ void check_linear_both_ways(const TetMesh& coarse, const TetMesh& fine, double l
 
 }  // namespace
 
-TEST_CASE("a mesh onto itself loses nothing and returns the values bit for bit",
+TEST_CASE("a transfer onto the same mesh finds all vertices and keeps the values bit for bit",
           "[m2m][transfer]") {
   check_onto_itself({kuhn_mesh({6}), kuhn_mesh({5, 0.2}), moved_by(kuhn_mesh({5, 0.2}), 1, 1e9),
                      moved_by(kuhn_mesh({6}), 1e-9, 0), moved_by(kuhn_mesh({6}), 1e9, 0)});
 }
 
-TEST_CASE("meshes of gmsh onto themselves lose nothing and return the values bit for bit",
+TEST_CASE("a transfer onto the same gmsh mesh finds all vertices and keeps the values bit for bit",
           "[m2m][transfer][.][meshes]") {
   check_onto_itself({read_mesh(made_mesh("cube_0.113")), read_mesh(made_mesh("shaft_coarse"))});
 }
 
-TEST_CASE("real meshes onto themselves lose nothing and return the values bit for bit",
+TEST_CASE("a transfer onto the same real mesh finds all vertices and keeps the values bit for bit",
           "[m2m][transfer][.][shared_data]") {
   check_onto_itself({read_mesh(shared_data("nalu/3d_tet4_taylor_green_0p4.exo")),
                      read_mesh(shared_data("nalu/3d_tet4_pipe.exo"))});
@@ -100,7 +100,8 @@ TEST_CASE(
                          read_mesh(shared_data("nalu/3d_tet4_taylor_green_0p2.exo")), 32);
 }
 
-TEST_CASE("an offset of 1e9 and scales of 1e-9 and 1e9 lose nothing", "[m2m][transfer]") {
+TEST_CASE("an offset of 1e9 and scales of 1e-9 and 1e9 lose no vertex and no accuracy",
+          "[m2m][transfer]") {
   const TetMesh source = kuhn_mesh({7, 0.2});
   const TetMesh target = kuhn_mesh({9, 0.2});
   const Moved plain = move_formula(source, target, "linear");
@@ -123,8 +124,7 @@ TEST_CASE("an offset of 1e9 and scales of 1e-9 and 1e9 lose nothing", "[m2m][tra
 }
 
 TEST_CASE(
-    "every vertex of a jittered box on Kuhn faces, edges and corners has one owner, the same as "
-    "brute force",
+    "vertices on faces, edges and corners of the source get the same tetrahedron as by brute force",
     "[m2m][transfer]") {
   const TetMesh source = kuhn_mesh({4});
   TetMesh target =
@@ -151,7 +151,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the order of the source's tetrahedra decides ties, their orientation nothing",
+TEST_CASE("the orientation of the source tetrahedra does not change the result",
           "[m2m][transfer]") {
   const TetMesh source = kuhn_mesh({5, 0.2});
   TetMesh inverted = source;
@@ -190,7 +190,7 @@ TEST_CASE("the sine field converges with order 2 over four gmsh cubes",
   CHECK(std::log(errors[0] / errors[3]) / std::log(h[0] / h[3]) == Approx(2).margin(0.1));
 }
 
-TEST_CASE("flat tetrahedra of aspect 1e4 lose nothing and keep a linear field", "[m2m][transfer]") {
+TEST_CASE("flat tetrahedra lose no vertex and keep a linear field exact", "[m2m][transfer]") {
   const double c = std::cos(0.7), s = std::sin(0.7);
   for (const double height : {1e-4, 1e-7, 1e-10}) {
     for (const bool turned : {false, true}) {
@@ -211,18 +211,19 @@ TEST_CASE("flat tetrahedra of aspect 1e4 lose nothing and keep a linear field", 
   }
 }
 
-TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do no harm", "[m2m][transfer]") {
+TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do not change the result",
+          "[m2m][transfer]") {
   TetMesh source = kuhn_mesh({4, 0.2});
   const std::size_t n = source.n_points();
   for (std::size_t v = 0; v < n; ++v) source.points.push_back(source.points[v]);
   for (std::size_t t = 0; t < source.n_tets(); t += 2) {
     for (VertexId& v : source.tets[t])
-      v += static_cast<VertexId>(n);  // half of the mesh hangs on the doubles
+      v += static_cast<VertexId>(n);  // half of the mesh uses the doubles
   }
   source.tets.push_back({0, 1, 2, 1});
-  source.tets.push_back({0, 1, 2, 3});  // four in a row
-  source.tets.insert(source.tets.begin(),
-                     Tet{0, 1, static_cast<VertexId>(n), 5});  // flat and first: claims its corners
+  source.tets.push_back({0, 1, 2, 3});  // four collinear points
+  source.tets.insert(source.tets.begin(), Tet{0, 1, static_cast<VertexId>(n),
+                                              5});  // flat and first: it holds its corners
   source.points.push_back({0.3, 0.3, 0.3});
   validate(source);
   const TetMesh target = kuhn_mesh({5, 0.2});
@@ -232,8 +233,7 @@ TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do no harm", "[
   CHECK(outside(move_formula(source, source, "linear")) == 0);
 }
 
-TEST_CASE("a non-conforming mesh onto itself is exact: the corner that coincides gives the value",
-          "[m2m][transfer]") {
+TEST_CASE("a transfer onto the same non-conforming mesh is exact", "[m2m][transfer]") {
   const TetMesh mesh = tess::test::non_conforming_mesh();
   std::vector<Field> from{{"f", 1, {}}};
   const auto scramble = [](double x) { return std::fmod(x * 7919.0, 1.0); };
@@ -247,7 +247,7 @@ TEST_CASE("a non-conforming mesh onto itself is exact: the corner that coincides
   }
 }
 
-TEST_CASE("points outside are counted and get what the policy says", "[m2m][transfer]") {
+TEST_CASE("vertices outside are counted, and get the value of the policy", "[m2m][transfer]") {
   const TetMesh source = kuhn_mesh({4});
   const TetMesh target = moved_by(kuhn_mesh({4}), 1, 0.5);
   const Formula truth = make_formula("x + 10*y + 100*z", bounds(source));
@@ -273,7 +273,7 @@ TEST_CASE("points outside are counted and get what the policy says", "[m2m][tran
   }
 }
 
-TEST_CASE("several fields of several components move at once", "[m2m][transfer]") {
+TEST_CASE("several fields of several components are transferred together", "[m2m][transfer]") {
   const TetMesh source = kuhn_mesh({3});
   const TetMesh target = kuhn_mesh({5, 0.1});
   Field velocity{"velocity", 3, {}};
