@@ -4,8 +4,8 @@
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/timeline.hpp"
 #include "tests/apps/xml.hpp"
-#include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #include "apps/progress.hpp"
 
-#include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <cstdlib>
 #include <fcntl.h>

@@ -5,8 +5,8 @@
 #include "m2m/write_exodus.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/apps/xml.hpp"
-#include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cmath>

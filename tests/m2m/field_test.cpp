@@ -2,8 +2,8 @@
 
 #include "m2m/fields/expression.hpp"
 #include "m2m/kuhn.hpp"
-#include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <bit>
 #include <cmath>

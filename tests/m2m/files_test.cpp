@@ -2,8 +2,8 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
-#include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <array>

@@ -2,8 +2,8 @@
 
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
-#include "tests/m2m/scratch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/m2m/non_conforming.hpp"
-#include "tests/m2m/scratch.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <algorithm>
