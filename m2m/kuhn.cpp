@@ -1,6 +1,7 @@
 #include "m2m/kuhn.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <charconv>
 #include <cstdlib>
@@ -12,13 +13,9 @@ namespace {
 constexpr std::int32_t largest_n = 700;  // 6 n³ fits in 31 bits
 constexpr double largest_jitter = 0.2;   // keeps every tetrahedron positive
 
-/// A hash of a vertex and an axis as a number in [-1, 1) (finaliser of splitmix64).
+/// A hash of a vertex and an axis as a number in [-1, 1).
 double noise(std::uint64_t vertex, std::uint64_t axis) {
-  std::uint64_t z = (vertex * 3 + axis + 1) * 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-  z ^= z >> 31U;
-  return static_cast<double>(z >> 11U) * 0x1p-52 - 1.0;
+  return 2 * unit(mix((vertex * 3 + axis + 1) * 0x9e3779b97f4a7c15U)) - 1;
 }
 
 /// The six paths from corner 0 to corner 7 of a cube (bits zyx). The middle corners of odd

@@ -62,14 +62,16 @@ class Collapse {
   /// Throws if more than a tenth of the tetrahedra are too short.
   void refuse(const TetMesh& mesh) const {
     if (n_ <= mesh.n_tets() / 10) return;
-    const std::string where = text(mesh.name, ": ", n_, " of ", mesh.n_tets(),
-                                   " tetrahedra have collapsed: the first is ", first_.longest);
+    const auto refuse = [&](const auto&... reason) {
+      fail(ErrorCode::bad_mesh, mesh.name, ": ", n_, " of ", mesh.n_tets(),
+           " tetrahedra have collapsed: the first is ", first_.longest, " long", reason...);
+    };
     if (first_.rounded)
-      fail(ErrorCode::bad_mesh, where, " long at coordinates of ", first_.largest,
-           ", where neighbouring numbers differ by ", first_.largest * ulp,
-           "; shift the mesh towards the origin before its coordinates are rounded");
-    fail(ErrorCode::bad_mesh, where, " long, and lengths below ", least_edge,
-         " have no volume in floating point; rescale the mesh");
+      refuse(" at coordinates of ", first_.largest, ", where neighbouring numbers differ by ",
+             first_.largest * ulp,
+             "; shift the mesh towards the origin before its coordinates are rounded");
+    refuse(", and lengths below ", least_edge,
+           " have no volume in floating point; rescale the mesh");
   }
 
  private:

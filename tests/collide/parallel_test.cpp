@@ -7,6 +7,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <limits>
 #include <random>
 
@@ -109,7 +110,7 @@ class Client : public Chare<Client, Index1> {
     try {
       collider.submit(std::move(items));
     } catch (const Error& error) {
-      const std::string name = text("object ", scene.n_boxes - 1, " of owner ", index().x);
+      const std::string name = fmt::format("object {} of owner {}", scene.n_boxes - 1, index().x);
       const bool names_it = std::string_view(error.what()).find(name) != std::string_view::npos;
       if (names_it && collider.managers.local().n_delivered() == sent_before) ++n_refused_;
     }
@@ -229,7 +230,7 @@ void check_reports(const std::string& option, std::uint64_t seed) {
 
 std::string simulated(std::uint64_t seed) {
   const std::uint64_t pes = std::array<std::uint64_t, 5>{1, 2, 3, 4, 8}[seed % 5];
-  return text("--sim=pes=", pes, ",cost=100ns,migrate=0.1,seed=", seed);
+  return fmt::format("--sim=pes={},cost=100ns,migrate=0.1,seed={}", pes, seed);
 }
 
 }  // namespace
@@ -241,7 +242,8 @@ TEST_CASE("each pair is reported once to each owner in any order of delivery and
 
 TEST_CASE("each pair is reported once to each owner on threads", "[collide][parallel]") {
   for (const int pes : {1, 2, 4})
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) check_reports(text("--pes=", pes), seed);
+    for (std::uint64_t seed = 1; seed <= 8; ++seed)
+      check_reports(fmt::format("--pes={}", pes), seed);
 }
 
 TEST_CASE("a list with a NaN box is refused as a whole, before any message is sent",
