@@ -1,7 +1,7 @@
 #include "apps/bench/dn_by_hand.hpp"
 
 #include "collide/dn_field/field/sample.hpp"
-#include "collide/dn_field/rules/particle_lanes.hpp"
+#include "collide/dn_field/geometry/lanes.hpp"
 
 #include <algorithm>
 

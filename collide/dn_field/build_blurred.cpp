@@ -3,7 +3,7 @@
 #include "collide/dn_field/build/blur.hpp"
 #include "collide/dn_field/build/checks.hpp"
 #include "collide/dn_field/field/normal_code.hpp"
-#include "collide/dn_field/tree/outward.hpp"
+#include "collide/dn_field/tree/orientation.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

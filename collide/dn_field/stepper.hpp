@@ -1,14 +1,11 @@
-// The step loop of a scene, composed at set-up: make_stepper() picks from a table of instantiated
-// loops the one that holds this scene's rules and no test for the others. Serial; any thread may
-// run any part of the particles, at the same time, with the same Stepper. The result depends on the
-// particle, the objects, the time and the step alone: not on blocks, threads or instruction set.
+// The step loop of a scene: make_stepper() picks the loop that holds this scene's rules and no test
+// for the others. Any number of threads may use one Stepper for different particles at the same
+// time. The result depends only on the particle, the objects, the time and the step: not on blocks,
+// threads or instruction set. README.md shows a step as a picture.
 //
-// One step of a particle:
-//     velocity   quadratic drags and the surface flow, each by its exact solution
-//     flight     gravity, wind, linear drags and explosions, exact for constant coefficients, gives
-//                the velocity at the end and the way
-//     surface    the spring's exact motion along the normal; the impact at its time within the
-//                step, then the rest of the step with the new velocity
+// Limits: a voxel stores one surface. In a corner of two objects a particle may enter the further
+// one by half a cell. At a joint of open surfaces, or where a stiff spring catches it from the
+// side, a particle turns back the way it came instead of being reflected.
 #pragma once
 
 #include "collide/dn_field/compressed.hpp"
@@ -23,49 +20,47 @@ namespace tess::dn {
 
 class Bvh;
 
-/// What particles collide with. The field is shared, read-only, and must outlive the object.
+/// An obstacle. The field is shared, read-only, and must outlive the object.
 struct Object {
   const Field* field = nullptr;
-  Frame frame;  ///< at the start of a run, with the velocities it moves by
-  /// If given, look-ups ask this, and `field` is what it was made from or its outline(). All
-  /// objects of a scene have one or none has.
+  Frame frame;  ///< at the start of a run, with its velocities
+  /// If given, this field is sampled, and `field` is the one it was made from or its outline().
+  /// Either all objects of a scene have one or none has.
   const CompressedField* compressed = nullptr;
-  /// If given, of the surface that the field was built from. With it, impacts let nobody through
-  /// where two sheets of a two-sided field meet, which the field alone does.
+  /// If given, the tree of the surface that the field was built from. With it, particles do not
+  /// pass the joints of an open surface.
   const Bvh* triangles = nullptr;
 };
 
-/// Moves all frames over n_steps; bit for bit what a run of n_steps sees.
+/// Moves all frames over n_steps, to the bit as a run of n_steps does.
 void advance(std::span<Object> objects, double step, int n_steps);
 
-/// Throws Error(bad_argument) where `objects` cannot serve `rules`: a field without distances or
-/// without the normals that a rule needs, or thinner than a rule reaches; a scale that is not
-/// positive and finite; compressed and flat fields together, or the trilinear look-up of compressed
-/// ones.
+/// Throws Error(bad_argument) if `objects` do not fit `rules`: a field without distances or without
+/// the normals that a rule needs, or thinner than a rule reaches; a scale that is not positive and
+/// finite; compressed and flat fields together, or trilinear samples of compressed ones.
 void validate(const Rules& rules, std::span<const Object> objects);
 
-/// Where the way of a fast particle bent in a step.
+/// A bend in the path of a traced particle.
 struct Waypoint {
   std::size_t particle = 0;
-  double part = 0;  ///< of the step, that had gone by
+  double part = 0;  ///< fraction of the step
   Vec3 place;
 };
 
 class Stepper {
  public:
-  /// n_steps steps from `time` on, the objects standing as at `time`. Particles are taken a few
-  /// hundred at a time through all the steps, so that they stay in the cache: many steps a call are
-  /// faster than one. Particles that are not finite stay so and touch no others. `objects` must
-  /// have passed validate().
+  /// Runs n_steps steps from `time` on; `objects` are those at `time` and have passed validate().
+  /// A block of particles goes through all steps while it is in the cache, so many steps per call
+  /// are faster than one. A particle that is not finite stays so and affects no other.
   void run(ParticleSpan particles, std::span<const Object> objects, double time,
            int n_steps = 1) const;
 
-  /// One such step. Tells the bounces, in the order of particles and of time, of those that went
-  /// further than was known to be free; the others' ways are straight but for half a voxel.
+  /// Runs one step and returns the waypoints of traced particles, in the order of particles and of
+  /// time. The paths of all others are straight up to half a voxel.
   [[nodiscard]] std::vector<Waypoint> run_once(ParticleSpan particles,
                                                std::span<const Object> objects, double time) const;
 
-  struct Plan;  ///< constants and loops of a scene; in step_plan.hpp
+  struct Plan;  ///< see step/plan.hpp
 
  private:
   friend Stepper make_stepper(const Rules& rules, double step);
@@ -75,14 +70,13 @@ class Stepper {
   std::shared_ptr<const Plan> plan_;
 };
 
-/// Throws Error(bad_value) where validate(rules) does, and for a step that is not positive and
-/// finite.
+/// Throws Error(bad_value) where validate(rules) does, or if the step is not positive and finite.
 [[nodiscard]] Stepper make_stepper(const Rules& rules, double step);
 
-/// Sum of v²/2. Particles that are not finite are left out.
+/// The sum of v²/2 over all particles with finite velocity.
 [[nodiscard]] double kinetic_energy(ParticleSpan particles);
 
-/// Particles with a coordinate or velocity that is NaN or infinite.
+/// The number of particles with a coordinate or velocity that is NaN or infinite.
 [[nodiscard]] std::size_t count_nonfinite(ParticleSpan particles);
 
 }  // namespace tess::dn

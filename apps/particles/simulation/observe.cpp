@@ -2,7 +2,7 @@
 
 #include "apps/particles/audit/fields.hpp"
 #include "apps/particles/audit/passage.hpp"
-#include "collide/dn_field/step/leg.hpp"
+#include "collide/dn_field/path.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ void note_tunnelled(const Stage& stage, const std::vector<Object>& at_begin,
                     const tess::dn::Particles& before,
                     std::span<const tess::dn::Waypoint> waypoints, Flock& flock) {
   const double depth = greatest_depth(stage.scene.rules);
-  std::vector<tess::dn::Leg> legs;
+  std::vector<tess::dn::PathSegment> segments;
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
     const Audited audited{static_cast<std::uint16_t>(o), at_begin[o], depth};
     for (std::size_t p = 0; p < flock.size(); ++p) {
@@ -80,9 +80,9 @@ void note_tunnelled(const Stage& stage, const std::vector<Object>& at_begin,
         return mark.what == Mark::through;
       };
       if (mark.what == Mark::through) continue;
-      find_legs(p, before.position(p), waypoints, flock.motion.position(p), legs);
-      for (const tess::dn::Leg& leg : legs)
-        if (any_piece(at_begin[o].frame, stage.scene.dt, leg, has_passed)) break;
+      path_segments(p, before.position(p), waypoints, flock.motion.position(p), segments);
+      for (const tess::dn::PathSegment& segment : segments)
+        if (any_piece(at_begin[o].frame, stage.scene.dt, segment, has_passed)) break;
     }
   }
 }

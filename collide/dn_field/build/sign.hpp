@@ -14,7 +14,7 @@
 #include "collide/dn_field/build/winding_lines.hpp"
 #include "collide/dn_field/grid.hpp"
 #include "collide/dn_field/tree/bvh.hpp"
-#include "collide/dn_field/tree/outward.hpp"
+#include "collide/dn_field/tree/orientation.hpp"
 
 #include <optional>
 

@@ -10,11 +10,8 @@ namespace {
 constexpr double tie = 1e-9;  // of a cell: a face between two layers of voxels meets both
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of the coordinates
 
-struct Range {
-  int first, last;  // inclusive
-};
-
-Range voxels_near(double low, double high, double origin, double cell, int n) {
+/// First and last, inclusive.
+std::pair<int, int> voxels_near(double low, double high, double origin, double cell, int n) {
   return {static_cast<int>(std::clamp(std::floor((low - origin) / cell), 0.0, 1.0 * n)),
           static_cast<int>(std::clamp(std::ceil((high - origin) / cell), -1.0, n - 1.0))};
 }

@@ -1,11 +1,11 @@
-// Several particles at once, eight where a double vector holds eight: GCC vector types, so that one
-// source serves every instruction set, and the same operations in the same order give the same bits
-// on all of them (the compiler may not fuse a multiplication with an addition; where the source
-// says fma, all do). Intrinsics stand only where the language has no word: gather, square root,
-// fma, "any". Private to the loops of this folder.
+// Several particles in one vector, one in each lane. The types are GCC vectors, so that one source
+// serves every instruction set and gives the same bits on all of them: the compiler does not fuse a
+// multiplication and an addition (-ffp-contract=off), and fma() is fused everywhere. Intrinsics
+// appear only where the language has no operation: gather, square root, fma, "any". Private to
+// dn_field.
 #pragma once
 
-#include "collide/dn_field/vec3.hpp"
+#include "collide/dn_field/particles.hpp"
 
 #include <bit>
 #include <cmath>
@@ -83,8 +83,8 @@ inline F min(F a, F b) {
 inline F max(F a, F b) {
   return a > b ? a : b;
 }
-/// The mask as a value of its own. g++ 12 else follows a conjunction of comparisons to where it is
-/// used, and works it out there lane by lane.
+/// Keeps the mask as a value. Otherwise g++ 12 moves a conjunction of comparisons to its use and
+/// computes it there lane by lane.
 inline L settled(L mask) {
 #ifdef __AVX512F__
   asm("" : "+v"(mask));
@@ -227,7 +227,7 @@ inline Two<F> gather_two(const float* table, I at) {
   const auto [first, second] = gather_two(reinterpret_cast<const std::uint32_t*>(table), at);
   return {(F)first, (F)second};
 }
-/// Reads the lanes of the mask alone.
+/// Reads only the lanes of the mask.
 inline F gather(const float* table, I at, I mask) {
 #ifdef __AVX512F__
   return (F)_mm256_mask_i32gather_ps((__m256)F{}, table, (__m256i)at, (__m256)mask, 4);
@@ -310,6 +310,20 @@ inline D3 load3(const double* x, const double* y, const double* z) {
   return {load<D>(x), load<D>(y), load<D>(z)};
 }
 
+// Particles p, p + 1, … of a span, one in each lane.
+inline D3 places(const ParticleSpan& particles, std::size_t p) {
+  return load3(particles.x + p, particles.y + p, particles.z + p);
+}
+inline D3 velocities(const ParticleSpan& particles, std::size_t p) {
+  return load3(particles.vx + p, particles.vy + p, particles.vz + p);
+}
+inline void set_places(const ParticleSpan& particles, std::size_t p, D3 x) {
+  store(particles.x + p, x.x), store(particles.y + p, x.y), store(particles.z + p, x.z);
+}
+inline void set_velocities(const ParticleSpan& particles, std::size_t p, D3 v) {
+  store(particles.vx + p, v.x), store(particles.vy + p, v.y), store(particles.vz + p, v.z);
+}
+
 /// One Newton step takes a normal that is unit to float precision to double precision.
 inline D3 refined(D3 n, D square) {
   return (1.5 - 0.5 * square) * n;
@@ -323,8 +337,8 @@ inline constexpr double pi = 3.14159265358979323846;
 struct Turn {
   D cosine, sine;
 };
-/// For |angle| <= pi/2: from tan(angle/2) = p/q, good to 3e-11 (the continued fraction, six terms),
-/// so that the squares add up to 1 to rounding: lengths are kept.
+/// For |angle| <= pi/2: from tan(angle/2) = p/q, a continued fraction of six terms with error
+/// 3e-11. The squares of sine and cosine add up to 1 to rounding, so turns keep lengths.
 inline Turn turn(D angle) {
   const D x = 0.5 * angle, xx = x * x;
   const D p = x * (10395.0 + xx * (-1260.0 + xx * 21.0));

@@ -1,5 +1,5 @@
 // One object that neither moves nor is turned.
-#include "collide/dn_field/rules/rule_table.hpp"
+#include "collide/dn_field/rules/rule_loop.hpp"
 
 namespace tess::dn {
 

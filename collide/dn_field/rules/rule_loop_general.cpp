@@ -1,5 +1,5 @@
 // Several objects, or one that moves or is turned.
-#include "collide/dn_field/rules/rule_table.hpp"
+#include "collide/dn_field/rules/rule_loop.hpp"
 
 namespace tess::dn {
 

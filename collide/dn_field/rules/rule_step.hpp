@@ -1,21 +1,21 @@
-// One step of a vector of particles: the rules, in their order. A struct, so that each rule is a
-// function that reads what the ones before it found; the compiler keeps its members in registers.
-// What a scene has not got leaves no instruction. Private to the step loop.
+// One step of a vector of particles: the rules, in their order. Each rule is a function that reads
+// the results of those before it; the compiler keeps the members in registers. A rule that the
+// scene does not use leaves no instruction. Private to the step loop.
 //
-// The flight of a step is given by its end velocity v1 and its way, both exact for constant
-// accelerations and linear drags. An impact happens at the fraction s of the step where the chord
-// x + s way meets the surface; there the velocity is reflected, and the rest of the step is flown
-// with the new one. Without drag the contact is placed on the parabola itself, so that the energy
-// is kept to rounding.
+// The flight of a step is given by its end velocity v1 and its displacement `way`, both exact for
+// constant accelerations and linear drags. An impact happens at the fraction s of the step at which
+// x + s way meets the surface. There the velocity is reflected, and the rest of the step is flown
+// with the new velocity. Without drag the contact lies on the parabola, so that the energy is kept
+// to rounding.
 //
-// Branches on "any of them" save time and nothing else: what they skip must leave the other
-// lanes their bits, the sign of a zero too, so that no particle depends on its neighbours.
+// A branch on any() only saves time: the skipped code must not change a bit of the other lanes, not
+// even the sign of a zero, so that no particle depends on its neighbours.
 #pragma once
 
-#include "collide/dn_field/rules/closest.hpp"
-#include "collide/dn_field/rules/flight_lanes.hpp"
-#include "collide/dn_field/rules/flow_lanes.hpp"
-#include "collide/dn_field/rules/spring_lanes.hpp"
+#include "collide/dn_field/rules/flight.hpp"
+#include "collide/dn_field/rules/nearest_surface.hpp"
+#include "collide/dn_field/rules/spring.hpp"
+#include "collide/dn_field/rules/surface_velocity.hpp"
 
 #include <vector>
 
@@ -24,35 +24,35 @@ namespace tess::dn {
 enum class Impacts : std::uint32_t { none, plain, swept };
 enum class Springs : std::uint32_t { none, exact };
 
-/// A particle that goes further than is known to be free: left to trace(), see trace.hpp.
+/// A particle whose displacement exceeds the free way: see continuous_collision.hpp.
 struct Untraced {
   std::size_t particle;  ///< in the block
   Vec3 position, start_velocity, end_velocity, way;
 };
 
-/// What the rule loop and the trace leave for others.
+/// Results of the rule loop besides the particles.
 struct Scratch {
   std::vector<Untraced> untraced;
-  std::vector<Waypoint> waypoints;  ///< numbers are those in the block
+  std::vector<Waypoint> waypoints;  ///< particles are numbered in the block
   bool keeps_waypoints = false;
   alignas(64) double energy[block_size];  ///< twice the energy a particle may have; springs only
 };
 
 struct RuleConstants : FlightConstants {
-  double curved = 0;  ///< 1 where no drag bends the flight off its parabola, else 0
+  double curved = 0;  ///< 1 where the flight is a parabola (no drag), otherwise 0
   double restitution = 0, threshold = 0;
-  double slack = 0;  ///< depth below the threshold that is taken for the look-up's error
-  double sunk = 0;   ///< depth below that, at which a particle stays if nothing pays for lifting it
-  double stride = 0;  ///< ways shorter than this are not traced
+  double slack = 0;   ///< depth below the threshold that may be the sample's error
+  double sunk = 0;    ///< depth below that from which a particle is lifted at no cost
+  double stride = 0;  ///< displacements below this are not traced
   FlowConstants flow;
   SpringConstants spring;
 };
 
 namespace lanes {
 
-/// How far of `up` somebody is lifted who falls with the acceleration `falls`, where he `pays`: the
-/// lift costs what it gains, of the velocity v relative to the surface's u; no rule gives that. Who
-/// is deeper than `sunk` began there, and is lifted to it for nothing.
+/// The part of `up` by which particles are lifted out of the surface. Where a particle `pays`, the
+/// potential energy against the acceleration `falls` is taken from its velocity v relative to the
+/// surface's u. The lift to the depth `sunk` costs nothing: a deeper particle started there.
 inline D lifted(L pays, D up, D falls, double sunk, D3 u, D3& v) {
   const D3 w = v - u;
   const D square = dot(w, w);
@@ -68,37 +68,37 @@ struct RuleStep {
   static constexpr bool asks_normal = hits_surface || springs;
   static constexpr bool asks_distance = asks_normal || Flies.drags == Drags::surface;
   static constexpr bool moves = asks_distance && Where == Setting::general;
-  /// Nothing but a bounce changes the velocity.
+  /// Whether only a bounce changes the velocity.
   static constexpr bool bounces_alone = Flies == Flight{} && !springs;
 
   const RuleConstants& c;
-  std::size_t p;  ///< the first of them
+  std::size_t p;  ///< the first particle
   D3 v0;
-  D d{};        ///< distance of the closest surface
+  D d{};        ///< distance of the nearest surface
   D3 n{}, u{};  ///< its normal and velocity
   L has_normal{};
   Flown flight{};
   D3 v1{}, way{};
-  // Along the normal all is scalar; velocities there are relative to the surface.
+  // Components along the normal; velocities are relative to the surface.
   D an{}, un{};
   D rise{}, rise1{};  ///< velocity at the start, at the end
-  D climb{};          ///< way
+  D climb{};          ///< displacement
   // Springs only.
   D z0{};       ///< distance beyond the spring's reach
   D energy{};   ///< twice that of the motion along the normal
-  D energy1{};  ///< twice that at the end, but for what follows
-  D change{};   ///< of the way, by the spring
-  D work{};     ///< of the acceleration on what springs and impacts added to the way
+  D energy1{};  ///< twice that at the end, before impacts
+  D change{};   ///< the spring's part of the displacement
+  D work{};     ///< work of the acceleration along what springs and impacts added to `way`
 
-  void look(const Closest& closest) {
-    if constexpr (asks_distance) d = to_double(load<F>(closest.distance + p));
+  void look(const NearestSurface& nearest) {
+    if constexpr (asks_distance) d = to_double(load<F>(nearest.distance + p));
     if constexpr (asks_normal) {
-      n = to_double(normals(closest, p));
+      n = to_double(normals(nearest, p));
       const D square = dot(n, n);
       has_normal = settled(square > 0.25);
       n = refined(n, square);
     }
-    if constexpr (moves) u = surface_velocities(closest, p);
+    if constexpr (moves) u = surface_velocities(nearest, p);
   }
 
   void fly() {
@@ -150,19 +150,19 @@ struct RuleStep {
     work = an * change;
   }
 
-  /// Who goes further than is known to be free.
-  L goes_far(const Closest& closest) const {
+  /// Particles whose displacement exceeds the free way.
+  L goes_far(const NearestSurface& nearest) const {
     const D3 path = moves ? fma(all(-c.step), u, way) : way;
-    const D free = max(to_double(load<F>(closest.free + p)), all(c.stride));
+    const D free = max(to_double(load<F>(nearest.free + p)), all(c.stride));
     L far = dot(path, path) > free * free;
-    if constexpr (moves) far = far | widen(load<F>(closest.free + p) <= follow);
+    if constexpr (moves) far = far | widen(load<F>(nearest.free + p) <= follow);
     return settled(far);
   }
 
-  /// The way along the normal to where the look-up's error begins.
+  /// How far particles that are too deep are moved along the normal.
   D out_of(L deep) const { return only(deep, c.threshold - c.slack - d); }
 
-  /// Where something accelerates them into the surface, they pay for it.
+  /// Where an acceleration points into the surface, the lift costs kinetic energy.
   D lift(L deep) {
     const D up = out_of(deep);
     if constexpr (accelerates<Flies, moves>) {
@@ -173,8 +173,7 @@ struct RuleStep {
     return up;
   }
 
-  /// They start at the surface if they are deep in it, or where what they pay for on the way
-  /// begins.
+  /// A particle deep in the surface starts at the surface, or where the lift begins to cost.
   void leave_to_trace(L far, L deep, const ParticleSpan& particles, Scratch& scratch) {
     D up = out_of(far & deep);
     if constexpr (accelerates<Flies, moves>) up = an < 0.0 ? max(up - c.sunk, D{}) : up;
@@ -188,7 +187,7 @@ struct RuleStep {
     }
   }
 
-  /// Who meets the surface in the step, and who is in it deeper than the look-up errs.
+  /// Particles that meet the surface in the step; particles in it deeper than the sample's error.
   struct Met {
     L hits, deep;
   };
@@ -214,7 +213,7 @@ struct RuleStep {
     way = select(hits | met.deep, fma(up, n, way), way);
   }
 
-  /// Reflects who `hits` at the fraction s, and flies them through the rest of the step.
+  /// Reflects the particles that hit at the fraction s, and flies them through the rest.
   void fly_on(L hits, D s, D rest) {
     const D3 a = flight.a;
     const D keep = flight.keep, gain = flight.gain, way_keep = flight.way_keep,
@@ -223,7 +222,7 @@ struct RuleStep {
     const D rise_met = fma(s, rise1 - rise, rise);
     D falls = rise_met;
     if constexpr (springs) {
-      // What the spring has not taken at the depth of the contact, and no more.
+      // At most the energy that the spring has not taken at the depth of the contact.
       const D zc = s > 0.0 ? min(z0, all(c.threshold - c.spring.reach)) : z0;
       const D depth = min(zc, D{});
       const D left =
@@ -233,7 +232,7 @@ struct RuleStep {
     const D kick = only(falls < 0.0, -c.restitution * falls - rise_met);
     const D3 w = fma(kick, n, met);
     const D wn = rise_met + kick + un;
-    // Back at the surface within the step: it rests there, and slides.
+    // A particle that returns to the surface within the step rests there and slides.
     const D sinks = rest * (way_keep * wn + rest * way_gain * an - c.step * un);
     const L rests = sinks < 0.0;
     const D sinks1 = wn + rest * ((keep - 1.0) * wn + gain * an) - un;

@@ -1,6 +1,4 @@
 #include "collide/dn_field/made_field.hpp"
-#include "collide/dn_field/rules/rule_table.hpp"
-#include "collide/dn_field/rules/velocity_rules.hpp"
 #include "tests/collide/dn_field/plain_lanes.hpp"
 #include "tests/support/catch.hpp"
 
@@ -42,7 +40,7 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
   c.restitution = 0.7, c.threshold = 0.01, c.slack = 1e-4, c.stride = 0.01;
   c.flow = {0.01, -0.02, 0.3};
   c.spring = {1e4, 99, 10, 0.1};
-  const auto closest = std::make_unique<Closest>();
+  const auto nearest = std::make_unique<NearestSurface>();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   Particles wide, narrow;
@@ -50,24 +48,26 @@ TEST_CASE("the rules have the same bits with and without vector instructions",
     const auto any = [&] { return Vec3{anywhere(random), anywhere(random), anywhere(random)}; };
     const Vec3 n = p % 17 == 0 ? Vec3{} : direction(any()), u = any();
     wide.push_back(any(), 3 * any());
-    closest->distance[p] = static_cast<float>(0.3 * anywhere(random));
-    closest->free[p] = closest->distance[p];
-    closest->nx[p] = static_cast<float>(n.x), closest->ny[p] = static_cast<float>(n.y);
-    closest->nz[p] = static_cast<float>(n.z);
-    closest->ux[p] = u.x, closest->uy[p] = u.y, closest->uz[p] = u.z;
+    nearest->distance[p] = static_cast<float>(0.3 * anywhere(random));
+    nearest->free[p] = nearest->distance[p];
+    nearest->nx[p] = static_cast<float>(n.x), nearest->ny[p] = static_cast<float>(n.y);
+    nearest->nz[p] = static_cast<float>(n.z);
+    nearest->ux[p] = u.x, nearest->uy[p] = u.y, nearest->uz[p] = u.z;
   }
   narrow = wide;
   const auto a = std::make_unique<Scratch>(), b = std::make_unique<Scratch>();
-  turn_to_surface(c.flow, Setting::general, wide.span(), *closest);
+  turn_to_surface(c.flow, Setting::general, wide.span(), *nearest);
   rule_loop_general({Flight{true, Drags::surface}, Impacts::swept, Springs::exact})(c, wide.span(),
-                                                                                    *closest, *a);
-  plain::loop(c, narrow.span(), *closest, *b);
+                                                                                    *nearest, *a);
+  plain::loop(c, narrow.span(), *nearest, *b);
   const auto same = [](const Values& x, const Values& y) {
     return std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
   };
   CHECK(same(wide.x, narrow.x));
+  CHECK(same(wide.y, narrow.y));
   CHECK(same(wide.z, narrow.z));
   CHECK(same(wide.vx, narrow.vx));
+  CHECK(same(wide.vy, narrow.vy));
   CHECK(same(wide.vz, narrow.vz));
   CHECK(std::memcmp(a->energy, b->energy, sizeof a->energy) == 0);
   CHECK(a->untraced.size() == b->untraced.size());

@@ -10,11 +10,11 @@
 
 namespace tess::dn::plain {
 
-void loop(const RuleConstants& c, const ParticleSpan& particles, const Closest& closest,
+void loop(const RuleConstants& c, const ParticleSpan& particles, const NearestSurface& nearest,
           Scratch& scratch) {
-  lanes::flow_loop<Setting::general>(c.flow, particles, closest);
+  lanes::flow_loop<Setting::general>(c.flow, particles, nearest);
   lanes::rule_loop<Flight{true, Drags::surface}, Impacts::swept, Springs::exact, Setting::general>(
-      c, particles, closest, scratch);
+      c, particles, nearest, scratch);
 }
 
 template <LookUp Kind>

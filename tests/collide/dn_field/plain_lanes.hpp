@@ -6,8 +6,8 @@
 namespace tess::dn::plain {
 
 /// All rules at once, without wide vectors.
-void loop(const RuleConstants& constants, const ParticleSpan& particles, const Closest& closest,
-          Scratch& scratch);
+void loop(const RuleConstants& constants, const ParticleSpan& particles,
+          const NearestSurface& nearest, Scratch& scratch);
 
 inline constexpr int sample_count = 512;
 

@@ -1,4 +1,4 @@
-#include "collide/dn_field/rules/placed_lanes.hpp"
+#include "collide/dn_field/rules/nearest_surface.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,23 +10,23 @@ using namespace lanes;
 
 constexpr std::int32_t unknown = -1;
 
-/// sample() of both for particle p and its neighbours; fetches from the field for those alone that
-/// have changed their voxel since `last`. The others get what they would have got.
+/// sample() of distance and normal for particles p, p + 1, …. Only those whose voxel differs from
+/// the one in `last` fetch from the field; the others have the same values without.
 template <LookUp Kind>
-Sample sample_again(const Sampler& field, F3 g, const Closest& last, Closest& closest,
+Sample sample_again(const Sampler& field, F3 g, const NearestSurface& last, NearestSurface& nearest,
                     std::size_t p) {
   const Voxel voxel = voxel_of(field.n, g);
   const I key = voxel.in ? position(field, voxel) : I{} + unknown;
   const I changed = ~voxel.in | (key != load<I>(last.voxel + p));
   Stored stored{load<F>(last.stored + p), normals(last, p)};
   if (any(changed)) stored = read_changed(field, voxel, changed, stored);
-  store(closest.voxel + p, key);
-  store(closest.stored + p, stored.distance);
+  store(nearest.voxel + p, key);
+  store(nearest.stored + p, stored.distance);
   return answer<Kind, Ask::both>(field.cell, voxel, stored, g);
 }
 
 template <Storage How>
-auto sampler_in(const Placed& object) {
+auto sampler_in(const PlacedObject& object) {
   if constexpr (How == Storage::compressed) {
     return object.planes;
   } else {
@@ -34,31 +34,30 @@ auto sampler_in(const Placed& object) {
   }
 }
 
-/// What is left of a bound to the free way, once another object may move by `way` against it.
-F shortened(const Placed& object, F bound, F way) {
+/// The bound of the free way where another object may move by `way` against it.
+F shortened(const PlacedObject& object, F bound, F way) {
   const F rest = bound - way;
   return (rest < 0.0F) & (way > 0.5F * object.cell) ? all(follow) : rest;
 }
 
-/// How far points that a spin takes along at `arm` come off their straight way. Others come off by
-/// the spin times their way more.
-F bent(const Placed& object, D3 arm) {
+/// Deviation from a straight way, by a spin, of a point that rests on the object at `arm`.
+F bent(const PlacedObject& object, D3 arm) {
   const F3 q = to_float(arm);
   return 0.5F * object.spin * object.spin * sqrt(dot(q, q));
 }
 
-/// What growth takes from the free way: in the object's own coordinates, in which its surface
-/// rests, the particle's way is that in the world over the scale at the end, and begins with the
-/// velocity of its own place, not of the surface beside it.
-F taken_by_growth(const Placed& object, F free, I in, F distance) {
+/// What growth subtracts from the free way. In the object's coordinates, where its surface rests,
+/// the particle's way is the one in the world divided by the scale at the end, and is relative to
+/// the velocity at the particle's place, not at the surface beside it.
+F taken_by_growth(const PlacedObject& object, F free, I in, F distance) {
   const auto g = static_cast<float>(object.growth);
   return std::max(-g, 0.0F) * max(free, F{}) + std::fabs(g) * abs(only(in, distance));
 }
 
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Storage How>
-void pass(const Placed& __restrict object,  // which no store can change
-          const ParticleSpan& __restrict particles, [[maybe_unused]] const Closest& last,
-          Closest& closest) {
+void pass(const PlacedObject& __restrict object,  // no store can change it
+          const ParticleSpan& __restrict particles, [[maybe_unused]] const NearestSurface& last,
+          NearestSurface& nearest) {
   const auto field = sampler_in<How>(object);
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
@@ -74,7 +73,7 @@ void pass(const Placed& __restrict object,  // which no store can change
     Sample found;
     if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear &&
                   Asked == Ask::both && How == Storage::flat)
-      found = sample_again<Kind>(field, g, last, closest, p);
+      found = sample_again<Kind>(field, g, last, nearest, p);
     else
       found = sample<Kind, Asked>(field, g);
     [[maybe_unused]] const I in = found.in;
@@ -82,15 +81,15 @@ void pass(const Placed& __restrict object,  // which no store can change
     if constexpr (Swept == Sweep::on) free = free_in_world(object, found, g);
     found.distance = distance_in_world(object, found);
     if constexpr (Where == Setting::one_at_rest) {
-      store(closest.distance + p, found.distance);
+      store(nearest.distance + p, found.distance);
       if constexpr (Asked == Ask::both) {
-        store(closest.nx + p, found.normal.x);
-        store(closest.ny + p, found.normal.y);
-        store(closest.nz + p, found.normal.z);
+        store(nearest.nx + p, found.normal.x);
+        store(nearest.ny + p, found.normal.y);
+        store(nearest.nz + p, found.normal.z);
       }
-      if constexpr (Swept == Sweep::on) store(closest.free + p, free);
+      if constexpr (Swept == Sweep::on) store(nearest.free + p, free);
     } else {
-      const I nearer = found.distance < load<F>(closest.distance + p);
+      const I nearer = found.distance < load<F>(nearest.distance + p);
       const L nearer_wide = widen(nearer);
       const Frame& f = object.frame;
       const Vec3 shift = c - f.position;
@@ -101,61 +100,61 @@ void pass(const Placed& __restrict object,  // which no store can change
         if constexpr (Swept == Sweep::on) bend = bent(object, arm);
         u = stiff_velocity(f, arm);
         if (object.growth != 0) {
-          // That of the surface itself, which is beside the particle.
+          // The velocity of the surface itself, which is beside the particle.
           const F3 beside = only(in, found.distance * to_world(object, found.normal));
           u = u + all(f.scale_rate / f.scale) * (arm - to_double(beside));
         }
       }
       if constexpr (Swept == Sweep::on) {
-        F others = load<F>(closest.free + p);
+        F others = load<F>(nearest.free + p);
         if (object.growth != 0) free = free - taken_by_growth(object, free, in, found.distance);
         if (object.spin != 0) free = shortened(object, free * (1 / (1 + object.spin)), bend);
-        // Where this is the only surface known there is nothing to compare.
+        // Where this is the only surface so far there is nothing to compare.
         if (object.restless && bits((others < out_of_reach) | ~nearer) != 0) {
-          const D3 gap = u - surface_velocities(closest, p);
+          const D3 gap = u - surface_velocities(nearest, p);
           const F way = to_float(object.step * sqrt(dot(gap, gap)));
           others = nearer ? shortened(object, others, way) : others;
           free = nearer ? free : shortened(object, free, way);
         }
-        store(closest.free + p, min(free, others));
+        store(nearest.free + p, min(free, others));
       }
       if (!any(nearer_wide)) continue;
-      store(closest.distance + p, nearer ? found.distance : load<F>(closest.distance + p));
+      store(nearest.distance + p, nearer ? found.distance : load<F>(nearest.distance + p));
       if constexpr (Asked == Ask::both) {
         const F3 n = to_world(object, found.normal);
         const auto keep = [&](float* to, F value) { store(to, nearer ? value : load<F>(to)); };
-        keep(closest.nx + p, n.x);
-        keep(closest.ny + p, n.y);
-        keep(closest.nz + p, n.z);
+        keep(nearest.nx + p, n.x);
+        keep(nearest.ny + p, n.y);
+        keep(nearest.nz + p, n.z);
       }
       const auto keep = [&](double* to, D value) { store(to, nearer_wide ? value : load<D>(to)); };
-      keep(closest.ux + p, u.x);
-      keep(closest.uy + p, u.y);
-      keep(closest.uz + p, u.z);
+      keep(nearest.ux + p, u.x);
+      keep(nearest.uy + p, u.y);
+      keep(nearest.uz + p, u.z);
     }
   }
 }
 
 template <LookUp Kind, Storage How, Ask Asked, Setting Where>
-ClosestPass choose(Sweep sweep) {
+NearestPass choose(Sweep sweep) {
   return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on, How>
                             : &pass<Kind, Asked, Where, Sweep::off, How>;
 }
 template <LookUp Kind, Storage How, Ask Asked>
-ClosestPass choose(Setting setting, Sweep sweep) {
+NearestPass choose(Setting setting, Sweep sweep) {
   return setting == Setting::general ? choose<Kind, How, Asked, Setting::general>(sweep)
                                      : choose<Kind, How, Asked, Setting::one_at_rest>(sweep);
 }
 template <LookUp Kind, Storage How>
-ClosestPass choose([[maybe_unused]] Ask asked, Setting setting, Sweep sweep) {
-  if constexpr (Kind != LookUp::tangent)  // which needs the normal itself
+NearestPass choose([[maybe_unused]] Ask asked, Setting setting, Sweep sweep) {
+  if constexpr (Kind != LookUp::tangent)  // which reads the normal
     if (asked == Ask::distance) return choose<Kind, How, Ask::distance>(setting, sweep);
   return choose<Kind, How, Ask::both>(setting, sweep);
 }
 
 }  // namespace
 
-ClosestPass closest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage) {
+NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage) {
   if (storage == Storage::compressed)
     return kind == LookUp::nearest
                ? choose<LookUp::nearest, Storage::compressed>(asked, setting, sweep)
@@ -170,11 +169,11 @@ double jump_of(const Object& object) {
   return static_cast<double>(object.field->jump) + 2 * off;
 }
 
-Placed placed(const Object& object, LookUp kind, double step, bool restless) {
+PlacedObject placed(const Object& object, LookUp kind, double step, bool restless) {
   const Field& field = *object.field;
   const Grid& grid = field.grid;
   const Frame& frame = object.frame;
-  Placed result{};
+  PlacedObject result{};
   result.field = sampler_of(field);
   const Vec3 middle{0.5 * (grid.n[0] - 1), 0.5 * (grid.n[1] - 1), 0.5 * (grid.n[2] - 1)};
   result.centre = frame.to_world(grid.origin + grid.cell * middle);
@@ -210,18 +209,19 @@ Placed placed(const Object& object, LookUp kind, double step, bool restless) {
   };
   result.swell = std::abs(frame.scale_rate) * norm(Vec3{furthest(0), furthest(1), furthest(2)});
   result.restless = restless;
+  if (field.sides == Sides::two) result.open_surface = object.triangles;
   return result;
 }
 
-void forget(Closest& closest, std::size_t count) {
-  std::fill_n(closest.voxel, count, unknown);
+void forget(NearestSurface& nearest, std::size_t count) {
+  std::fill_n(nearest.voxel, count, unknown);
 }
 
-void clear(Closest& closest, std::size_t count) {
-  std::fill_n(closest.distance, count, out_of_reach);
-  std::fill_n(closest.free, count, out_of_reach);
-  for (float* n : {closest.nx, closest.ny, closest.nz}) std::fill_n(n, count, 0.0F);
-  for (double* u : {closest.ux, closest.uy, closest.uz}) std::fill_n(u, count, 0.0);
+void clear(NearestSurface& nearest, std::size_t count) {
+  std::fill_n(nearest.distance, count, out_of_reach);
+  std::fill_n(nearest.free, count, out_of_reach);
+  for (float* n : {nearest.nx, nearest.ny, nearest.nz}) std::fill_n(n, count, 0.0F);
+  for (double* u : {nearest.ux, nearest.uy, nearest.uz}) std::fill_n(u, count, 0.0);
 }
 
 }  // namespace tess::dn

@@ -1,6 +1,6 @@
-// The spring's motion along the normal over one step, eight particles at once, in closed form: the
-// way in, the damped oscillation while in contact, the way out with the speed that is left. No
-// limit on stiffness × step². Private to the step loop.
+// The spring's motion along the normal over one step, in closed form: free flight to the contact,
+// damped oscillation in contact, free flight after it. Any stiffness × step² is stable. Private to
+// the step loop.
 //
 // z: distance beyond the spring's reach (contact is z < 0), e: its rate, g: a constant
 // acceleration. In contact z" = -k z - c z' + g, with ω² = k - c²/4 and γ = c/2.
@@ -12,7 +12,7 @@ namespace tess::dn {
 
 struct SpringConstants {
   double stiffness = 1, omega = 1, gamma = 0, reach = 0;
-  // Of a whole step in contact, where it is short against the contact; else `soft` is false.
+  // A whole step in contact; `soft` where the step is short against the contact's duration.
   bool soft = false;
   double cosine = 1, sine = 0, kept = 1;
 };
@@ -65,8 +65,8 @@ struct SpringMotion {
   D rate;  ///< its rate there
 };
 
-/// Which of the lanes in contact stay so through the step, where a step is short against the
-/// contact, and their motion: a fixed linear map.
+/// The motion of particles in contact during the whole step (a fixed linear map), and which
+/// particles those are.
 struct SpringStay {
   SpringMotion motion;
   L stays;
@@ -80,13 +80,13 @@ inline SpringStay spring_stay(const SpringConstants& c, D z, D e, D g) {
   return {{end, rate}, (z < 0.0) & (end <= 0.0)};
 }
 
-/// Lanes that do not come into contact return what is of no use.
+/// The result is meaningless in lanes that do not come into contact.
 inline SpringMotion spring_motion(const SpringConstants& c, D z0, D e, D g, double dt) {
   const L inside = z0 < 0.0;
   const D mean = e + 0.5 * dt * g;
-  const D entry = inside ? D{} : min(z0 / (-mean), all(dt));  // time of the way in
+  const D entry = inside ? D{} : min(z0 / (-mean), all(dt));  // time until contact
   const D time = dt - entry, v = e + g * entry, z = inside ? z0 : D{};
-  // The way out: the phase at which z comes back to zero without g, the speed by energy with it.
+  // Leaving: the phase at which z returns to zero without g, and the speed by the energy with g.
   const D b = (v + c.gamma * z) * (1 / c.omega);
   const D leaving = angle_above(-z, b) * (1 / c.omega);
   const D kept = decay(c.gamma * leaving);
@@ -94,12 +94,12 @@ inline SpringMotion spring_motion(const SpringConstants& c, D z0, D e, D g, doub
   const L leaves = (leaving <= time) & (speed2 > 0.0);
   const D speed = sqrt(only(leaves, speed2)), left = only(leaves, time - leaving);
   D end = left * (speed + 0.5 * g * left), rate = speed + g * left;
-  // It would fall back within the step: it rests where spring and g balance.
+  // A particle that would fall back within the step rests where spring and g balance.
   const D balance = g * (1 / c.stiffness);
   const L back = end < 0.0;
   end = back ? balance : end;
   rate = back ? D{} : rate;
-  // It stays: the exact motion about the balance.
+  // A particle in contact until the end moves about the balance.
   const D a = z - balance, bb = (v + c.gamma * a) * (1 / c.omega);
   const Turn phase = turn_any(c.omega * time);
   const D damped = decay(c.gamma * time);

@@ -1,4 +1,4 @@
-#include "collide/dn_field/step/screen.hpp"
+#include "collide/dn_field/step/culling.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,11 +10,12 @@ using namespace lanes;
 
 constexpr float rounding = 1.0001F;  // of float speeds
 
-/// Lower bound of every look-up's distance, less what rules reach and the way of the surface;
-/// minimum over objects.
+/// A lower bound of all sampled distances, minus the reach of the rules and the way of the surface:
+/// the minimum over objects.
 template <bool Turned, bool Moves, bool First, Storage How>
-void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& span, Near& near) {
-  const Placed object = placed;  // copies, which no store can change
+void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpan& span,
+             NearParticles& near) {
+  const PlacedObject object = placed;  // copies that no store can change
   const ParticleSpan block = span;
   const Sampler& field = object.field;
   const Vec3 c = object.centre;
@@ -27,7 +28,7 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
           spin = all(static_cast<float>(norm(object.frame.angular_velocity)));
   const F shift = all(static_cast<float>(norm(c - object.frame.position)));
   const F time = all(reach.time * rounding);
-  // A way of one cell may lead two voxels on.
+  // A displacement of one cell may lead two voxels on.
   const F share = all(reach.ahead ? 1 / (1 + object.jump / object.cell) : 1.0F);
   for (std::size_t p = 0; p < block.count; p += width) {
     const F3 q = to_float(places(block, p) - c);
@@ -48,8 +49,8 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
     F room = voxel.in ? (found * object.scale - taken) * share
                       : object.cell * (0.999F * beyond - 1.0F) - reach.distance;
     if constexpr (Moves) {
-      // As seen from the surface a particle at distance r from the object's origin goes
-      // (v + speed)(1 + spin time) + spin r in unit time at most.
+      // Relative to the surface, a particle at distance r from the object's origin moves at most
+      // (v + speed)(1 + spin time) + spin r per unit time.
       const F turned = spin * time * (sqrt(dot(q, q)) + shift);
       room = (room - turned) / (1.0F + spin * time) - time * speed;
     }
@@ -58,7 +59,7 @@ void room_to(const Placed& placed, F taken, Reach reach, const ParticleSpan& spa
   }
 }
 
-using RoomTo = void (*)(const Placed&, F, Reach, const ParticleSpan&, Near&);
+using RoomTo = void (*)(const PlacedObject&, F, Reach, const ParticleSpan&, NearParticles&);
 
 template <bool First, Storage How>
 RoomTo choose(const Frame& frame) {
@@ -66,19 +67,19 @@ RoomTo choose(const Frame& frame) {
   return frame.is_turned() ? &room_to<true, false, First, How> : &room_to<false, false, First, How>;
 }
 template <bool First>
-RoomTo choose(const Placed& object) {
+RoomTo choose(const PlacedObject& object) {
   return object.compressed ? choose<First, Storage::compressed>(object.frame)
                            : choose<First, Storage::flat>(object.frame);
 }
 
 }  // namespace
 
-void screen(std::span<const Placed> objects, LookUp kind, Sweep sweep, Reach reach,
-            const ParticleSpan& block, Near& near) {
+void cull(std::span<const PlacedObject> objects, LookUp kind, Sweep sweep, Reach reach,
+          const ParticleSpan& block, NearParticles& near) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const Placed& object = objects[i];
-    // Nearest is this voxel's value, the tangent leaves it by half a diagonal, trilinear blends it
-    // with voxels that touch it; a sweep doubts any of them by half a diagonal.
+    const PlacedObject& object = objects[i];
+    // Nearest is this voxel's value; the tangent differs from it by at most half a diagonal, and
+    // trilinear blends it with adjacent voxels. A sweep adds half a diagonal to any of them.
     const bool half_off = kind == LookUp::tangent || sweep == Sweep::on;
     const float jumps = (kind == LookUp::trilinear ? 1.0F : 0.0F) + (reach.ahead ? 1.0F : 0.0F);
     const float doubt = (half_off ? object.doubt : 0.0F) + object.padding +
@@ -89,8 +90,8 @@ void screen(std::span<const Placed> objects, LookUp kind, Sweep sweep, Reach rea
   near.count = 0;
   if (objects.empty()) return;
   const F time = all(reach.time * rounding), gain = all(reach.gain);
-  // Who is near only if voxels on the way should say so comes last, so that whole vectors of them
-  // have nothing to do.
+  // Particles that are near only if a later voxel says so come last: whole vectors of them have
+  // nothing to do.
   const F at_once =
       all(reach.ahead ? -objects[0].jump / (1 + objects[0].jump / objects[0].cell) : 0.0F);
   std::array<std::uint32_t, block_size> later;
@@ -111,7 +112,7 @@ void screen(std::span<const Placed> objects, LookUp kind, Sweep sweep, Reach rea
   near.count += n_later;
 }
 
-void pack(const ParticleSpan& block, Near& near) {
+void pack(const ParticleSpan& block, NearParticles& near) {
   const std::array<const double*, 6> from{block.x, block.y, block.z, block.vx, block.vy, block.vz};
   const std::size_t whole = (near.count + width - 1) / width * width;
   for (std::size_t a = 0; a < 6; ++a) {
@@ -120,12 +121,12 @@ void pack(const ParticleSpan& block, Near& near) {
   }
 }
 
-ParticleSpan Near::packed() {
+ParticleSpan NearParticles::packed() {
   const std::size_t whole = (count + width - 1) / width * width;
   return {values[0], values[1], values[2], values[3], values[4], values[5], whole};
 }
 
-void Near::unpack(const ParticleSpan& block) {
+void NearParticles::unpack(const ParticleSpan& block) {
   const std::array<double*, 6> to{block.x, block.y, block.z, block.vx, block.vy, block.vz};
   for (std::size_t a = 0; a < 6; ++a)
     for (std::size_t i = 0; i < count; ++i) to[a][index[i]] = values[a][i];

@@ -1,4 +1,4 @@
-#include "collide/dn_field/step/screen.hpp"
+#include "collide/dn_field/step/culling.hpp"
 
 #include "tests/support/catch.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace tess::dn;
 
-/// Distances and normals of no surface at all: those of a ball, and noise on them.
+/// The distances and normals of a ball with noise, which belong to no surface.
 Field noisy(double noise, std::mt19937& random) {
   std::normal_distribution<double> normal;
   Field field;
@@ -34,25 +34,25 @@ float look_up_at(const Field& field, LookUp kind, Vec3 x) {
   return distance;
 }
 
-/// The least distance that look-ups of who is screened out find, on the ways of `steps` steps.
-struct Screened {
+/// The least distance sampled on the paths of culled particles over `steps` steps.
+struct Culled {
   int far = 0;
   float nearest = out_of_reach;
 };
-Screened screened(const Field& field, LookUp kind, int steps, float reach, std::mt19937& random) {
+Culled culled(const Field& field, LookUp kind, int steps, float reach, std::mt19937& random) {
   std::uniform_real_distribution<double> anywhere(-1, 1);
   constexpr double step = 0.02;
   const float time = static_cast<float>(steps * step);
   const Object object{&field, {}};
-  const Placed standing = placed(object, kind, step, false);
-  const auto near = std::make_unique<Near>();
-  Screened result;
+  const PlacedObject standing = placed(object, kind, step, false);
+  const auto near = std::make_unique<NearParticles>();
+  Culled result;
   for (int block = 0; block < 8; ++block) {
     Particles particles;
     for (std::size_t p = 0; p < block_size; ++p)
       particles.push_back(1.1 * Vec3{anywhere(random), anywhere(random), anywhere(random)},
                           Vec3{anywhere(random), anywhere(random), anywhere(random)});
-    screen({&standing, 1}, kind, Sweep::off, {reach, time, 0, steps > 1}, particles.span(), *near);
+    cull({&standing, 1}, kind, Sweep::off, {reach, time, 0, steps > 1}, particles.span(), *near);
     std::array<bool, block_size> listed{};
     for (std::size_t i = 0; i < near->count; ++i) listed[near->index[i]] = true;
     for (std::size_t p = 0; p < block_size; ++p) {
@@ -67,7 +67,7 @@ Screened screened(const Field& field, LookUp kind, int steps, float reach, std::
   return result;
 }
 
-TEST_CASE("who is screened out is near by no look-up on its way", "[dn_field][rules]") {
+TEST_CASE("a culled particle is near by no sample on its path", "[dn_field][rules]") {
   std::mt19937 random(5);
   constexpr float reach = 0.1F;
   for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
@@ -75,7 +75,7 @@ TEST_CASE("who is screened out is near by no look-up on its way", "[dn_field][ru
       int far = 0;
       for (const double noise : {0.0, 0.02, 0.05, 0.3}) {
         const Field field = noisy(noise, random);
-        const Screened found = screened(field, kind, steps, reach, random);
+        const Culled found = culled(field, kind, steps, reach, random);
         INFO("noise " << noise << ", look-up " << static_cast<int>(kind) << ", steps " << steps);
         CHECK(found.nearest > reach);
         far += found.far;

@@ -1,8 +1,9 @@
-// The surface flow, a loop of its own over a block before the rule loop: its long chain of a root,
-// a quotient and polynomials then overlaps from one vector to the next. Private to the step loop.
+// The rules that change only the velocity of particles near a surface: the surface flow and the
+// quadratic surface drag. They are loops of their own over a block: a chain of a root, a quotient
+// and polynomials then overlaps with that of the next vector. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/rules/closest.hpp"
+#include "collide/dn_field/rules/nearest_surface.hpp"
 
 namespace tess::dn {
 
@@ -11,6 +12,14 @@ struct FlowConstants {
   double distance = 0;
 };
 
+/// Quadratic drag toward the surface's velocity, of particles closer than `threshold`.
+void drag_quadratic(double rate_time, double threshold, Setting setting,
+                    const ParticleSpan& particles, const NearestSurface& nearest);
+
+/// The surface flow, of particles closer than its distance.
+void turn_to_surface(const FlowConstants& flow, Setting setting, const ParticleSpan& particles,
+                     const NearestSurface& nearest);
+
 namespace lanes {
 
 /// A power of two near 1 / sqrt(v), for 1e-300 < v < 1e300.
@@ -18,13 +27,13 @@ inline D scale_to_one(D v) {
   return (D)(((L{} + 0x5FE0000000000000) - ((L)v >> 1)) & (L{} + 0x7FF0000000000000));
 }
 
-/// tan(φ/2)/|n × w| of the turn by φ, with the sign that takes it from n: φ is rate/|w|, but no
-/// more than leads to the tangent, or, where the rate is negative, to the normal. Short of that by
-/// a millionth, so that rounding does not lead beyond. All squares of order 1.
+/// tan(φ/2)/|n × w| of a turn by φ, positive away from n. φ is rate/|w|, limited to what leads to
+/// the tangent or, for a negative rate, to the normal; a millionth less, so that rounding does not
+/// lead beyond. The caller scales all squares to order 1.
 inline F half_turn(F rate, F alpha, F w2, F axis2) {
   const F w = sqrt(w2), across = abs(alpha), along = sqrt(axis2);
   const F x = 0.5F * min(abs(rate) / w, all(0.5F * static_cast<float>(pi))), xx = x * x;
-  // tan x = p/q, the continued fraction, five terms: good to a float for x <= pi/4.
+  // tan x = p/q, a continued fraction of five terms, has float precision for x <= pi/4.
   const F p = x * (945.0F + xx * (xx - 105.0F)), q = 945.0F + xx * (15.0F * xx - 420.0F);
   const I toward = rate > 0.0F;
   const F rest = (1 - 0x1p-20F) * (toward ? across : along), to = w + (toward ? along : across);
@@ -33,11 +42,11 @@ inline F half_turn(F rate, F alpha, F w2, F axis2) {
   return toward == (alpha > 0.0F) ? turn : -turn;
 }
 
-/// The velocity w turned toward the tangent of the surface with normal n by min(alpha dt/|w|, what
-/// is left); by a negative alpha away from it. In Cayley's form of the turn about n × w,
+/// Turns the velocity w by alpha dt/|w| toward the tangent of the surface with normal n, at most
+/// onto it; a negative alpha turns it away. Cayley's form of the turn about n × w,
 ///     w' = ((1 - g²(n × w)² + 2 g n·w) w - 2 g w² n) / (1 + g²(n × w)²),
-/// |w'| is |w| to rounding for any g: so g = tan(φ/2)/|n × w| is worked out in floats, which say φ
-/// better than a field says n. Not turned: w along n to a millionth, and below 1e-100.
+/// keeps |w| to rounding for any g, so g = tan(φ/2)/|n × w| is computed in floats, whose error in φ
+/// is below that of a field's normal. A w along n to a millionth, or below 1e-100, is not turned.
 inline D3 turned_to_surface(const FlowConstants& c, D3 w, D3 n, L where) {
   const D alpha = dot(w, n), w2 = dot(w, w);
   const D3 axis = cross(n, w);
@@ -52,16 +61,17 @@ inline D3 turned_to_surface(const FlowConstants& c, D3 w, D3 n, L where) {
 }
 
 template <Setting Where>
-void flow_loop(const FlowConstants& constants, const ParticleSpan& span, const Closest& closest) {
-  const FlowConstants c = constants;  // copies, which no store to a particle can change
+void flow_loop(const FlowConstants& constants, const ParticleSpan& span,
+               const NearestSurface& nearest) {
+  const FlowConstants c = constants;  // copies, that no store to a particle can change
   const ParticleSpan particles = span;
   for (std::size_t p = 0; p < particles.count; p += width) {
-    const L near = to_double(load<F>(closest.distance + p)) < c.distance;
+    const L near = to_double(load<F>(nearest.distance + p)) < c.distance;
     if (!any(near)) continue;
-    const D3 n = to_double(normals(closest, p)), v = velocities(particles, p);
+    const D3 n = to_double(normals(nearest, p)), v = velocities(particles, p);
     D3 w = v;
     if constexpr (Where == Setting::general) {
-      const D3 u = surface_velocities(closest, p);
+      const D3 u = surface_velocities(nearest, p);
       w = select(near, turned_to_surface(c, v - u, n, near) + u, v);
     } else {
       w = turned_to_surface(c, v, n, near);

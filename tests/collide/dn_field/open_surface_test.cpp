@@ -12,7 +12,8 @@ namespace {
 
 using namespace tess::dn;
 
-TEST_CASE("nobody passes a thin sheet, from either side, however it lies", "[dn_field][rules]") {
+TEST_CASE("no particle passes an open surface, from either side and in any orientation",
+          "[dn_field][rules]") {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (const int resolution : {20, 21, 40})
@@ -46,7 +47,7 @@ TEST_CASE("nobody passes a thin sheet, from either side, however it lies", "[dn_
         }
 }
 
-/// A room of five sheets: a long wedge closed at its ends. Its corners are `angle` and two of half
+/// A long wedge closed at its ends, of five open surfaces. Its corners are `angle` and two of half
 /// the rest.
 struct WedgeRoom {
   explicit WedgeRoom(double angle) {
@@ -60,19 +61,19 @@ struct WedgeRoom {
     up = {-std::sin(half), 0, std::cos(half)}, down = {-std::sin(half), 0, -std::cos(half)};
     back = std::cos(half);
   }
-  /// How far from the nearest sheet, negative outside the room.
+  /// Distance to the nearest wall, negative outside the room.
   [[nodiscard]] double within(Vec3 p) const {
     return std::min({-dot(up, p), -dot(down, p), back - p.x, 0.8 - std::abs(p.y)});
   }
   Surface surface;
-  Vec3 up, down;  // normals of the two that meet at `angle`, out of the room
+  Vec3 up, down;  // outward normals of the two walls that meet at `angle`
   double back;
 };
 
-TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rules]") {
+TEST_CASE("no particle leaves a room of open surfaces through its joints", "[dn_field][rules]") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> anywhere(-1, 1);
-  int n_scenes = 0, n_left_alone = 0;  // the latter of those who know no triangles
+  int n_scenes = 0, n_left_alone = 0;  // the latter without triangles
   for (const double angle : {0.5, 0.9, 1.57, 2.4})
     for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
       for (const double restitution : {0.0, 0.5, 1.0})
@@ -120,10 +121,11 @@ TEST_CASE("nobody leaves a room of sheets through its corners", "[dn_field][rule
             CHECK(left(particles, &triangles) == 0);
             n_left_alone += left(alone, nullptr);
           }
-  CHECK(n_left_alone > 100);  // else the triangles keep nobody in
+  CHECK(n_left_alone > 100);  // otherwise the case would not need the triangles
 }
 
-TEST_CASE("who flies into the tip of two sheets comes out again", "[dn_field][rules]") {
+TEST_CASE("a particle that flies into the joint of open surfaces comes out again",
+          "[dn_field][rules]") {
   for (const double angle : {0.4, 0.8, 1.9})
     for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
       const WedgeRoom room(angle);
@@ -148,7 +150,7 @@ TEST_CASE("who flies into the tip of two sheets comes out again", "[dn_field][ru
       stepper.run(particles.span(), {&object, 1}, 4.05, 8);
       INFO("angle " << angle << ", look-up " << static_cast<int>(look_up));
       for (std::size_t p = 0; p < particles.size(); ++p) {
-        // Of ways of 0.15 and 0.4; one may lead back.
+        // The displacements without joints are 0.15 and 0.4; one may lead back.
         CHECK(std::max(norm(between.position(p) - before.position(p)),
                        norm(particles.position(p) - before.position(p))) > 0.01);
         CHECK(room.within(particles.position(p)) > 0);
@@ -157,7 +159,7 @@ TEST_CASE("who flies into the tip of two sheets comes out again", "[dn_field][ru
     }
 }
 
-TEST_CASE("what a rule reaches must lie within the field less what a sheet keeps off",
+TEST_CASE("the reach of a rule lies within the field minus the clearance of an open surface",
           "[dn_field][rules]") {
   const Field sheet = [] {
     Field field = sheet_field(cube_grid(1, 21));

@@ -1,4 +1,4 @@
-#include "collide/dn_field/tree/outward.hpp"
+#include "collide/dn_field/tree/orientation.hpp"
 
 #include "collide/dn_field/geometry/disjoint_sets.hpp"
 #include "collide/dn_field/geometry/surface_edges.hpp"

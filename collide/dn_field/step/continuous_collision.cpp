@@ -1,6 +1,6 @@
-#include "collide/dn_field/step/trace.hpp"
+#include "collide/dn_field/step/continuous_collision.hpp"
 
-#include "collide/dn_field/step/seen_lanes.hpp"
+#include "collide/dn_field/step/pose.hpp"
 
 #include <algorithm>
 
@@ -10,19 +10,19 @@ namespace {
 using namespace lanes;
 
 constexpr int max_bounces = 16;
-// The shortest advances, in cells: into the next voxel; of blends, thinner than what a grid
-// resolves.
+// The shortest advances, in cells: into the next voxel; for trilinear blends, below the resolution
+// of the grid.
 constexpr float into_next = 1e-3F, blend_stride = 0.25F;
-constexpr double most_bent = 0.25;  // cells that a way may leave the straight one taken for it
+constexpr double most_bent = 0.25;  // cells between a path and the straight one taken for it
 constexpr double never = HUGE_VAL;
-// Of the ways, in a step: who sinks no faster rests on the surface but for rounding.
+// Of the paths of a step: a particle that sinks no faster rests on the surface, up to rounding.
 constexpr double at_rest = 1e-12;
 
 D norm1(D3 v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
-Sample sample_of(const Placed& object, LookUp kind, F3 g) {
+Sample sample_of(const PlacedObject& object, LookUp kind, F3 g) {
   if (kind == LookUp::trilinear) return sample<LookUp::trilinear, Ask::both>(object.field, g);
   if (kind == LookUp::nearest)
     return object.compressed ? sample<LookUp::nearest, Ask::both>(object.planes, g)
@@ -31,7 +31,7 @@ Sample sample_of(const Placed& object, LookUp kind, F3 g) {
                            : sample<LookUp::tangent, Ask::both>(object.field, g);
 }
 
-/// The part of `way`, in grid coordinates, that stays in the voxel of g.
+/// The fraction of `way`, in grid coordinates, that stays in the voxel of g.
 F way_in_voxel(F3 g, F3 way) {
   const auto along = [](F at, F by) {
     const F h = at + 0.5F, in = h - floor(h);
@@ -40,14 +40,15 @@ F way_in_voxel(F3 g, F3 way) {
   return min(min(along(g.x, way.x), along(g.y, way.y)), along(g.z, way.z));
 }
 
-/// What one object's field says, in units of the world when the step begins.
+/// A sample of one object's field, in units of the world when the step begins.
 struct Here {
-  D distance;  ///< `never` outside of the field
+  D distance;  ///< `never` outside the field
   D3 normal;   ///< unit or zero
-  D stride;    ///< part of the step for which that holds, or which is free
+  D stride;    ///< fraction of the step for which the sample holds, or which is free
 };
 
-Here ask(const Placed& object, LookUp kind, const Pose& pose, D3 x, D3 way, const Seen& seen) {
+Here sample_here(const PlacedObject& object, LookUp kind, const Pose& pose, D3 x, D3 way,
+                 const Seen& seen) {
   const F3 g = to_grid(object, to_float(seen.place - object.centre));
   const Sample found = sample_of(object, kind, g);
   const I in = found.in;
@@ -80,13 +81,13 @@ Contact select(L mask, const Contact& a, const Contact& b) {
           mask ? a.object : b.object};
 }
 
-/// What is left between a particle and where it meets an object, by what the field said of one
-/// place, as that object sees it.
+/// The gap between a particle and its contact with an object, extrapolated from one sample, as seen
+/// from the object.
 struct Gap {
-  const Placed& object;
+  const PlacedObject& object;
   const Here& field;
   const D3& place;
-  double threshold;  ///< in the world: as the object sees it, it shrinks while the object grows
+  double threshold;  ///< in the world; seen from the object it shrinks while the object grows
 
   [[nodiscard]] D keeps_off(const Pose& pose) const { return threshold / pose.size(); }
   [[nodiscard]] D at(const Pose& pose, const Seen& seen) const {
@@ -99,11 +100,11 @@ struct Gap {
 
 struct Scene {
   const RuleConstants& constants;
-  std::span<const Placed> objects;
+  std::span<const PlacedObject> objects;
   LookUp kind;
 };
 
-/// Ways in the world that begin at the fraction `begin` of the step, x + s × way.
+/// Paths x + s × way in the world that start at the fraction `begin` of the step.
 struct Ways {
   D3 x, way;
   D begin;
@@ -111,15 +112,15 @@ struct Ways {
   [[nodiscard]] D3 at(D s) const { return fma(s, way, x); }
 };
 
-/// The contact with object `o` within the stride from s on that its field allows; `next` is cut to
-/// where that ends.
+/// The contact with object `o` within the stride that its sample at s allows; `next` is reduced to
+/// the end of the stride.
 Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D& next) {
   const RuleConstants& c = scene.constants;
-  const Placed& object = scene.objects[o];
+  const PlacedObject& object = scene.objects[o];
   const Pose pose(object, ways.begin + s);
   const D3 x = ways.at(s);
   const Seen seen = lanes::seen(object, pose, x, ways.way);
-  const Here here = ask(object, scene.kind, pose, x, ways.way, seen);
+  const Here here = sample_here(object, scene.kind, pose, x, ways.way, seen);
   next = min(next, s + here.stride);
   const Gap gap{object, here, seen.place, c.threshold};
   const D closes = gap.rate(pose, seen);
@@ -137,7 +138,7 @@ Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D
       const D better = max(after - gap.at(then, seen_then) / rate, D{});
       met = (may & (rate < 0.0)) ? better : met;
     }
-  // As the object stands there and then, so that who rests on it rests.
+  // By the object's pose at the contact, so that a resting particle stays at rest.
   const L touches = may & (met <= here.stride);
   const D at = s + only(touches, met);
   const Pose then(object, ways.begin + at);
@@ -147,12 +148,12 @@ Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D
           all(static_cast<double>(o))};
 }
 
-/// The first contacts on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on,
-/// for particles that fly; `at` is `never` where there is none. `rest` is shortened where the way
-/// could not be followed to its end.
+/// The first contacts on x + s × way, 0 <= s <= rest, from the fraction 1 − rest of the step on, of
+/// particles that fly; `at` is `never` where there is none. `rest` is reduced where the path could
+/// not be followed to its end.
 Contact first_contact(const Scene& scene, D3 x, D3 way, D& rest, L flies) {
   std::size_t budget = 1024;  // advances; each leads into another voxel
-  for (const Placed& object : scene.objects)
+  for (const PlacedObject& object : scene.objects)
     budget +=
         8 * static_cast<std::size_t>(object.field.n[0] + object.field.n[1] + object.field.n[2]);
   const Ways ways{x, way, 1.0 - rest};
@@ -181,8 +182,8 @@ L finite(D3 v) {
   return norm1(v) < never;
 }
 
-/// Who touches an object at the fraction f of the step, at x, and flies by `slides` along it: goes
-/// with it to the step's end.
+/// Moves particles that touch an object at the fraction f of the step with it until the step's end.
+/// x: their places; slides: their velocities relative to the surface.
 void take_along(const Scene& scene, const Contact& contact, L touches, D f, D3& x, D3 slides,
                 D3& velocity) {
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
@@ -194,7 +195,7 @@ void take_along(const Scene& scene, const Contact& contact, L touches, D f, D3& 
   }
 }
 
-/// As many as a vector holds, or fewer.
+/// Traces at most a vector of particles.
 void trace_vector(const Scene& scene, std::span<const Untraced> from, const ParticleSpan& particles,
                   Scratch& scratch) {
   const RuleConstants& c = scene.constants;
@@ -208,7 +209,7 @@ void trace_vector(const Scene& scene, std::span<const Untraced> from, const Part
   };
   const D3 x0 = lane(&Untraced::position), way0 = lane(&Untraced::way);
   D3 x = x0, start = lane(&Untraced::start_velocity), end = lane(&Untraced::end_velocity),
-     way = way0;  // of a whole step at the rate of the rest
+     way = way0;  // per step
   const L can_fly = finite(x) & finite(way) & finite(start) & finite(end);
   const bool drags = c.surface_threshold > c.threshold;
   const LinearFlow& flow = drags ? c.surface : c.air;
@@ -240,7 +241,7 @@ void trace_vector(const Scene& scene, std::span<const Untraced> from, const Part
     D3 w1 = fma(rest, all(flow.keep - 1) * start + all(flow.gain) * a, start);
     D3 rest_way = all(flow.way_keep) * start + (rest * flow.way_gain) * a;
     const D sinks = dot(n, rest_way - all(c.step) * u);
-    const L rests = sinks < 0.0;  // it rests, and slides
+    const L rests = sinks < 0.0;  // it rests there and slides
     rest_way = fma(-only(rests, sinks), n, rest_way);
     w1 = fma(-only(rests, min(dot(n, w1 - u), D{})), n, w1);
     way = select(flies, rest_way, way);
@@ -263,7 +264,7 @@ void trace_vector(const Scene& scene, std::span<const Untraced> from, const Part
 
 }  // namespace
 
-void trace(const RuleConstants& c, std::span<const Placed> objects, LookUp kind,
+void trace(const RuleConstants& c, std::span<const PlacedObject> objects, LookUp kind,
            const ParticleSpan& particles, Scratch& scratch) {
   const std::span<const Untraced> from = scratch.untraced;
   for (std::size_t first = 0; first < from.size(); first += width) {

@@ -1,4 +1,4 @@
-#include "collide/dn_field/step/step_plan.hpp"
+#include "collide/dn_field/step/plan.hpp"
 
 #include "runtime/core/error.hpp"
 
@@ -9,7 +9,7 @@ LinearFlow linear_flow(double rate, double step) {
   const double x = rate * step;
   if (!(x > 0)) return {1, step, step, 0.5 * step * step};
   const double lost = -std::expm1(-x), mean = lost / x;
-  // 1 − (1 − exp(−x))/x, by its series where it cancels
+  // 1 − (1 − exp(−x))/x, by its series where the difference cancels
   const double mean_lost =
       x < 0.02 ? x * (1.0 / 2 - x * (1.0 / 6 - x * (1.0 / 24 - x * (1.0 / 120 - x / 720))))
                : 1 - mean;

@@ -1,0 +1,52 @@
+// The corrections after the rules of the surface, for the particles that one voxel's plane misleads.
+//
+// Springs: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
+// the side and would gain potential energy. The depth is sampled again at the end of the step. A
+// particle with more energy than it had loses speed; one whose depth alone takes more returns.
+// Open surfaces: where they meet, a voxel may store the wrong one. A particle whose displacement
+// crosses a triangle flies straight on instead if that crosses none; otherwise it returns.
+//
+// A particle that returns is put back to its start, which moved with the surface, with reversed
+// velocity relative to the surface. Private to the step loop.
+#pragma once
+
+#include "collide/dn_field/rules/rule_loop.hpp"
+
+namespace tess::dn {
+
+/// Positions and velocities of a block before the rules of the surface.
+class StartState {
+ public:
+  void save(const ParticleSpan& particles);
+  [[nodiscard]] lanes::D3 places(std::size_t p) const {
+    return lanes::load3(values_[0] + p, values_[1] + p, values_[2] + p);
+  }
+  [[nodiscard]] lanes::D3 velocities(std::size_t p) const {
+    return lanes::load3(values_[3] + p, values_[4] + p, values_[5] + p);
+  }
+
+ private:
+  alignas(64) double values_[6][block_size];
+};
+
+/// A step that is to be corrected.
+struct CorrectedStep {
+  const RuleConstants& constants;
+  Setting setting;
+  Sweep sweep;
+  const NearestSurface& nearest;  ///< at the start of the step
+  const StartState& start;
+  const ParticleSpan& particles;
+  Scratch& scratch;  ///< energy: read; waypoints of particles that return are erased
+};
+
+/// nearest_after: the nearest surfaces at the end of the step. Returns whether a particle returned.
+[[nodiscard]] bool limit_springs(const CorrectedStep& step, const NearestSurface& nearest_after);
+
+/// before, after: the objects at the start and at the end of the step. Returns whether a particle
+/// was moved.
+[[nodiscard]] bool keep_off_open_surfaces(const CorrectedStep& step, bool springs,
+                                          std::span<const PlacedObject> before,
+                                          std::span<const PlacedObject> after);
+
+}  // namespace tess::dn
