@@ -9,7 +9,7 @@ namespace {
 const Vec3 up{0, 0, 1};
 constexpr double decades[] = {1e-6, 1e-4, 1e-2, 0.25, 1, 4, 1e2, 1e4, 1e6};
 
-/// A bounce off the spring, with exit speed and place from the closed form.
+/// A bounce off the spring: speed and place afterwards from the closed form.
 void spring(Rows& rows) {
   const Field floor = plane_field(cube_grid(2, 9), up);
   const Object object{&floor, {}};
@@ -60,12 +60,64 @@ void drag(Rows& rows) {
     Rules quadratic;
     quadratic.air_drag = AirDrag{rate, DragLaw::quadratic};
     end = flown(quadratic, 1, n_steps, {}, {{}, {speed, 0, 0}});
-    rows.add("quadratic air drag", "c |v| dt", rate * speed,
-             std::abs(end.velocity.x / speed * (1 + rate * speed * n_steps) - 1), 1e-12);
+    const double q = rate * speed;  // the displacement is of second order in q
+    rows.add("quadratic air drag", "c |v| dt", q,
+             std::abs(end.velocity.x / speed * (1 + q * n_steps) - 1), 1e-12);
+    rows.add("quadratic air drag: way", "c |v| dt", q,
+             std::abs(end.position.x * rate / std::log1p(q * n_steps) - 1),
+             1e-9 + std::min(q * q / 12, 0.9));
+  }
+  const double limit = 3, total = 4;  // g = 1: v = limit tanh(t / limit)
+  for (const double step : {0.01, 0.1, 1.0}) {
+    Rules rules;
+    rules.air_drag = AirDrag{1 / (limit * limit), DragLaw::quadratic};
+    rules.gravity = Gravity{{0, 0, -1}};
+    const Particle end = flown(rules, step, static_cast<int>(total / step), {}, {});
+    const double way = limit * limit * std::log(std::cosh(total / limit));
+    rows.add("fall with quadratic drag: way", "g dt/limit", step / limit,
+             std::abs(end.position.z / -way - 1), 0.1 * step * step);
   }
 }
 
-/// From 45°: |V| is kept, the angle falls monotonically, and as fast as it should.
+void wind(Rows& rows) {
+  const Vec3 blows{2, -1, 0.5}, from{1, 1, 1}, at_first{-3, 0, 1};
+  for (const double rate : decades) {
+    const int n_steps = 5;
+    Rules rules;
+    rules.wind = Wind{blows, rate};
+    const Particle end = flown(rules, 1, n_steps, {}, {from, at_first});
+    const Vec3 lost = at_first - blows, way = (-std::expm1(-rate * n_steps) / rate) * lost;
+    rows.add("wind", "c dt/m", rate, norm(end.velocity - blows - std::exp(-rate * n_steps) * lost),
+             1e-12);
+    rows.add("wind: place", "c dt/m", rate, norm(end.position - from - n_steps * blows - way),
+             1e-11);
+  }
+}
+
+/// Within its radius an explosion is a harmonic force about the radius: from rest at r0 a particle
+/// is at r = R - (R - r0) cos ωt, with ω² = strength / R.
+void explosion(Rows& rows) {
+  const double radius = 2, from = 0.5, omega = 3, total = 0.4;
+  const Vec3 centre{1, 2, 3}, out = direction({1, -2, 2});
+  for (const double step : {1e-4, 1e-3, 1e-2, 1e-1}) {
+    Rules rules;
+    rules.explosions.push_back({centre, omega * omega * radius, radius, 0, total});
+    const int n_steps = static_cast<int>(std::lround(total / step));
+    const Particle end = flown(rules, step, n_steps, {}, {centre + from * out, {}});
+    const double phase = omega * total, speed = (radius - from) * omega * std::sin(phase);
+    const Vec3 place = centre + (radius - (radius - from) * std::cos(phase)) * out;
+    rows.add("explosion: |v|", "ω dt", omega * step, norm(end.velocity - speed * out) / speed,
+             0.2 * omega * step * omega * step + 1e-9);
+    rows.add("explosion: place", "ω dt", omega * step, norm(end.position - place) / radius,
+             0.7 * omega * step);
+  }
+  Rules over;
+  over.explosions.push_back({centre, 1e6, radius, 0, total});
+  const Particle beyond = flown(over, 0.1, 10, {}, {centre + 1.001 * radius * out, {}});
+  rows.add("explosion: |v| beyond its radius", "r/radius", 1.001, norm(beyond.velocity), 0);
+}
+
+/// From 45°: |V| is kept, and the angle falls monotonically at the exact rate.
 void surface_flow(Rows& rows) {
   const Field floor = plane_field(cube_grid(2, 9), up);
   const Object object{&floor, {}};
@@ -121,8 +173,8 @@ void bounces(Rows& rows) {
     rows.add("impact, restitution 0: at rest", "dt √(g/h)", step * std::sqrt(2.0),
              std::abs(now.position.z) + norm(now.velocity), 2e-6);
   }
-  // Restitution e: at rest (v0/g)(1 + e)/(1 - e) after the fall began. Bounces shorter than a step
-  // are cut off: the last 2 v/g.
+  // Restitution e: at rest (v0/g)(1 + e)/(1 - e) after the start of the fall; bounces shorter than
+  // a step, the last 2 v/g, are cut off.
   const double step = 1e-3, e = 0.7, v0 = 1;
   Rules rules;
   rules.gravity = Gravity{{0, 0, -1}};
@@ -152,6 +204,8 @@ Particle flown(const Rules& rules, double step, int n_steps, std::span<const Obj
 void stiff_rules(Rows& rows) {
   spring(rows);
   drag(rows);
+  wind(rows);
+  explosion(rows);
   surface_flow(rows);
   bounces(rows);
 }

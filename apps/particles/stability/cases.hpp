@@ -1,5 +1,5 @@
-// The stability report: stiff and extreme cases of every rule, against closed forms and bounds. A
-// program prints it (--stability), a test asserts it. About a second.
+// The stability report: stiff and extreme cases of every rule against closed forms and bounds. The
+// program prints it (--stability), a test asserts it. It takes about a second.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 namespace tess::dn {
 
 struct StabilityRow {
-  std::string name;       ///< of the case
-  std::string parameter;  ///< what is varied, as "k dt²/m"
+  std::string name;
+  std::string parameter;  ///< the quantity that is varied, as "k dt²/m"
   double value = 0;       ///< of the parameter
-  double met = 0;         ///< the error or excess that came out, relative where a scale exists
+  double met = 0;         ///< error or excess, relative where a scale exists
   double tolerance = 0;
   bool ok = false;  ///< met <= tolerance
 };

@@ -9,7 +9,6 @@
 
 namespace tess::dn::stability {
 
-/// Collects rows.
 struct Rows {
   std::vector<StabilityRow> rows;
 
@@ -19,10 +18,10 @@ struct Rows {
   }
 };
 
-/// One particle run for n_steps; what became of it.
 struct Particle {
   Vec3 position, velocity;
 };
+/// A particle after n_steps.
 [[nodiscard]] Particle flown(const Rules& rules, double step, int n_steps,
                              std::span<const Object> objects, Particle start);
 

@@ -1,6 +1,8 @@
-// The stability report's extreme places: starts inside and on the surface, scales, offsets,
-// particles that are not finite.
+// The stability report's extreme places and fields: starts inside and on the surface, scales,
+// offsets, compressed and blurred fields, particles that are not finite.
 #include "apps/particles/stability/parts.hpp"
+#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/shapes.hpp"
 
 #include <algorithm>
 
@@ -13,13 +15,17 @@ Rules bouncing() {
   return rules;
 }
 
+Vec3 some_direction(int i) {
+  return direction({std::sin(1.0 * i), std::cos(2.0 * i), std::sin(3.0 * i + 1)});
+}
+
 void starts(Rows& rows) {
   const Field ball = sphere_field(cube_grid(2, 41), 1);
   const Object object{&ball, {}};
   for (const double depth : {0.0, 1e-9, 1e-3, 0.1, 0.5, 0.9}) {
     double gain = 0, inside = 0;
     for (int i = 0; i < 20; ++i) {
-      const Vec3 from = direction({std::sin(1.0 * i), std::cos(2.0 * i), std::sin(3.0 * i + 1)});
+      const Vec3 from = some_direction(i);
       const Vec3 velocity = 0.3 * direction({std::cos(5.0 * i), std::sin(7.0 * i), 0.2});
       const Particle end =
           flown(bouncing(), 0.02, 20, {&object, 1}, {(1 - depth) * from, velocity});
@@ -59,7 +65,56 @@ void scales(Rows& rows) {
   }
 }
 
-/// One particle that is not finite among others that do not notice.
+/// Head-on bounces off a ball of radius 0.5 from distance 1.5 at speed 1, for time 2.
+template <class Visit>
+void bounce_off_ball(const Object& object, const Visit& visit) {
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 from = some_direction(i);
+    visit(from, flown(bouncing(), 0.05, 40, {&object, 1}, {1.5 * from, -from}));
+  }
+}
+
+/// The bounce off a compressed field is off by its error bounds, and keeps the speed.
+void compressed_fields(Rows& rows) {
+  const Field ball = sphere_field(cube_grid(1, 41), 0.5);
+  for (const double cells : {1e-3, 1e-2, 1e-1, 1.0}) {
+    const ErrorBound bound{cells * ball.grid.cell, cells};
+    const CompressedField compressed = compress(ball, bound);
+    double place = 0, changed = 0;
+    bounce_off_ball({&ball, {}, &compressed}, [&](Vec3 from, Particle end) {
+      place = std::max(place, norm(end.position - 1.5 * from));
+      changed = std::max(changed, std::abs(norm(end.velocity) - 1));
+    });
+    // The flat field's share is half a voxel's diagonal over the radius, in the normal.
+    rows.add("compressed field: place", "bound, cells", cells, place,
+             2 * bound.distance + 2 * (bound.angle + std::sqrt(3.0) * ball.grid.cell));
+    rows.add("compressed field: |v|", "bound, cells", cells, changed, 1e-12);
+  }
+}
+
+/// Normals of blurred fields differ from the surface's; the reflected direction by twice as much.
+void blurred_fields(Rows& rows) {
+  const Surface surface = make_sphere(0.5, 40);
+  const Grid grid = grid_around(bounds(surface), 41, 0.25);
+  for (const Method method : {Method::normals, Method::potential}) {
+    BlurredOptions options;
+    options.method = method;
+    options.thickness = 0.25;
+    const Field field = build_blurred(surface, grid, options);
+    double angle = 0, changed = 0;
+    bounce_off_ball({&field, {}}, [&](Vec3 from, Particle end) {
+      angle = std::max(angle, std::acos(std::min(1.0, dot(direction(end.velocity), from))));
+      changed = std::max(changed, std::abs(norm(end.velocity) - 1));
+    });
+    const bool by_normals = method == Method::normals;
+    const std::string name = by_normals ? "blurred by normals" : "blurred by potential";
+    constexpr double degree = 3.14159265358979323846 / 180;
+    rows.add(name + ": angle", "cells", grid.n[0], angle, 2 * (by_normals ? 6 : 8) * degree);
+    rows.add(name + ": |v|", "cells", grid.n[0], changed, 1e-12);
+  }
+}
+
+/// Particles that are not finite do not affect the others.
 void not_finite(Rows& rows) {
   const Field ball = sphere_field(cube_grid(2, 17), 1);
   const Object object{&ball, {}};
@@ -93,6 +148,8 @@ void not_finite(Rows& rows) {
 void extreme_places(Rows& rows) {
   starts(rows);
   scales(rows);
+  compressed_fields(rows);
+  blurred_fields(rows);
   not_finite(rows);
 }
 
