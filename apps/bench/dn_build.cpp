@@ -146,8 +146,8 @@ struct Cloud {
   [[nodiscard]] Points points() const { return {x, y, z}; }
 };
 
-template <class LookUp>
-void look_up_row(const Bench& bench, const std::string& name, std::size_t n, const LookUp& run) {
+template <class Run>
+void look_up_row(const Bench& bench, const std::string& name, std::size_t n, const Run& run) {
   Samples samples;
   run();
   for (int k = 0; k < 4 * bench.repeat; ++k) {
@@ -180,17 +180,19 @@ void compressed_rows(const Bench& bench, int n) {
   const std::size_t count = 1'000'000;
   const Cloud cloud(count);
   std::vector<float> expected(count), found(count), nx(count), ny(count), nz(count);
-  look_up_row(bench, fmt::format("nearest distance flat {}^3", n), count,
-              [&] { nearest_distance(flat, cloud.points(), expected); });
-  look_up_row(bench, fmt::format("nearest distance compressed {}^3", n), count,
-              [&] { nearest_distance(field, cloud.points(), found); });
+  look_up_row(bench, fmt::format("nearest distance flat {}^3", n), count, [&] {
+    look_up(flat, LookUp::nearest, cloud.points(), {expected, {}, {}, {}});
+  });
+  look_up_row(bench, fmt::format("nearest distance compressed {}^3", n), count, [&] {
+    look_up(field, LookUp::nearest, cloud.points(), {found, {}, {}, {}});
+  });
   const auto allowed = static_cast<float>(bound.distance * (1 + 1e-5));
   for (std::size_t p = 0; p < count; ++p)
     TESS_CHECK(expected[p] == out_of_reach ? found[p] == out_of_reach
                                            : std::abs(found[p] - expected[p]) <= allowed,
                "compressed distance ", found[p], " of point ", p, ", flat ", expected[p]);
   look_up_row(bench, fmt::format("nearest distance and normal compressed {}^3", n), count, [&] {
-    nearest(field, cloud.points(), found, {nx, ny, nz});
+    look_up(field, LookUp::nearest, cloud.points(), {found, nx, ny, nz});
   });
 }
 

@@ -1,13 +1,13 @@
-// A field in a fifth of the memory and less: two levels, blocks of 4³ to 16³ voxels, each divided
-// into equal cells as coarse as the error bound lets it (section 3.2).
+// A field in at most a fifth of the memory: two levels, blocks of 4³ to 16³ voxels, each divided
+// into equal cells as coarse as the error bound allows (section 3.2).
 //
 //     block (i >> e, j >> e, k >> e)  ->  first entry << 3 | s; cells of 2^s voxels, s up to e
 //
 //     entry                           ->  distance at the cell's middle, normal
 //
-// An entry is a plane equation: a voxel of the cell has the distance of its centre from the plane,
-// cut off at the thickness. So a look-up is the same few steps whatever the division, without a
-// branch. Read-only once made; any thread.
+// An entry is a plane equation: the distance of a voxel is that of its centre from the plane, cut
+// off at the thickness. A sample takes the same few steps for every division, without a branch.
+// Read-only once made; any thread.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
@@ -17,17 +17,18 @@
 
 namespace tess::dn {
 
-/// How far a compressed voxel may be off the flat one. Voxels without a normal take any.
+/// The largest error of a compressed voxel. Any normal fits a voxel without one.
 struct ErrorBound {
   double distance = 0;  ///< in the object's units
   double angle = 0;     ///< radians
 };
 
-/// How an entry is written.
+/// The bits of an entry. Wide: a float and a code of normal_code.hpp. Narrow: two coordinates of
+/// `normal_bits` bits on the octahedral map; the rest of 32 bits is the distance in steps.
 struct EntryLayout {
-  bool wide = false;    ///< 64 bits: a float and a code of normal_code.hpp; else 32 bits:
-  int normal_bits = 0;  ///< on each axis of the octahedral map; the rest is the distance
-  float step = 0;       ///< of the distance
+  bool wide = false;
+  int normal_bits = 0;
+  float step = 0;
 };
 
 struct CompressedField {
@@ -59,28 +60,14 @@ struct CompressedField {
 /// The flat field that look-ups of `field` see, with the jump of its own distances.
 [[nodiscard]] Field expanded(const CompressedField& field);
 
-/// The flat field without its arrays: what stands beside a compressed field in an object.
+/// The flat field without its arrays, for Object::field beside Object::compressed.
 [[nodiscard]] Field outline(const CompressedField& field);
 
-/// What voxel (i, j, k) of the grid says of the distance.
+/// The distance of voxel (i, j, k).
 [[nodiscard]] float voxel_distance(const CompressedField& field, int i, int j, int k);
 
-/// Unit normals of n points, or zero where there is none.
-struct NormalColumns {
-  std::span<float> x, y, z;
-};
-
-/// As nearest_distance() of a flat field, within the bound.
-void nearest_distance(const CompressedField& field, const Points& points,
-                      std::span<float> distance);
-
-/// The normal of the nearest voxel; zero outside the grid and for NaN points. The field must have
-/// content distance_and_normal.
-void nearest_normal(const CompressedField& field, const Points& points,
-                    const NormalColumns& normal);
-
-/// Both.
-void nearest(const CompressedField& field, const Points& points, std::span<float> distance,
-             const NormalColumns& normal);
+/// Samples the field as look_up() of a flat one does, within the bound; nearest or tangent.
+void look_up(const CompressedField& field, LookUp kind, const Points& points,
+             const Answers& answers);
 
 }  // namespace tess::dn

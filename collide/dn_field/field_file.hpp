@@ -1,13 +1,11 @@
-// Fields in files, flat and compressed: what was saved comes back bit for bit, and what is not such
-// a file is refused.
+// Fields in files. A field is loaded bit for bit as it was saved; any other file is refused.
 //
 //     magic 8 | version 4 | kind 4 | body bytes 8 | checksum 8 | body
 //
-// All numbers little-endian. The checksum covers the 24 bytes before it and the body; the body
-// holds the field's numbers, then its arrays. Nothing is allocated that the file is too short for.
+// All numbers are little-endian. The checksum covers the 24 bytes before it and the body; the body
+// holds the field's numbers and then its arrays. Memory is allocated only for what the file holds.
 #pragma once
 
-#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/field.hpp"
 
 #include <iosfwd>
@@ -15,19 +13,15 @@
 
 namespace tess::dn {
 
-/// Writes `field` to `path`; a file of that name is replaced only once the new one is whole. Throws
-/// Error(environment) where it cannot be written.
+/// Writes `field` to `path`, and replaces a file of that name once the new one is complete. Throws
+/// Error(environment) if it cannot be written.
 void save_field(const Field& field, const std::string& path);
-void save_field(const CompressedField& field, const std::string& path);
 
-/// Reads what save_field wrote. Throws Error(bad_file) naming the file and what is wrong with it:
-/// cannot be opened, no field, another version, flat where compressed is asked for (and the other
-/// way), truncated, longer than it says, damaged.
+/// Reads a file of save_field. Throws Error(bad_file) naming the file and the fault: cannot be
+/// opened, not a field, another version, truncated, longer than it says, damaged.
 [[nodiscard]] Field load_field(const std::string& path);
-[[nodiscard]] CompressedField load_compressed_field(const std::string& path);
 
-/// The same from a stream that can be searched; `name` stands for it in errors.
+/// Reads from a seekable stream; `name` is its name in errors.
 [[nodiscard]] Field read_field(std::istream& file, const std::string& name);
-[[nodiscard]] CompressedField read_compressed_field(std::istream& file, const std::string& name);
 
 }  // namespace tess::dn

@@ -68,7 +68,7 @@ void study_memory(const Subject& subject, const StudyOptions& options, const Bui
           });
   measure("compressed", compressed.bytes(), seconds_of_compression,
           [&](const Points& points, const Answers& answers) {
-            nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
+            look_up(compressed, LookUp::nearest, points, answers);
           });
 }
 

@@ -1,7 +1,6 @@
-// Chooses the layout of entries and the division of each block: the coarsest whose every voxel,
-// decoded as look-ups do, meets the bound.
-#include "collide/dn_field/compressed.hpp"
-#include "collide/dn_field/field/compressed_entry.hpp"
+// Chooses the layout of entries and the division of each block: the coarsest for which every voxel,
+// decoded as samples are, meets the bound.
+#include "collide/dn_field/field/compressed_sample.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -18,8 +17,24 @@ double angle_between(Vec3 a, Vec3 b) {
   return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
+struct Plane {
+  float distance;  // at the cell's middle
+  Normal normal;   // unit, or zero
+};
+
+Vec3 to_vec3(const Normal& n) {
+  return {static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
+}
+
+/// The distance of a voxel whose centre is (x, y, z) from the cell's middle.
+float distance_to(const Plane& plane, float x, float y, float z, float thickness) {
+  const float d = plane.distance + (plane.normal.x * x + plane.normal.y * y + plane.normal.z * z);
+  const float above = d > -thickness ? d : -thickness;
+  return above < thickness ? above : thickness;
+}
+
 struct Entry {
-  std::uint32_t low = 0, high = 0;  // high: wide layouts alone
+  std::uint32_t low = 0, high = 0;  // high: of wide layouts only
   friend bool operator==(const Entry&, const Entry&) = default;
 };
 
@@ -34,7 +49,7 @@ class Compressor {
         cell_(static_cast<float>(field.grid.cell)),
         thickness_(static_cast<float>(field.thickness)) {}
 
-  /// Nothing where the layout's entries cannot meet the bound even voxel by voxel.
+  /// Empty if the layout's entries do not meet the bound even voxel by voxel.
   [[nodiscard]] std::optional<CompressedField> run();
 
  private:
@@ -49,8 +64,12 @@ class Compressor {
   [[nodiscard]] Vec3 direction_of_cell() const;
   [[nodiscard]] Entry written(double distance, Vec3 normal) const;
   [[nodiscard]] Plane plane(const Entry& e) const {
-    return layout_.wide ? EntryDecoder::wide(e.low, e.high) : decoder_.narrow(e.low);
+    const lanes::I zero{};
+    const lanes::Stored all = lanes::decode(decoder_, zero + static_cast<std::int32_t>(e.low),
+                                            zero + static_cast<std::int32_t>(e.high));
+    return {all.distance[0], {all.normal.x[0], all.normal.y[0], all.normal.z[0]}};
   }
+  [[nodiscard]] std::uint32_t narrow_normal(Vec3 normal) const;
   [[nodiscard]] double fitted_distance(Vec3 normal) const;
   [[nodiscard]] bool fits(std::array<int, 3> low, int s, Entry& entry);
   [[nodiscard]] bool divide(std::array<int, 3> low, int s, std::vector<Entry>& entries);
@@ -107,7 +126,29 @@ Entry Compressor::written(double distance, Vec3 normal) const {
       layout_.step > 0 ? std::round(distance / static_cast<double>(layout_.step)) : 0;
   const auto above =
       static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + decoder_.zero);
-  return {above << (2 * decoder_.bits) | narrow_normal(decoder_, normal), 0};
+  return {above << (2 * decoder_.bits) | narrow_normal(normal), 0};
+}
+
+/// The two coordinates on the octahedral map that decode closest to `normal`: one of four
+/// neighbours.
+std::uint32_t Compressor::narrow_normal(Vec3 normal) const {
+  if (normal == Vec3{}) return static_cast<std::uint32_t>(decoder_.mask << decoder_.bits);
+  const auto [u, v] = on_octahedral_map(normal);
+  const auto low = [&](double t) {
+    return std::clamp(static_cast<int>(std::floor((t + 1) * decoder_.middle)), 0,
+                      2 * decoder_.middle - 1);
+  };
+  lanes::I words{};
+  for (int corner = 0; corner < 4; ++corner)
+    words[corner] = (low(u) + (corner & 1)) << decoder_.bits | (low(v) + (corner >> 1));
+  const lanes::F3 decoded = lanes::decode(decoder_, words, lanes::I{}).normal;
+  std::uint32_t best = 0;
+  double closest = -2;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double agree = dot(lanes::lane(decoded, corner), normal);
+    if (agree > closest) closest = agree, best = static_cast<std::uint32_t>(words[corner]);
+  }
+  return best;
 }
 
 /// The distance at the middle that is least off; voxels at the cut-off only need to stay beyond it.
@@ -144,7 +185,7 @@ bool Compressor::fits(std::array<int, 3> low, int s, Entry& entry) {
   entry = written(0, normal);
   const Vec3 kept = to_vec3(plane(entry).normal);
   entry = written(s == 0 ? voxels_[0].distance : fitted_distance(kept), normal);
-  if (s == 0 && layout_.wide) entry.high = voxels_[0].code;  // written again it would be rounded
+  if (s == 0 && layout_.wide) entry.high = voxels_[0].code;  // not rounded again
   const Plane made = plane(entry);
   const Vec3 made_normal = to_vec3(made.normal);
   for (const Voxel& v : voxels_) {

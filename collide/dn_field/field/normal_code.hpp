@@ -1,6 +1,6 @@
-// A unit normal in 32 bits: the octahedral map (Meyer et al. 2010), 16 bits an axis, at most 5e-5
-// rad off. Decoded normals are of unit length to rounding; the code no_normal stands for "no
-// direction here" (medial axis, out of reach) and decodes to zero, which every rule leaves alone.
+// A unit normal in 32 bits: the octahedral map (Meyer et al. 2010), 16 bits per axis, error at most
+// 5e-5 rad. Decoded normals have unit length to rounding. The code no_normal (on the medial axis, out
+// of reach) decodes to zero, which every rule ignores.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"
@@ -12,15 +12,20 @@ namespace tess::dn {
 inline constexpr float code_scale = 32767.0F;
 inline constexpr std::uint32_t no_normal = 0x80008000U;
 
-inline std::uint32_t encode_normal(Vec3 normal) {
+struct OctahedralPoint {
+  double u, v;  ///< within [−1, 1]
+};
+/// Of a vector other than zero.
+inline OctahedralPoint on_octahedral_map(Vec3 normal) {
   const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-  if (!(sum > 0)) return no_normal;
-  double u = normal.x / sum, v = normal.y / sum;
-  if (normal.z < 0) {
-    const double folded = (1 - std::abs(v)) * (u >= 0 ? 1 : -1);
-    v = (1 - std::abs(u)) * (v >= 0 ? 1 : -1);
-    u = folded;
-  }
+  const double u = normal.x / sum, v = normal.y / sum;
+  if (!(normal.z < 0)) return {u, v};
+  return {(1 - std::abs(v)) * (u >= 0 ? 1 : -1), (1 - std::abs(u)) * (v >= 0 ? 1 : -1)};
+}
+
+inline std::uint32_t encode_normal(Vec3 normal) {
+  if (!(std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z) > 0)) return no_normal;
+  const auto [u, v] = on_octahedral_map(normal);
   const auto bits = [](double t) {
     return static_cast<std::uint32_t>(
                static_cast<std::int32_t>(std::lround(t * static_cast<double>(code_scale)))) &
@@ -33,7 +38,7 @@ struct Normal {
   float x, y, z;
 };
 
-/// Branch-free, so that a loop over it becomes vector code.
+/// Branch-free, so that a loop over it is vectorised.
 inline Normal decode_normal(std::uint32_t code) {
   const float exists = code == no_normal ? 0.0F : 1.0F;
   const float u =

@@ -1,6 +1,5 @@
-// Eight look-ups in one field, in grid coordinates (voxel (i, j, k) has its centre at (i, j, k)).
-// The one place that knows how the three kinds of look-up work; private to look_up.cpp and the step
-// loop.
+// Samples of a flat field, a vector of them at a time, in grid coordinates: voxel (i, j, k) has its
+// centre at (i, j, k). Implements the three kinds of look-up. Private to dn_field.
 #pragma once
 
 #include "collide/dn_field/field/normal_code.hpp"
@@ -9,7 +8,7 @@
 
 namespace tess::dn {
 
-/// A field as the loops see it.
+/// A flat field as the loops read it.
 struct Sampler {
   const float* distance = nullptr;
   const std::uint32_t* normal = nullptr;
@@ -24,15 +23,15 @@ inline Sampler sampler_of(const Field& field) {
           g.n[0] * g.n[1],       {g.n[0], g.n[1], g.n[2]}};
 }
 
-/// Which answers a loop computes; a loop for one holds no trace of the other.
+/// What a loop computes.
 enum class Ask : std::uint32_t { distance, normal, both };
 
 struct Sample {
-  lanes::I in;        ///< whether the field reaches there; else the numbers mean nothing
-  lanes::F distance;  ///< of the object, not of the world
+  lanes::I in;        ///< whether the field covers the point; otherwise the distances mean nothing
+  lanes::F distance;  ///< in units of the object
   lanes::F3 normal;   ///< unit or zero; zero outside
-  lanes::F free;      ///< no surface is nearer than this: what the voxel says, less the way from
-                      ///< its centre (trilinear: less the longest such way)
+  lanes::F free;      ///< lower bound of the distance: the voxel's, less the way from its centre
+                      ///< (trilinear: less the longest such way)
 
   [[nodiscard]] lanes::F distance_or_far() const {
     return in ? distance : lanes::all(out_of_reach);
@@ -63,14 +62,13 @@ inline F3 unit(F3 n) {
   return scale * n;
 }
 
-/// The voxel that a look-up of one voxel reads.
+/// The voxel that contains a point.
 struct Voxel {
-  I in;       ///< whether there is one; the first one stands in else
+  I in;       ///< whether there is one; otherwise (0, 0, 0) is read instead
   I i, j, k;  ///< along the axes
 };
 
-/// Of a grid of n voxels; `h` are coordinates from its corner: half a voxel more than from the
-/// first voxel's centre.
+/// In a grid of n voxels; `h` are coordinates from the grid's corner.
 inline Voxel voxel_from_corner(const int (&n)[3], F3 h) {
   const auto nx = static_cast<float>(n[0]), ny = static_cast<float>(n[1]),
              nz = static_cast<float>(n[2]);
@@ -82,7 +80,7 @@ inline Voxel voxel_of(const int (&n)[3], F3 g) {
   return voxel_from_corner(n, {g.x + 0.5F, g.y + 0.5F, g.z + 0.5F});
 }
 
-/// Where a voxel stands in the field's arrays.
+/// The index of a voxel in the field's arrays.
 inline I position(const Sampler& field, const Voxel& voxel) {
   return voxel.k * field.layer + voxel.j * field.row + voxel.i;
 }
@@ -93,7 +91,7 @@ inline F3 offset(const Voxel& voxel, F3 g) {
           g.z - __builtin_convertvector(voxel.k, F)};
 }
 
-/// What a voxel stores: its distance, and its normal, unit or zero; zero where there is no voxel.
+/// A voxel's distance and normal; the normal is unit or zero, and zero if there is no voxel.
 struct Stored {
   F distance;
   F3 normal;
@@ -109,7 +107,7 @@ inline Stored read(const Sampler& field, const Voxel& voxel) {
   return stored;
 }
 
-/// Distance and normal as by read() where `changed`, else `before`, which is what it would read.
+/// Reads distance and normal where `changed`; otherwise `before` holds what would be read.
 inline Stored read_changed(const Sampler& field, const Voxel& voxel, I changed,
                            const Stored& before) {
   const I at = position(field, voxel);
@@ -118,7 +116,7 @@ inline Stored read_changed(const Sampler& field, const Voxel& voxel, I changed,
   return {changed ? distance : before.distance, select(changed, normal, before.normal)};
 }
 
-/// What the voxel's data say of g.
+/// The sample at g from the voxel's data.
 template <LookUp Kind, Ask Asked>
 inline Sample answer(float cell, const Voxel& voxel, const Stored& stored, F3 g) {
   Sample found{voxel.in, stored.distance, stored.normal, stored.distance};
@@ -146,7 +144,7 @@ inline Sample sample(const Sampler& field, F3 g) {
   const I in =
       (g.x >= 0.0F) & (g.x <= nx) & (g.y >= 0.0F) & (g.y <= ny) & (g.z >= 0.0F) & (g.z <= nz);
   const F3 h = only(in, g);
-  // The last cell also serves the points on its far face.
+  // The last cell includes its far face.
   const I i = __builtin_convertvector(min(h.x, all(nx - 1)), I),
           j = __builtin_convertvector(min(h.y, all(ny - 1)), I),
           k = __builtin_convertvector(min(h.z, all(nz - 1)), I);

@@ -267,6 +267,13 @@ struct Three {
 using D3 = Three<D>;
 using F3 = Three<F>;
 
+inline Vec3 lane(const D3& v, int i) {
+  return {v.x[i], v.y[i], v.z[i]};
+}
+inline Vec3 lane(const F3& v, int i) {
+  return {static_cast<double>(v.x[i]), static_cast<double>(v.y[i]), static_cast<double>(v.z[i])};
+}
+
 inline F dot(F3 a, F3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }

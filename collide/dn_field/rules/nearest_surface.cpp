@@ -188,7 +188,7 @@ PlacedObject placed(const Object& object, LookUp kind, double step, bool restles
   }
   result.scale = static_cast<float>(frame.scale);
   result.cell = static_cast<float>(cell);
-  if (field.sides == Sides::two) result.padding = sheet_clearance(kind) * result.cell;
+  if (field.sides == Sides::two) result.padding = open_surface_clearance(kind) * result.cell;
   result.doubt = half_diagonal * static_cast<float>(cell);
   result.jump = static_cast<float>(jump_of(object) * frame.scale);
   result.compressed = object.compressed != nullptr;

@@ -1,10 +1,10 @@
 #include "collide/dn_field/build_exact.hpp"
 
 #include "collide/dn_field/field/normal_code.hpp"
-#include "collide/dn_field/geometry/triangle_distance.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "collide/dn_field/tree/bvh.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
+#include "tests/collide/dn_field/triangle_distance.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -1,7 +1,7 @@
 #include "collide/dn_field/build_exact.hpp"
-#include "collide/dn_field/geometry/triangle_distance.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
+#include "tests/collide/dn_field/triangle_distance.hpp"
 #include "tests/support/catch.hpp"
 
 #include <thread>

@@ -56,7 +56,7 @@ TEST_CASE("eight look-ups at once have the bits of one by one", "[dn_field][comp
       for (std::size_t i = 0; i < x.size(); ++i)
         x[i] = place(random), y[i] = place(random), z[i] = place(random);
       if (round == 0) y[3] = std::nanf("");
-      nearest(compressed, {x, y, z}, d, {nx, ny, nz});
+      look_up(compressed, LookUp::nearest, {x, y, z}, {d, nx, ny, nz});
       const Sample found = lanes::sample<LookUp::nearest, Ask::both>(
           sampler, {lanes::load<lanes::F>(x.data()), lanes::load<lanes::F>(y.data()),
                     lanes::load<lanes::F>(z.data())});

@@ -25,16 +25,16 @@ ErrorBound worst_seen(const Field& flat, const CompressedField& field) {
     at.z[v] = static_cast<float>(p.z);
   });
   std::vector<float> distance(n), alone(n);
-  nearest_distance(field, {at.x, at.y, at.z}, distance);
+  look_up(field, LookUp::nearest, {at.x, at.y, at.z}, {distance, {}, {}, {}});
   ErrorBound worst;
   for (std::size_t v = 0; v < n; ++v)
     worst.distance =
         std::max(worst.distance, static_cast<double>(std::abs(distance[v] - flat.distance[v])));
   if (flat.normal.empty()) return worst;
-  nearest(field, {at.x, at.y, at.z}, alone, {normal.x, normal.y, normal.z});
+  look_up(field, LookUp::nearest, {at.x, at.y, at.z}, {alone, normal.x, normal.y, normal.z});
   CHECK(alone == distance);
   Columns again(n);
-  nearest_normal(field, {at.x, at.y, at.z}, {again.x, again.y, again.z});
+  look_up(field, LookUp::nearest, {at.x, at.y, at.z}, {{}, again.x, again.y, again.z});
   CHECK((again.x == normal.x && again.y == normal.y && again.z == normal.z));
   for (std::size_t v = 0; v < n; ++v) {
     if (flat.normal[v] == no_normal) continue;
@@ -104,8 +104,8 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
       at.x[p] = anywhere(random), at.y[p] = anywhere(random), at.z[p] = anywhere(random);
     at.y[n - 1] = std::nanf("");
     std::vector<float> expected(n), found(n);
-    nearest_distance(flat, {at.x, at.y, at.z}, expected);
-    nearest(field, {at.x, at.y, at.z}, found, {normal.x, normal.y, normal.z});
+    look_up(flat, LookUp::nearest, {at.x, at.y, at.z}, {expected, {}, {}, {}});
+    look_up(field, LookUp::nearest, {at.x, at.y, at.z}, {found, normal.x, normal.y, normal.z});
     int wrong = 0, outside = 0;
     for (std::size_t p = 0; p < n; ++p) {
       outside += expected[p] == out_of_reach;

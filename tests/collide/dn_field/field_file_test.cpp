@@ -48,24 +48,18 @@ bool same(const Grid& a, const Grid& b) {
   return a.origin == b.origin && a.cell == b.cell && a.n == b.n;
 }
 
-/// What fields of both kinds have.
-template <class AnyField>
-void check_same_make(const AnyField& a, const AnyField& b) {
-  CHECK(same(a.grid, b.grid));
-  CHECK(a.method == b.method);
-  CHECK(a.sides == b.sides);
-  CHECK(a.thickness == b.thickness);
-  CHECK(a.jump == b.jump);
-  if constexpr (requires { a.surface; }) CHECK((a.surface == b.surface && a.surface != 0));
-}
-
-TEST_CASE("a flat field comes back from its file bit for bit", "[dn_field]") {
+TEST_CASE("a field comes back from its file bit for bit", "[dn_field]") {
   const TemporaryFile file("flat");
   for (const Content content : {Content::distance, Content::distance_and_normal}) {
     const Field field = small_field(content);
     save_field(field, file.path());
     const Field back = load_field(file.path());
-    check_same_make(back, field);
+    CHECK(same(back.grid, field.grid));
+    CHECK(back.method == field.method);
+    CHECK(back.sides == field.sides);
+    CHECK(back.thickness == field.thickness);
+    CHECK(back.jump == field.jump);
+    CHECK((back.surface == field.surface && field.surface != 0));
     CHECK(back.distance == field.distance);
     CHECK(back.normal == field.normal);
     const std::string first = file.bytes();
@@ -74,39 +68,12 @@ TEST_CASE("a flat field comes back from its file bit for bit", "[dn_field]") {
   }
 }
 
-TEST_CASE("a compressed field comes back from its file bit for bit", "[dn_field]") {
-  const TemporaryFile file("compressed");
-  const Field flat = small_field(Content::distance_and_normal);
-  for (const double part : {0.1, 0.0}) {
-    const CompressedField field = compress(flat, {part * flat.grid.cell, part});
-    save_field(field, file.path());
-    const CompressedField back = load_compressed_field(file.path());
-    check_same_make(back, field);
-    CHECK(back.content == field.content);
-    CHECK(back.block_shift == field.block_shift);
-    CHECK(back.n_blocks == field.n_blocks);
-    CHECK(back.layout.wide == field.layout.wide);
-    CHECK(back.layout.normal_bits == field.layout.normal_bits);
-    CHECK(back.layout.step == field.layout.step);
-    CHECK(back.bound.distance == field.bound.distance);
-    CHECK(back.bound.angle == field.bound.angle);
-    CHECK(back.measured.distance == field.measured.distance);
-    CHECK(back.measured.angle == field.measured.angle);
-    CHECK(back.block == field.block);
-    CHECK(back.entry == field.entry);
-  }
-}
-
 TEST_CASE("particles move among loaded fields as among those that were saved, bit for bit",
           "[dn_field]") {
   const TemporaryFile file("moved");
   const Field flat = small_field(Content::distance_and_normal);
-  const CompressedField compressed = compress(flat, {0.1 * flat.grid.cell, 0.1});
   save_field(flat, file.path());
   const Field flat_back = load_field(file.path());
-  save_field(compressed, file.path());
-  const CompressedField back = load_compressed_field(file.path());
-  const Field outline_back = outline(back);
   Rules rules;
   rules.impact = Impact{0.7, 0, Sweep::on};
   rules.gravity = Gravity{{0, 0, -1}};
@@ -121,7 +88,6 @@ TEST_CASE("particles move among loaded fields as among those that were saved, bi
                       particles.vx, particles.vy, particles.vz};
   };
   CHECK(moved({&flat_back, {}}) == moved({&flat, {}}));
-  CHECK(moved({&outline_back, {}, &back}) == moved({&flat, {}, &compressed}));
 }
 
 TEST_CASE("a file that is whole but holds no field that can be is refused", "[dn_field]") {
@@ -152,37 +118,25 @@ TEST_CASE("a file that is whole but holds no field that can be is refused", "[dn
 TEST_CASE("damage at any byte of a file is refused, and so is every truncation", "[dn_field]") {
   const TemporaryFile file("damaged");
   const Field flat = small_field(Content::distance);
-  for (const bool compressed : {false, true}) {
-    if (compressed) {
-      save_field(compress(flat, {0.1, 0.1}), file.path());
-    } else {
-      save_field(flat, file.path());
+  save_field(flat, file.path());
+  const std::string whole = file.bytes();
+  const auto read = [&](const std::string& bytes) {
+    std::istringstream stream(bytes);
+    return refusal([&] { (void)read_field(stream, "a file"); });
+  };
+  REQUIRE(read(whole).empty());
+  int accepted = 0;
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    for (const int flip : {0x01, 0x80, 0xFF}) {
+      std::string bytes = whole;
+      bytes[at] = static_cast<char>(bytes[at] ^ flip);
+      accepted += read(bytes).find("a file: ") == std::string::npos;
     }
-    const std::string whole = file.bytes();
-    const auto read = [&](const std::string& bytes) {
-      std::istringstream stream(bytes);
-      return refusal([&] {
-        if (compressed) {
-          (void)read_compressed_field(stream, "a file");
-        } else {
-          (void)read_field(stream, "a file");
-        }
-      });
-    };
-    REQUIRE(read(whole).empty());
-    int accepted = 0;
-    for (std::size_t at = 0; at < whole.size(); ++at)
-      for (const int flip : {0x01, 0x80, 0xFF}) {
-        std::string bytes = whole;
-        bytes[at] = static_cast<char>(bytes[at] ^ flip);
-        accepted += read(bytes).find("a file: ") == std::string::npos;
-      }
-    CHECK(accepted == 0);
-    for (std::size_t length = 0; length < whole.size(); ++length)
-      accepted += read(whole.substr(0, length)).find("truncated") == std::string::npos;
-    CHECK(accepted == 0);
-    CHECK(read(whole + '\0').find("longer than it says") != std::string::npos);
-  }
+  CHECK(accepted == 0);
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    accepted += read(whole.substr(0, length)).find("truncated") == std::string::npos;
+  CHECK(accepted == 0);
+  CHECK(read(whole + '\0').find("longer than it says") != std::string::npos);
 }
 
 TEST_CASE("what is wrong with a file is named", "[dn_field]") {
@@ -202,9 +156,6 @@ TEST_CASE("what is wrong with a file is named", "[dn_field]") {
   other = whole;
   other.back() = static_cast<char>(other.back() ^ 1);
   CHECK(loaded(other).find("damaged") != std::string::npos);
-  file.write(whole);
-  CHECK(refusal([&] { (void)load_compressed_field(file.path()); }).find("holds a flat field") !=
-        std::string::npos);
   CHECK(refusal([] { (void)load_field("no/such.dnf"); }).find("no/such.dnf: cannot be opened") !=
         std::string::npos);
   CHECK(refusal([&] { save_field(flat, "no/such/folder.dnf"); }).find("cannot be written") !=
@@ -218,11 +169,6 @@ TEST_CASE("what is wrong with a file is named", "[dn_field]") {
   odd.jump = -1;
   save_field(odd, file.path());
   CHECK(refusal([&] { (void)load_field(file.path()); }).find("jump") != std::string::npos);
-  CompressedField lost = compress(flat, {0.1, 0.1});
-  lost.block.back() += 1U << 20U;
-  save_field(lost, file.path());
-  CHECK(refusal([&] { (void)load_compressed_field(file.path()); }).find("without entries") !=
-        std::string::npos);
 }
 
 }  // namespace

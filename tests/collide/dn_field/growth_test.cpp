@@ -158,8 +158,11 @@ TEST_CASE("among growing objects trajectories are the same however particles and
     }
   }
   CHECK(whole.x == parts.x);
+  CHECK(whole.y == parts.y);
   CHECK(whole.z == parts.z);
+  CHECK(whole.vx == parts.vx);
   CHECK(whole.vy == parts.vy);
+  CHECK(whole.vz == parts.vz);
   CHECK(count_nonfinite(whole.span()) == 0);
 }
 

@@ -23,7 +23,7 @@ TEST_CASE(
   for (std::size_t p = 0; p < 1000; ++p)
     x[p] = anywhere(random), y[p] = anywhere(random), z[p] = anywhere(random);
   x[1000] = std::nanf("");
-  nearest_distance(field, {x, y, z}, found);
+  look_up(field, LookUp::nearest, {x, y, z}, {found, {}, {}, {}});
   CHECK(found[1000] == out_of_reach);
   int inside = 0;
   for (std::size_t p = 0; p < 1000; ++p) {
