@@ -1,35 +1,36 @@
-// The paper's two constructions (section 3.1). Normals method: the surface's normals, rasterised
-// and blurred, the voxels on the surface getting their first value back after every round.
-// Potential method: occupancy, blurred in the same way, and the normal as its gradient. Near the
-// object normals are perpendicular to the surface, further away they follow its overall shape.
+// The paper's two constructions (section 3.1). Normals method: the surface's normals are rasterised
+// and blurred; after every round the voxels on the surface get their first value back. Potential
+// method: occupancy is blurred in the same way, and the normal is its gradient. Near the object
+// normals are perpendicular to the surface; further away they follow its overall shape.
 //
-// Where we differ: distances are the exact ones, not counted in voxels. The potential is blurred
-// once more without restoring anything, else the steps of the voxels show in its gradient; and on
-// the surface itself, where it has its ridge and no gradient, the direction is that to the closest
-// point.
+// We differ from the paper: distances are exact instead of counted in voxels. The potential is
+// blurred once more without restoring anything, because otherwise the voxels' steps appear in its
+// gradient. On the surface itself, where the potential has a ridge and no gradient, the normal is
+// the direction to the nearest point.
 //
-// BlurredBuilder is the seam for building in parallel: distances first, then round after round,
-// each over any split of the layers. build_blurred does all in order.
+// BlurredBuilder serves parallel construction: distances first, then round after round, each over
+// any split of the layers. build_blurred does all in order.
 #pragma once
 
-#include "collide/dn_field/build/plan.hpp"
-#include "collide/dn_field/build/voxels.hpp"
 #include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/plan.hpp"
 
 #include <array>
 
 namespace tess::dn {
 
-/// While a field is built: the field, three components before and after a round, and some more.
+/// Memory during construction: the field, three components before and after a round, and some more.
 inline constexpr double bytes_per_voxel_blurring = 36;
 
 struct BlurredOptions {
   Method method = Method::normals;       ///< normals or potential
-  Sides sides = Sides::one;              ///< the normals method serves one side alone
+  Sides sides = Sides::one;              ///< the normals method supports one side only
   double thickness = HUGE_VAL;           ///< distances and normals are cut off here
-  Blur blur;                             ///< rounds 0: choose_blur
+  Blur blur;                             ///< rounds 0: by choose_blur()
   std::function<void(double)> progress;  ///< called with the fraction done; may be empty
 };
+
+struct SurfaceVoxel;
 
 class BlurredBuilder {
  public:
@@ -42,25 +43,26 @@ class BlurredBuilder {
   /// field does not depend on how they are split. Best split at multiples of 4 layers.
   void build_distances(int first, int last);
 
-  /// Rounds that follow: of the blur, and one that makes normals of what came out.
+  /// The rounds of the blur, and one that computes the normals from its result.
   [[nodiscard]] int n_rounds() const { return n_blurs_ + 1; }
 
-  /// The same layers, or others, in round `round`, from 0. All layers of a round must be built
-  /// before the next begins, and all distances before the first. Throws Error(bad_argument) from
-  /// layer 0 of round 0 for an object of near-zero thickness by normals: one where more than a
-  /// tenth of the surface's voxels have nothing inside behind them.
+  /// Layers in round `round`, from 0. All distances must be built before the first round, and all
+  /// layers of a round before the next. Layer 0 of round 0 throws Error(bad_argument) for an object
+  /// of near-zero thickness by the normals method: more than a tenth of the surface's voxels have no
+  /// inside behind them.
   void build_round(int round, int first, int last);
 
-  /// The field, once all is built; then this builder is empty.
+  /// The field; call it once, after the last round.
   [[nodiscard]] Field finish();
 
+  ~BlurredBuilder();
   BlurredBuilder(const BlurredBuilder&) = delete;
   BlurredBuilder& operator=(const BlurredBuilder&) = delete;
 
  private:
   using Values = std::vector<float>;
 
-  /// `surface`: its triangles' normals are what is blurred.
+  /// `surface`: the normals of its triangles are blurred.
   BlurredBuilder(Surface surface, const BlurredOptions& options, const Grid& grid);
   [[nodiscard]] float seed(const SurfaceVoxel& voxel, std::size_t part) const;
   [[nodiscard]] std::span<const SurfaceVoxel> voxels_in(int first, int last) const;
@@ -76,7 +78,7 @@ class BlurredBuilder {
   Field field_;
   std::vector<BuiltSlab> slabs_;      // by their first layer
   std::vector<SurfaceVoxel> voxels_;  // in the order of the grid
-  // By turns before and after a round. Normals: three components; potential: one value.
+  // Before and after a round, alternating. Normals: three components; potential: one value.
   std::array<std::vector<Values>, 2> values_;
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/dn_field/field.hpp"
-#include "collide/dn_field/field/normal_code.hpp"
+#include "collide/dn_field/normal_code.hpp"
 
 namespace tess::dn {
 

@@ -1,6 +1,6 @@
-// A triangle mesh as it comes from a file: what a distance/normal field is built from. It may have
-// holes, flipped triangles and self-intersections; it may not be empty, hold NaN, or name vertices
-// it has not got.
+// A triangle mesh as read from a file, from which a distance/normal field is built. It may have
+// holes, flipped triangles and self-intersections; it must not be empty, hold NaN, or refer to
+// missing vertices.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"
@@ -32,30 +32,44 @@ void validate(const Surface& surface);
 /// A hash of all vertices and triangles, in their order; never 0.
 [[nodiscard]] std::uint64_t fingerprint(const Surface& surface);
 
-/// Where a surface ends: an edge that runs `surplus` times more often from `from` to `to` than
+/// An edge at which a surface ends: `surplus` more triangles run along it from `from` to `to` than
 /// back.
 struct RimEdge {
   std::uint32_t from = 0, to = 0;
   int surplus = 0;  ///< positive
 };
 
-/// All edges that are not met by as many opposite ones: the rims of holes, and those of flipped
-/// triangles. Costs the number of triangles.
+/// All edges without as many opposite ones: the rims of holes and of flipped triangles. Linear in
+/// the number of triangles.
 [[nodiscard]] std::vector<RimEdge> rim(const Surface& surface);
 
-/// Whether every directed edge is met by as many opposite ones: then the winding number is an
-/// integer off the surface.
+/// Whether every directed edge has as many opposite ones. Then the winding number off the surface
+/// is an integer.
 [[nodiscard]] inline bool is_closed(const Surface& surface) {
   return rim(surface).empty();
 }
 
-/// The share of edges between two triangles that run along it the same way, so that one of them is
-/// flipped. 0 where no two triangles meet.
+/// The share of edges between two triangles along which both run the same way: one of the two is
+/// flipped. 0 if no two triangles share an edge.
 [[nodiscard]] double disagreeing_share(const Surface& surface);
 
-/// Merges vertices of bit-equal position, so that a triangle soup whose seams agree counts as
-/// closed.
+/// Merges vertices with bit-equal positions: a triangle soup with equal seams becomes closed.
 [[nodiscard]] Surface welded(const Surface& surface);
+
+struct SurfacePoint {
+  Vec3 at;
+  Vec3 normal;  ///< unit; zero on a triangle without area
+  std::uint32_t triangle = 0;
+};
+
+/// The sum of the triangles' areas up to each, inclusive.
+[[nodiscard]] std::vector<double> area_sums(const Surface& surface);
+
+/// A point by three numbers within [0, 1): the first selects a triangle by area, the others a point
+/// of it. Evenly distributed numbers give points evenly distributed over the area. `sums`:
+/// area_sums(surface), not empty.
+[[nodiscard]] SurfacePoint point_on(const Surface& surface, const std::vector<double>& sums,
+                                    double first, double second, double third);
 
 /// Reads vertices and faces of a Wavefront OBJ file; polygons become fans, texture and normal
 /// indices are ignored. Throws Error(bad_file) naming file and line.

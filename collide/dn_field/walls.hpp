@@ -2,7 +2,7 @@
 // that knows of it: a one-sided field lets particles through there.
 #pragma once
 
-#include "collide/dn_field/tree/bvh.hpp"
+#include "collide/dn_field/bvh.hpp"
 
 #include <vector>
 

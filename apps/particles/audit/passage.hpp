@@ -1,8 +1,8 @@
 // A particle's way through an object in one step, as the audit sees it.
 #pragma once
 
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/stepper.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #include "apps/particles/output/picture.hpp"
 
-#include "collide/dn_field/field/normal_code.hpp"
+#include "collide/dn_field/normal_code.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "apps/particles/scene/shape_reader.hpp"
 #include "collide/dn_field/field_file.hpp"
-#include "collide/dn_field/tree/orientation.hpp"
+#include "collide/dn_field/orientation.hpp"
 #include "collide/dn_field/walls.hpp"
 #include "runtime/core/error.hpp"
 

@@ -3,9 +3,9 @@
 // by scene_help() and nowhere else.
 #pragma once
 
-#include "collide/dn_field/build/plan.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/frame.hpp"
+#include "collide/dn_field/plan.hpp"
 #include "collide/dn_field/rules.hpp"
 #include "collide/dn_field/surface.hpp"
 #include "collide/dn_field/walls.hpp"

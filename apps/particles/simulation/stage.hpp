@@ -6,7 +6,7 @@
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/emit.hpp"
 #include "apps/particles/simulation/field_making.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
+#include "collide/dn_field/bvh.hpp"
 
 #include <memory>
 #include <optional>

@@ -4,8 +4,8 @@
 // surface flow is followed in short steps of second order with exact normals.
 #pragma once
 
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/rules.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 
 namespace particles {
 

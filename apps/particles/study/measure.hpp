@@ -4,9 +4,9 @@
 
 #include "apps/particles/study/exact_bounce.hpp"
 #include "apps/particles/study/study.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/stepper.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 
 #include <functional>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "collide/dn_field/build/plan.hpp"
+#include "collide/dn_field/plan.hpp"
 
 #include "runtime/core/error.hpp"
 
@@ -11,7 +11,7 @@ constexpr double wanted_rounds = 3;
 }  // namespace
 
 Blur choose_blur(const Grid& grid, double thickness) {
-  // No wider than the grid: an infinite thickness asks for all of it.
+  // At most the grid: the thickness may be infinite.
   const double cells =
       std::min(thickness / grid.cell, 1.0 * std::max({grid.n[0], grid.n[1], grid.n[2]}));
   const int radius =
@@ -29,15 +29,22 @@ void require_blur(const Blur& blur) {
 
 FieldPlan choose_plan(const Bounds& box, const Demand& demand, Coverage coverage,
                       std::size_t max_voxels) {
-  Demand asked = demand;
-  if (coverage == Coverage::swept) asked.max_speed = 0;
-  const Choice choice = choose(box, asked, max_voxels);
-  // The cell came out a little smaller than asked for: two cells are still covered.
-  return {choice.grid, choice.thickness, choose_blur(choice.grid, choice.thickness)};
-}
-
-void require_reach(const Demand& demand, Coverage coverage, double thickness) {
-  if (coverage == Coverage::step) require_covered(demand, thickness);
+  const double speed = coverage == Coverage::swept ? 0 : demand.max_speed;
+  const double reach = speed * demand.step;
+  if (!(reach >= 0) || !std::isfinite(reach))
+    fail(ErrorCode::bad_argument, "speed ", speed, " × step ", demand.step,
+         " must be finite, not negative");
+  if (!(demand.detail > 0))
+    fail(ErrorCode::bad_argument, "smallest feature ", demand.detail, " must be positive");
+  const Vec3 size = box.size();
+  const double cell = 0.5 * demand.detail, thickness = reach + 2 * cell;
+  const double wanted = std::ceil((std::max({size.x, size.y, size.z}) + 2 * thickness) / cell) + 1;
+  if (wanted > 1024 || wanted * wanted * wanted > static_cast<double>(max_voxels))
+    fail(ErrorCode::bad_argument, "a field of ", wanted, "³ voxels is needed for speed × step ",
+         reach, " and features of ", demand.detail, ", above the limit of ", max_voxels,
+         "; shorten the step or coarsen the detail");
+  const Grid grid = grid_around(box, std::max(4, static_cast<int>(wanted)), thickness);
+  return {grid, thickness, choose_blur(grid, thickness)};
 }
 
 }  // namespace tess::dn

@@ -12,9 +12,9 @@
 #pragma once
 
 #include "collide/dn_field/build/winding_lines.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/grid.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
-#include "collide/dn_field/tree/orientation.hpp"
+#include "collide/dn_field/orientation.hpp"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #include "collide/dn_field/build/voxels.hpp"
 
-#include "collide/dn_field/geometry/prepared_triangle.hpp"
+#include "collide/dn_field/prepared_triangle.hpp"
 
 #include <algorithm>
 #include <limits>

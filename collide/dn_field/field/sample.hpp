@@ -2,9 +2,9 @@
 // centre at (i, j, k). Implements the three kinds of look-up. Private to dn_field.
 #pragma once
 
-#include "collide/dn_field/field/normal_code.hpp"
 #include "collide/dn_field/geometry/lanes.hpp"
 #include "collide/dn_field/look_up.hpp"
+#include "collide/dn_field/normal_code.hpp"
 
 namespace tess::dn {
 

@@ -1,6 +1,6 @@
 #include "collide/dn_field/step/corrections.hpp"
 
-#include "collide/dn_field/tree/bvh.hpp"
+#include "collide/dn_field/bvh.hpp"
 
 #include <algorithm>
 

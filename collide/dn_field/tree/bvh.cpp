@@ -1,4 +1,4 @@
-#include "collide/dn_field/tree/bvh.hpp"
+#include "collide/dn_field/bvh.hpp"
 
 #include <algorithm>
 

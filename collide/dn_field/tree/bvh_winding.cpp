@@ -1,5 +1,5 @@
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/geometry/turns.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 
 #include <numbers>
 

@@ -1,8 +1,8 @@
-#include "collide/dn_field/tree/orientation.hpp"
+#include "collide/dn_field/orientation.hpp"
 
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/geometry/disjoint_sets.hpp"
 #include "collide/dn_field/geometry/surface_edges.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 
 #include <algorithm>
 

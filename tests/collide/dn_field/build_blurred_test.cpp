@@ -205,10 +205,6 @@ TEST_CASE("a plan covers the step and resolves the detail, or is refused", "[dn_
   CHECK_FALSE(refusal([&] {
                 (void)choose_plan(box, {2000, 0.01, 0.1}, Coverage::step, 1 << 24);
               }).empty());
-  CHECK(refusal([&] {
-          require_reach({100, 0.01, 0.1}, Coverage::step, 0.5);
-        }).find("swept") != std::string::npos);
-  require_reach({100, 0.01, 0.1}, Coverage::swept, 0.5);
   CHECK(refusal([&] { require_blur({5, 2}); }).find("2 to 4") != std::string::npos);
   CHECK(refusal([&] { require_blur({3, 0}); }).find("at least one") != std::string::npos);
 }

@@ -1,7 +1,7 @@
 #include "collide/dn_field/build_blurred.hpp"
 #include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/shapes.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "collide/dn_field/field.hpp"
-#include "collide/dn_field/field/normal_code.hpp"
+#include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/surface.hpp"
 #include "runtime/core/error.hpp"
 

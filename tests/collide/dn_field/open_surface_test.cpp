@@ -1,7 +1,7 @@
 #include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

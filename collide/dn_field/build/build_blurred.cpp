@@ -2,8 +2,9 @@
 
 #include "collide/dn_field/build/blur.hpp"
 #include "collide/dn_field/build/checks.hpp"
-#include "collide/dn_field/field/normal_code.hpp"
-#include "collide/dn_field/tree/orientation.hpp"
+#include "collide/dn_field/build/voxels.hpp"
+#include "collide/dn_field/normal_code.hpp"
+#include "collide/dn_field/orientation.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -75,6 +76,8 @@ BlurredBuilder::BlurredBuilder(const Surface& surface, const Grid& grid,
     : BlurredBuilder(checked(surface, grid, options), options, grid) {
   field_.surface = fingerprint(surface);  // as given, whatever was turned
 }
+
+BlurredBuilder::~BlurredBuilder() = default;
 
 BlurredBuilder::BlurredBuilder(Surface surface, const BlurredOptions& options, const Grid& grid)
     : surface_(std::move(surface)),

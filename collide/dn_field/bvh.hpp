@@ -4,7 +4,7 @@
 // which walks the tree once. Immutable once made; queries may run on any thread.
 #pragma once
 
-#include "collide/dn_field/geometry/prepared_triangle.hpp"
+#include "collide/dn_field/prepared_triangle.hpp"
 #include "collide/dn_field/surface.hpp"
 
 namespace tess::dn {

@@ -10,34 +10,39 @@ namespace {
 using namespace lanes;
 
 template <LookUp Kind, Ask Asked>
-void fill(const auto& sampler, const Grid& grid, const Points& points, const Answers& answers) {
+void fill(const auto& given, const Grid& grid, const Points& points, const Answers& answers) {
+  const auto sampler = given;  // a copy that no store can change
   const auto per_cell = static_cast<float>(1 / grid.cell);
   const auto ox = static_cast<float>(-grid.origin.x / grid.cell),
              oy = static_cast<float>(-grid.origin.y / grid.cell),
              oz = static_cast<float>(-grid.origin.z / grid.cell);
   const std::size_t count = points.x.size();
-  // The last points, fewer than a vector, are copied.
-  const auto some = [count](std::span<const float> from, std::size_t p) {
-    if (p + width <= count) return load<F>(&from[p]);
-    F v{};
-    for (std::size_t i = 0; p + i < count; ++i) v[i] = from[p + i];
-    return v;
+  const auto at = [&](F x, F y, F z) {
+    Sample found =
+        sample<Kind, Asked>(sampler, {x * per_cell + ox, y * per_cell + oy, z * per_cell + oz});
+    found.distance = found.distance_or_far();
+    return found;
   };
-  const auto put = [count](std::span<float> to, std::size_t p, F v) {
-    if (p + width <= count) return store(&to[p], v);
+  const auto put = [&](const auto& write, const Sample& found) {
+    if constexpr (Asked != Ask::normal) write(answers.distance, found.distance);
+    if constexpr (Asked != Ask::distance) {
+      write(answers.nx, found.normal.x);
+      write(answers.ny, found.normal.y);
+      write(answers.nz, found.normal.z);
+    }
+  };
+  std::size_t p = 0;
+  for (; p + width <= count; p += width)
+    put([p](std::span<float> to, F v) { store(&to[p], v); },
+        at(load<F>(&points.x[p]), load<F>(&points.y[p]), load<F>(&points.z[p])));
+  if (p == count) return;
+  F x{}, y{}, z{};
+  for (std::size_t i = 0; p + i < count; ++i)
+    x[i] = points.x[p + i], y[i] = points.y[p + i], z[i] = points.z[p + i];
+  const auto write_some = [=](std::span<float> to, F v) {
     for (std::size_t i = 0; p + i < count; ++i) to[p + i] = v[i];
   };
-  for (std::size_t p = 0; p < count; p += width) {
-    const Sample found = sample<Kind, Asked>(
-        sampler, {some(points.x, p) * per_cell + ox, some(points.y, p) * per_cell + oy,
-                  some(points.z, p) * per_cell + oz});
-    if constexpr (Asked != Ask::normal) put(answers.distance, p, found.distance_or_far());
-    if constexpr (Asked != Ask::distance) {
-      put(answers.nx, p, found.normal.x);
-      put(answers.ny, p, found.normal.y);
-      put(answers.nz, p, found.normal.z);
-    }
-  }
+  put(write_some, at(x, y, z));
 }
 
 template <LookUp Kind>

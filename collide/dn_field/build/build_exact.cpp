@@ -1,7 +1,8 @@
 #include "collide/dn_field/build_exact.hpp"
 
 #include "collide/dn_field/build/checks.hpp"
-#include "collide/dn_field/field/normal_code.hpp"
+#include "collide/dn_field/build/sign.hpp"
+#include "collide/dn_field/normal_code.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
@@ -14,14 +15,13 @@ constexpr int block_edge = 4;
 constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are asked for at once
 constexpr double just_beyond = 1 + 1e-9;
 
-/// None where the field has two sides, after all that must be refused was refused.
-std::optional<OutwardSurface> outward_of(const Surface& surface, const Grid& grid,
-                                         const ExactOptions& options) {
+/// Refuses bad input. Returns null for a two-sided field.
+std::unique_ptr<const OutwardSurface> outward_of(const Surface& surface, const Grid& grid,
+                                                 const ExactOptions& options) {
   validate(surface);
   require_thick(grid, options.thickness);
   require_buildable(grid, options.content == Content::distance ? 4 : 8);
-  if (options.sides == Sides::two) return std::nullopt;
-  return std::optional<OutwardSurface>(std::in_place, surface);
+  return options.sides == Sides::two ? nullptr : std::make_unique<const OutwardSurface>(surface);
 }
 
 int up_to(int voxel, int step, int n) {
@@ -49,14 +49,17 @@ Slab slab_of(Field& field, int first, int last) {
 ExactBuilder::ExactBuilder(const Surface& surface, const Grid& grid, ExactOptions options)
     : ExactBuilder(surface, outward_of(surface, grid, options), grid, options) {}
 
-ExactBuilder::ExactBuilder(const Surface& surface, const std::optional<OutwardSurface>& outward,
-                           const Grid& grid, ExactOptions options)
+ExactBuilder::ExactBuilder(const Surface& surface,
+                           const std::unique_ptr<const OutwardSurface>& outward, const Grid& grid,
+                           ExactOptions options)
     : grid_(grid),
       surface_(fingerprint(surface)),
       options_(std::move(options)),
       tree_(outward ? outward->surface() : surface) {
-  if (outward) inside_.emplace(*outward, tree_, grid);
+  if (outward) inside_ = std::make_unique<const Inside>(*outward, tree_, grid);
 }
+
+ExactBuilder::~ExactBuilder() = default;
 
 Field ExactBuilder::empty_field() const {
   Field field{grid_, Method::exact, options_.sides, options_.thickness, {}, {}};
@@ -66,8 +69,8 @@ Field ExactBuilder::empty_field() const {
   return field;
 }
 
-// All 64 points of a block ask, whichever layers the shelf wants: so the answer cannot depend on
-// the split.
+// All 64 points of a block are asked for, whichever layers the shelf needs: the result does not
+// depend on the split.
 void ExactBuilder::fill_block(int i, int j, const Shelf& shelf) const {
   PointBlock block;
   const double limit2 = options_.thickness * options_.thickness * just_beyond;
