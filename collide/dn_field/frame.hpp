@@ -1,5 +1,5 @@
-// How an object stands and moves in the world: rotation, translation and uniform scale take its own
-// coordinates there. Shear is refused: distances would no longer scale by one number.
+// The pose and motion of an object: rotation, translation and uniform scale map its own coordinates
+// to the world. Shear is refused, because distances would not scale by one number.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"
@@ -14,8 +14,8 @@ struct Frame {
   Vec3 position;                           ///< of the object's origin
   double scale = 1;                        ///< world units per unit of the object
   Vec3 velocity;                           ///< of the object's origin
-  Vec3 angular_velocity;                   ///< radians a second, about the object's origin
-  double scale_rate = 0;                   ///< of `scale`, a second: growth about the origin
+  Vec3 angular_velocity;                   ///< radians per second, about the object's origin
+  double scale_rate = 0;                   ///< change of `scale` per second, about the origin
 
   [[nodiscard]] bool is_moving() const {
     return !(velocity == Vec3{}) || !(angular_velocity == Vec3{}) || is_growing();
@@ -30,20 +30,19 @@ struct Frame {
     const Vec3 q = p - position;
     return (1 / scale) * Vec3{dot(axes[0], q), dot(axes[1], q), dot(axes[2], q)};
   }
-  /// Velocity of the surface where it passes the world's point `p`.
+  /// Velocity of the surface at the point `p` of the world.
   [[nodiscard]] Vec3 velocity_at(Vec3 p) const {
     const Vec3 stiff = velocity + cross(angular_velocity, p - position);
     return is_growing() ? stiff + (scale_rate / scale) * (p - position) : stiff;
   }
 
-  /// Moves, turns and scales the frame over `step` by its velocities; exact for constant ones, axes
-  /// stay orthonormal. The scale must stay above 0.
+  /// Moves, turns and scales the frame over `step` by its velocities. Exact for constant velocities;
+  /// axes stay orthonormal. The scale must stay above 0.
   void advance(double step);
 };
 
-/// The frame of a 3 × 3 matrix (columns: images of the axes) and a translation.
-/// Throws Error(bad_value) for shear, unequal or zero scale, reflection, or entries that are not
-/// finite.
+/// The frame of a 3 × 3 matrix (columns: images of the axes) and a translation. Throws
+/// Error(bad_value) for shear, unequal or zero scale, reflection, or entries that are not finite.
 [[nodiscard]] Frame frame_from(const std::array<Vec3, 3>& columns, Vec3 translation);
 
 /// The rotation by |v| radians about v.

@@ -1,4 +1,4 @@
-// Fields from formulas, for what must be known exactly: the stability report, tests, benchmarks.
+// Fields from formulas, with exact distances: for the stability report, tests and benchmarks.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
@@ -6,13 +6,13 @@
 
 namespace tess::dn {
 
-/// What a formula gives at one point.
+/// The value of a formula at one point.
 struct DistanceNormal {
   double distance = 0;
   Vec3 normal;
 };
 
-/// formula: DistanceNormal(Vec3), asked at every voxel's centre.
+/// formula: DistanceNormal(Vec3), evaluated at every voxel's centre.
 template <class Formula>
 [[nodiscard]] Field made_field(const Grid& grid, const Formula& formula) {
   Field field;
@@ -41,7 +41,7 @@ template <class Formula>
   return made_field(grid, [&](Vec3 p) { return DistanceNormal{dot(normal, p), normal}; });
 }
 
-/// A sheet in z = 0 that is met from either side.
+/// The open surface z = 0, met from either side.
 [[nodiscard]] inline Field sheet_field(const Grid& grid) {
   Field field = made_field(grid, [](Vec3 p) {
     return DistanceNormal{std::abs(p.z), {0, 0, p.z < 0 ? -1.0 : 1.0}};
@@ -54,7 +54,7 @@ template <class Formula>
   return made_field(grid, [&](Vec3 p) { return DistanceNormal{norm(p) - radius, direction(p)}; });
 }
 
-/// The room |x|, |y|, |z| <= half seen from within: walls all around, eight corners.
+/// The inside of the cube |x|, |y|, |z| <= half.
 [[nodiscard]] inline Field room_field(const Grid& grid, double half) {
   return made_field(grid, [&](Vec3 p) {
     const Vec3 a{std::abs(p.x), std::abs(p.y), std::abs(p.z)};

@@ -1,14 +1,12 @@
-// A surface whose closed parts bound what they enclose, whichever way their triangles were given:
-// what a one-sided field is built from. A part is closed where an even number of triangles meets at
-// each of its edges, flipped or not. Around its surface it winds, on the mean of both sides, +1/2
-// where its normals point out of a body, −1/2 where they point into one that nothing else
-// encloses: then the whole part is turned. A cavity's faces point into the cavity; the body around
-// it makes that mean +1/2 too, so they stay. After this the inside is where the winding number is
-// above 1/2, and normals of triangles, crossings and estimates agree about it.
+// Orientation repair: turns closed parts of a surface that are inside out, before a one-sided field
+// is built from it. A part is closed if an even number of triangles meets at each of its edges. The
+// winding number at its surface, as the mean of both sides, is +1/2 if its normals point out of a
+// body and −1/2 if they point into one that nothing else encloses; in the latter case the whole part
+// is turned. The faces of a cavity point into the cavity; with the body around it their mean is
+// +1/2, too. Afterwards the inside is where the winding number exceeds 1/2.
 //
-// Rejected: |winding| > 1/2 as the inside. It makes solid the hollow of an open dish, pipe or room
-// whose normals point into it, and leaves the normals of triangles as they are. Open parts are
-// taken at their word.
+// Rejected: |winding number| > 1/2 as the inside. It would fill an open dish, pipe or room with
+// normals that point into it. Open parts are never turned.
 #pragma once
 
 #include "collide/dn_field/surface.hpp"
@@ -22,11 +20,11 @@ class OutwardSurface {
   /// `given` must be valid and outlive this.
   explicit OutwardSurface(const Surface& given);
 
-  /// The triangles of `given` in their order. Vertices of equal position are merged, unless it is
-  /// closed without.
+  /// The triangles of `given` in their order. Vertices with equal positions are merged unless
+  /// `given` is closed.
   [[nodiscard]] const Surface& surface() const { return own_ ? *own_ : given_; }
 
-  /// Whether surface() is (see tess::dn::is_closed).
+  /// Whether surface() is closed (see tess::dn::is_closed).
   [[nodiscard]] bool is_closed() const { return closed_; }
 
  private:

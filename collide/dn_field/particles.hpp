@@ -1,8 +1,7 @@
-// Particles as structure of arrays, in world coordinates. Double precision: at an offset of 1e9 a
-// float knows positions to 64 units, and in a million steps its rounding would feed or eat the
-// energy that the rules keep. What the field sees is the position relative to the grid, which is
-// subtracted in double and only then rounded to float. Particles do not meet one another, so that
-// no result depends on their order or on how they are cut into blocks.
+// Particles as structure of arrays, in world coordinates, in double precision: at an offset of 1e9
+// floats are 64 units apart, and over a million steps their rounding would change the energy. Fields
+// are sampled at the position relative to the grid, computed in double and then rounded to float.
+// Particles do not interact, so no result depends on their order or on their blocks.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"
@@ -14,7 +13,7 @@
 
 namespace tess::dn {
 
-/// What the step loop writes to: n positions and n velocities, one array an axis. Not owned.
+/// A view of n positions and n velocities, one array per axis. Not owned.
 struct ParticleSpan {
   double *x = nullptr, *y = nullptr, *z = nullptr;
   double *vx = nullptr, *vy = nullptr, *vz = nullptr;
@@ -26,7 +25,7 @@ struct ParticleSpan {
   }
 };
 
-/// Starts on a cache line: a vector of them is loaded and stored within one.
+/// Aligned to cache lines, so that a vector is loaded from one line.
 using Values = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
 
 struct Particles {

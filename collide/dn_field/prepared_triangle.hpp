@@ -1,7 +1,6 @@
-// A triangle made ready for many distance queries: edges, inward directions and reciprocal lengths
-// are known beforehand and nothing branches, so that a loop over points becomes vector code. The
-// distance is that to the face where the point stands over it, else to the closest of the three
-// edges.
+// A triangle prepared for many distance queries: edges, inward directions and reciprocal lengths are
+// precomputed and queries do not branch, so that a loop over points is vectorised. The distance is
+// that to the face for a point above it, otherwise that to the nearest of the three edges.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"
@@ -15,11 +14,11 @@ struct PreparedTriangle {
   std::array<Vec3, 3> corner, edge, inward;
   std::array<double, 3> per_edge2{};  ///< 1 / |edge|²; 0 for an edge without length
   Vec3 normal;                        ///< unit; zero for a triangle that counts as its edges
-  double face_limit = 0;              ///< infinite where there is no face to stand over
+  double face_limit = 0;              ///< infinite if there is no face
 };
 
-/// Thinner than 1e-9 of its longest edge a triangle counts as its edges: its normal would be
-/// rounding, and the distance is off by less than that.
+/// A triangle thinner than 1e-9 of its longest edge counts as its edges: its normal would be
+/// rounding, and the error of the distance is below that.
 inline PreparedTriangle prepare(const std::array<Vec3, 3>& corners) {
   constexpr double thinnest = 1e-9;
   PreparedTriangle t;
@@ -60,7 +59,7 @@ inline double distance2(const PreparedTriangle& t, double x, double y, double z)
   return least >= t.face_limit ? height * height : rim;
 }
 
-/// From the closest point of the triangle to `p`; its squared length is distance2() to rounding.
+/// `p` minus the nearest point of the triangle; its squared length is distance2() to rounding.
 inline Vec3 offset_from(const PreparedTriangle& t, Vec3 p) {
   Vec3 best;
   double best2 = HUGE_VAL, least = HUGE_VAL;

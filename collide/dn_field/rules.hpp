@@ -1,8 +1,8 @@
-// What acts on the particles of a scene: each rule is there or not, and the step loop that
-// make_stepper() composes holds those alone that are. All are for mass 1: a stiffness is k/m, a
-// rate c/m, in 1/s² and 1/s. N is the surface's normal, V the velocity relative to the moving
-// surface, d the distance to it in world units. The closest surface acts, no other.
-// (Paper, sections 3.3 to 3.6; the integrators are ours: exact where the motion has a closed form.)
+// The rules that act on the particles of a scene; the step loop of make_stepper() holds only those
+// that are set. All are per mass: a stiffness is k/m in 1/s², a rate c/m in 1/s. N is the surface's
+// normal, V the velocity relative to the moving surface, d the distance to it in world units. Only
+// the nearest surface acts. (Paper, sections 3.3 to 3.6. The integrators are ours: exact where the
+// motion has a closed form.)
 #pragma once
 
 #include "collide/dn_field/look_up.hpp"
@@ -13,12 +13,11 @@
 
 namespace tess::dn {
 
-/// Whether a look-up at the start of the step serves the whole step (then speed × step must stay
-/// below the field's thickness), or particles that go further than is known to be free are traced
-/// along their way.
+/// off: one sample at the start of a step serves the whole step; speed × step must stay below the
+/// field's thickness. on: particles that move further than is known to be free are traced.
 enum class Sweep : std::uint32_t { off, on };
 
-/// Drag of a velocity u: -rate × u, or -rate × |u| u.
+/// Drag at velocity u: linear -rate × u, quadratic -rate × |u| u.
 enum class DragLaw : std::uint32_t { linear, quadratic };
 
 /// A force (stiffness × depth) along N in d < reach, with -damping × N·V. Must be less than
@@ -26,12 +25,12 @@ enum class DragLaw : std::uint32_t { linear, quadratic };
 struct Spring {
   double stiffness = 1;
   double damping = 0;
-  double reach = 0;  ///< the spring is slack here
+  double reach = 0;  ///< distance at which contact begins
 };
 
-/// V − (1 + restitution)(N·V)N for what would come closer than `threshold` in this step.
+/// V − (1 + restitution)(N·V)N for a particle that would come closer than `threshold` in this step.
 struct Impact {
-  double restitution = 1;  ///< 0: slides on; 1: no loss
+  double restitution = 1;  ///< 0: slides; 1: keeps the energy
   double threshold = 0;    ///< the distance at which particles bounce: their radius
   Sweep sweep = Sweep::on;
 };
@@ -90,26 +89,24 @@ struct Rules {
   std::vector<Explosion> explosions;
 };
 
-/// Throws Error(bad_value) for the first value that is not finite or out of its range; the message
-/// names it as a scene file does ("spring.damping"), and the remedy.
+/// Throws Error(bad_value) for the first value that is not finite or out of range. The message names
+/// it as a scene file does ("spring.damping"), with the remedy.
 void validate(const Rules& rules);
 
-/// Whether a rule asks for the surface at all.
+/// Whether some rule needs the surface.
 [[nodiscard]] bool needs_field(const Rules& rules);
 
-/// What the fields of this scene must store: normals only where a rule or the look-up asks for
-/// them.
+/// What the fields of this scene must store: normals only if a rule or the look-up needs them.
 [[nodiscard]] Content needed_content(const Rules& rules);
 
-/// The look-up that steps take: that of the rules, but the tangent for springs instead of nearest,
-/// by which the depth of a voxel is the same all over it, and no force along the way passive: a
-/// particle that is pushed out would be pushed again.
+/// The look-up of the steps: that of the rules, but tangent instead of nearest for springs. With
+/// nearest the depth is constant over a voxel, and a spring would push a particle more than once.
 [[nodiscard]] LookUp look_up_of(const Rules& rules);
 
 /// The distance from the surface at which the first rule acts.
 [[nodiscard]] double reach(const Rules& rules);
 
-/// One line a rule, "used" or "left out", for --explain.
+/// One line per rule, "used" or "left out", for --explain.
 [[nodiscard]] std::vector<std::string> explain(const Rules& rules);
 
 }  // namespace tess::dn

@@ -1,5 +1,4 @@
-// Closed test surfaces with known distances: the oracles of the tests, and the objects of scenes
-// that need no file.
+// Surfaces with known distances: built-in shapes of scenes, and oracles of tests.
 #pragma once
 
 #include "collide/dn_field/surface.hpp"

@@ -1,6 +1,5 @@
-// A point or vector in double precision: the type of everything that is built once (surfaces,
-// frames, distances). What runs a million times a step is float and structure-of-arrays: see
-// particles.hpp.
+// A point or vector in double precision, for surfaces, frames and single particles. Loops over many
+// particles use structure of arrays: see particles.hpp.
 #pragma once
 
 #include <cmath>
@@ -31,7 +30,7 @@ inline bool is_finite(Vec3 a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// The unit vector along `a`, or zero where `a` has no direction.
+/// The unit vector along `a`, or zero for a zero vector.
 inline Vec3 direction(Vec3 a) {
   const double length = norm(a);
   return length > 0 ? (1 / length) * a : Vec3{};
@@ -41,7 +40,7 @@ constexpr double component(Vec3 a, int axis) {
   return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
 
-/// An axis-aligned box, empty until it has been extended.
+/// An axis-aligned box, empty until extended.
 struct Bounds {
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};

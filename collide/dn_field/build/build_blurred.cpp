@@ -15,7 +15,7 @@ constexpr double exact_share = 0.5;     // of the progress
 constexpr int layers_at_once = 16;      // between two calls for progress
 constexpr double inward_step = 1.25;    // cells behind a voxel of the surface: inside, or thin
 constexpr double thin_share = 0.1;      // of the surface's voxels
-constexpr double flipped_share = 0.1;   // of the edges: more, and flips are why nothing is inside
+constexpr double flipped_share = 0.1;   // of the edges: above, flipped triangles are the cause
 constexpr float least_vector = 1e-12F;  // shorter has no direction
 constexpr int smoothing_radius = 2;     // of the potential, before its gradient is taken
 
@@ -50,7 +50,7 @@ bool has_body(const Field& field, std::size_t at, Vec3 normal) {
   return field.distance[field.grid.index(behind[0], behind[1], behind[2])] < 0;
 }
 
-/// What must be refused before anything is made; the surface that is blurred.
+/// Refuses bad input. Returns the surface that is blurred.
 Surface checked(const Surface& surface, const Grid& grid, const BlurredOptions& options) {
   if (options.method == Method::exact)
     fail(ErrorCode::bad_argument, "a blurred field by the exact method; take build_exact");
@@ -74,7 +74,7 @@ Blur blur_of(const Grid& grid, const BlurredOptions& options) {
 BlurredBuilder::BlurredBuilder(const Surface& surface, const Grid& grid,
                                const BlurredOptions& options)
     : BlurredBuilder(checked(surface, grid, options), options, grid) {
-  field_.surface = fingerprint(surface);  // as given, whatever was turned
+  field_.surface = fingerprint(surface);  // as given, before orientation repair
 }
 
 BlurredBuilder::~BlurredBuilder() = default;
@@ -82,7 +82,7 @@ BlurredBuilder::~BlurredBuilder() = default;
 BlurredBuilder::BlurredBuilder(Surface surface, const BlurredOptions& options, const Grid& grid)
     : surface_(std::move(surface)),
       blur_(blur_of(grid, options)),
-      // The potential once more with nothing restored: the steps of the voxels are no slope.
+      // The potential is blurred once more without restoring: the voxels' steps are no slope.
       n_blurs_(options.method == Method::potential ? blur_.rounds + 1 : blur_.rounds),
       exact_(surface_, grid, {options.sides, Content::distance_and_normal, options.thickness, {}}),
       field_(exact_.empty_field()),
@@ -96,7 +96,7 @@ BlurredBuilder::BlurredBuilder(Surface surface, const BlurredOptions& options, c
     for (const SurfaceVoxel& v : voxels_) values_[0][part][v.at] = seed(v, part);
 }
 
-/// What a voxel of the surface begins with, and gets back after every round.
+/// The first value of a voxel of the surface, restored after every round.
 float BlurredBuilder::seed(const SurfaceVoxel& voxel, std::size_t part) const {
   return field_.method == Method::potential
              ? 1.0F
@@ -160,7 +160,7 @@ void BlurredBuilder::set_normals(int first, int last) {
       field_.normal[at] = code_of(parts[0][at], parts[1][at], parts[2][at]);
 }
 
-/// On the surface itself, its ridge, the potential has no gradient: the exact normals stay there.
+/// Voxels of the surface, the ridge of the potential without gradient, keep their exact normals.
 void BlurredBuilder::set_gradients(int first, int last) {
   const Values& potential = values_[static_cast<std::size_t>(n_blurs_ % 2)].front();
   const Grid& grid = field_.grid;

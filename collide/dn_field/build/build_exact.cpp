@@ -9,10 +9,9 @@
 
 namespace tess::dn {
 namespace {
-constexpr double on_surface =
-    1e-3;  // of a cell: nearer, the direction to the closest point is rounding
+constexpr double on_surface = 1e-3;  // of a cell: nearer, the direction to the surface is rounding
 constexpr int block_edge = 4;
-constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are asked for at once
+constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are skipped together
 constexpr double just_beyond = 1 + 1e-9;
 
 /// Refuses bad input. Returns null for a two-sided field.

@@ -9,8 +9,8 @@ namespace {
 constexpr int tile_edge = 16, least_edge = 2;
 constexpr double accuracies[] = {2, 4, 12, HUGE_VAL};
 
-/// Triangles that close `surface`, and the apexes that they need, appended to its vertices. An apex
-/// stands a little off the middle of its rim, so that caps do not lie in planes of voxels.
+/// Triangles that close `surface`; their apexes are appended to its vertices. An apex is a little
+/// off the middle of its rim, so that caps do not lie in planes of voxels.
 std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
                                                 const std::vector<RimEdge>& edges) {
   DisjointSets pieces(surface.vertices.size());
@@ -43,8 +43,7 @@ std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
   return caps;
 }
 
-/// What a sum over the triangles of `surface` costs, in no unit: how many there are, times how far
-/// the average one is felt on its own.
+/// Relative cost of a sum over the triangles of `surface`: their number times their area.
 double cost(const Surface& surface) {
   double area = 0;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -54,7 +53,7 @@ double cost(const Surface& surface) {
   return area * static_cast<double>(surface.triangles.size());
 }
 
-/// How far from the nearest integer.
+/// Distance to the nearest integer.
 double off_integer(double x) {
   return std::abs(x - std::round(x));
 }

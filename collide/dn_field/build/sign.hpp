@@ -1,14 +1,13 @@
-// Which voxels lie inside a surface that may have holes and flipped triangles: those with a winding
-// number above 1/2. Every rim is closed by a cap, a cone of triangles over it; the surface with its
-// caps winds around a voxel an integer number of times, which lines of voxels count, and
+// Which voxels lie inside a surface with holes and flipped triangles: those with a winding number
+// above 1/2. Every rim is closed by a cap, a cone of triangles over it. The winding number of the
+// surface with its caps is an integer, which is counted along lines of voxels, and
 //
-//     winding of the surface = winding with caps − winding of the caps alone.
+//     winding of the surface = winding with caps − winding of the caps.
 //
-// So what has to be summed over triangles is the caps alone, and that only where their share is
-// near a half: elsewhere one estimate decides a tile of voxels. A closed surface has no caps and
-// costs the lines. Where so many triangles are flipped or missing that rims run into each other,
-// cones span the whole body and cost more than the surface: then there are no caps and lines, and
-// the surface itself is summed, by the same estimates. Immutable once made; any thread.
+// Only the caps are summed over triangles, and only where their share is near a half; elsewhere one
+// estimate decides a tile of voxels. A closed surface has no caps. If so many triangles are flipped
+// or missing that the caps would cost more than the surface, the surface itself is summed by the
+// same estimates, without caps and lines. Immutable once made; any thread.
 #pragma once
 
 #include "collide/dn_field/build/winding_lines.hpp"
@@ -25,8 +24,7 @@ class Inside {
   /// `tree` is that of `surface` and must outlive this.
   Inside(const OutwardSurface& surface, const Bvh& tree, const Grid& grid);
 
-  /// inside: (last − first) × n[1] × n[0], x fastest; 1 inside, 0 outside, for layers first to last
-  /// − 1.
+  /// Layers first to last − 1. inside: (last − first) × n[1] × n[0], x fastest; 1 inside, 0 outside.
   void layers(int first, int last, std::span<std::uint8_t> inside) const;
 
  private:
@@ -35,7 +33,7 @@ class Inside {
   };
   void decide(const Tile& tile, int first, std::span<const std::int16_t> winding,
               std::span<std::uint8_t> inside) const;
-  /// What the lines' count is above the winding number of the surface.
+  /// The lines' count minus the winding number of the surface.
   [[nodiscard]] WindingEstimate excess(Vec3 p, double radius, double accuracy) const;
   [[nodiscard]] bool decide_voxel(Vec3 p, int winding) const;
 

@@ -51,7 +51,7 @@ std::vector<SurfaceVoxel> surface_voxels(const Surface& surface, const Grid& gri
           ++hits[found.back().first];
         }
   }
-  // In the order of the grid, triangles of a voxel in their own order: sums do not depend on how.
+  // In the order of the grid and then of the triangles, so that sums are reproducible.
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<SurfaceVoxel> voxels;

@@ -5,10 +5,9 @@
 namespace tess::dn {
 namespace {
 
-/// On which side of the line a -> b, seen along x, the point (y, z) lies: +1 or -1, never 0. Always
-/// evaluated from the lower vertex number, so that two triangles at one edge agree; ties are
-/// decided as if the point were moved by (e, e²), e -> 0, so that triangles around one vertex agree
-/// too.
+/// The side of the line a -> b, seen along x, on which the point (y, z) lies: +1 or -1, never 0. It
+/// is computed from the lower vertex number, so that two triangles at an edge agree. Ties are decided
+/// as if the point were moved by (e, e²), e -> 0, so that triangles around a vertex agree.
 int side(const Surface& surface, std::uint32_t ia, std::uint32_t ib, double y, double z) {
   const int flip = ia < ib ? 1 : -1;
   const Vec3 a = surface.vertices[std::min(ia, ib)], b = surface.vertices[std::max(ia, ib)];
@@ -69,7 +68,7 @@ void WindingLines::cross(std::uint32_t triangle, int k, std::span<std::int16_t> 
 
 void WindingLines::layer(int k, std::span<std::int16_t> winding) const {
   const auto nx = static_cast<std::size_t>(grid_.n[0]), ny = static_cast<std::size_t>(grid_.n[1]);
-  // The last entry of a line: crossings behind its last voxel.
+  // The last entry of a line counts crossings behind its last voxel.
   std::vector<std::int16_t> change(ny * (nx + 1), 0);
   const auto at = static_cast<std::size_t>(k);
   for (std::size_t i = begin_[at]; i < begin_[at + 1]; ++i) cross(triangles_[i], k, change);

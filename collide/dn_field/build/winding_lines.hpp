@@ -1,6 +1,6 @@
-// How often a closed surface winds around each voxel of a grid: along each line of voxels in x the
-// number changes by one where the line passes a triangle. Costs the number of line crossings, not
-// of voxels × triangles. Layers are independent; any thread.
+// The winding number of a closed surface at each voxel of a grid: along a line of voxels in x it
+// changes by one where the line crosses a triangle. The cost is the number of crossings instead of
+// voxels × triangles. Layers are independent; any thread.
 #pragma once
 
 #include "collide/dn_field/grid.hpp"
@@ -14,8 +14,7 @@ namespace tess::dn {
 
 class WindingLines {
  public:
-  /// Stands for a voxel of a line on which rounding lost a crossing, so that it does not end at
-  /// zero.
+  /// Marks the voxels of a line on which rounding lost a crossing: its count does not end at zero.
   static constexpr std::int16_t unknown = INT16_MIN;
 
   /// `surface` must be closed (is_closed).
@@ -30,7 +29,7 @@ class WindingLines {
   Surface surface_;
   Grid grid_;
   std::vector<std::size_t> begin_;        // of each layer in triangles_
-  std::vector<std::uint32_t> triangles_;  // that a layer's lines can pass
+  std::vector<std::uint32_t> triangles_;  // that the lines of a layer can cross
 };
 
 }  // namespace tess::dn

@@ -26,7 +26,7 @@ Vec3 to_vec3(const Normal& n) {
   return {static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
 }
 
-/// The distance of a voxel whose centre is (x, y, z) from the cell's middle.
+/// The distance of a voxel with its centre at (x, y, z) from the cell's middle.
 float distance_to(const Plane& plane, float x, float y, float z, float thickness) {
   const float d = plane.distance + (plane.normal.x * x + plane.normal.y * y + plane.normal.z * z);
   const float above = d > -thickness ? d : -thickness;

@@ -37,9 +37,9 @@ float greatest_difference(const std::array<const float*, 4>& rows, int right, in
 
 }  // namespace
 
-// Voxels touch where they are corners of one cube of 2³: so the least and the greatest of each cube
-// say it, in a third of the time that the 13 pairs around a voxel take. Along an axis of one voxel
-// the cubes are flat.
+// Adjacent voxels are corners of one cube of 2³ voxels, so the least and the greatest value of each
+// cube suffice, in a third of the time of 13 pairs per voxel. Along an axis of one voxel the cubes
+// are flat.
 float greatest_jump(const Grid& grid, std::span<const float> distance) {
   const std::size_t layer = grid.index(0, 0, 1);
   const auto n_layers = static_cast<int>(distance.size() / layer);

@@ -1,5 +1,5 @@
-// Numbers 0 to n − 1 in sets that are joined two at a time (union-find). A set is named by its
-// lowest number, so that the names do not depend on the order of joining.
+// Union-find over the numbers 0 to n − 1. A set is named by its lowest number, so that names do not
+// depend on the order of joining.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tess::dn {
 
 class DisjointSets {
  public:
-  /// Each number alone.
+  /// Each number is a set of its own.
   explicit DisjointSets(std::size_t n) : parent_(n) {
     std::iota(parent_.begin(), parent_.end(), 0U);
   }

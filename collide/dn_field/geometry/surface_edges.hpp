@@ -1,5 +1,5 @@
-// Which triangles of a mesh meet at its edges: what tells holes, flipped triangles and closed parts
-// apart. Costs the number of triangles.
+// The edges of a mesh and how its triangles use them, from which holes, flipped triangles and closed
+// parts are found. Linear in the number of triangles.
 #pragma once
 
 #include "collide/dn_field/surface.hpp"
@@ -8,7 +8,8 @@
 
 namespace tess::dn {
 
-/// An edge and how often triangles run along it, from the lower to the upper vertex and back.
+/// An edge, and the number of triangles that run along it from the lower to the upper vertex and
+/// back.
 struct EdgeUse {
   std::uint32_t low = 0, high = 0;
   int up = 0, down = 0;
@@ -18,7 +19,7 @@ struct EdgeUse {
 /// itself are left out.
 template <class Visit>
 void each_edge(const Surface& surface, const Visit& visit) {
-  // Sorted by the lower vertex by counting, then the few edges of each vertex by the upper one.
+  // A counting sort by the lower vertex, then a sort of each vertex's few edges by the upper one.
   const auto each_side = [&](const auto& see) {
     for (const auto& t : surface.triangles)
       for (std::size_t i = 0; i < 3; ++i)

@@ -1,5 +1,5 @@
-// A sum of angles without an arc tangent for each: an angle is a complex number of that argument,
-// the sum is their product, and whole turns are counted where the product passes the negative real
+// A sum of angles with one arc tangent in all: an angle is the argument of a complex number, the sum
+// that of their product, and whole turns are counted where the product crosses the negative real
 // axis.
 #pragma once
 

@@ -10,8 +10,8 @@ using namespace lanes;
 
 constexpr std::int32_t unknown = -1;
 
-/// sample() of distance and normal for particles p, p + 1, …. Only those whose voxel differs from
-/// the one in `last` fetch from the field; the others have the same values without.
+/// sample() of distance and normal for particles p, p + 1, …. Only those in
+/// another voxel than in `last` fetch from the field; the others keep the values.
 template <LookUp Kind>
 Sample sample_again(const Sampler& field, F3 g, const NearestSurface& last, NearestSurface& nearest,
                     std::size_t p) {

@@ -24,7 +24,7 @@ namespace tess::dn {
 enum class Impacts : std::uint32_t { none, plain, swept };
 enum class Springs : std::uint32_t { none, exact };
 
-/// A particle whose displacement exceeds the free way: see continuous_collision.hpp.
+/// A particle that moves further than the free way: see continuous_collision.hpp.
 struct Untraced {
   std::size_t particle;  ///< in the block
   Vec3 position, start_velocity, end_velocity, way;
@@ -150,7 +150,7 @@ struct RuleStep {
     work = an * change;
   }
 
-  /// Particles whose displacement exceeds the free way.
+  /// Particles that move further than the free way.
   L goes_far(const NearestSurface& nearest) const {
     const D3 path = moves ? fma(all(-c.step), u, way) : way;
     const D free = max(to_double(load<F>(nearest.free + p)), all(c.stride));

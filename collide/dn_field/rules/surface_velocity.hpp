@@ -45,8 +45,8 @@ inline F half_turn(F rate, F alpha, F w2, F axis2) {
 /// Turns the velocity w by alpha dt/|w| toward the tangent of the surface with normal n, at most
 /// onto it; a negative alpha turns it away. Cayley's form of the turn about n × w,
 ///     w' = ((1 - g²(n × w)² + 2 g n·w) w - 2 g w² n) / (1 + g²(n × w)²),
-/// keeps |w| to rounding for any g, so g = tan(φ/2)/|n × w| is computed in floats, whose error in φ
-/// is below that of a field's normal. A w along n to a millionth, or below 1e-100, is not turned.
+/// keeps |w| to rounding for any g, so g = tan(φ/2)/|n × w| is computed in floats: their error in
+/// φ is below that of a field's normal. A w along n to a millionth, or below 1e-100, is not turned.
 inline D3 turned_to_surface(const FlowConstants& c, D3 w, D3 n, L where) {
   const D alpha = dot(w, n), w2 = dot(w, w);
   const D3 axis = cross(n, w);

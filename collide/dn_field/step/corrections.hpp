@@ -2,9 +2,9 @@
 //
 // Springs: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
 // the side and would gain potential energy. The depth is sampled again at the end of the step. A
-// particle with more energy than it had loses speed; one whose depth alone takes more returns.
-// Open surfaces: where they meet, a voxel may store the wrong one. A particle whose displacement
-// crosses a triangle flies straight on instead if that crosses none; otherwise it returns.
+// particle with more energy than it had loses speed; if its depth alone takes more, it returns.
+// Open surfaces: where they meet, a voxel may store the wrong one. A particle that crossed a
+// triangle flies straight on instead if that crosses none; otherwise it returns.
 //
 // A particle that returns is put back to its start, which moved with the surface, with reversed
 // velocity relative to the surface. Private to the step loop.

@@ -8,7 +8,7 @@
 
 namespace tess::dn {
 namespace {
-constexpr int steps_at_once = 64;  // whose object poses are computed in advance
+constexpr int steps_at_once = 64;  // for which object poses are computed in advance
 
 /// The number of steps since time 0, rounded where `time` is a multiple of the step up to rounding:
 /// a run that is cut at `time` then has the same times to the bit.

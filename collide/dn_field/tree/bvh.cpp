@@ -5,7 +5,7 @@
 namespace tess::dn {
 namespace {
 constexpr std::uint32_t leaf_size = 4;
-constexpr double slack = 1 + 1e-9;  // boxes are pruned only where rounding cannot have decided
+constexpr double slack = 1 + 1e-9;  // so that rounding never prunes the nearest box
 
 double gap2(const Bounds& a, const Bounds& b) {
   const double x = std::max({0.0, a.low.x - b.high.x, b.low.x - a.high.x});
@@ -165,11 +165,11 @@ double furthest(const PointBlock& block) {
   return most;
 }
 
-constexpr std::size_t layer_size = 16;  // the points of a block that are offered together
+constexpr std::size_t layer_size = 16;  // points of a block that are tested together
 
 using Layers = std::array<bool, PointBlock::size / layer_size>;
 
-/// Which layers of the block hold a point that is nearer to `box` than to what it has found.
+/// Which layers of the block hold a point that is nearer to `box` than to its best triangle so far.
 Layers nearer_layers(const PointBlock& block, const Bounds& box) {
   Layers layers{};
   for (std::size_t layer = 0; layer < layers.size(); ++layer) {

@@ -4,9 +4,9 @@
 
 namespace tess::dn {
 namespace {
-constexpr double way_slack = 1e-9;  // of the segment: for the rounding of where boxes begin and end
+constexpr double way_slack = 1e-9;  // of the segment, for rounding
 
-/// Whether the segment comes through the box, or by rounding may.
+/// Whether the segment meets the box, up to rounding.
 bool may_meet(const Bounds& box, Vec3 from, Vec3 way) {
   double first = -way_slack, last = 1 + way_slack;
   for (int axis = 0; axis < 3; ++axis) {
@@ -22,9 +22,9 @@ bool may_meet(const Bounds& box, Vec3 from, Vec3 way) {
   return first <= last;
 }
 
-/// Where the segment crosses the triangle (Möller and Trumbore 1997), from either side; negative
-/// where it does not. Triangles are a trifle larger than they are, so that nothing slips through an
-/// edge between two.
+/// The fraction at which the segment crosses the triangle (Möller and Trumbore 1997), from either
+/// side; negative if it does not. Triangles are slightly enlarged, so that no segment passes between
+/// two.
 double crossing_at(Vec3 from, Vec3 way, const std::array<Vec3, 3>& corner) {
   constexpr double none = -1, larger = 1e-9;
   const auto& [a, b, c] = corner;

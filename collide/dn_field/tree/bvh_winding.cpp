@@ -5,13 +5,13 @@
 
 namespace tess::dn {
 namespace {
-constexpr double opening_ratio = 2.0;  // dipole error at most a few per cent of the cluster's share
-constexpr double undecided_half_width = 0.2;  // |w - 1/2| below it: ask again without approximation
-constexpr double truncated = 0.5;  // of the first-order bound: what a dipole misses by its extent
-constexpr double touching = 1e-9;  // of the corners' distances: nearer, the side is rounding
+constexpr double opening_ratio = 2.0;         // the dipole's error is a few per cent
+constexpr double undecided_half_width = 0.2;  // |w - 1/2| below it: exact instead
+constexpr double truncated = 0.5;  // of the first-order bound: error by the cluster's extent
+constexpr double touching = 1e-9;  // of the corners' distances: nearer, rounding decides
 
-/// Half the solid angle of `t` seen from `p`, added to `sum` (van Oosterom and Strackee 1983).
-/// Whether it can be told from which side `p` sees it.
+/// Adds half the solid angle of `t` seen from `p` to `sum` (van Oosterom and Strackee 1983). Returns
+/// false if rounding decides on which side of it `p` lies.
 bool add_half_angle(Turns& sum, Vec3 p, const PreparedTriangle& t) {
   const Vec3 a = t.corner[0] - p, b = t.corner[1] - p, c = t.corner[2] - p;
   const double la = norm(a), lb = norm(b), lc = norm(c), all = la * lb * lc;
@@ -49,10 +49,10 @@ double Bvh::winding_number(Vec3 p, double accuracy) const {
   return (angle + 2 * halves.angle()) / (4 * std::numbers::pi);
 }
 
-// A cluster of area A at distance D, seen from a point that is off by s, changes by at most
-// A s max|grad| = A s 2 / D³ of solid angle. What its extent r adds is far less than that of s = r,
-// for a dipole in the centre of area misses the second order alone: half of it. What many clusters
-// are off by has many signs and adds up as independent errors do; we allow for twice that.
+// The solid angle of a cluster of area A at distance D changes by at most A s 2 / D³ over a distance
+// s. The error by the cluster's extent r is of second order for a dipole at the centre of area; half
+// of the bound for s = r covers it. Errors of many clusters have many signs and add up as independent
+// ones; twice their root sum of squares is allowed for.
 WindingEstimate Bvh::winding_estimate(Vec3 p, double radius, double accuracy) const {
   std::array<std::uint32_t, max_depth> stack;
   std::size_t height = 0;

@@ -9,9 +9,9 @@
 namespace tess::dn {
 namespace {
 constexpr double no_volume = 1e-12;      // of the cube of a part's diagonal: rounding
-constexpr std::size_t max_samples = 16;  // triangles at which a part's winding is asked for
-constexpr double beside = 1e-5;          // of a triangle's size: how far off its sides are asked
-constexpr double accuracy = 4;           // the means are halves: an error of 0.1 does no harm
+constexpr std::size_t max_samples = 16;  // triangles at which a part's winding is sampled
+constexpr double beside = 1e-5;          // of a triangle's size: offset of the samples from it
+constexpr double accuracy = 4;           // the means are ±1/2: an error of 0.1 is harmless
 
 /// A connected part of a surface.
 struct Part {
@@ -21,7 +21,7 @@ struct Part {
   std::vector<std::uint32_t> triangles = {};
 };
 
-/// The parts of `surface`, by their lowest vertex; without those of lower vertices than others.
+/// The connected parts of `surface`, by their lowest vertex.
 std::vector<Part> parts_of(const Surface& surface, bool closed) {
   DisjointSets sets(surface.vertices.size());
   for (const auto& [a, b, c] : surface.triangles) sets.join(a, b), sets.join(a, c);
@@ -50,14 +50,13 @@ std::vector<Part> parts_of(const Surface& surface, bool closed) {
   return parts;
 }
 
-/// Whether the triangles of `part` run the wrong way round as a whole. Flipped triangles among them
-/// only make it closer.
+/// Whether the triangles of `part` are mostly turned inwards.
 bool looks_inverted(const Part& part) {
   const double diagonal = norm(part.box.size());
   return part.volume < -no_volume * diagonal * diagonal * diagonal;
 }
 
-/// How often all of a surface winds around the surface of `part`, as the mean of both sides.
+/// The sum of the winding numbers of `surface` on both sides of samples of `part`.
 double winding_on(const Part& part, const Surface& surface, const Bvh& tree) {
   const std::size_t n = part.triangles.size(), step = (n + max_samples - 1) / max_samples;
   double sum = 0;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t places_asked = 1024;
 constexpr std::size_t most_triangles = 4096;
 constexpr double opposite = -0.87;  // cosine of 30° off
-constexpr double behind = 1e-6;     // of the extent: what is just inside
+constexpr double behind = 1e-6;     // of the extent: offset to the inside
 
 struct Wall {
   double thickness;
@@ -49,7 +49,7 @@ Walls walls_of(const Surface& surface, const Bvh& tree) {
     return wall;
   };
   for (std::size_t i = 0; i < places_asked; ++i) {
-    // The i-th in the i-th of as many equal parts of the area.
+    // Stratified: one place in each of as many equal parts of the area.
     const double part = (static_cast<double>(i) + tess::unit(mix(3 * i))) / places_asked;
     const SurfacePoint place =
         point_on(surface, sums, part, tess::unit(mix(3 * i + 1)), tess::unit(mix(3 * i + 2)));

@@ -111,7 +111,7 @@ TEST_CASE("both of the paper's methods give a sphere's normals, and exact distan
     }
 }
 
-TEST_CASE("a blurred field does not depend on how its layers are split, or by whom", "[dn_field]") {
+TEST_CASE("a blurred field does not depend on how its layers are split", "[dn_field]") {
   const Surface torus = make_torus(1, 0.4, 24);
   const Grid grid = grid_around(bounds(torus), 26, 0.3);
   for (const Method method : {Method::normals, Method::potential}) {

@@ -100,7 +100,7 @@ TEST_CASE("a file that is whole but holds no field that can be is refused", "[dn
   };
   CHECK(told([](Field&) {}).empty());
   CHECK(told([](Field& field) {
-          field.grid.n = {1 << 30, 1 << 30, 16};  // whose product is 0 in 64 bits
+          field.grid.n = {1 << 30, 1 << 30, 16};  // their product is 0 in 64 bits
           field.distance.clear();
         }).find("or of too many") != std::string::npos);
   CHECK(told([](Field& field) { field.grid.n[1] = 0; }).find("without voxels") !=

@@ -1,4 +1,4 @@
-// Objects that move far, and turn, in a step: nobody passes their surfaces.
+// Objects that move far and turn in a step: no particle passes their surfaces.
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "tests/support/catch.hpp"
@@ -34,7 +34,7 @@ double furthest(const Particles& particles, const Object& room) {
   return most;
 }
 
-TEST_CASE("nobody leaves a closed room, however it moves", "[dn_field][rules]") {
+TEST_CASE("no particle leaves a closed room, however the room moves", "[dn_field][rules]") {
   const Field field = room_field(cube_grid(1.2, 61), wall);
   std::vector<Object> rooms(4, Object{&field, {}});
   rooms[1].frame.velocity = {0, 10, 50};

@@ -177,8 +177,7 @@ TEST_CASE("an impact happens at its place and angle within the step", "[dn_field
   }
 }
 
-TEST_CASE("a spring gives nobody energy, by whichever look-up and however stiff",
-          "[dn_field][rules]") {
+TEST_CASE("a spring adds no energy, by any look-up and stiffness", "[dn_field][rules]") {
   // Curved, with a medial axis within reach, and a corner seen from within: normals that change in
   // a step, that blend to nothing, and that know one wall of three.
   const Surface ball = make_sphere(1, 40), ring = make_torus(1, 0.4, 48);

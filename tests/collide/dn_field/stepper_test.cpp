@@ -81,8 +81,7 @@ TEST_CASE("trajectories are bit-identical however particles and steps are cut",
   }
 }
 
-TEST_CASE("who is far from a surface, and for how long, leaves no trace in a trajectory",
-          "[dn_field][rules]") {
+TEST_CASE("a trajectory does not depend on how long a particle was culled", "[dn_field][rules]") {
   // Particles are left alone for many steps where the surface is far. Alone in its block each takes
   // the look-ups of all its steps, or of none; by the nearest look-up distances jump between
   // voxels.
@@ -145,7 +144,7 @@ TEST_CASE("a scene in a moving, turned, scaled frame is the scene at rest seen f
   int off = 0;
   for (std::size_t p = 0; p < 200; ++p)
     off += norm(moving.frame.to_object(carried.position(p)) - still.position(p)) > 1e-3 ? 1 : 0;
-  CHECK(off <= 6);  // who passes a voxel's border differently bounces with the neighbour's normal
+  CHECK(off <= 6);  // rounding at a voxel's border may select the neighbour's normal
 }
 
 TEST_CASE("particles outside every field fly straight", "[dn_field][rules]") {
