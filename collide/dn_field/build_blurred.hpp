@@ -48,8 +48,8 @@ class BlurredBuilder {
 
   /// Layers in round `round`, from 0. All distances must be built before the first round, and all
   /// layers of a round before the next. Layer 0 of round 0 throws Error(bad_argument) for an object
-  /// of near-zero thickness by the normals method: more than a tenth of the surface's voxels have no
-  /// inside behind them.
+  /// of near-zero thickness by the normals method: more than a tenth of the surface's voxels have
+  /// no inside behind them.
   void build_round(int round, int first, int last);
 
   /// The field; call it once, after the last round.

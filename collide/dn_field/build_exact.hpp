@@ -82,8 +82,8 @@ class ExactBuilder {
   std::unique_ptr<const Inside> inside_;  // null for two-sided fields
 };
 
-/// Builds the field of `surface` on `grid`. Normals point along the gradient of the distance; within
-/// a thousandth of a cell from the surface they are those of the nearest triangle. Throws as
+/// Builds the field of `surface` on `grid`. Normals point along the gradient of the distance;
+/// within a thousandth of a cell from the surface they are those of the nearest triangle. Throws as
 /// ExactBuilder does.
 [[nodiscard]] Field build_exact(const Surface& surface, const Grid& grid,
                                 const ExactOptions& options = {});

@@ -1,6 +1,6 @@
 // A bounding volume hierarchy over the triangles of a surface: nearest points, winding numbers, and
-// the triangles that a segment crosses. A block of 4³ points traverses the tree once for its nearest
-// triangles. Immutable once made; queries may run on any thread.
+// the triangles that a segment crosses. A block of 4³ points traverses the tree once for its
+// nearest triangles. Immutable once made; queries may run on any thread.
 #pragma once
 
 #include "collide/dn_field/prepared_triangle.hpp"
@@ -42,7 +42,8 @@ class Bvh {
  public:
   explicit Bvh(const Surface& surface);
 
-  /// The nearest point of the surface within sqrt(`limit2`); distance2 is HUGE_VAL if there is none.
+  /// The nearest point of the surface within sqrt(`limit2`); distance2 is HUGE_VAL if there is
+  /// none.
   [[nodiscard]] ClosestPoint closest(Vec3 p, double limit2 = HUGE_VAL) const;
 
   /// The nearest triangle of each point of a block; of several the first in the tree.

@@ -1,6 +1,6 @@
 // A distance/normal field: for each voxel of a grid the signed distance to the surface (negative
-// inside) and the unit normal (Lawlor and Kalé, section 3). Built once, then read-only and shared by
-// all PEs of a process. A scene that needs only distances stores no normals.
+// inside) and the unit normal (paper, section 3). Built once, then read-only and shared
+// by all PEs of a process. A scene that needs only distances stores no normals.
 #pragma once
 
 #include "collide/dn_field/grid.hpp"
@@ -14,7 +14,8 @@ namespace tess::dn {
 
 enum class Method : std::uint32_t { exact, normals, potential };
 
-/// one: distances are negative inside. two: an open surface (a shell, a plate), met from either side.
+/// one: distances are negative inside. two: an open surface (a shell, a plate), met from either
+/// side.
 enum class Sides : std::uint32_t { one, two };
 
 /// What a field stores.

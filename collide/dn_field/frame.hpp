@@ -36,8 +36,8 @@ struct Frame {
     return is_growing() ? stiff + (scale_rate / scale) * (p - position) : stiff;
   }
 
-  /// Moves, turns and scales the frame over `step` by its velocities. Exact for constant velocities;
-  /// axes stay orthonormal. The scale must stay above 0.
+  /// Moves, turns and scales the frame over `step` by its velocities. Exact for constant
+  /// velocities; axes stay orthonormal. The scale must stay above 0.
   void advance(double step);
 };
 

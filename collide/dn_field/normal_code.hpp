@@ -1,6 +1,6 @@
 // A unit normal in 32 bits: the octahedral map (Meyer et al. 2010), 16 bits per axis, error at most
-// 5e-5 rad. Decoded normals have unit length to rounding. The code no_normal (on the medial axis, out
-// of reach) decodes to zero, which every rule ignores.
+// 5e-5 rad. Decoded normals have unit length to rounding. The code no_normal (on the medial axis,
+// out of reach) decodes to zero, which every rule ignores.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"

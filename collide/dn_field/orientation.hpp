@@ -1,9 +1,9 @@
 // Orientation repair: turns closed parts of a surface that are inside out, before a one-sided field
 // is built from it. A part is closed if an even number of triangles meets at each of its edges. The
 // winding number at its surface, as the mean of both sides, is +1/2 if its normals point out of a
-// body and −1/2 if they point into one that nothing else encloses; in the latter case the whole part
-// is turned. The faces of a cavity point into the cavity; with the body around it their mean is
-// +1/2, too. Afterwards the inside is where the winding number exceeds 1/2.
+// body and −1/2 if they point into one that nothing else encloses; in the latter case the whole
+// part is turned. The faces of a cavity point into the cavity; with the body around it their mean
+// is +1/2, too. Afterwards the inside is where the winding number exceeds 1/2.
 //
 // Rejected: |winding number| > 1/2 as the inside. It would fill an open dish, pipe or room with
 // normals that point into it. Open parts are never turned.

@@ -1,7 +1,7 @@
 // Particles as structure of arrays, in world coordinates, in double precision: at an offset of 1e9
-// floats are 64 units apart, and over a million steps their rounding would change the energy. Fields
-// are sampled at the position relative to the grid, computed in double and then rounded to float.
-// Particles do not interact, so no result depends on their order or on their blocks.
+// floats are 64 units apart, and over a million steps their rounding would change the energy.
+// Fields are sampled at the position relative to the grid, computed in double and then rounded to
+// float. Particles do not interact, so no result depends on their order or on their blocks.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"

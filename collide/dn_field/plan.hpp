@@ -35,8 +35,8 @@ struct FieldPlan {
   Blur blur;
 };
 
-/// Resolution from the smallest feature, thickness from speed × step (two cells if swept), blur from
-/// both. Throws Error(bad_argument) if more than `max_voxels` would be needed.
+/// Resolution from the smallest feature, thickness from speed × step (two cells if swept), blur
+/// from both. Throws Error(bad_argument) if more than `max_voxels` would be needed.
 [[nodiscard]] FieldPlan choose_plan(const Bounds& box, const Demand& demand, Coverage coverage,
                                     std::size_t max_voxels);
 

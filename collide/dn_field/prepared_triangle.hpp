@@ -1,6 +1,6 @@
-// A triangle prepared for many distance queries: edges, inward directions and reciprocal lengths are
-// precomputed and queries do not branch, so that a loop over points is vectorised. The distance is
-// that to the face for a point above it, otherwise that to the nearest of the three edges.
+// A triangle prepared for many distance queries: edges, inward directions and reciprocal lengths
+// are precomputed and queries do not branch, so that a loop over points is vectorised. The distance
+// is that to the face for a point above it, otherwise that to the nearest of the three edges.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"

@@ -89,8 +89,8 @@ struct Rules {
   std::vector<Explosion> explosions;
 };
 
-/// Throws Error(bad_value) for the first value that is not finite or out of range. The message names
-/// it as a scene file does ("spring.damping"), with the remedy.
+/// Throws Error(bad_value) for the first value that is not finite or out of range. The message
+/// names it as a scene file does ("spring.damping"), with the remedy.
 void validate(const Rules& rules);
 
 /// Whether some rule needs the surface.

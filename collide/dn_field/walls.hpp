@@ -9,8 +9,8 @@
 namespace tess::dn {
 
 /// The thickness along the inward normal at 1024 places spread evenly over the area: 0 where there
-/// is no inside behind the place (an open surface), HUGE_VAL where it does not end. Lists are sorted,
-/// the least first.
+/// is no inside behind the place (an open surface), HUGE_VAL where it does not end. Lists are
+/// sorted, the least first.
 struct Walls {
   std::vector<double> opposite;  ///< up to a face with the opposite normal, to 30°
   std::vector<double> slanted;   ///< up to another face: at an edge, or of a rod of three sides

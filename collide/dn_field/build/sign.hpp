@@ -24,7 +24,8 @@ class Inside {
   /// `tree` is that of `surface` and must outlive this.
   Inside(const OutwardSurface& surface, const Bvh& tree, const Grid& grid);
 
-  /// Layers first to last − 1. inside: (last − first) × n[1] × n[0], x fastest; 1 inside, 0 outside.
+  /// Layers first to last − 1. inside: (last − first) × n[1] × n[0], x fastest; 1 inside, 0
+  /// outside.
   void layers(int first, int last, std::span<std::uint8_t> inside) const;
 
  private:

@@ -6,8 +6,8 @@ namespace tess::dn {
 namespace {
 
 /// The side of the line a -> b, seen along x, on which the point (y, z) lies: +1 or -1, never 0. It
-/// is computed from the lower vertex number, so that two triangles at an edge agree. Ties are decided
-/// as if the point were moved by (e, e²), e -> 0, so that triangles around a vertex agree.
+/// is computed from the lower vertex number, so that two triangles at an edge agree. Ties are
+/// decided as if the point were moved by (e, e²), e -> 0, so that triangles around a vertex agree.
 int side(const Surface& surface, std::uint32_t ia, std::uint32_t ib, double y, double z) {
   const int flip = ia < ib ? 1 : -1;
   const Vec3 a = surface.vertices[std::min(ia, ib)], b = surface.vertices[std::max(ia, ib)];

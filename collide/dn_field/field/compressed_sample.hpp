@@ -1,5 +1,5 @@
-// Samples of a compressed field, a vector of them at a time, in grid coordinates: the counterpart of
-// sample.hpp for flat fields. The compressor decodes its entries here, too, so that the error it
+// Samples of a compressed field, a vector of them at a time, in grid coordinates: the counterpart
+// of sample.hpp for flat fields. The compressor decodes its entries here, too, so that the error it
 // measures is the one that samples have.
 #pragma once
 

@@ -26,8 +26,8 @@ static_assert(sizeof(Head) == 32);
 constexpr std::size_t checked_head_bytes = 24;
 
 /// A checksum of 64 bits over pieces of bytes, each padded to whole words. Each step is a bijection
-/// of the state for a given word and of the word for a given state: damage within one word is always
-/// detected, other damage is missed once in 2^64.
+/// of the state for a given word and of the word for a given state: damage within one word is
+/// always detected, other damage is missed once in 2^64.
 class Checksum {
  public:
   void add(std::span<const std::byte> bytes) {

@@ -1,5 +1,5 @@
-// The edges of a mesh and how its triangles use them, from which holes, flipped triangles and closed
-// parts are found. Linear in the number of triangles.
+// The edges of a mesh and how its triangles use them, from which holes, flipped triangles and
+// closed parts are found. Linear in the number of triangles.
 #pragma once
 
 #include "collide/dn_field/surface.hpp"

@@ -1,6 +1,6 @@
-// A sum of angles with one arc tangent in all: an angle is the argument of a complex number, the sum
-// that of their product, and whole turns are counted where the product crosses the negative real
-// axis.
+// A sum of angles with one arc tangent in all: an angle is the argument of a complex number, the
+// sum that of their product, and whole turns are counted where the product crosses the negative
+// real axis.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The corrections after the rules of the surface, for the particles that one voxel's plane misleads.
+// The corrections after the rules of the surface, for the particles that one voxel's plane
+// misleads.
 //
 // Springs: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
 // the side and would gain potential energy. The depth is sampled again at the end of the step. A

@@ -1,6 +1,6 @@
-// The pose of a moving object at fractions f of a step, and straight paths in the world as seen from
-// the object: in the place, orientation and size that it has when the step begins, where its field
-// is sampled. Exact at every f; a spin bends the path between. Private to the step loop.
+// The pose of a moving object at fractions f of a step, and straight paths in the world as seen
+// from the object: in the place, orientation and size that it has when the step begins, where its
+// field is sampled. Exact at every f; a spin bends the path between. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/rules/nearest_surface.hpp"
@@ -38,7 +38,8 @@ class Pose {
   [[nodiscard]] D3 place(D3 seen) const {
     return gone() + (size_ * now(seen - object_.frame.position) + object_.frame.position);
   }
-  /// Velocity of the surface at `x`; its own point is `beside` from there, which matters for growth.
+  /// Velocity of the surface at `x`; its own point is `beside` from there, which matters for
+  /// growth.
   [[nodiscard]] D3 surface_velocity(D3 x, D3 beside) const {
     const Frame& frame = object_.frame;
     const D3 q = arm(x);

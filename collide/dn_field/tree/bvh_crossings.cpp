@@ -23,8 +23,8 @@ bool may_meet(const Bounds& box, Vec3 from, Vec3 way) {
 }
 
 /// The fraction at which the segment crosses the triangle (Möller and Trumbore 1997), from either
-/// side; negative if it does not. Triangles are slightly enlarged, so that no segment passes between
-/// two.
+/// side; negative if it does not. Triangles are slightly enlarged, so that no segment passes
+/// between two.
 double crossing_at(Vec3 from, Vec3 way, const std::array<Vec3, 3>& corner) {
   constexpr double none = -1, larger = 1e-9;
   const auto& [a, b, c] = corner;

@@ -10,8 +10,8 @@ constexpr double undecided_half_width = 0.2;  // |w - 1/2| below it: exact inste
 constexpr double truncated = 0.5;  // of the first-order bound: error by the cluster's extent
 constexpr double touching = 1e-9;  // of the corners' distances: nearer, rounding decides
 
-/// Adds half the solid angle of `t` seen from `p` to `sum` (van Oosterom and Strackee 1983). Returns
-/// false if rounding decides on which side of it `p` lies.
+/// Adds half the solid angle of `t` seen from `p` to `sum` (van Oosterom and Strackee 1983).
+/// Returns false if rounding decides on which side of it `p` lies.
 bool add_half_angle(Turns& sum, Vec3 p, const PreparedTriangle& t) {
   const Vec3 a = t.corner[0] - p, b = t.corner[1] - p, c = t.corner[2] - p;
   const double la = norm(a), lb = norm(b), lc = norm(c), all = la * lb * lc;
@@ -49,10 +49,10 @@ double Bvh::winding_number(Vec3 p, double accuracy) const {
   return (angle + 2 * halves.angle()) / (4 * std::numbers::pi);
 }
 
-// The solid angle of a cluster of area A at distance D changes by at most A s 2 / D³ over a distance
-// s. The error by the cluster's extent r is of second order for a dipole at the centre of area; half
-// of the bound for s = r covers it. Errors of many clusters have many signs and add up as independent
-// ones; twice their root sum of squares is allowed for.
+// The solid angle of a cluster of area A at distance D changes by at most A s 2 / D³ over a
+// distance s. The error by the cluster's extent r is of second order for a dipole at the centre of
+// area; half of the bound for s = r covers it. Errors of many clusters have many signs and add up
+// as independent ones; twice their root sum of squares is allowed for.
 WindingEstimate Bvh::winding_estimate(Vec3 p, double radius, double accuracy) const {
   std::array<std::uint32_t, max_depth> stack;
   std::size_t height = 0;
