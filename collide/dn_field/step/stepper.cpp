@@ -102,7 +102,7 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            "; compress all of a scene or none");
     if (compressed != nullptr && rules.look_up == LookUp::trilinear)
       fail(ErrorCode::bad_argument, "object ", i,
-           " has a compressed field, which the trilinear look-up cannot ask; take nearest or "
+           " has a compressed field, which has no trilinear look-up; take nearest or "
            "tangent");
     if (object.field == nullptr || object.field->grid.size() == 0 ||
         (compressed == nullptr && object.field->distance.size() != object.field->grid.size()) ||
