@@ -2,7 +2,7 @@
 
 #include "apps/lb_lab/output/draw.hpp"
 #include "apps/lb_lab/output/report.hpp"
-#include "runtime/runtime.hpp"
+#include "apps/lb_lab/run/experiment.hpp"
 
 #include <fmt/format.h>
 
@@ -103,14 +103,6 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
     }
     if (!s.plot.empty()) drawings.write(s.plot);
   }
-}
-
-const Row& best_of(const Sweep& sweep, const std::string& workload) {
-  const Row* best = nullptr;
-  for (const Row& row : sweep.rows)
-    if (row.workload == workload && (best == nullptr || row.seconds_total < best->seconds_total))
-      best = &row;
-  return *best;
 }
 
 }  // namespace lb_lab

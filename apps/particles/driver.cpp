@@ -19,7 +19,7 @@ namespace {
 
 /// Lives on process 0; other processes hold it, too, but do not use it.
 struct Problem {
-  const DriverOptions& options;
+  const Options& options;
   Scene scene;
   Report report;
 };
@@ -61,7 +61,7 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
 tess::Task run(Problem& problem, apps::Progress& progress) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
   RunResult result;
-  const DriverOptions& options = problem.options;
+  const Options& options = problem.options;
   RunOptions run_options = options.run;
   run_options.progress = &progress;
   co_await simulate(stage, result, run_options);
@@ -89,7 +89,7 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
 
 }  // namespace
 
-int drive(tess::Setup& setup, const DriverOptions& options) {
+int drive(tess::Setup& setup, const Options& options) {
   if (!options.resolutions.empty() && !options.study)
     tess::fail(
         tess::ErrorCode::bad_argument, "--resolutions ",

@@ -18,7 +18,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
     tess::print(particles::scene_help());
     return 0;
   }
-  particles::DriverOptions options;
+  particles::Options options;
   apps::CommandLine line("Particles against objects of any shape, by distance/normal fields.",
                          "particles");
   line.option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "apps/lb_lab/run/experiment.hpp"
-#include "apps/lb_lab/sweep.hpp"
+#include "apps/lb_lab/run/sweep_rows.hpp"
 #include "apps/plot/chart.hpp"
 #include "apps/plot/timeline.hpp"
 

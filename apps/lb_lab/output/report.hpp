@@ -1,7 +1,8 @@
 // What the laboratory tells: a table as it goes, JSON at the end, what it will use before.
 #pragma once
 
-#include "apps/lb_lab/sweep.hpp"
+#include "apps/lb_lab/run/experiment.hpp"
+#include "apps/lb_lab/run/sweep_rows.hpp"
 
 #include <string>
 

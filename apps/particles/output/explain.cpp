@@ -26,7 +26,7 @@ std::string who_asks(const Scene& scene, bool rules) {
 }
 
 /// Which fields are built, what they hold, and for whom.
-std::string explanation_of_fields(const Scene& scene, const DriverOptions& options) {
+std::string explanation_of_fields(const Scene& scene, const Options& options) {
   std::string out;
   const auto line = [&out](const char* name, const std::string& used_by) {
     out += used_by.empty() ? fmt::format("  {}: left out\n", name)
@@ -62,7 +62,7 @@ std::string explanation_of_fields(const Scene& scene, const DriverOptions& optio
 
 }  // namespace
 
-std::string explanation(const Scene& scene, const DriverOptions& options) {
+std::string explanation(const Scene& scene, const Options& options) {
   std::string out = "this scene, rule by rule\n";
   for (const std::string& rule : tess::dn::explain(scene.rules)) out += "  " + rule + "\n";
   out += explanation_of_fields(scene, options);

@@ -1,7 +1,7 @@
 // What a run of a scene uses and builds, what for, and what it leaves out.
 #pragma once
 
-#include "apps/particles/driver.hpp"
+#include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 
 #include <string>
@@ -9,6 +9,6 @@
 namespace particles {
 
 /// For --explain.
-[[nodiscard]] std::string explanation(const Scene& scene, const DriverOptions& options);
+[[nodiscard]] std::string explanation(const Scene& scene, const Options& options);
 
 }  // namespace particles

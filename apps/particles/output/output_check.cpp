@@ -25,7 +25,7 @@ void require_begun(const std::string& folder, const fs::path& in, std::string_vi
     if (at->path().filename().string().starts_with(begin)) require_in_folder(folder, at->path());
 }
 
-void prepare_folder(const Scene& scene, const DriverOptions& options) {
+void prepare_folder(const Scene& scene, const Options& options) {
   const std::string& folder = options.out;
   const fs::path in(folder);
   plot::make_folder("--out " + folder, in);
@@ -44,7 +44,7 @@ void prepare_folder(const Scene& scene, const DriverOptions& options) {
 
 }  // namespace
 
-void prepare_outputs(const Scene& scene, const DriverOptions& options) {
+void prepare_outputs(const Scene& scene, const Options& options) {
   if (!options.out.empty()) prepare_folder(scene, options);
   plot::require_writable("--json", options.json);
 }

@@ -1,7 +1,7 @@
 // What a run of a scene has to show: a table for people, JSON for programs.
 #pragma once
 
-#include "apps/particles/driver.hpp"
+#include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/simulate.hpp"
 #include "apps/particles/study/study.hpp"

@@ -2,7 +2,6 @@
 #include "apps/particles/scene/object_reader.hpp"
 #include "apps/particles/scene/rules_reader.hpp"
 #include "apps/particles/scene/scene.hpp"
-#include "apps/particles/simulation/memory.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cmath>
@@ -272,7 +271,6 @@ Scene read(const JsonFile& file, const std::string& name) {
   if (keys.has("outputs")) scene.outputs = read_outputs(keys["outputs"], scene.objects);
   if (scene.compression) compress_fields(scene);
   check_scene(scene);
-  check_field_memory(scene);
   return scene;
 }
 

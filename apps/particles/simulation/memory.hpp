@@ -1,17 +1,13 @@
-// What a scene needs at least, beside what there is: a run that no memory holds is refused before
-// it begins, not where it ends.
+// The least memory that a scene needs. A run that cannot fit is refused before it begins.
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"
 
 namespace particles {
 
-/// Of the fields, flat, while they are built; each process builds all of them. Throws
-/// Error(environment).
-void check_field_memory(const Scene& scene);
-
-/// Of fields, of the particles, which `n_processes` share, and of what process 0 gathers: rows of
-/// statistics and trajectories. Throws Error(environment).
+/// Adds up the fields, flat, of which each process builds all; the particles, which `n_processes`
+/// share; and the rows and trajectories that process 0 gathers. Throws Error(environment) that names
+/// the first key at which the sum is more than this process may have.
 void check_memory(const Scene& scene, int n_processes);
 
 }  // namespace particles

@@ -4,14 +4,12 @@
 #pragma once
 
 #include "apps/particles/audit/measured.hpp"
+#include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/station.hpp"
-#include "apps/progress.hpp"
-#include "runtime/balance/rounds/options.hpp"
 #include "runtime/balance/rounds/round.hpp"
 #include "runtime/runtime.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace particles {
@@ -45,14 +43,6 @@ struct RunResult {
   double block = 0;
   std::int32_t exchange = 0;
   std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
-};
-
-/// How a run is carried out; no result depends on it.
-struct RunOptions {
-  /// Blocks migrate: by rounds after each exchange of particles, where that is worth it, or beside
-  /// the work (see runtime/balance.hpp). Absent: they stay, and no load is measured.
-  std::optional<tess::BalanceOptions> balance{};
-  apps::Progress* progress = nullptr;  ///< is told what the run is at, if there is one
 };
 
 /// Whether a run of this scene looks at each step for particles that tunnel.

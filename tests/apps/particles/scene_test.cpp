@@ -335,23 +335,9 @@ TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
   fs::remove_all(folder);
 }
 
-TEST_CASE("fields that no memory can hold are refused", "[particles][scene]") {
-  const std::string large = R"({"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 1024})";
-  std::string objects = large;
-  for (int i = 0; i < 999; ++i) objects += "," + large;  // 8.6 TB
-  const auto scene = [&](const std::string& rules) {
-    return R"({"dt": 1, "steps": 0, "objects": [)" + objects +
-           R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}])" + rules + "}";
-  };
-  CHECK(refusal(scene("")) == "accepted");  // nobody asks for them
-  const std::string told =
-      refusal(scene(R"(, "rules": {"surface_drag": {"rate": 1, "threshold": 0.1}})"));
-  CHECK(told.find("].resolution: 1024 voxels along an axis make the fields ") != std::string::npos);
-  CHECK(told.find("scene.json: objects[") == 0);
-}
-
-TEST_CASE("particles and results that no memory can hold are refused", "[particles][scene]") {
-  const auto needs = [](Scene scene, int n_processes) -> std::string {
+TEST_CASE("fields, particles and results that no memory can hold are refused",
+          "[particles][scene]") {
+  const auto refused = [](const Scene& scene, int n_processes) -> std::string {
     try {
       check_memory(scene, n_processes);
     } catch (const tess::Error& error) {
@@ -360,18 +346,26 @@ TEST_CASE("particles and results that no memory can hold are refused", "[particl
     return "fits";
   };
   Scene scene = parse_scene(scene_with("\"steps\": 10", "\"steps\": 1000000000"), "scene.json");
-  CHECK(needs(scene, 1) == "fits");
+  CHECK(refused(scene, 1) == "fits");
   const auto n = static_cast<std::uint64_t>(tess::usable_memory() / 50);  // a particle takes more
   scene.emitters[0].count = n;
-  CHECK(needs(scene, 1).find("scene.json: emitters: " + std::to_string(n) +
-                             " particles make the run ") == 0);
-  CHECK(needs(scene, 4) == "fits");
+  CHECK(refused(scene, 1).find("scene.json: emitters: " + std::to_string(n) +
+                               " particles make the run ") == 0);
+  CHECK(refused(scene, 4) == "fits");
   scene.emitters[0].count = 1000;
-  Scene rows = scene, paths = scene;
+  Scene rows = scene, paths = scene, fields = scene;
   rows.outputs.statistics = 1;
-  CHECK(needs(rows, 4).find("scene.json: outputs.statistics: 1 (a row every so many steps)") == 0);
+  CHECK(refused(rows, 4).find("scene.json: outputs.statistics: 1 (a row every so many steps)") ==
+        0);
   paths.outputs.trajectories = 2;
-  CHECK(needs(paths, 4).find("scene.json: outputs.trajectories: 2 (positions every") == 0);
+  CHECK(refused(paths, 4).find("scene.json: outputs.trajectories: 2 (positions every") == 0);
+  fields.objects[0].grid.n = {1024, 1024, 1024};
+  fields.objects.assign(1000, fields.objects[0]);  // 8.6 TB
+  const std::string told = refused(fields, 1);
+  CHECK(told.find("scene.json: objects[") == 0);
+  CHECK(told.find("].resolution: 1024 voxels along an axis make the fields ") != std::string::npos);
+  fields.rules = {};  // no rule needs a field
+  CHECK(refused(fields, 1) == "fits");
 }
 
 TEST_CASE("a scene is what its file says", "[particles][scene]") {

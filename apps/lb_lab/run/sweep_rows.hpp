@@ -1,0 +1,39 @@
+// The rows of a sweep: what is measured of each run, for the reports.
+#pragma once
+
+#include "apps/lb_lab/run/settings.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lb_lab {
+
+/// One run as a row of the table and of the JSON.
+struct Row {
+  std::string workload, strategy;
+  std::int32_t per_pe = 0, n_pes = 0, n_iterations = 0;
+  double seconds_total = 0, ideal_seconds = 0;
+  double imbalance_before = 1;  ///< max/average of the iterations before the first round
+  double imbalance_after = 1;   ///< of the later ones
+  std::size_t n_moves = 0;
+  std::uint64_t moved_bytes = 0;
+  double balance_seconds = 0;
+  double gain = 0;  ///< share of the time of `none` that is saved
+  std::uint64_t answer = 0;
+  std::vector<double> imbalance_of_iteration;
+};
+
+struct Sweep {
+  Settings settings;
+  std::function<void(const Row&)> tell;  ///< called with each row as it comes; may be empty
+  std::string machine;
+  std::vector<Row> rows;
+  std::string wrong;  ///< in which run the answer was not the serial one; empty: all is well
+};
+
+/// The fastest row of a workload.
+[[nodiscard]] const Row& best_of(const Sweep& sweep, const std::string& workload);
+
+}  // namespace lb_lab
