@@ -1,9 +1,9 @@
 #include "apps/lb_lab/workload/kernel.hpp"
 
+#include "apps/cpu_clock.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
-#include <ctime>
 
 namespace lb_lab {
 namespace {
@@ -26,19 +26,13 @@ std::uint64_t walk(std::uint64_t word, std::uint64_t n_steps) {
   return word;
 }
 
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 double calibrate() {
   constexpr std::uint64_t n_steps = 1'000'000;
   double best = 1e9;
   for (std::uint64_t run = 0; run < 10; ++run) {
-    const double began = thread_seconds();
+    const double began = apps::thread_cpu_seconds();
     TESS_CHECK(walk(run, n_steps) == run, "a walk and back ended elsewhere");
-    best = std::min(best, thread_seconds() - began);
+    best = std::min(best, apps::thread_cpu_seconds() - began);
   }
   return static_cast<double>(n_steps) / best;
 }

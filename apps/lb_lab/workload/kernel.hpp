@@ -15,7 +15,4 @@ namespace lb_lab {
 /// the core does when nobody shares it.
 [[nodiscard]] double calibrate();
 
-/// CPU time of this thread in seconds.
-[[nodiscard]] double thread_seconds();
-
 }  // namespace lb_lab

@@ -72,10 +72,15 @@ std::string explanation(const Scene& scene, const Options& options) {
   };
   out += fmt::format("  objects: {}, of which {} move, {} of these grow\n", scene.objects.size(),
                      count(&tess::dn::Frame::is_moving), count(&tess::dn::Frame::is_growing));
-  const std::size_t n_species = species_of(scene).size();
+  const std::size_t n_species = masses_of(scene).size();
   out += fmt::format("  step loops: {}, one for each mass\n", n_species);
-  out += is_audited(scene) ? "  looking at each step for particles that tunnel: used\n"
-                           : "  looking at each step for particles that tunnel: left out\n";
+  const std::uint64_t audited = n_audited(scene);
+  out += audited == 0
+             ? "  audit of each step for particles that tunnel: left out (outputs.audit)\n"
+             : fmt::format(
+                   "  audit of each step for particles that tunnel: used, of {} of {} particles; "
+                   "their steps take 4 to 10 times as long\n",
+                   audited, scene.n_particles());
   const auto& balance = options.run.balance;
   out += balance ? fmt::format("  balancer: used, {}, {}\n", balance->strategy,
                                when_texts[static_cast<std::size_t>(balance->when)])

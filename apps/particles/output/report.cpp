@@ -143,11 +143,12 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
                      "step", "time", "particles", "blocks", "kinetic", "energy", "fastest",
                      "nearest", "inside", "tunnelled", "nonfinite");
   for (const Row& row : result.rows) out += row_text(row, scene.dt);
-  line("time",
-       fmt::format("{:.4f} s, {:.3f} ns a particle and step, {:.3f} ns of it in the rules{}",
-                   result.seconds, per_particle_step(scene, result.seconds),
-                   per_particle_step(scene, result.loop_seconds),
-                   result.audited ? "; each step looked at" : ""));
+  line("time", fmt::format("{:.4f} s, {:.3f} ns per particle and step; CPU in the rules {:.3f} ns",
+                           result.seconds, per_particle_step(scene, result.seconds),
+                           per_particle_step(scene, result.loop_seconds)));
+  if (result.audited > 0)
+    line("audit", fmt::format("of {} particles in each step: CPU {:.3f} ns per particle and step",
+                              result.audited, per_particle_step(scene, result.audit_seconds)));
   if (const auto& balance = report.run.balance) {
     const Balanced of(result.rounds);
     line("balance",
@@ -182,7 +183,11 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   if (report.bytes_compressed) out["field"]["bytes_compressed"] = *report.bytes_compressed;
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
-  out["tunnelled_found_by"] = result.audited ? "each step" : "last step";
+  out["tunnelled_found_by"] = result.audited == 0                     ? "last step"
+                              : result.audited == scene.n_particles() ? "each step"
+                                                                      : "sampled";
+  out["audited"] = result.audited;
+  out["ns_in_audit"] = per_particle_step(scene, result.audit_seconds);
   out["energy_start"] = begin.energy();
   out["energy_end"] = end.energy();
   out["block"] = result.block;

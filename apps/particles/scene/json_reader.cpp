@@ -132,6 +132,10 @@ std::uint64_t Node::seed() const {
   return at(value_).get<std::uint64_t>();
 }
 
+bool Node::is_yes_or_no() const {
+  return at(value_).is_boolean();
+}
+
 bool Node::yes_or_no() const {
   if (!at(value_).is_boolean()) refuse("is neither true nor false");
   return at(value_).get<bool>();

@@ -70,11 +70,15 @@ double least_wall(const Scene& scene, const SceneObject& object) {
   return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(scene, object);
 }
 
+std::uint64_t n_audited(const Scene& scene) {
+  return needs_field(scene.rules) ? std::min(scene.outputs.audited, scene.n_particles()) : 0;
+}
+
 std::string field_file_name(std::size_t object) {
   return tess::text("field_", object, ".dnf");
 }
 
-std::vector<double> species_of(const Scene& scene) {
+std::vector<double> masses_of(const Scene& scene) {
   std::vector<double> masses;
   for (const Emitter& emitter : scene.emitters)
     if (std::find(masses.begin(), masses.end(), emitter.mass) == masses.end())

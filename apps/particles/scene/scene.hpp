@@ -68,7 +68,7 @@ struct Outputs {
   };
   std::optional<Slice> slice;  ///< a picture of the field
   bool fields = false;         ///< files of the fields, for runs to come
-  std::optional<bool> audit;   ///< look at each step for particles that tunnel; absent: chosen
+  std::uint64_t audited = 0;   ///< how many particles are checked for tunnelling in each step
 };
 
 struct Scene {
@@ -90,7 +90,10 @@ struct Scene {
 [[nodiscard]] tess::dn::Rules for_mass(tess::dn::Rules rules, double mass);
 
 /// The masses of all emitters, each once, in the order of their first emitter.
-[[nodiscard]] std::vector<double> species_of(const Scene& scene);
+[[nodiscard]] std::vector<double> masses_of(const Scene& scene);
+
+/// How many particles are checked for tunnelling in each step; none where no rule needs a field.
+[[nodiscard]] std::uint64_t n_audited(const Scene& scene);
 
 /// Reads and checks a scene. Throws tess::Error: one line that names the key, the value, and what
 /// is allowed.

@@ -63,8 +63,8 @@ rules       each may be left out
   explosions  [{"centre": …, "strength": f, "radius": r, "start": 0, "duration": t}, …]
 outputs
   statistics  a row of the table every so many steps (default 0: the first and the last alone)
-  audit       true: each step is looked at for particles that tunnel; false: the last step alone
-              (default: each step, up to 2e7 particles times steps)
+  audit       how many particles, evenly spread over the ids, are checked for tunnelling in each step, which makes
+              their steps 4 to 10 times as long; true: all (default: false; all are checked after the last step)
   trajectories   positions every so many steps, with --out: VTP files, a .pvd series, a picture (objects as
               they stand at first, moving ones in outline as they stand at last)
   traced      how many particles the trajectories hold (default 200)

@@ -76,6 +76,11 @@ Emitter read_emitter(const Node& node, std::size_t n_objects) {
   return emitter;
 }
 
+std::uint64_t read_audit(const Node& node) {
+  if (node.is_yes_or_no()) return node.yes_or_no() ? most_particles : 0;
+  return static_cast<std::uint64_t>(node.whole(0, most_particles));
+}
+
 Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) {
   constexpr int most = static_cast<int>(most_steps);
   const Keys keys =
@@ -89,7 +94,7 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
   keys.read("fields", outputs.fields);
   if (outputs.fields && objects.empty())
     keys["fields"].refuse("needs an object, and the scene has none");
-  if (keys.has("audit")) outputs.audit = keys["audit"].yes_or_no();
+  if (keys.has("audit")) outputs.audited = read_audit(keys["audit"]);
   if (keys.has("slice")) {
     if (objects.empty()) keys["slice"].refuse("needs an object, and the scene has none");
     const Keys slice = keys["slice"].keys({"object", "at"});
@@ -203,7 +208,7 @@ void check_walls(const Scene& scene, const std::string& file) {
 
 /// What no key by itself can say: the rules fit the masses, the fields cover the rules.
 void check_rules(const Scene& scene, const std::string& file) {
-  for (const double mass : species_of(scene)) {
+  for (const double mass : masses_of(scene)) {
     try {
       validate(for_mass(scene.rules, mass));
     } catch (const tess::Error& error) {

@@ -1,21 +1,14 @@
 #include "apps/particles/simulation/block.hpp"
 
+#include "apps/cpu_clock.hpp"
 #include "apps/particles/simulation/observe.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <map>
 #include <utility>
 
 namespace particles {
 namespace {
-
-/// CPU time of this thread: what others do on its core does not count.
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Whether an explosion acts in these steps, or in one before or after: rounding of times aside.
 bool explodes_within(const Scene& scene, const Stretch& stretch) {
@@ -50,7 +43,9 @@ void Block::take_in(std::int32_t step) {
   for (Arrivals& arrivals : arrivals_) {
     if (arrivals.step != step) continue;
     flocks_.resize(std::max(flocks_.size(), arrivals.flocks.size()));
-    for (std::size_t s = 0; s < arrivals.flocks.size(); ++s) flocks_[s].append(arrivals.flocks[s]);
+    for (std::size_t s = 0; s < arrivals.flocks.size(); ++s)
+      for (std::size_t p = 0; p < arrivals.flocks[s].size(); ++p)
+        flocks_[s].add(arrivals.flocks[s], p);
   }
   std::erase_if(arrivals_, [step](const Arrivals& arrivals) { return arrivals.step == step; });
 }
@@ -76,36 +71,38 @@ void Block::work(const Stretch& stretch) {
 void Block::advance(std::size_t species, const Stretch& stretch, Station& station) {
   Flock& flock = flocks_[species];
   if (stretch.n_steps == 0 || flock.size() == 0) return;
-  if (stretch.audit != 0) {
-    advance_audited(flock, species, stretch, station);
+  const tess::dn::Stepper& stepper = station.stepper(species);
+  if (station.stage().species[species].audited) {
+    advance_audited(flock, stepper, stretch, station);
     return;
   }
-  // An explosion begins at a time: asked step by step, it is the same time for every exchange.
+  // Near an explosion each step is a call of its own: its times are then the same for every exchange.
   const Scene& scene = station.stage().scene;
   const std::int32_t at_once = explodes_within(scene, stretch) ? 1 : stretch.n_steps;
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);
-  const double begin = cpu_seconds();
+  const double begin = apps::thread_cpu_seconds();
   for (std::int32_t done = 0; done < stretch.n_steps; done += at_once) {
-    const double time = (stretch.first + done) * scene.dt;
-    station.stepper(species).run(flock.motion.span(), objects, time, at_once);
+    stepper.run(flock.motion.span(), objects, (stretch.first + done) * scene.dt, at_once);
     tess::dn::advance(objects, scene.dt, at_once);
   }
-  station.spent(cpu_seconds() - begin);
+  station.spent().rules += apps::thread_cpu_seconds() - begin;
 }
 
-void Block::advance_audited(Flock& flock, std::size_t species, const Stretch& stretch,
+void Block::advance_audited(Flock& flock, const tess::dn::Stepper& stepper, const Stretch& stretch,
                             Station& station) {
   const Stage& stage = station.stage();
   const double dt = stage.scene.dt;
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);
   for (std::int32_t step = stretch.first; step < stretch.first + stretch.n_steps; ++step) {
+    const double begin = apps::thread_cpu_seconds();
     const tess::dn::Particles before = flock.motion;
-    const double begin = cpu_seconds();
     const std::vector<tess::dn::Waypoint> waypoints =
-        station.stepper(species).run_once(flock.motion.span(), objects, step * dt);
-    station.spent(cpu_seconds() - begin);
+        stepper.run_once(flock.motion.span(), objects, step * dt);
+    const double moved = apps::thread_cpu_seconds();
     note_tunnelled(stage, objects, before, waypoints, flock);
     tess::dn::advance(objects, dt, 1);
+    station.spent().rules += moved - begin;
+    station.spent().audit += apps::thread_cpu_seconds() - moved;
   }
 }
 
@@ -113,11 +110,13 @@ void Block::look(const Stretch& stretch, Station& station) {
   const Stage& stage = station.stage();
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);
   tess::dn::advance(objects, stage.scene.dt, stretch.n_steps);
-  ++station.measured().blocks;
+  const bool measures = (stretch.ask & Stretch::measure) != 0;
+  if (measures) ++station.measured().blocks;
   for (std::size_t s = 0; s < flocks_.size(); ++s) {
-    if ((stretch.ask & Stretch::judge) != 0) note_inside(stage, objects, flocks_[s]);
-    if ((stretch.ask & Stretch::measure) != 0)
-      measure(stage, objects, flocks_[s], s, station.measured());
+    const Species& species = stage.species[s];
+    if ((stretch.ask & Stretch::judge) != 0 && !species.audited)
+      note_inside(stage, objects, flocks_[s]);
+    if (measures) measure(stage, objects, flocks_[s], species.mass, station.measured());
     if ((stretch.ask & Stretch::trace) != 0) trace(stage, flocks_[s], station.samples());
   }
 }

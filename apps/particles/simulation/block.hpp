@@ -46,7 +46,8 @@ class Block : public tess::Chare<Block, tess::Index3> {
   void take_in(std::int32_t step);
   void work(const Stretch& stretch);
   void advance(std::size_t species, const Stretch& stretch, Station& station);
-  void advance_audited(Flock& flock, std::size_t species, const Stretch& stretch, Station& station);
+  static void advance_audited(Flock& flock, const tess::dn::Stepper& stepper,
+                              const Stretch& stretch, Station& station);
   void look(const Stretch& stretch, Station& station);
   void send_leavers(std::int32_t step, Station& station);
 

@@ -25,9 +25,13 @@ struct Flock {
   void add(const Flock& other, std::size_t p) {
     add(other.ids[p], other.motion.position(p), other.motion.velocity(p), other.marks[p]);
   }
-  void append(const Flock& other);
   /// Takes out particle p; the last one takes its place.
-  void remove(std::size_t p);
+  void remove(std::size_t p) {
+    const auto take = [p](auto&... columns) {
+      ((columns[p] = columns.back(), columns.pop_back()), ...);
+    };
+    take(motion.x, motion.y, motion.z, motion.vx, motion.vy, motion.vz, ids, marks);
+  }
 };
 
 }  // namespace particles

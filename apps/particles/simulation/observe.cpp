@@ -32,8 +32,7 @@ double least_distance(const std::vector<Object>& objects, Vec3 p) {
 }  // namespace
 
 void measure(const Stage& stage, const std::vector<Object>& objects, const Flock& flock,
-             std::size_t species, Measured& into) {
-  const double mass = stage.masses[species];
+             double mass, Measured& into) {
   const auto& gravity = stage.scene.rules.gravity;
   const Vec3 down = gravity ? gravity->acceleration : Vec3{};
   for (std::size_t p = 0; p < flock.size(); ++p) {
@@ -54,15 +53,10 @@ void measure(const Stage& stage, const std::vector<Object>& objects, const Flock
   }
 }
 
-bool is_traced(std::uint64_t id, std::uint64_t n, std::uint64_t traced) {
-  if (traced >= n) return true;
-  return id * traced % n < traced;  // below 1e18: there are at most 1e9 particles
-}
-
 void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into) {
   const std::uint64_t n = stage.source.size(), traced = stage.scene.outputs.traced;
   for (std::size_t p = 0; p < flock.size(); ++p)
-    if (is_traced(flock.ids[p], n, traced))
+    if (is_sampled(flock.ids[p], n, traced))
       into.push_back({flock.ids[p], flock.motion.position(p), flock.motion.velocity(p)});
 }
 

@@ -1,5 +1,5 @@
-// What is looked at in a flock of particles: sums and counts, paths of traced particles, and who
-// went through a surface. No message in it.
+// What a run observes in a flock: sums and counts, positions of traced particles, and particles that
+// went through a surface. No message is sent here.
 #pragma once
 
 #include "apps/particles/audit/measured.hpp"
@@ -10,15 +10,12 @@
 
 namespace particles {
 
-/// Adds what the particles of a species show, the objects standing as given.
+/// Adds the measures of particles of one mass, the objects standing as given.
 void measure(const Stage& stage, const std::vector<tess::dn::Object>& objects, const Flock& flock,
-             std::size_t species, Measured& into);
+             double mass, Measured& into);
 
 /// Appends the traced particles of the flock.
 void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into);
-
-/// Whether the trajectories hold particle `id` of `n`: `traced` of them, evenly spread.
-[[nodiscard]] bool is_traced(std::uint64_t id, std::uint64_t n, std::uint64_t traced);
 
 /// Marks particles whose last step, from `before` over `waypoints` to where they are, went through
 /// a surface of the objects, which are as when it began.
@@ -26,8 +23,8 @@ void note_tunnelled(const Stage& stage, const std::vector<tess::dn::Object>& at_
                     const tess::dn::Particles& before,
                     std::span<const tess::dn::Waypoint> waypoints, Flock& flock);
 
-/// Marks particles that began outside of an object and now are deep below its surface.
-/// Fewer than note_tunnelled() finds, who looks at every step, but at no cost while steps run.
+/// Marks particles that began outside of an object and now are deep below its surface. It misses
+/// those that have left the object again, but costs nothing while steps run.
 void note_inside(const Stage& stage, const std::vector<tess::dn::Object>& objects, Flock& flock);
 
 }  // namespace particles

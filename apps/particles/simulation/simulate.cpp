@@ -24,23 +24,16 @@ std::uint32_t asked(const Scene& scene, std::int32_t step) {
   if (at_end || (outputs.statistics > 0 && step % outputs.statistics == 0)) ask |= Stretch::measure;
   if (outputs.trajectories > 0 && (at_end || step % outputs.trajectories == 0))
     ask |= Stretch::trace;
-  if (step == scene.steps && !is_audited(scene)) ask |= Stretch::judge;
+  if (step == scene.steps && n_audited(scene) < scene.n_particles()) ask |= Stretch::judge;
   return ask;
 }
 
 }  // namespace
 
-bool is_audited(const Scene& scene) {
-  constexpr double affordable = 2e7;
-  if (!needs_field(scene.rules)) return false;
-  return scene.outputs.audit.value_or(static_cast<double>(scene.n_particles()) * scene.steps <=
-                                      affordable);
-}
-
 bool keeps_triangles(const Scene& scene, const SceneObject& object) {
   const bool sheet = object.sides == tess::dn::Sides::two,
              thin = object.walls.least < 2 * least_wall(scene, object);
-  return (sheet && scene.rules.impact) || ((sheet || thin) && is_audited(scene));
+  return (sheet && scene.rules.impact) || ((sheet || thin) && n_audited(scene) > 0);
 }
 
 double block_edge(const Scene& scene) {
@@ -93,7 +86,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   co_await tess::epoch(finish_fields);
   result.block = block_edge(scene);
   result.exchange = exchange_interval(scene);
-  result.audited = is_audited(scene);
+  result.audited = stage->n_audited;
   const auto prepare = [&] { stations.broadcast<&Station::prepare>(result.block); };
   co_await tess::epoch(prepare);
   now_at("placing particles");
@@ -112,7 +105,6 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
       options.balance && options.balance->when != tess::BalanceWhen::periodic;
 
   Stretch stretch;
-  stretch.audit = result.audited ? 1 : 0;
   const auto move = [&] { blocks.broadcast<&Block::move>(stretch); };
   std::int32_t step = 0;
   now_at("steps");
@@ -150,9 +142,10 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     step = to;
   }
   if (options.balance) result.rounds = balancer.history();
-  tess::Future<double> loop;
-  stations.broadcast<&Station::give_seconds>(loop.callback());
-  result.loop_seconds = co_await loop;
+  tess::Future<std::vector<double>> spent;
+  stations.broadcast<&Station::give_spent>(spent.callback());
+  const std::vector<double> of = co_await spent;
+  result.loop_seconds = of[0], result.audit_seconds = of[1];
   tess::Future<std::vector<double>> build_seconds;
   stations.broadcast<&Station::give_build_seconds>(build_seconds.callback());
   const std::vector<double> built = co_await build_seconds;

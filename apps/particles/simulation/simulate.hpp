@@ -36,17 +36,15 @@ struct RunResult {
   std::vector<Row> rows;  ///< the first before the first step, the last after the last
   std::vector<Snapshot> trajectories;
   std::vector<FieldCost> fields;
-  double seconds = 0;       ///< of all steps, exchanges included, looking excluded
-  double loop_seconds = 0;  ///< CPU in the step loops, summed over PEs
+  double seconds = 0;        ///< of all steps with exchanges and audit, without measuring
+  double loop_seconds = 0;   ///< CPU in the step loops, summed over PEs
+  double audit_seconds = 0;  ///< CPU in the audit, summed over PEs
   double emit_seconds = 0;
-  bool audited = false;
+  std::uint64_t audited = 0;  ///< particles
   double block = 0;
   std::int32_t exchange = 0;
   std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
 };
-
-/// Whether a run of this scene looks at each step for particles that tunnel.
-[[nodiscard]] bool is_audited(const Scene& scene);
 
 /// Whether a run keeps the triangles of an object beside its field: for impacts on sheets, and for
 /// the audit of sheets and thin walls.

@@ -15,24 +15,44 @@
 
 namespace particles {
 
+/// Whether the `wanted` of ids 0 … n − 1 that are spread evenly over them include `id`.
+[[nodiscard]] inline bool is_sampled(std::uint64_t id, std::uint64_t n, std::uint64_t wanted) {
+  return wanted >= n || id * wanted % n < wanted;  // below 1e18: there are at most 1e9 particles
+}
+
+/// Particles that one step loop moves together: they have one mass, and either all or none of them
+/// are audited in each step.
+struct Species {
+  double mass = 1;
+  bool audited = false;
+};
+
 struct Stage {
   explicit Stage(Scene of)
       : scene(std::move(of)),
         source(scene),
-        masses(species_of(scene)),
+        n_audited(particles::n_audited(scene)),
         fields(builds_fields(scene) ? scene.objects.size() : 0),
-        triangles(scene.objects.size()) {}
+        triangles(scene.objects.size()) {
+    for (const double mass : masses_of(scene))
+      species.insert(species.end(), {{mass, false}, {mass, true}});
+  }
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
   const Scene scene;
   const Source source;
-  const std::vector<double> masses;  ///< a species is an index into this
-  std::vector<FieldInTheMaking>
-      fields;  ///< of the objects; empty where nobody asks, see builds_fields()
-  std::vector<std::optional<tess::dn::Bvh>>
-      triangles;  ///< of objects whose impacts or audit ask them
+  const std::uint64_t n_audited;  ///< particles that are audited in each step
+  std::vector<Species> species;
+  std::vector<FieldInTheMaking> fields;  ///< of the objects; empty unless builds_fields()
+  std::vector<std::optional<tess::dn::Bvh>> triangles;  ///< of objects that keep them
 
+  /// The position in `species` of particle `id`.
+  [[nodiscard]] std::size_t species_of(std::uint64_t id, double mass) const {
+    std::size_t s = is_sampled(id, source.size(), n_audited) ? 1 : 0;
+    while (species[s].mass != mass) s += 2;
+    return s;
+  }
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
   /// As they stand at the start, once their fields are built.
   [[nodiscard]] std::vector<tess::dn::Object> objects() const {

@@ -68,7 +68,7 @@ void Station::finish_fields() {
 void Station::prepare(double block_edge) {
   space_ = Space::around(stage_->source.bounds(), block_edge);
   if (stage_->collides()) objects_ = stage_->objects();
-  for (const double mass : stage_->masses) {
+  for (const double mass : masses_of(stage_->scene)) {
     const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
     try {
       validate(rules, objects_);
@@ -95,11 +95,10 @@ void Station::emit(tess::ArrayProxy<Block> blocks) {
     const tess::Index3 to = space_.block_of(start.position);
     Arrivals& arrivals = leaving[to];
     arrivals.stations = group();
-    arrivals.flocks.resize(stage.masses.size());
-    const auto species = static_cast<std::size_t>(
-        std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
-    arrivals.flocks[species].add(id, start.position, start.velocity, Mark{});
-    if (arrivals.flocks[species].size() < most_a_message) continue;
+    arrivals.flocks.resize(stage.species.size());
+    Flock& flock = arrivals.flocks[stage.species_of(id, start.mass)];
+    flock.add(id, start.position, start.velocity, Mark{});
+    if (flock.size() < most_a_message) continue;
     send(to, arrivals);
     leaving.erase(to);
   }
@@ -121,8 +120,8 @@ void Station::give_samples(tess::Callback<std::vector<Sample>> target) {
   contribute(tess::concatenate, std::exchange(samples_, {}), std::move(target));
 }
 
-void Station::give_seconds(tess::Callback<double> target) {
-  contribute(tess::in_order(tess::sum), spent_, std::move(target));
+void Station::give_spent(tess::Callback<std::vector<double>> target) {
+  contribute(tess::in_order(tess::sum), std::vector{spent_.rules, spent_.audit}, std::move(target));
 }
 
 void Station::give_build_seconds(tess::Callback<std::vector<double>> target) {

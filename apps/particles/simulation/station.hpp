@@ -18,8 +18,7 @@ struct Stretch {
   enum Ask : std::uint32_t { nothing = 0, measure = 1, trace = 2, judge = 4 };
   std::int32_t first = 0;       ///< steps done before
   std::int32_t n_steps = 0;     ///< may be 0: to look without moving
-  std::uint32_t ask = nothing;  ///< at the end; judge: who ended inside an object
-  std::uint32_t audit = 0;      ///< 1: each step is looked at for particles that tunnel
+  std::uint32_t ask = nothing;  ///< at the end; judge: which particles ended inside an object
 };
 
 /// A traced particle at one time.
@@ -43,19 +42,23 @@ class Station : public tess::Group<Station> {
   [[nodiscard]] const Stage& stage() const { return *stage_; }
   [[nodiscard]] const Space& space() const { return space_; }
   [[nodiscard]] const tess::dn::Stepper& stepper(std::size_t species) const {
-    return steppers_[species];
+    return steppers_[species / 2];
   }
   /// The objects as they stand after so many steps; forward only.
   [[nodiscard]] const std::vector<tess::dn::Object>& objects(std::int32_t step);
   [[nodiscard]] Measured& measured() { return measured_; }
   [[nodiscard]] std::vector<Sample>& samples() { return samples_; }
-  void spent(double seconds) { spent_ += seconds; }
+  /// CPU seconds of the blocks on this PE.
+  struct Spent {
+    double rules = 0, audit = 0;
+  };
+  [[nodiscard]] Spent& spent() { return spent_; }
 
   // Reductions; each empties what it gives.
   void give_measured(tess::Callback<Measured> target);
   void give_samples(tess::Callback<std::vector<Sample>> target);
-  /// Seconds of CPU in the step loop on this PE.
-  void give_seconds(tess::Callback<double> target);
+  /// CPU seconds of the rules and of the audit, summed over PEs.
+  void give_spent(tess::Callback<std::vector<double>> target);
   /// Seconds of building each field, as its process measured them.
   void give_build_seconds(tess::Callback<std::vector<double>> target);
 
@@ -66,12 +69,12 @@ class Station : public tess::Group<Station> {
 
   std::shared_ptr<Stage> stage_;
   Space space_;
-  std::vector<tess::dn::Stepper> steppers_;
+  std::vector<tess::dn::Stepper> steppers_;  // one per mass
   std::vector<tess::dn::Object> objects_;
   std::int32_t at_step_ = 0;  // where objects_ stand
   Measured measured_;
   std::vector<Sample> samples_;
-  double spent_ = 0;
+  Spent spent_;
 };
 
 }  // namespace particles

@@ -50,7 +50,7 @@ TEST_CASE("swept impact lets nothing through at any speed, and bounces it back",
     CHECK(ran.last().tunnelled == 0);
     CHECK(ran.last().inside == 0);
     CHECK(relative(ran) < 1e-6);
-    CHECK(ran.result.audited);
+    CHECK(ran.result.audited == 200);
   }
 }
 
@@ -95,7 +95,18 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   const Ran each_step = run_scene(falling_on_box(weak, R"({"audit": true})"), "--pes=2");
   CHECK(each_step.last().tunnelled == 200);
   CHECK(each_step.last().inside == 0);
-  // Whoever looks at the last step alone misses those that have left again.
+  // A sample finds its part of them.
+  const Ran sampled = run_scene(falling_on_box(weak, R"({"audit": 50})"), "--pes=2");
+  CHECK(sampled.result.audited == 50);
+  CHECK(sampled.last().tunnelled == 50);
+  CHECK(sampled.last().hash == each_step.last().hash);
+  CHECK(sampled.result.audit_seconds > 0);
+  CHECK(sampled.result.audit_seconds < each_step.result.audit_seconds);
+  // By default only the last step is judged, which misses those that have left again.
+  const Ran usual = run_scene(falling_on_box(weak, "{}"), "--pes=2");
+  CHECK(usual.result.audited == 0);
+  CHECK(usual.result.audit_seconds == 0);
+  CHECK(usual.last().tunnelled == 0);
   Scene scene = falling_on_box(weak, R"({"audit": false})");
   CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
   scene.steps = 30;  // in the midst of the box

@@ -35,21 +35,20 @@ inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& h
 inline Measured run_serially(const Stage& stage) {
   const Scene& scene = stage.scene;
   std::vector<tess::dn::Object> objects = stage.objects();
-  std::vector<Flock> flocks(stage.masses.size());
+  std::vector<Flock> flocks(stage.species.size());
   for (std::uint64_t id = 0; id < stage.source.size(); ++id) {
     const Start start = stage.source.particle(id);
-    const auto species = static_cast<std::size_t>(
-        std::find(stage.masses.begin(), stage.masses.end(), start.mass) - stage.masses.begin());
-    flocks[species].add(id, start.position, start.velocity, Mark{});
+    flocks[stage.species_of(id, start.mass)].add(id, start.position, start.velocity, Mark{});
   }
   for (std::int32_t step = 0; step < scene.steps; ++step) {
     for (std::size_t s = 0; s < flocks.size(); ++s)
-      make_stepper(for_mass(scene.rules, stage.masses[s]), scene.dt)
+      make_stepper(for_mass(scene.rules, stage.species[s].mass), scene.dt)
           .run(flocks[s].motion.span(), objects, step * scene.dt, 1);
     tess::dn::advance(objects, scene.dt, 1);
   }
   Measured measured;
-  for (std::size_t s = 0; s < flocks.size(); ++s) measure(stage, objects, flocks[s], s, measured);
+  for (std::size_t s = 0; s < flocks.size(); ++s)
+    measure(stage, objects, flocks[s], stage.species[s].mass, measured);
   return measured;
 }
 

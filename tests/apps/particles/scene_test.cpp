@@ -379,7 +379,7 @@ TEST_CASE("a scene is what its file says", "[particles][scene]") {
   CHECK(scene.objects[0].thickness == 0.5);
   CHECK(scene.objects[1].grid.n[0] == 20);
   CHECK(scene.n_particles() == 5);
-  CHECK(species_of(scene) == std::vector<double>{2});
+  CHECK(masses_of(scene) == std::vector<double>{2});
   REQUIRE(scene.rules.impact);
   CHECK(scene.rules.impact->restitution == 0.7);
   REQUIRE(scene.rules.gravity);
