@@ -132,7 +132,7 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     const double needed = least_wall(scene, object), share = thin_share(scene, object);
-    if (!scene.rules.impact || object.walls.least >= needed) continue;
+    if (!stops_particles(scene) || object.walls.least >= needed) continue;
     line("thin",
          fmt::format("{} % of objects[{}] is thinner than {:.3g}: particles may pass there",
                      share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1", i, needed));

@@ -55,8 +55,12 @@ bool builds_fields(const Scene& scene) {
   return needs_field(scene.rules) || scene.outputs.slice || scene.outputs.fields;
 }
 
+bool stops_particles(const Scene& scene) {
+  return scene.rules.impact || scene.rules.spring;
+}
+
 double thin_share(const Scene& scene, const SceneObject& object) {
-  if (!scene.rules.impact || object.sides == tess::dn::Sides::two) return 0;
+  if (!stops_particles(scene) || object.sides == tess::dn::Sides::two) return 0;
   return object.walls.share_thinner_or_slanted(least_wall(scene, object));
 }
 

@@ -106,8 +106,11 @@ struct Scene {
 /// those that read; to be done again by who changes a scene. Throws tess::Error.
 void check_scene(const Scene& scene);
 
+/// Whether a rule keeps particles off surfaces: impact or spring.
+[[nodiscard]] bool stops_particles(const Scene& scene);
+
 /// The share of an object's surface where particles may pass its field: walls and edges thinner
-/// than least_wall(), and open sheets. 0 for fields of two sides, and without impact.
+/// than least_wall(), and open sheets. 0 for fields of two sides, and where no rule stops particles.
 [[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
 
 /// Whether anything asks for the fields: rules, a picture, or files of them.

@@ -242,7 +242,7 @@ TEST_CASE("a chosen field covers the step, or two cells where impacts are swept 
   CHECK(refusal(scene("1e6", "false")).find("objects[0].choose") != std::string::npos);
 }
 
-TEST_CASE("bodies too thin for their field are refused where particles bounce off them",
+TEST_CASE("bodies too thin for their field are refused where impacts or springs act",
           "[particles][scene]") {
   const auto told = [](const std::string& shape, const std::string& more,
                        const std::string& rules) {
@@ -261,7 +261,13 @@ TEST_CASE("bodies too thin for their field are refused where particles bounce of
   CHECK(told(thin, "", bounce).find("take sides two, or a resolution of 123 or more") !=
         std::string::npos);
   CHECK(told(thin, R"(, "sides": "two")", bounce) == "accepted");
-  CHECK(told(thin, "", R"("spring": {"stiffness": 1, "reach": 0.1})") == "accepted");
+  // A spring that yields by more than the box's thickness lets particles through.
+  const std::string spring = R"("spring": {"stiffness": 30, "reach": 0.1})";
+  CHECK(told(thin, "", spring).find("take sides two, or a resolution of 123 or more") !=
+        std::string::npos);
+  CHECK(told(plate, "", spring).find("is an open sheet") != std::string::npos);
+  CHECK(told(thin, R"(, "sides": "two")", spring) == "accepted");
+  CHECK(told(thin, "", R"("surface_drag": {"rate": 1, "threshold": 0.1})") == "accepted");
   CHECK(told(thin, "", R"("impact": {"restitution": 1, "threshold": 0.08})") == "accepted");
   // The threshold, a length of the world, is less of an object that has grown.
   CHECK(told(thin, R"(, "motion": {"scale": 1000})",
@@ -269,6 +275,7 @@ TEST_CASE("bodies too thin for their field are refused where particles bounce of
             .find("needs; particles would pass it") != std::string::npos);
   const std::string wall = R"({"box": {"half": [1, 1, 0.1]}})";
   CHECK(told(wall, "", bounce) == "accepted");
+  CHECK(told(wall, "", spring) == "accepted");
   CHECK(told(wall, "", bounce + R"(, "look_up": "nearest")").find("a resolution of ") !=
         std::string::npos);
 }
