@@ -8,7 +8,6 @@
 namespace particles {
 namespace {
 
-constexpr std::array method_names{"exact", "normals", "potential"};
 // In the order of BalanceWhen.
 constexpr std::array when_names{"at_sync", "periodic", "automatic"};
 
@@ -91,22 +90,8 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
   out["stored"] = row.stored;
   out["look_up"] = row.look_up;
   out["rule"] = row.rule;
-  const auto measured = [&out](const char* key, double value) {
-    if (value >= 0) out[key] = value;
-  };
-  measured("step", row.step);
-  measured("build_seconds", row.build_seconds);
-  if (row.bytes != 0) out["bytes"] = row.bytes;
-  measured("distance_error", row.distance_error);
-  measured("distance_error_max", row.distance_error_max);
-  measured("normal_error_degrees", row.normal_error);
-  measured("penetration", row.penetration);
-  measured("place_error", row.place_error);
-  measured("angle_error_degrees", row.angle_error);
-  if (row.lost >= 0) out["lost"] = row.lost;
-  if (row.bounces >= 0) out["bounces"] = row.bounces;
-  measured("ns", row.ns);
-  measured("of_tree", row.relative);
+  for (const StudyColumn& column : study_columns())
+    if (row.*column.value >= 0) out[column.name] = row.*column.value;
   return out;
 }
 

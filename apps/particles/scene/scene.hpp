@@ -14,9 +14,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace particles {
+
+/// The words of scene files, in the order of tess::dn::Method and tess::dn::LookUp.
+inline constexpr std::array<std::string_view, 3> method_names{"exact", "normals", "potential"},
+    look_up_names{"nearest", "tangent", "trilinear"};
 
 /// An object with the field around it.
 struct SceneObject {

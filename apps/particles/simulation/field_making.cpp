@@ -102,13 +102,12 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-BuiltField build_alone(const SceneObject& object, Content content) {
+Field build_alone(const SceneObject& object, Content content) {
   FieldInTheMaking making;
   making.begin(object, content, 1);
   for (int stage = 0; stage < making.n_stages(); ++stage) making.fill(stage, 0);
   making.finish();
-  const double seconds = making.seconds();
-  return {std::move(making).take(), seconds};
+  return std::move(making).take();
 }
 
 ErrorBound bound_of(const Compression& compression, const Field& field) {

@@ -68,12 +68,8 @@ class FieldInTheMaking {
   double seconds_ = 0;
 };
 
-/// A field that was built by one thread, and what it took.
-struct BuiltField {
-  tess::dn::Field field;
-  double seconds = 0;
-};
-[[nodiscard]] BuiltField build_alone(const SceneObject& object, tess::dn::Content content);
+/// The field, built by this thread.
+[[nodiscard]] tess::dn::Field build_alone(const SceneObject& object, tess::dn::Content content);
 
 [[nodiscard]] tess::dn::ErrorBound bound_of(const Compression& compression,
                                             const tess::dn::Field& field);

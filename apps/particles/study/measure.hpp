@@ -1,8 +1,8 @@
-// What the study measures of one choice: a field against exact distances and normals, bounces
-// against exact ones, and time. Serial; private to the study.
+// What the study measures of one choice: a field against exact distances and normals, bounces and
+// flights against exact ones, and time. Serial; private to the study.
 #pragma once
 
-#include "apps/particles/study/exact_bounce.hpp"
+#include "apps/particles/study/exact.hpp"
 #include "apps/particles/study/study.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/look_up.hpp"
@@ -28,32 +28,37 @@ struct Samples {
   std::vector<double> distance;
   std::vector<tess::dn::Vec3> normal;
 };
-
 [[nodiscard]] Samples samples_of(const Subject& subject, std::size_t n);
 
 /// A look-up: fills in the answers for the points.
-using Ask = std::function<void(const tess::dn::Points&, const tess::dn::Answers&)>;
+using LookUpAll = std::function<void(const tess::dn::Points&, const tess::dn::Answers&)>;
 
 /// Errors of distance and normal.
-void compare(const Ask& ask, const Samples& samples, StudyRow& row);
+void compare(const LookUpAll& look_up, const Samples& samples, StudyRow& row);
 
-/// Lets all bounces happen step by step, and compares each with the exact one.
-void bounce(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
-            const Subject& subject, StudyRow& row);
+/// Moves the particles of all bounces step by step, and compares each with the exact bounce.
+void compare_bounces(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
+                     const Subject& subject, StudyRow& row);
+
+/// Moves particles for the time that the exact flights took, in steps of dt.
+void compare_flights(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
+                     double time, const std::vector<Flight>& starts,
+                     const std::vector<Flight>& exact, StudyRow& row);
 
 /// Particles near the surface with velocities of 1 in all directions.
 [[nodiscard]] tess::dn::Particles crowd(const Subject& subject, std::size_t n);
 
-/// Nanoseconds a particle and step of a crowd of n; `object` may be null. Fastest of three, of
-/// steps so short that the crowd stays where it is.
-[[nodiscard]] double ns_of(const tess::dn::Object* object, const tess::dn::Rules& rules,
-                           const Subject& subject, std::size_t n);
+/// Seconds of this thread: wall clock, and CPU time, which does not count other work on the core.
+struct Cost {
+  double wall = HUGE_VAL, cpu = HUGE_VAL;
+};
+/// The least of each over five runs of the work; over fewer, but one at least, where the runs take
+/// more than a second together. `prepare` is not timed.
+[[nodiscard]] Cost least_cost(
+    const std::function<void()>& work, const std::function<void()>& prepare = [] {});
 
-/// The same of one step of `dt`, from one crowd each time.
-[[nodiscard]] double ns_of_step(const tess::dn::Object& object, const tess::dn::Rules& rules,
-                                double dt, const Subject& subject, std::size_t n);
-
-/// The fastest of three.
-[[nodiscard]] double fastest_seconds(const std::function<void()>& work);
+/// Times n_steps steps of dt of a crowd of `n` in one call; `object` may be null.
+void time_steps(const tess::dn::Object* object, const tess::dn::Rules& rules, double dt,
+                int n_steps, const Subject& subject, std::size_t n, StudyRow& row);
 
 }  // namespace particles

@@ -1,196 +1,289 @@
 #include "apps/particles/study/study.hpp"
 
 #include "apps/particles/simulation/field_making.hpp"
-#include "apps/particles/study/rules.hpp"
+#include "apps/particles/study/measure.hpp"
 #include "runtime/core/error.hpp"
 
-#include <algorithm>
 #include <array>
-#include <chrono>
+#include <cmath>
 
 namespace particles {
 namespace {
 using namespace tess::dn;
 
-BuiltField built_or_empty(SceneObject object, int resolution, Method method, std::string& note) {
-  object.method = method;
-  object.field.clear();
-  try {
-    object.grid = grid_around(bounds(object.surface), resolution, object.thickness);
-    return build_alone(object, Content::distance_and_normal);
-  } catch (const tess::Error& error) {
-    note = error.what();
-    return {};
+std::string name_of(Method method) {
+  return std::string(method_names[static_cast<std::size_t>(method)]);
+}
+std::string name_of(LookUp look_up) {
+  return std::string(look_up_names[static_cast<std::size_t>(look_up)]);
+}
+
+/// Impact without loss.
+Rules impact_rules(LookUp look_up, Sweep sweep) {
+  Rules rules;
+  rules.look_up = look_up;
+  rules.impact = Impact{1, 0, sweep};
+  return rules;
+}
+
+/// Steps so short that the crowd stays where it is.
+void time_crowd(const Object* object, const Rules& rules, const Subject& subject, std::size_t n,
+                StudyRow& row) {
+  constexpr int n_steps = 16;
+  time_steps(object, rules, 0.1 * subject.thickness / n_steps, n_steps, subject, n, row);
+}
+
+class Study {
+ public:
+  Study(const SceneObject& object, const StudyOptions& options, const std::string& scene)
+      : options_(options), subject_{object, Bvh(object.surface), {}, object.thickness} {
+    subject_.bounces =
+        exact_bounces(object.surface, subject_.tree, options.n_bounces, 0.8 * object.thickness, 11);
+    if (subject_.bounces.empty())
+      tess::fail(tess::ErrorCode::bad_mesh, scene,
+                 ": objects[0].shape: no triangle can be met from its front; turn the triangles");
   }
-}
 
-/// A crowd's positions as look-ups take them.
-struct Crowd {
-  Crowd(const Subject& subject, std::size_t n) {
-    const Particles particles = crowd(subject, n);
-    x.assign(particles.x.begin(), particles.x.end());
-    y.assign(particles.y.begin(), particles.y.end());
-    z.assign(particles.z.begin(), particles.z.end());
+  std::vector<StudyRow> run() {
+    study_fields();
+    rows_.insert(rows_.end(), memory_.begin(), memory_.end());
+    field_ = build_alone(subject_.object, Content::distance_and_normal);
+    show("study: rules");
+    study_rules();
+    show("study: costs");
+    study_cost();
+    return std::move(rows_);
   }
-  std::vector<float> x, y, z;
-};
 
-double look_up_ns(const Crowd& of, const Ask& ask) {
-  const std::size_t n = of.x.size();
-  std::vector<float> distance(n), nx(n), ny(n), nz(n);
-  const Points points{of.x, of.y, of.z};
-  const Answers answers{distance, nx, ny, nz};
-  return fastest_seconds([&] { ask(points, answers); }) * 1e9 / static_cast<double>(n);
-}
-
-/// Nearest look-ups of a flat and a compressed field, by themselves.
-void study_memory(const Subject& subject, const StudyOptions& options, const BuiltField& built,
-                  const CompressedField& compressed, double seconds_of_compression,
-                  const Samples& samples, std::vector<StudyRow>& rows) {
-  const Crowd crowded(subject, options.n_timed);
-  StudyRow row;
-  row.part = "memory";
-  row.resolution = built.field.grid.n[0];
-  row.method = name_of(Method::exact);
-  row.look_up = name_of(LookUp::nearest);
-  row.rule = "look-up alone";
-  const auto measure = [&](const char* stored, std::size_t bytes, double seconds, const auto& ask) {
-    row.stored = stored;
-    row.bytes = bytes;
-    row.build_seconds = seconds;
-    compare(ask, samples, row);
-    row.ns = look_up_ns(crowded, ask);
-    rows.push_back(row);
-  };
-  measure("flat", built.field.bytes(), built.seconds,
-          [&](const Points& points, const Answers& answers) {
-            look_up(built.field, LookUp::nearest, points, answers);
-          });
-  measure("compressed", compressed.bytes(), seconds_of_compression,
-          [&](const Points& points, const Answers& answers) {
-            look_up(compressed, LookUp::nearest, points, answers);
-          });
-}
-
-constexpr double step_of_fields = 0.1;
-
-/// Swept impacts in a field as it is stored; errors of distance and normal for flat ones, whose
-/// look-ups of all kinds stand by themselves.
-void study_look_ups(const Subject& subject, const StudyOptions& options, const Object& object,
-                    const Samples& samples, StudyRow row, std::vector<StudyRow>& rows) {
-  for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
-    if (object.compressed != nullptr && kind == LookUp::trilinear) continue;
-    row.look_up = name_of(kind);
-    const Rules rules = impact_alone(kind, Sweep::on);
-    if (object.compressed == nullptr)
-      compare([&](const Points& points,
-                  const Answers& answers) { look_up(*object.field, kind, points, answers); },
-              samples, row);
-    bounce(object, rules, step_of_fields * subject.thickness, subject, row);
-    row.ns = ns_of(&object, rules, subject, options.n_timed);
-    rows.push_back(row);
+ private:
+  void show(const char* phase, std::size_t part = 0, std::size_t n_parts = 0) const {
+    if (options_.progress == nullptr) return;
+    options_.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+    options_.progress->phase(phase);
   }
-}
 
-void now_at(const StudyOptions& options, const char* phase, std::size_t part = 0,
-            std::size_t n_parts = 0) {
-  if (options.progress == nullptr) return;
-  options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
-  options.progress->phase(phase);
-}
+  [[nodiscard]] StudyRow row_of(const char* part, int resolution, Method method) const {
+    StudyRow row;
+    row.part = part;
+    row.resolution = resolution;
+    row.method = name_of(method);
+    return row;
+  }
 
-/// Rows of fields, and of memory apart.
-void study_fields(const Subject& subject, const StudyOptions& options, std::vector<StudyRow>& rows,
-                  std::vector<StudyRow>& memory) {
-  const Samples samples = samples_of(subject, options.n_samples);
-  const std::size_t n_fields = 3 * options.resolutions.size();
-  std::size_t field = 0;
-  for (const Method method : {Method::exact, Method::normals, Method::potential})
-    for (const int resolution : options.resolutions) {
-      now_at(options, "study: fields", ++field, n_fields);
-      StudyRow row;
-      row.part = "field";
-      row.resolution = resolution;
-      row.method = name_of(method);
-      const BuiltField built = built_or_empty(subject.object, resolution, method, row.note);
-      if (!row.note.empty()) {
-        rows.push_back(row);
-        continue;
+  /// Rows of fields, and of memory apart.
+  void study_fields() {
+    const Samples samples = samples_of(subject_, options_.n_samples);
+    const std::size_t n_fields = 3 * options_.resolutions.size();
+    std::size_t n_done = 0;
+    for (const Method method : {Method::exact, Method::normals, Method::potential})
+      for (const int resolution : options_.resolutions) {
+        show("study: fields", ++n_done, n_fields);
+        StudyRow row = row_of("field", resolution, method);
+        SceneObject object = subject_.object;
+        object.method = method;
+        object.field.clear();
+        Field field;
+        Cost cost;
+        try {
+          object.grid = grid_around(bounds(object.surface), resolution, object.thickness);
+          cost = least_cost([&] { field = build_alone(object, Content::distance_and_normal); });
+        } catch (const tess::Error& error) {
+          row.note = error.what();
+          rows_.push_back(row);
+          continue;
+        }
+        row.build_seconds = cost.wall, row.build_cpu_seconds = cost.cpu;
+        row.bytes = static_cast<double>(field.bytes());
+        row.rule = "impact, swept";
+        row.step = 0.1;
+        row.stored = "flat";
+        study_look_ups({&field, {}}, samples, row);
+        if (method == Method::exact) study_compressed(field, samples, row);
       }
-      row.build_seconds = built.seconds;
-      row.bytes = built.field.bytes();
-      row.rule = "impact, swept";
-      row.step = step_of_fields;
-      row.stored = "flat";
-      study_look_ups(subject, options, {&built.field, {}}, samples, row, rows);
-      if (method != Method::exact) continue;
-      const auto begin = std::chrono::steady_clock::now();
-      const CompressedField compressed = compress(built.field, bound_of({}, built.field));
-      const double seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      row.build_seconds += seconds;
-      row.bytes = compressed.bytes();
-      row.stored = "compressed";
-      study_look_ups(subject, options, {&built.field, {}, &compressed}, samples, row, rows);
-      study_memory(subject, options, built, compressed, seconds, samples, memory);
-    }
-}
+  }
 
-/// Nanoseconds to find the closest triangle nearer than `reach` of a particle by a tree of boxes.
-double tree_ns(const Subject& subject, std::size_t n, double reach) {
-  const std::size_t n_asked = std::min<std::size_t>(n, 20'000);
-  const Particles particles = crowd(subject, n_asked);
-  double sum = 0;
-  const double seconds = fastest_seconds([&] {
-    for (std::size_t p = 0; p < n_asked; ++p)
-      sum += subject.tree.closest(particles.position(p), reach * reach).distance2;
-  });
-  return sum < 0 ? 0 : seconds * 1e9 / static_cast<double>(n_asked);
-}
+  void study_compressed(const Field& field, const Samples& samples, StudyRow row) {
+    std::optional<CompressedField> compressed;
+    const Cost cost = least_cost([&] { compressed.emplace(compress(field, bound_of({}, field))); });
+    study_memory(field, *compressed, cost, samples, row);
+    row.build_seconds += cost.wall, row.build_cpu_seconds += cost.cpu;
+    row.bytes = static_cast<double>(compressed->bytes());
+    row.stored = "compressed";
+    study_look_ups({&field, {}, &*compressed}, samples, row);
+  }
 
-/// The paper's table 1: what collision costs, beside a tree of boxes that finds the closest
-/// triangle of each particle.
-void study_cost(const Subject& subject, const BuiltField& built, const StudyOptions& options,
-                std::vector<StudyRow>& rows) {
-  const std::size_t first = rows.size();
-  StudyRow row;
-  row.part = "cost";
-  row.resolution = subject.object.grid.n[0];
-  row.method = name_of(subject.object.method);
-  const std::size_t n = options.n_timed;
-  row.rule = "no collision";
-  row.ns = ns_of(nullptr, Rules{}, subject, n);
-  rows.push_back(row);
-  const CompressedField compressed = compress(built.field, bound_of({}, built.field));
-  for (const CompressedField* planes : {static_cast<const CompressedField*>(nullptr), &compressed})
+  /// Swept impacts in a field as it is stored. Flat fields also have the errors of distance and
+  /// normal; memory rows have those of compressed ones.
+  void study_look_ups(const Object& object, const Samples& samples, StudyRow row) {
     for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
-      if (planes != nullptr && kind == LookUp::trilinear) continue;
+      if (object.compressed != nullptr && kind == LookUp::trilinear) continue;
       row.look_up = name_of(kind);
-      row.stored = planes != nullptr ? "compressed" : "flat";
-      row.bytes = planes != nullptr ? planes->bytes() : built.field.bytes();
-      const Object object{&built.field, {}, planes};
-      for (const Sweep sweep : {Sweep::off, Sweep::on}) {
-        row.rule = sweep == Sweep::on ? "impact, swept" : "impact";
-        row.ns = ns_of(&object, impact_alone(kind, sweep), subject, n);
-        rows.push_back(row);
+      const Rules rules = impact_rules(kind, Sweep::on);
+      if (object.compressed == nullptr) {
+        compare([&](const Points& points,
+                    const Answers& answers) { look_up(*object.field, kind, points, answers); },
+                samples, row);
+        row.order = order_of(row);
       }
+      compare_bounces(object, rules, row.step * subject_.thickness, subject_, row);
+      time_crowd(&object, rules, subject_, options_.n_timed, row);
+      rows_.push_back(row);
     }
-  row.look_up.clear();
-  row.stored.clear();
-  row.bytes = 0;
-  row.rule = "tree of boxes, whole thickness";
-  row.ns = tree_ns(subject, n, subject.thickness);
-  rows.push_back(row);
-  row.rule = "tree of boxes, way of a step";
-  row.ns = tree_ns(subject, n, 0.1 * subject.thickness);
-  rows.push_back(row);
-  const double none = rows[first].ns, tree = row.ns;
-  for (std::size_t i = first; i < rows.size(); ++i) {
-    const bool steps = rows[i].rule.starts_with("impact");
-    rows[i].relative = (rows[i].ns - (steps ? none : 0)) / tree;
   }
-  rows[first].relative = -1;
-}
+
+  /// The power of the cell with which the error of the distance fell since the next coarser field.
+  [[nodiscard]] double order_of(const StudyRow& row) const {
+    const StudyRow* coarser = nullptr;
+    for (const StudyRow& other : rows_)
+      if (other.method == row.method && other.stored == row.stored &&
+          other.look_up == row.look_up && other.resolution < row.resolution &&
+          (coarser == nullptr || other.resolution > coarser->resolution))
+        coarser = &other;
+    if (coarser == nullptr || !(coarser->distance_error > 0) || !(row.distance_error > 0))
+      return -1;
+    return std::log(coarser->distance_error / row.distance_error) /
+           std::log((row.resolution - 1.0) / (coarser->resolution - 1.0));
+  }
+
+  /// Nearest look-ups of a flat and a compressed field, by themselves.
+  void study_memory(const Field& field, const CompressedField& compressed, const Cost& compression,
+                    const Samples& samples, StudyRow row) {
+    const Particles particles = crowd(subject_, options_.n_timed);
+    const std::vector<float> x(particles.x.begin(), particles.x.end()),
+        y(particles.y.begin(), particles.y.end()), z(particles.z.begin(), particles.z.end());
+    std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
+    row.part = "memory";
+    row.look_up = name_of(LookUp::nearest);
+    row.rule = "look-up alone";
+    row.step = -1;
+    const auto measure = [&](const LookUpAll& look_up_all) {
+      compare(look_up_all, samples, row);
+      const Cost cost = least_cost([&] { look_up_all({x, y, z}, {distance, nx, ny, nz}); });
+      const double to_ns = 1e9 / static_cast<double>(x.size());
+      row.ns = to_ns * cost.wall, row.cpu_ns = to_ns * cost.cpu;
+      memory_.push_back(row);
+    };
+    measure([&](const Points& points, const Answers& answers) {
+      look_up(field, LookUp::nearest, points, answers);
+    });
+    row.stored = "compressed";
+    row.bytes = static_cast<double>(compressed.bytes());
+    row.build_seconds = compression.wall, row.build_cpu_seconds = compression.cpu;
+    measure([&](const Points& points, const Answers& answers) {
+      nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
+    });
+  }
+
+  /// All rules by themselves, at several steps, in the object's own field.
+  void study_rules() {
+    constexpr std::array steps{0.02, 0.1, 0.5, 2.0};
+    const double thickness = subject_.thickness, time = 2 * thickness;
+    const Object object{&field_, {}};
+    StudyRow row = row_of("rule", subject_.object.grid.n[0], subject_.object.method);
+    row.stored = "flat";
+    row.look_up = name_of(LookUp::tangent);
+    const auto study = [&](const char* name, const Rules& rules, const auto& measure) {
+      for (const double step : steps) {
+        StudyRow now = row;
+        now.rule = name;
+        now.step = step;
+        measure(step * thickness, now);
+        time_steps(&object, rules, step * thickness, 1, subject_, options_.n_timed, now);
+        rows_.push_back(now);
+      }
+    };
+    const auto study_bounces = [&](const char* name, const Rules& rules) {
+      study(name, rules,
+            [&](double dt, StudyRow& now) { compare_bounces(object, rules, dt, subject_, now); });
+    };
+    study_bounces("impact, swept", impact_rules(LookUp::tangent, Sweep::on));
+    study_bounces("impact", impact_rules(LookUp::tangent, Sweep::off));
+    Rules spring;  // a particle of speed 1 presses it half way to the surface
+    const double reach = 0.5 * thickness;
+    spring.spring = Spring{4 / (reach * reach), 0, reach};
+    study_bounces("spring", spring);
+
+    // A particle that comes straight on has no tangent to turn to: a rounding error decides its side.
+    const double straight = std::cos(std::numbers::pi / 12);
+    constexpr std::size_t most_flights = 100;
+    std::vector<Flight> starts;
+    for (const Bounce& b : subject_.bounces)
+      if (-dot(b.normal(), b.velocity) < straight && starts.size() < most_flights)
+        starts.push_back({b.start, b.velocity});
+    if (starts.empty()) return;
+    const auto study_flights = [&](const char* name, const Rules& rules, const auto& exact_flight) {
+      std::vector<Flight> exact;
+      for (const Flight& start : starts) exact.push_back(exact_flight(start));
+      study(name, rules, [&](double dt, StudyRow& now) {
+        compare_flights(object, rules, dt, time, starts, exact, now);
+      });
+    };
+    // Flights begin at 0.8 of the thickness with speed 1: the drag stops those that come straight on
+    // in front of the surface, and the flow turns them to the tangent there.
+    Rules drag, flow;
+    drag.surface_drag = SurfaceDrag{2.5 / thickness, 0.5 * thickness, DragLaw::linear};
+    flow.surface_flow = SurfaceFlow{4 / thickness, 4 / thickness, 0.7 * thickness};
+    study_flights("drag", drag, [&](const Flight& start) {
+      return exact_drag(subject_.tree, start, *drag.surface_drag, time);
+    });
+    study_flights("surface flow", flow, [&](const Flight& start) {
+      constexpr int n_steps = 400;
+      return exact_flow(subject_.tree, start, *flow.surface_flow, time, n_steps);
+    });
+  }
+
+  /// The paper's table 1: what collision costs, beside a tree of boxes that finds the closest
+  /// triangle of each particle.
+  void study_cost() {
+    const std::size_t first = rows_.size(), n = options_.n_timed;
+    StudyRow row = row_of("cost", subject_.object.grid.n[0], subject_.object.method);
+    row.rule = "no collision";
+    time_crowd(nullptr, {}, subject_, n, row);
+    rows_.push_back(row);
+    const CompressedField compressed = compress(field_, bound_of({}, field_));
+    for (const bool flat : {true, false})
+      for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
+        if (!flat && kind == LookUp::trilinear) continue;
+        row.look_up = name_of(kind);
+        row.stored = flat ? "flat" : "compressed";
+        row.bytes = static_cast<double>(flat ? field_.bytes() : compressed.bytes());
+        const Object object{&field_, {}, flat ? nullptr : &compressed};
+        for (const Sweep sweep : {Sweep::off, Sweep::on}) {
+          row.rule = sweep == Sweep::on ? "impact, swept" : "impact";
+          time_crowd(&object, impact_rules(kind, sweep), subject_, n, row);
+          rows_.push_back(row);
+        }
+      }
+    row.look_up.clear();
+    row.stored.clear();
+    row.bytes = -1;
+    for (const double part : {1.0, 0.1}) {
+      row.rule = part == 1 ? "tree of boxes, whole thickness" : "tree of boxes, way of a step";
+      time_tree(part * subject_.thickness, row);
+      rows_.push_back(row);
+    }
+    const double none = rows_[first].cpu_ns, tree = row.cpu_ns;
+    for (std::size_t i = first + 1; i < rows_.size(); ++i)
+      rows_[i].relative = (rows_[i].cpu_ns - (rows_[i].stored.empty() ? 0 : none)) / tree;
+  }
+
+  /// Times the search for the closest triangle nearer than `reach` of each particle.
+  void time_tree(double reach, StudyRow& row) const {
+    const Particles particles = crowd(subject_, std::min<std::size_t>(options_.n_timed, 20'000));
+    volatile double sum = 0;  // so that no search is left out
+    const Cost cost = least_cost([&] {
+      for (std::size_t p = 0; p < particles.size(); ++p)
+        sum = sum + subject_.tree.closest(particles.position(p), reach * reach).distance2;
+    });
+    const double to_ns = 1e9 / static_cast<double>(particles.size());
+    row.ns = to_ns * cost.wall, row.cpu_ns = to_ns * cost.cpu;
+  }
+
+  const StudyOptions& options_;
+  Subject subject_;
+  Field field_;  // of the object as the scene gives it
+  std::vector<StudyRow> rows_, memory_;
+};
 
 }  // namespace
 
@@ -198,23 +291,7 @@ std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options) {
   if (scene.objects.empty())
     tess::fail(tess::ErrorCode::bad_value, scene.name,
                ": objects: is empty; --study needs an object to bounce off");
-  const SceneObject& object = scene.objects.front();
-  const Subject subject{
-      object, Bvh(object.surface),
-      exact_bounces(object.surface, options.n_bounces, 0.8 * object.thickness, 11),
-      object.thickness};
-  if (subject.bounces.empty())
-    tess::fail(tess::ErrorCode::bad_mesh, scene.name,
-               ": objects[0].shape: no triangle can be met from its front; turn the triangles");
-  std::vector<StudyRow> rows, memory;
-  study_fields(subject, options, rows, memory);
-  rows.insert(rows.end(), memory.begin(), memory.end());
-  const BuiltField built = build_alone(object, Content::distance_and_normal);
-  now_at(options, "study: rules");
-  study_rules(subject, options, built, rows);
-  now_at(options, "study: costs");
-  study_cost(subject, built, options, rows);
-  return rows;
+  return Study(scene.objects.front(), options, scene.name).run();
 }
 
 }  // namespace particles

@@ -1,5 +1,5 @@
-// Error against run time: what each choice (resolution, construction, look-up, rule, step) costs
-// and how far from exact collision with the triangles it is. Serial; on one object at rest, in its
+// Error against run time: what each choice (resolution, construction, look-up, rule, step) costs,
+// and how far it is from exact collision with the triangles. Serial; on one object at rest, in its
 // own coordinates.
 #pragma once
 
@@ -7,39 +7,50 @@
 #include "apps/progress.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace particles {
 
 /// One choice. Lengths are in the object's units; a negative value was not measured in this row.
+/// Times are the least of several measurements (see least_cost()).
 struct StudyRow {
   std::string part;  ///< field, memory, rule, cost
   int resolution = 0;
-  std::string method, look_up, rule;
-  std::string stored;  ///< flat, compressed; empty where no field is asked
-  double step = -1;    ///< speed × dt as a part of the thickness
-  double build_seconds = -1;
-  std::uint64_t bytes = 0;
+  std::string method, stored, look_up, rule;  ///< stored: flat, compressed; empty: no field
+  double step = -1;                           ///< speed × dt as a part of the thickness
+  double build_seconds = -1, build_cpu_seconds = -1;
+  double bytes = -1;
   double distance_error = -1;      ///< RMS, against the closest point of the triangles
+  double order = -1;               ///< the power of the cell with which distance_error fell
   double distance_error_max = -1;  ///< of the same points
   double normal_error = -1;        ///< RMS, in degrees
   double penetration = -1;         ///< greatest depth below the triangles
   double place_error = -1;         ///< RMS distance of bounces from where they should be
   double angle_error = -1;         ///< RMS, in degrees, of the velocity after the bounce
-  std::int64_t lost = -1;          ///< particles that went in, or on as if nothing were there
-  std::int64_t bounces = -1;       ///< out of so many
-  double ns = -1;                  ///< a particle and step (memory: a look-up); fastest of three
-  double relative = -1;            ///< cost of collision, as a part of that by a tree of boxes
+  double lost = -1;                ///< particles that went in, or on as if there were no object
+  double bounces = -1;             ///< out of so many
+  double ns = -1, cpu_ns = -1;     ///< per particle and step (memory: per look-up)
+  double relative = -1;            ///< cost of collision as a part of that by a tree of boxes
   std::string note;                ///< why a choice is refused
 };
+
+/// A number of a row, for the table and the files.
+struct StudyColumn {
+  const char* name;    ///< in CSV and JSON
+  const char* title;   ///< in the table
+  const char* format;  ///< in the table
+  double StudyRow::*value;
+};
+[[nodiscard]] std::span<const StudyColumn> study_columns();
 
 struct StudyOptions {
   std::vector<int> resolutions{16, 32, 64};
   std::size_t n_samples = 4000;  ///< points at which distance and normal are compared
   std::size_t n_bounces = 400;
   std::size_t n_timed = 100'000;       ///< particles that are timed
-  apps::Progress* progress = nullptr;  ///< is told what the study is at, if there is one
+  apps::Progress* progress = nullptr;  ///< shows the part of the study; may be null
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with

@@ -4,17 +4,20 @@
 
 #include "apps/particles/output/picture.hpp"
 #include "apps/particles/output/vtp.hpp"
-#include "apps/particles/study/exact_bounce.hpp"
-#include "apps/particles/study/exact_flight.hpp"
+#include "apps/particles/study/exact.hpp"
+#include "apps/particles/study/measure.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/apps/particles/run_scene.hpp"
+
+#include <chrono>
+#include <thread>
 
 using namespace particles;
 using tess::dn::Vec3;
 
 TEST_CASE("exact bounces lie on the surface and mirror the velocity", "[particles][study]") {
   const tess::dn::Surface box = tess::dn::make_box({1, 2, 3});
-  const auto bounces = exact_bounces(box, 100, 0.5, 1);
+  const auto bounces = exact_bounces(box, tess::dn::Bvh(box), 100, 0.5, 1);
   CHECK(bounces.size() == 100);  // a box hides none of its faces
   for (const Bounce& b : bounces) {
     const Vec3 part{std::abs(b.hit.x), std::abs(b.hit.y) / 2, std::abs(b.hit.z) / 3};
@@ -105,6 +108,7 @@ TEST_CASE("the study finds the orders of the look-ups, and no particle lost wher
   const auto place_error = [&](const char* rule, double step) {
     for (const StudyRow& row : rows)
       if (row.part == "rule" && row.rule == rule && row.step == step) {
+        CHECK(row.cpu_ns > 0);
         CHECK(row.ns > 0);
         return row.place_error;
       }
@@ -116,8 +120,28 @@ TEST_CASE("the study finds the orders of the look-ups, and no particle lost wher
   CHECK(place_error("drag", 2.0) > 4 * place_error("drag", 0.1));
   CHECK(place_error("surface flow", 0.02) < 0.15);
   CHECK(place_error("surface flow", 2.0) > 3 * place_error("surface flow", 0.02));
+  for (const StudyRow& row : rows)
+    if (row.part == "field" && row.note.empty()) {
+      CHECK(row.build_cpu_seconds > 0);
+      CHECK((row.order > 0) == (row.resolution == 23 && row.stored == "flat"));
+    }
   const std::string csv = study_csv(rows);
   CHECK(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')) == rows.size() + 1);
+}
+
+TEST_CASE("costs are the least of five runs, and CPU time does not count waiting",
+          "[particles][study]") {
+  int n_runs = 0, n_prepared = 0;
+  const Cost waiting = least_cost(
+      [&] {
+        CHECK(n_prepared == ++n_runs);
+        std::this_thread::sleep_for(std::chrono::milliseconds(n_runs == 3 ? 20 : 60));
+      },
+      [&] { ++n_prepared; });
+  CHECK(n_runs == 5);
+  CHECK(waiting.wall >= 0.02);
+  CHECK(waiting.wall < 0.06);
+  CHECK(waiting.cpu < 0.01);
 }
 
 TEST_CASE("a snapshot's file holds each particle once, in the order of ids", "[particles]") {
@@ -133,10 +157,10 @@ TEST_CASE("a cut through a field is refused outside of it", "[particles]") {
     "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 12, "thickness": 1}],
     "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
                                   "scene.json");
-  const auto built = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
-  CHECK(slice_svg(built.field, 2, 0).find("</svg>") != std::string::npos);
-  CHECK_THROWS_AS(slice_svg(built.field, 2, 2.5), tess::Error);
-  CHECK_THROWS_AS(slice_svg(built.field, 0, NAN), tess::Error);
+  const auto field = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
+  CHECK(slice_svg(field, 2, 0).find("</svg>") != std::string::npos);
+  CHECK_THROWS_AS(slice_svg(field, 2, 2.5), tess::Error);
+  CHECK_THROWS_AS(slice_svg(field, 0, NAN), tess::Error);
 }
 
 TEST_CASE("a picture of paths outlines what moves where it ends", "[particles]") {
