@@ -52,7 +52,7 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
       save_field(stage.fields[i].field(), (in / field_file_name(i)).string());
   if (const auto& slice = scene.outputs.slice)
     plot::write_file((in / "field.svg").string(), slice_svg(flat_field(stage.fields[slice->object]),
-                                                            scene.outputs.axis, slice->at));
+                                                            scene.outputs.axes.front(), slice->at));
   if (result.trajectories.empty()) return;
   write_series(folder, result.trajectories, scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));

@@ -1,6 +1,7 @@
 #include "apps/plot/timeline.hpp"
 
 #include "apps/plot/quoting.hpp"
+#include "apps/plot/ticks.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
 
@@ -38,14 +39,6 @@ Unit unit_of(double span) {
   if (span >= 1) return {"s", 1};
   if (span >= 1e-3) return {"ms", 1e-3};
   return {"us", 1e-6};
-}
-
-/// 1, 2 or 5 times a power of ten, such that 4 to 10 of them make up `span`.
-double tick_step(double span) {
-  const double power = std::pow(10, std::floor(std::log10(span / 4)));
-  for (const double factor : {5.0, 2.0})
-    if (span / (factor * power) >= 4) return factor * power;
-  return power;
 }
 
 void check(const Timeline& timeline) {

@@ -1,263 +1,327 @@
 #include "apps/particles/output/picture.hpp"
 
-#include "collide/dn_field/normal_code.hpp"
+#include "apps/plot/contour.hpp"
+#include "apps/plot/ticks.hpp"
+#include "collide/dn_field/look_up.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/core.h>
 #include <map>
 
 namespace particles {
 namespace {
 using namespace tess::dn;
+using plot::Point;
 
-/// Looking along an axis: the two others, to the right and up.
-struct View {
-  int axis = 2, right = 0, up = 1;
-  explicit View(int along) : axis(along), right(along == 0 ? 1 : 0), up(along == 2 ? 1 : 2) {}
-};
+// Pixels.
+constexpr double frame_width = 560, left = 64, right = 16, top = 34, bottom = 44;
 
-/// A drawing of so many units of space, `pixels` wide; y grows upward.
-class Canvas {
+/// A frame with axes: a window of space seen along an axis, the two others to the right and up.
+class Frame2D {
  public:
-  Canvas(double left, double bottom, double width, double height)
-      : left_(left), top_(bottom + height), scale_(pixels / width) {
-    out_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-        "width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-        pixels, height * scale_);
+  Frame2D(int axis, const Bounds& window)
+      : axis_(axis), right_(axis == 0 ? 1 : 0), up_(axis == 2 ? 1 : 2), low_(seen(window.low)) {
+    const Point high = seen(window.high);
+    scale_ = frame_width / (high.x - low_.x);
+    height_ = (high.y - low_.y) * scale_;
   }
-  [[nodiscard]] double x(double right) const { return (right - left_) * scale_; }
-  [[nodiscard]] double y(double up) const { return (top_ - up) * scale_; }
-  /// What is drawn after boxes lies on them.
-  void raw(const std::string& text) {
-    flush();
-    out_ += text;
-  }
-  /// Boxes of one fill are one path.
-  void box(double right, double up, double width, double height, const std::string& fill) {
-    const double overlap = 0.2;  // else their seams show
-    boxes_[fill] +=
-        fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}", x(right), y(up + height),
-                    width * scale_ + overlap, height * scale_ + overlap, -width * scale_ - overlap);
-  }
-  [[nodiscard]] std::string done() {
-    flush();
-    return out_ + "</svg>\n";
-  }
+  [[nodiscard]] double width() const { return left + frame_width + right; }
+  [[nodiscard]] double height() const { return top + height_ + bottom; }
 
- private:
-  void flush() {
-    for (const auto& [fill, path] : boxes_)
-      out_ += fmt::format("<path fill=\"{}\" d=\"{}\"/>\n", fill, path);
-    boxes_.clear();
+  [[nodiscard]] Point seen(Vec3 p) const { return {component(p, right_), component(p, up_)}; }
+  [[nodiscard]] bool holds(Vec3 p) const {
+    const double x = (seen(p).x - low_.x) * scale_, y = (seen(p).y - low_.y) * scale_;
+    return x >= 0 && x <= frame_width && y >= 0 && y <= height_;
   }
-
-  static constexpr double pixels = 640;
-  double left_, top_, scale_;
-  std::string out_;
-  std::map<std::string, std::string> boxes_;
-};
-
-/// Shades in steps, so that runs of one shade are one rectangle: grey inside, blue outside.
-std::string shade(double distance, double thickness) {
-  constexpr double steps = 12;
-  const double part = std::min(1.0, std::abs(distance) / thickness);
-  const int step = static_cast<int>(std::min(steps - 1, std::floor(part * steps)));
-  if (distance < 0) return fmt::format("#{0:02x}{0:02x}{0:02x}", 120 - 6 * step);
-  return fmt::format("#{:02x}{:02x}ff", 130 + 10 * step, 165 + 7 * step);
-}
-
-void draw_arrow(Canvas& canvas, double right, double up, double along, double across) {
-  const double x = canvas.x(right), y = canvas.y(up), tip_x = canvas.x(right + along),
-               tip_y = canvas.y(up + across);
-  canvas.raw(fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x, y, tip_x, tip_y));
-  const double dx = 0.3 * (tip_x - x), dy = 0.3 * (tip_y - y);
-  canvas.raw(fmt::format("l{:.1f} {:.1f}m{:.1f} {:.1f}l{:.1f} {:.1f}", -dx - dy / 2, -dy + dx / 2,
-                         dx + dy / 2, dy - dx / 2, -dx + dy / 2, -dy - dx / 2));
-}
-
-/// The shadow of a surface as rows of a raster: row -> pairs of first and last filled column.
-class Shadow {
- public:
-  Shadow(double left, double bottom, double width, double height)
-      : left_(left), bottom_(bottom), cell_(std::max(width, height) / raster) {
-    columns_ = static_cast<std::size_t>(width / cell_) + 1;
-    filled_.resize(columns_ * (static_cast<std::size_t>(height / cell_) + 1));
+  /// The command of a path: M moves there, L draws a line.
+  [[nodiscard]] std::string to(char command, Point p) const {
+    return fmt::format("{}{:.1f} {:.1f}", command, left + (p.x - low_.x) * scale_,
+                       top + height_ - (p.y - low_.y) * scale_);
   }
-  void fill(const Surface& surface, const Frame& frame, const View& view) {
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-      std::array<std::pair<double, double>, 3> corners;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 p = frame.to_world(surface.corners(t)[i]);
-        corners[i] = {component(p, view.right), component(p, view.up)};
-      }
-      fill(corners);
+  /// Closed lines, cut where the frame ends.
+  [[nodiscard]] std::string closed(const std::vector<std::vector<Point>>& lines,
+                                   const char* look) const {
+    std::string path;
+    for (const std::vector<Point>& line : lines) {
+      for (std::size_t i = 0; i < line.size(); ++i) path += to(i == 0 ? 'M' : 'L', line[i]);
+      path += "Z";
     }
+    return path.empty()
+               ? ""
+               : fmt::format("<path clip-path=\"url(#c{})\" {} d=\"{}\"/>\n", axis_, look, path);
   }
-  void fill(std::array<std::pair<double, double>, 3> corners) {
-    for (auto& [x, y] : corners) x = (x - left_) / cell_, y = (y - bottom_) / cell_;
-    const auto [a, b, c] = corners;
-    const auto rows = static_cast<double>(filled_.size() / columns_);
-    const double low = std::max(0.0, std::floor(std::min({a.second, b.second, c.second}))),
-                 high = std::min(rows - 1, std::max({a.second, b.second, c.second}));
-    for (double row = low; row <= high; ++row) {
-      double first = HUGE_VAL, last = -HUGE_VAL;
-      const auto edge = [&](const auto& from, const auto& to) {
-        const double d = to.second - from.second;
-        const double t = d == 0 ? 0 : std::clamp((row + 0.5 - from.second) / d, 0.0, 1.0);
-        const double x = from.first + t * (to.first - from.first);
-        const double y = from.second + t * d;
-        if (std::abs(y - row - 0.5) > 0.51) return;
-        first = std::min(first, x), last = std::max(last, x);
-      };
-      edge(a, b), edge(b, c), edge(c, a);
-      first = std::max(first, 0.0), last = std::min(last, static_cast<double>(columns_ - 1));
-      for (double column = std::floor(first); column <= last; ++column)
-        filled_[static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column)] = true;
-    }
-  }
-  void draw(Canvas& canvas) const {
-    const std::size_t rows = filled_.size() / columns_;
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t i = 0; i < columns_; ++i) {
-        const std::size_t first = i;
-        while (i < columns_ && filled_[row * columns_ + i]) ++i;
-        if (i == first) continue;
-        canvas.box(left_ + cell_ * static_cast<double>(first),
-                   bottom_ + cell_ * static_cast<double>(row),
-                   cell_ * static_cast<double>(i - first), cell_, "#bbb");
-      }
-  }
-  /// Its edge, not where the window cuts it.
-  void outline(Canvas& canvas) const {
-    const std::size_t rows = filled_.size() / columns_;
-    const auto x = [&](std::size_t i) { return canvas.x(left_ + cell_ * static_cast<double>(i)); };
-    const auto y = [&](std::size_t i) {
-      return canvas.y(bottom_ + cell_ * static_cast<double>(i));
+  /// The border, ticks with numbers, and the names of the axes.
+  [[nodiscard]] std::string axes() const {
+    std::string out = fmt::format(
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{:.1f}\" "
+        "fill=\"none\" stroke=\"#000\"/>\n",
+        left, top, frame_width, height_);
+    const double step = plot::tick_step(std::max(frame_width, height_) / scale_);
+    const double base = top + height_;
+    const auto each_tick = [step](double from, double length, const auto& draw) {
+      for (double i = std::ceil(from / step); i * step <= from + length; ++i) draw(i * step);
     };
-    canvas.raw("<path fill=\"none\" stroke=\"#888\" stroke-width=\"0.6\" d=\"");
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t i = 0; i < columns_; ++i) {
-        const std::size_t at = row * columns_ + i;
-        if (i > 0 && filled_[at] != filled_[at - 1])
-          canvas.raw(fmt::format("M{:.1f} {:.1f}V{:.1f}", x(i), y(row), y(row + 1)));
-        if (row > 0 && filled_[at] != filled_[at - columns_])
-          canvas.raw(fmt::format("M{:.1f} {:.1f}H{:.1f}", x(i), y(row), x(i + 1)));
-      }
-    canvas.raw("\"/>\n");
+    each_tick(low_.x, frame_width / scale_, [&](double at) {
+      out += fmt::format(
+          "<path d=\"M{0:.1f} {1:.1f}v5\" stroke=\"#000\"/><text x=\"{0:.1f}\" "
+          "y=\"{2:.1f}\" text-anchor=\"middle\">{3:.6g}</text>\n",
+          left + (at - low_.x) * scale_, base, base + 18, at);
+    });
+    each_tick(low_.y, height_ / scale_, [&](double at) {
+      const double y = base - (at - low_.y) * scale_;
+      out += fmt::format(
+          "<path d=\"M{0} {1:.1f}h-5\" stroke=\"#000\"/><text x=\"{2}\" "
+          "y=\"{3:.1f}\" text-anchor=\"end\">{4:.6g}</text>\n",
+          left, y, left - 8, y + 4, at);
+    });
+    out += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
+                       left + frame_width / 2, base + 36, "xyz"[right_]);
+    out += fmt::format("<text x=\"14\" y=\"{:.1f}\">{}</text>\n", top + height_ / 2, "xyz"[up_]);
+    return out;
+  }
+  /// The frame with what is drawn in it, `x` pixels to the right.
+  [[nodiscard]] std::string placed(double x, const std::string& drawn) const {
+    return fmt::format(
+        "<g transform=\"translate({:.0f},0)\">\n<clipPath id=\"c{}\"><rect x=\"{}\" "
+        "y=\"{}\" width=\"{}\" height=\"{:.1f}\"/></clipPath>\n{}{}</g>\n",
+        x, axis_, left, top, frame_width, height_, drawn, axes());
   }
 
  private:
-  static constexpr double raster = 160;
-  double left_, bottom_, cell_;
-  std::size_t columns_ = 0;
-  std::vector<bool> filled_;
+  int axis_, right_, up_;
+  Point low_;
+  double scale_ = 1, height_ = 0;
 };
+
+std::string svg(double width, double height, const std::string& title, const std::string& drawn) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+      "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{2}{3}</svg>\n",
+      width, height, title, drawn);
+}
+
+std::string text(double x, const std::string& words) {
+  return fmt::format("<text x=\"{:.0f}\" y=\"20\">{}</text>\n", x, words);
+}
+
+/// The border of a surface's shadow, seen along the frame's axis: every triangle is turned to face
+/// the viewer; edges between two triangles then cancel, unless both lie on one side of the edge. The
+/// lines that are left fill the shadow by winding number.
+std::vector<std::vector<Point>> shadow(const Surface& surface, const Frame& frame,
+                                       const Frame2D& in) {
+  std::vector<Point> points;
+  for (const Vec3 p : surface.vertices) points.push_back(in.seen(frame.to_world(p)));
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::multimap<std::uint32_t, std::uint32_t> edges;
+  std::map<Edge, int> count;
+  for (auto [a, b, c] : surface.triangles) {
+    const Point &p = points[a], &q = points[b], &r = points[c];
+    const double area = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+    if (area == 0) continue;
+    if (area < 0) std::swap(b, c);
+    for (const auto& [from, to] : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
+      ++count[{from, to}], --count[{to, from}];
+  }
+  for (const auto& [edge, n] : count)
+    for (int i = 0; i < n; ++i) edges.insert(edge);
+  std::vector<std::vector<Point>> lines;
+  while (!edges.empty()) {
+    std::vector<Point>& line = lines.emplace_back();
+    for (auto now = edges.begin(); now != edges.end();) {
+      line.push_back(points[now->first]);
+      const std::uint32_t to = now->second;
+      edges.erase(now);
+      now = edges.find(to);
+    }
+  }
+  return lines;
+}
+
+/// From the begin (0) to the end (1) of a run: dark blue, green, orange, red.
+std::string colour(double part) {
+  constexpr std::array<std::array<double, 3>, 4> anchors{
+      {{40, 50, 160}, {0, 150, 120}, {240, 160, 0}, {200, 20, 40}}};
+  const double at = 3 * std::clamp(part, 0.0, 1.0);
+  const auto i = std::min<std::size_t>(2, static_cast<std::size_t>(at));
+  std::array<int, 3> rgb{};
+  for (std::size_t k = 0; k < 3; ++k)
+    rgb[k] =
+        static_cast<int>(std::lerp(anchors[i][k], anchors[i + 1][k], at - static_cast<double>(i)));
+  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+}
+
+/// The paths between snapshots in as many colours as there are pieces, and dots at their ends.
+std::string paths(const Frame2D& frame, const std::vector<Snapshot>& snapshots,
+                  const std::vector<std::size_t>& dots) {
+  constexpr std::size_t most_pieces = 16;
+  const std::size_t last = snapshots.size() - 1, n_pieces = std::min(most_pieces, last);
+  std::string out;
+  for (std::size_t piece = 0; piece < n_pieces; ++piece) {
+    const std::size_t from = last * piece / n_pieces, to = last * (piece + 1) / n_pieces;
+    std::string path;
+    for (std::size_t p = 0; p < snapshots[from].samples.size(); ++p) {
+      bool goes_on = false;  // from where it was last; not where it left the frame between
+      for (std::size_t i = from; i <= to; ++i) {
+        const Vec3 at = snapshots[i].samples[p].position;
+        const bool held = frame.holds(at);
+        if (held) path += frame.to(goes_on ? 'L' : 'M', frame.seen(at));
+        goes_on = held;
+      }
+    }
+    out += fmt::format(
+        "<path fill=\"none\" stroke=\"{}\" stroke-width=\"0.8\" "
+        "stroke-opacity=\"0.7\" d=\"{}\"/>\n",
+        colour((static_cast<double>(piece) + 0.5) / static_cast<double>(n_pieces)), path);
+  }
+  for (std::size_t i = 0; i < dots.size(); ++i) {
+    std::string path;
+    for (const Sample& sample : snapshots[dots[i]].samples)
+      if (frame.holds(sample.position)) path += frame.to('M', frame.seen(sample.position)) + "h0";
+    out += fmt::format(
+        "<path stroke=\"{}\" stroke-width=\"4\" stroke-linecap=\"round\" d=\"{}\"/>\n",
+        colour(static_cast<double>(dots[i]) / static_cast<double>(std::max<std::size_t>(last, 1))),
+        path);
+  }
+  return out;
+}
 
 }  // namespace
 
 std::string slice_svg(const Field& field, int axis, double at) {
-  const View view(axis);
   const Grid& grid = field.grid;
+  const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
   const auto count = [&](int of) { return grid.n[static_cast<std::size_t>(of)]; };
   const double layer = std::round((at - component(grid.origin, axis)) / grid.cell);
   if (!(layer >= 0 && layer < count(axis)))
     tess::fail(tess::ErrorCode::bad_value, "outputs.slice.at: ", at,
                " is outside of the field, which reaches from ", component(grid.origin, axis),
                " to ", component(grid.origin, axis) + grid.cell * (count(axis) - 1));
-  const auto index = [&](int i, int j) {
-    std::array<int, 3> voxel{};
-    voxel[static_cast<std::size_t>(axis)] = static_cast<int>(layer);
-    voxel[static_cast<std::size_t>(view.right)] = i;
-    voxel[static_cast<std::size_t>(view.up)] = j;
-    return grid.index(voxel[0], voxel[1], voxel[2]);
+  const auto voxel = [&](int i, int j) {
+    std::array<int, 3> of{};
+    of[static_cast<std::size_t>(axis)] = static_cast<int>(layer);
+    of[static_cast<std::size_t>(across)] = i;
+    of[static_cast<std::size_t>(up)] = j;
+    return of;
   };
-  const double left = component(grid.origin, view.right) - 0.5 * grid.cell,
-               bottom = component(grid.origin, view.up) - 0.5 * grid.cell;
-  Canvas canvas(left, bottom, grid.cell * count(view.right), grid.cell * count(view.up));
-  for (int j = 0; j < count(view.up); ++j)
-    for (int i = 0; i < count(view.right);) {
-      const int first = i;
-      const std::string fill =
-          shade(static_cast<double>(field.distance[index(i, j)]), field.thickness);
-      while (i < count(view.right) &&
-             shade(static_cast<double>(field.distance[index(i, j)]), field.thickness) == fill)
-        ++i;
-      canvas.box(left + grid.cell * first, bottom + grid.cell * j, grid.cell * (i - first),
-                 grid.cell, fill);
-    }
-  if (field.normal.empty()) return canvas.done();
-  constexpr int arrows = 20;
-  const int stride = std::max(1, count(view.right) / arrows);
-  canvas.raw("<path fill=\"none\" stroke=\"#000\" stroke-width=\"1\" d=\"");
-  for (int j = stride / 2; j < count(view.up); j += stride)
-    for (int i = stride / 2; i < count(view.right); i += stride) {
-      const Normal n = decode_normal(field.normal[index(i, j)]);
-      const Vec3 normal{n.x, n.y, n.z};
-      const double length = 0.8 * stride * grid.cell;
+  const auto centre = [&](int i, int j) {
+    const auto [x, y, z] = voxel(i, j);
+    return grid.centre(x, y, z);
+  };
+  const Frame2D frame(axis,
+                      {grid.origin, grid.centre(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1)});
+  const auto below = [&](double level) {
+    auto lines = plot::contours(
+        count(across), count(up),
+        [&](int i, int j) {
+          const auto [x, y, z] = voxel(i, j);
+          return static_cast<double>(field.distance[grid.index(x, y, z)]);
+        },
+        level);
+    const Point origin = frame.seen(grid.origin);
+    for (auto& line : lines)
+      for (Point& p : line) p = {origin.x + grid.cell * p.x, origin.y + grid.cell * p.y};
+    return lines;
+  };
+  // From the outside in, each over the last: blue outside of the surface, grey inside.
+  std::string drawn;
+  for (int step = 6; step >= -6; --step) {
+    const int light = 130 + 20 * step, grey = 120 + 10 * step;
+    const std::string fill = step > 0 ? fmt::format("#{:02x}{:02x}ff", light, 165 + 13 * step)
+                                      : fmt::format("#{0:02x}{0:02x}{0:02x}", grey);
+    const std::string look = fmt::format("fill=\"{}\"{}", fill,
+                                         step == 0 ? " stroke=\"#000\" stroke-width=\"1.5\"" : "");
+    drawn += frame.closed(below(step * field.thickness / 6), look.c_str());
+  }
+  if (!field.normal.empty()) {
+    constexpr int arrows = 20;
+    const int stride = std::max(1, count(across) / arrows);
+    std::vector<float> x, y, z;
+    for (int j = stride / 2; j < count(up); j += stride)
+      for (int i = stride / 2; i < count(across); i += stride) {
+        const Vec3 p = centre(i, j);
+        x.push_back(static_cast<float>(p.x));
+        y.push_back(static_cast<float>(p.y));
+        z.push_back(static_cast<float>(p.z));
+      }
+    std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
+    look_up(field, LookUp::nearest, {x, y, z}, {distance, nx, ny, nz});
+    std::string path;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Vec3 from{x[i], y[i], z[i]}, normal{nx[i], ny[i], nz[i]};
       if (normal == Vec3{}) continue;
-      draw_arrow(canvas, left + grid.cell * (i + 0.5), bottom + grid.cell * (j + 0.5),
-                 length * component(normal, view.right), length * component(normal, view.up));
+      const double length = 0.8 * stride * grid.cell;
+      const Point foot = frame.seen(from), along = frame.seen(length * normal);
+      const Point tip{foot.x + along.x, foot.y + along.y};
+      const auto barb = [&](char command, double side) {
+        return frame.to(command, {tip.x - 0.3 * along.x - side * along.y,
+                                  tip.y - 0.3 * along.y + side * along.x});
+      };
+      path += frame.to('M', foot) + frame.to('L', tip) + barb('M', 0.15) + frame.to('L', tip) +
+              barb('L', -0.15);
     }
-  canvas.raw("\"/>\n");
-  return canvas.done();
+    drawn += fmt::format(
+        "<path clip-path=\"url(#c{})\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.8\" "
+        "d=\"{}\"/>\n",
+        axis, path);
+  }
+  return svg(
+      frame.width(), frame.height(),
+      text(left, fmt::format("distance and normals at {} = {:.6g}; a shade is {:.4g} wide, black "
+                             "is the surface",
+                             "xyz"[axis], component(grid.origin, axis) + layer * grid.cell,
+                             field.thickness / 6)),
+      frame.placed(0, drawn));
 }
 
 std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots) {
-  const View view(scene.outputs.axis);
-  // The window: the objects and where the particles begin, and as much again around.
-  Bounds box;
+  // The window: the objects and where the particles begin, and a part of that around.
+  Bounds window;
   for (const SceneObject& object : scene.objects)
-    for (const Vec3 p : object.surface.vertices) box.extend(object.frame.to_world(p));
-  for (const Sample& sample : snapshots.front().samples) box.extend(sample.position);
-  const double left = component(box.low, view.right), bottom = component(box.low, view.up);
-  double width = component(box.size(), view.right), height = component(box.size(), view.up);
-  const double margin = 0.3 * std::max({width, height, 1e-9});
-  width += 2 * margin, height += 2 * margin;
-  Canvas canvas(left - margin, bottom - margin, width, height);
-  Shadow shadow(left - margin, bottom - margin, width, height), at_end = shadow;
-  const double end = snapshots.back().step * scene.dt;
+    for (const Vec3 p : object.surface.vertices) window.extend(object.frame.to_world(p));
+  for (const Sample& sample : snapshots.front().samples) window.extend(sample.position);
+  const Vec3 size = window.size();
+  const double margin = 0.3 * std::max({size.x, size.y, size.z, 1e-9});
+  window = {window.low - Vec3{margin, margin, margin}, window.high + Vec3{margin, margin, margin}};
+
+  constexpr std::size_t most_dots = 5;
+  const std::size_t last = snapshots.size() - 1, n_dots = std::min(most_dots, last);
+  std::vector<std::size_t> dots;
+  for (std::size_t i = 0; i <= n_dots; ++i) dots.push_back(n_dots == 0 ? 0 : last * i / n_dots);
+  const auto time = [&](std::size_t snapshot) { return snapshots[snapshot].step * scene.dt; };
+  const double end = time(last);
+  double width = 0, height = 0;
+  std::string drawn, key;
+  for (std::size_t i = 0; i < dots.size(); ++i) {
+    const double x = left + 70.0 * static_cast<double>(i);
+    key += fmt::format(
+        "<circle cx=\"{:.0f}\" cy=\"16\" r=\"4\" fill=\"{}\"/>", x + 4,
+        colour(static_cast<double>(dots[i]) / static_cast<double>(std::max<std::size_t>(last, 1))));
+    key += text(x + 12, fmt::format("t = {:.4g}", time(dots[i])));
+  }
   bool moved = false;
-  for (const SceneObject& object : scene.objects) {
-    Frame frame = object.frame;
-    shadow.fill(object.surface, frame, view);
-    if (!frame.is_moving()) continue;
-    moved = true;
-    frame.advance(end);
-    at_end.fill(object.surface, frame, view);
-  }
-  shadow.draw(canvas);
-  if (moved) {
-    at_end.outline(canvas);
-    canvas.raw(
-        fmt::format("<text x=\"8\" y=\"18\" font-family=\"sans-serif\" font-size=\"12\" "
-                    "fill=\"#666\">objects at the begin (grey), moving ones at the end, t = {:g} "
-                    "(outline)</text>\n",
-                    end));
-  }
-  struct Path {
-    std::string drawn;
-    bool goes_on = false;  // from where it was last; not after it has left the window
-  };
-  std::map<std::uint64_t, Path> paths;
-  for (const Snapshot& snapshot : snapshots)
-    for (const Sample& sample : snapshot.samples) {
-      const double right = component(sample.position, view.right) - left + margin,
-                   up = component(sample.position, view.up) - bottom + margin;
-      Path& path = paths[sample.id];
-      const bool seen = right > 0 && right < width && up > 0 && up < height;
-      if (seen)
-        path.drawn += fmt::format("{}{:.1f} {:.1f}", path.goes_on ? "L" : "M",
-                                  canvas.x(right + left - margin), canvas.y(up + bottom - margin));
-      path.goes_on = seen;
+  for (const int axis : scene.outputs.axes) {
+    const Frame2D frame(axis, window);
+    std::string objects;
+    for (const SceneObject& object : scene.objects) {
+      Frame stands = object.frame;
+      objects += frame.closed(shadow(object.surface, stands, frame), "fill=\"#bbb\"");
+      if (!stands.is_moving()) continue;
+      moved = true;
+      stands.advance(end);
+      objects += frame.closed(shadow(object.surface, stands, frame),
+                              "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"");
     }
-  canvas.raw("<g fill=\"none\" stroke=\"#04a\" stroke-width=\"0.8\" stroke-opacity=\"0.7\">\n");
-  for (const auto& [id, path] : paths)
-    if (!path.drawn.empty()) canvas.raw("<path d=\"" + path.drawn + "\"/>\n");
-  canvas.raw("</g>\n");
-  return canvas.done();
+    drawn += frame.placed(width, objects + paths(frame, snapshots, dots));
+    width += frame.width();
+    height = std::max(height, frame.height());
+  }
+  if (moved)
+    key += text(left + 70.0 * static_cast<double>(dots.size()),
+                fmt::format("outline: t = {:.4g}", end));
+  return svg(width, height, key, drawn);
 }
 
 }  // namespace particles

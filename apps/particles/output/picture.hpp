@@ -1,6 +1,6 @@
-// Pictures as SVG, looked at along an axis: a cut through a field (the paper's first figure:
-// distance as shade, normals as arrows), and the paths of particles around the shadow of the
-// objects (figures 3, 6, 7 and 8).
+// Pictures as SVG, seen along an axis, in frames with labelled axes: a cut through a field (the
+// paper's first figure: distance as shade, normals as arrows), and the paths of particles past the
+// objects, coloured by time (figures 3 and 6 to 9).
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"
@@ -15,8 +15,9 @@ namespace particles {
 /// Error(bad_value) for a place outside of the grid.
 [[nodiscard]] std::string slice_svg(const tess::dn::Field& field, int axis, double at);
 
-/// Paths of the particles over all snapshots, the objects where they stand at first, and the
-/// outline of the moving ones where they stand at last.
+/// Paths of the particles over all snapshots, and dots where they are at some of the times; the
+/// shadows of the objects where they stand at first, and the outlines of moving ones at the last
+/// snapshot. One frame per axis of scene.outputs.axes, side by side.
 [[nodiscard]] std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots);
 
 }  // namespace particles

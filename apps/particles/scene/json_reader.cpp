@@ -136,6 +136,10 @@ bool Node::is_yes_or_no() const {
   return at(value_).is_boolean();
 }
 
+bool Node::is_list() const {
+  return at(value_).is_array();
+}
+
 bool Node::yes_or_no() const {
   if (!at(value_).is_boolean()) refuse("is neither true nor false");
   return at(value_).get<bool>();

@@ -38,6 +38,7 @@ class Node {
   [[nodiscard]] std::int64_t whole(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] std::uint64_t seed() const;
   [[nodiscard]] bool is_yes_or_no() const;
+  [[nodiscard]] bool is_list() const;
   [[nodiscard]] bool yes_or_no() const;
   [[nodiscard]] std::string text() const;
   /// Which of these words it is.

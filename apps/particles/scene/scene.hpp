@@ -66,7 +66,7 @@ struct Outputs {
   int statistics = 0;          ///< a row of the table every so many steps; 0: first and last alone
   int trajectories = 0;        ///< positions every so many steps; 0: none
   std::uint64_t traced = 200;  ///< how many particles, evenly spread over the ids
-  int axis = 2;                ///< the pictures look along this axis
+  std::vector<int> axes{2};    ///< the pictures look along these; that of the field along the first
   struct Slice {
     std::size_t object = 0;
     double at = 0;  ///< on the axis, in the object's units

@@ -68,7 +68,7 @@ outputs
   trajectories   positions every so many steps, with --out: VTP files, a .pvd series, a picture (objects as
               they stand at first, moving ones in outline as they stand at last)
   traced      how many particles the trajectories hold (default 200)
-  axis        x, y or z (default): along which the pictures look
+  axis        "x", "y" or "z" (default): along which the pictures look; ["z", "x"]: paths from two sides
   fields      true: with --out, the fields as they were built, field_0.dnf for the first object, …; not with
               compression
   slice       {"object": 0, "at": 0}: with --out, a picture of the object's field, cut at that place on the axis

@@ -4,6 +4,7 @@
 #include "apps/particles/scene/scene.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -76,6 +77,19 @@ Emitter read_emitter(const Node& node, std::size_t n_objects) {
   return emitter;
 }
 
+/// "x", or a list as ["x", "z"].
+std::vector<int> read_axes(const Node& node) {
+  const auto axis = [](const Node& of) { return static_cast<int>(of.word({"x", "y", "z"})); };
+  if (!node.is_list()) return {axis(node)};
+  std::vector<int> axes;
+  for (const Node& item : node.items(1)) {
+    axes.push_back(axis(item));
+    if (std::count(axes.begin(), axes.end(), axes.back()) > 1)
+      item.refuse("stands twice in the list");
+  }
+  return axes;
+}
+
 std::uint64_t read_audit(const Node& node) {
   if (node.is_yes_or_no()) return node.yes_or_no() ? most_particles : 0;
   return static_cast<std::uint64_t>(node.whole(0, most_particles));
@@ -90,7 +104,7 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
   keys.read("trajectories", outputs.trajectories, 0, most);
   if (keys.has("traced"))
     outputs.traced = static_cast<std::uint64_t>(keys["traced"].whole(1, most_particles));
-  if (keys.has("axis")) outputs.axis = static_cast<int>(keys["axis"].word({"x", "y", "z"}));
+  if (keys.has("axis")) outputs.axes = read_axes(keys["axis"]);
   keys.read("fields", outputs.fields);
   if (outputs.fields && objects.empty())
     keys["fields"].refuse("needs an object, and the scene has none");
@@ -103,9 +117,10 @@ Outputs read_outputs(const Node& node, const std::vector<SceneObject>& objects) 
     outputs.slice = Outputs::Slice{static_cast<std::size_t>(object), 0};
     slice.read("at", outputs.slice->at);
     const SceneObject& of = objects[outputs.slice->object];
-    const auto axis = static_cast<std::size_t>(outputs.axis);
-    const double low = component(of.grid.origin, outputs.axis),
-                 high = low + of.grid.cell * (of.grid.n[axis] - 1), at = outputs.slice->at;
+    const int axis = outputs.axes.front();
+    const double low = component(of.grid.origin, axis),
+                 high = low + of.grid.cell * (of.grid.n[static_cast<std::size_t>(axis)] - 1),
+                 at = outputs.slice->at;
     if (at < low || at > high)
       keys["slice"].refuse(
           tess::text("cuts at ", at, ", which is not within the field: ", low, " … ", high));

@@ -52,8 +52,8 @@ constexpr std::array pictures{
             number<&StudyRow::cpu_ns>, &StudyRow::angle_error, false},
     Picture{"study_build.svg", "construction", "field", "CPU seconds", of_angle,
             number<&StudyRow::build_cpu_seconds>, &StudyRow::angle_error},
-    Picture{"study_memory.svg", "memory", "field", "bytes of the field", of_angle, number<&StudyRow::bytes>,
-            &StudyRow::angle_error},
+    Picture{"study_memory.svg", "memory", "field", "bytes of the field", of_angle,
+            number<&StudyRow::bytes>, &StudyRow::angle_error},
     Picture{"study_step.svg", "rules", "rule", "speed x dt / thickness", "RMS error of the place",
             number<&StudyRow::step>, &StudyRow::place_error}};
 

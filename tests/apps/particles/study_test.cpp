@@ -2,8 +2,6 @@
 // that theory gives for the rows.
 #include "apps/particles/study/study.hpp"
 
-#include "apps/particles/output/picture.hpp"
-#include "apps/particles/output/vtp.hpp"
 #include "apps/particles/study/exact.hpp"
 #include "apps/particles/study/measure.hpp"
 #include "collide/dn_field/shapes.hpp"
@@ -142,38 +140,4 @@ TEST_CASE("costs are the least of five runs, and CPU time does not count waiting
   CHECK(waiting.wall >= 0.02);
   CHECK(waiting.wall < 0.06);
   CHECK(waiting.cpu < 0.01);
-}
-
-TEST_CASE("a snapshot's file holds each particle once, in the order of ids", "[particles]") {
-  const Snapshot snapshot{7, {{3, {1, 2, 3}, {4, 5, 6}}, {9, {0.5, 0, -1}, {}}}};
-  const std::string file = vtp(snapshot);
-  CHECK(file.find("NumberOfPoints=\"2\"") != std::string::npos);
-  CHECK(file.find("format=\"ascii\">\n3\n9\n<") != std::string::npos);
-  CHECK(file.find("format=\"ascii\">\n1 2 3\n0.5 0 -1\n<") != std::string::npos);
-}
-
-TEST_CASE("a cut through a field is refused outside of it", "[particles]") {
-  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
-    "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 12, "thickness": 1}],
-    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
-                                  "scene.json");
-  const auto field = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
-  CHECK(slice_svg(field, 2, 0).find("</svg>") != std::string::npos);
-  CHECK_THROWS_AS(slice_svg(field, 2, 2.5), tess::Error);
-  CHECK_THROWS_AS(slice_svg(field, 0, NAN), tess::Error);
-}
-
-TEST_CASE("a picture of paths outlines what moves where it ends", "[particles]") {
-  const auto picture = [](const char* motion) {
-    const Scene scene = parse_scene(R"({"dt": 0.01, "steps": 100,
-      "objects": [{"shape": {"box": {"half": [1, 1, 1]}}, "motion": {"velocity": )" +
-                                        std::string(motion) + R"(}}],
-      "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
-                                    "scene.json");
-    return paths_svg(scene, {{0, {{0, {}, {}}}}, {100, {{0, {}, {}}}}});
-  };
-  // 200 pixels a unit: the left side goes from 120 to 220.
-  CHECK(picture("[0.5, 0, 0]").find("M220.0 ") != std::string::npos);
-  CHECK(picture("[0.5, 0, 0]").find("t = 1 (outline)") != std::string::npos);
-  CHECK(picture("[0, 0, 0]").find("M220.0 ") == std::string::npos);
 }

@@ -1,0 +1,130 @@
+// The files that a run writes: pictures and snapshots.
+#include "apps/particles/output/picture.hpp"
+#include "apps/particles/output/vtp.hpp"
+#include "apps/plot/contour.hpp"
+#include "tests/apps/particles/run_scene.hpp"
+
+#include <sstream>
+
+using namespace particles;
+
+namespace {
+
+double area_of(const std::vector<plot::Point>& line) {  // negative: clockwise
+  double twice = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const plot::Point &a = line[i], &b = line[(i + 1) % line.size()];
+    twice += a.x * b.y - b.x * a.y;
+  }
+  return twice / 2;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++n;
+  return n;
+}
+
+Scene with_object(const std::string& object, const std::string& outputs = "{}") {
+  return parse_scene(R"({"dt": 0.01, "steps": 100, "objects": [)" + object +
+                         R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}], "outputs": )" +
+                         outputs + "}",
+                     "scene.json");
+}
+
+}  // namespace
+
+TEST_CASE("a snapshot's file holds each particle once, in the order of ids", "[particles]") {
+  const Snapshot snapshot{7, {{3, {1, 2, 3}, {4, 5, 6}}, {9, {0.5, 0, -1}, {}}}};
+  const std::string file = vtp(snapshot);
+  CHECK(file.find("NumberOfPoints=\"2\"") != std::string::npos);
+  CHECK(file.find("format=\"ascii\">\n3\n9\n<") != std::string::npos);
+  CHECK(file.find("format=\"ascii\">\n1 2 3\n0.5 0 -1\n<") != std::string::npos);
+}
+
+TEST_CASE("contours lie where the values say, closed, and around holes the other way",
+          "[particles]") {
+  // A ring around (10, 10), between the radii 3 and 6.
+  const auto ring = [](int i, int j) { return std::abs(std::hypot(i - 10, j - 10) - 4.5) - 1.5; };
+  const auto lines = plot::contours(21, 21, ring, 0);
+  REQUIRE(lines.size() == 2);
+  double sum = 0;
+  for (const auto& line : lines) {
+    const double radius = area_of(line) > 0 ? 6 : 3;
+    for (const plot::Point& p : line)
+      CHECK(std::hypot(p.x - 10, p.y - 10) == Approx(radius).margin(0.05));
+    sum += area_of(line);
+  }
+  CHECK(sum == Approx(27 * std::acos(-1.0)).epsilon(0.02));
+  // A region that reaches the border follows it.
+  const auto half = plot::contours(
+      5, 4, [](int i, int) { return i - 2.25; }, 0);
+  REQUIRE(half.size() == 1);
+  CHECK(area_of(half[0]) == Approx(2.25 * 3));
+  CHECK(plot::contours(
+            5, 4, [](int, int) { return NAN; }, 0)
+            .empty());
+  // Two corners of one square touch by neither rule twice: each is a line of its own.
+  const auto corners = [](int i, int j) { return (i + j) % 2 == 0 ? -1.0 : 1.0; };
+  CHECK(plot::contours(2, 2, corners, 0).size() == 2);
+}
+
+TEST_CASE("a cut through a field draws the surface where it is, and is refused outside",
+          "[particles]") {
+  const Scene scene =
+      with_object(R"({"shape": {"sphere": {"radius": 1}}, "resolution": 24, "thickness": 1})");
+  const auto field = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
+  const std::string svg = slice_svg(field, 2, 0);
+  const std::string line = "stroke-width=\"1.5\" d=\"";
+  REQUIRE(count(svg, line) == 1);
+  std::string path = svg.substr(svg.find(line) + line.size());
+  path = path.substr(0, path.find('Z'));
+  for (char& c : path)
+    if (c == 'M' || c == 'L') c = ' ';
+  // 140 pixels per unit; the layer lies half a cell off the middle.
+  std::istringstream numbers(path);
+  const double cell = 4.0 / 23, radius = 140 * std::sqrt(1 - cell * cell / 4);
+  std::size_t n = 0;
+  for (double x = 0, y = 0; numbers >> x >> y; ++n)
+    CHECK(std::hypot(x - 64 - 280, y - 34 - 280) == Approx(radius).margin(1.5));
+  CHECK(n > 40);
+  CHECK_THROWS_AS(slice_svg(field, 2, 2.5), tess::Error);
+  CHECK_THROWS_AS(slice_svg(field, 0, NAN), tess::Error);
+}
+
+TEST_CASE("a picture of paths has axes, times, and the outline of what moves", "[particles]") {
+  const auto picture = [](const std::string& motion, const std::string& outputs = "{}") {
+    const Scene scene = with_object(
+        R"({"shape": {"box": {"half": [1, 1, 1]}}, "motion": {"velocity": )" + motion + "}}",
+        outputs);
+    return paths_svg(
+        scene, {{0, {{0, {}, {}}}}, {50, {{0, {0, 0.5, 0}, {}}}}, {100, {{0, {0, 1, 0}, {}}}}});
+  };
+  // 175 pixels per unit: the left side goes from 169 to 239.0.
+  const std::string moved = picture("[0.4, 0, 0]"), still = picture("[0, 0, 0]");
+  CHECK(moved.find("239.0 ") != std::string::npos);
+  CHECK(moved.find("outline: t = 1<") != std::string::npos);
+  CHECK(still.find("239.0 ") == std::string::npos);
+  CHECK(still.find("169.0 ") != std::string::npos);
+  CHECK(still.find("outline") == std::string::npos);
+  for (const char* label : {">t = 0<", ">t = 0.5<", ">t = 1<", ">x<", ">y<", ">-1<", ">0.5<"})
+    CHECK(still.find(label) != std::string::npos);
+  CHECK(still.find(">z<") == std::string::npos);
+  // Two pieces of the path in two colours, and a dot for each of three times.
+  CHECK(count(still, "stroke-opacity") == 2);
+  CHECK(count(still, "h0\"") == 3);
+  const std::string twice = picture("[0, 0, 0]", R"({"axis": ["z", "x"]})");
+  CHECK(count(twice, "<clipPath") == 2);
+  CHECK(twice.find(">z<") != std::string::npos);
+}
+
+TEST_CASE("the shadow of a torus has its hole", "[particles]") {
+  const Scene scene = with_object(R"({"shape": {"torus": {"major": 1, "minor": 0.4}}})");
+  const std::string svg = paths_svg(scene, {{0, {{0, {}, {}}}}, {1, {{0, {}, {}}}}});
+  const std::size_t begin = svg.find("fill=\"#bbb\"");
+  REQUIRE(begin != std::string::npos);
+  const std::string path = svg.substr(begin, svg.find("/>", begin) - begin);
+  CHECK(count(path, "Z") >= 2);
+  // Edges inside of the shadow cancel: two circles of 64 corners, each for the front and the back.
+  CHECK(count(path, "L") < 4 * 64);
+}
