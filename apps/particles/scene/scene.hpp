@@ -20,7 +20,7 @@
 namespace particles {
 
 /// The words of scene files, in the order of tess::dn::Method and tess::dn::LookUp.
-inline constexpr std::array<std::string_view, 3> method_names{"exact", "normals", "potential"},
+inline const std::vector<std::string_view> method_names{"exact", "normals", "potential"},
     look_up_names{"nearest", "tangent", "trilinear"};
 
 /// An object with the field around it.

@@ -1,7 +1,5 @@
-#include "apps/particles/scene/shape_reader.hpp"
-
 #include "apps/particles/scene/box_union.hpp"
-#include "apps/particles/scene/shown.hpp"
+#include "apps/particles/scene/readers.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
 
@@ -41,11 +39,11 @@ Surface make_cylinder(double radius, double half_height, int sides) {
 Surface read_boxes(const Node& node) {
   std::vector<tess::dn::Bounds> boxes;
   for (const Node& item : node.items(1)) {
-    const Keys box = item.keys({"low", "high"});
-    const Vec3 low = box.need("low", "a corner [x, y, z]").vector(),
-               high = box.need("high", "the other corner [x, y, z]").vector();
+    Vec3 low, high;
+    item.read({{"low", low, any_number, "a corner [x, y, z]"},
+               {"high", high, any_number, "the other corner [x, y, z]"}});
     if (!(low.x < high.x && low.y < high.y && low.z < high.z))
-      box["high"].refuse("is not above low on every axis");
+      item["high"].refuse("is not above low on every axis");
     boxes.push_back({low, high});
   }
   try {
@@ -55,16 +53,7 @@ Surface read_boxes(const Node& node) {
   }
 }
 
-/// As for the numbers of a scene.
-void check_magnitude(const Surface& surface) {
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-    for (const double at : {surface.vertices[v].x, surface.vertices[v].y, surface.vertices[v].z})
-      if (!(std::abs(at) <= largest_number))
-        tess::fail(tess::ErrorCode::bad_mesh, "vertex ", v, " has the coordinate ", at,
-                   ", beyond ±", largest_number, "; choose other units");
-}
-
-/// Whatever is wrong with the file is told with the key that names it.
+/// Errors of the file name the key that names the file.
 Surface read_file(const Node& node, const std::string& folder) {
   const std::string path = path_beside(folder, node.text());
   std::error_code unknown;
@@ -72,14 +61,18 @@ Surface read_file(const Node& node, const std::string& folder) {
     node.blame(path + ": is a directory; give the path of an OBJ file");
   try {
     Surface surface = tess::dn::read_obj(path);
-    check_magnitude(surface);
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+      for (int axis = 0; axis < 3; ++axis)
+        if (const double at = component(surface.vertices[v], axis); std::abs(at) > largest_number)
+          tess::fail(tess::ErrorCode::bad_mesh, "vertex ", v, " has the coordinate ", at,
+                     ", beyond ±", largest_number, "; choose other units");
     return surface;
   } catch (const tess::Error& error) {
     constexpr std::size_t longest = 200;  // it quotes the rest of a line
-    const std::string_view what = error.what();
+    std::string_view what = error.what();
     const bool named = what.starts_with(path);
-    node.blame(path + (named ? "" : ": ") +
-               shown_text(what.substr(named ? path.size() : 0), longest));
+    if (named) what.remove_prefix(path.size());
+    node.blame(path + (named ? "" : ": ") + shown(what, longest));
   }
 }
 
@@ -91,45 +84,52 @@ std::string path_beside(const std::string& folder, const std::string& name) {
 }
 
 Surface read_shape(const Node& node, const std::string& folder, std::string& name) {
-  const Keys keys = node.keys({"sphere", "box", "boxes", "torus", "cylinder", "plate", "file"});
-  const std::string_view kind =
-      keys.one_of({"sphere", "box", "boxes", "torus", "cylinder", "plate", "file"});
-  const Node of = keys[kind];
-  name = kind;
-  if (kind == "file") {
+  Surface out;
+  double radius = 0, half = 0, minor = 0;
+  int n = 0;
+  const auto sphere = [&](const Node& of) {
+    n = 48;
+    of.read({{"radius", radius, positive, "the radius"}, {"rings", n, 2, most_rings}});
+    out = tess::dn::make_sphere(radius, n);
+  };
+  const auto box = [&](const Node& of) {
+    Vec3 edges;
+    of.read({{"half", edges, positive, "half the edges [x, y, z]"}});
+    out = tess::dn::make_box(edges);
+  };
+  const auto torus = [&](const Node& of) {
+    n = 64;
+    of.read({{"major", radius, positive, "the radius of the ring"},
+             {"minor", minor, positive, "the radius of the tube"},
+             {"n", n, 3, most_rings}});
+    if (minor >= radius) of["minor"].refuse("is not below major");
+    out = tess::dn::make_torus(radius, minor, n);
+  };
+  const auto cylinder = [&](const Node& of) {
+    n = 64;
+    of.read({{"radius", radius, positive, "the radius"},
+             {"half_height", half, positive, "half the height"},
+             {"sides", n, 3, most_rings}});
+    out = make_cylinder(radius, half, n);
+  };
+  const auto plate = [&](const Node& of) {
+    n = 1;
+    of.read({{"half", half, positive, "half the edge"}, {"n", n, 1, most_rings}});
+    out = tess::dn::make_plate(half, n);
+  };
+  const auto file = [&](const Node& of) {
+    out = read_file(of, folder);
     name = of.text();
-    return read_file(of, folder);
-  }
-  if (kind == "boxes") return read_boxes(of);
-  if (kind == "box")
-    return tess::dn::make_box(
-        of.keys({"half"}).need("half", "half the edges [x, y, z]").vector(positive));
-  if (kind == "plate") {
-    const Keys plate = of.keys({"half", "n"});
-    int n = 1;
-    plate.read("n", n, 1, most_rings);
-    return tess::dn::make_plate(plate.need("half", "half the edge").number(positive), n);
-  }
-  if (kind == "sphere") {
-    const Keys sphere = of.keys({"radius", "rings"});
-    int rings = 48;
-    sphere.read("rings", rings, 2, most_rings);
-    return tess::dn::make_sphere(sphere.need("radius", "the radius").number(positive), rings);
-  }
-  if (kind == "cylinder") {
-    const Keys cylinder = of.keys({"radius", "half_height", "sides"});
-    int sides = 64;
-    cylinder.read("sides", sides, 3, most_rings);
-    return make_cylinder(cylinder.need("radius", "the radius").number(positive),
-                         cylinder.need("half_height", "half the height").number(positive), sides);
-  }
-  const Keys torus = of.keys({"major", "minor", "n"});
-  int n = 64;
-  torus.read("n", n, 3, most_rings);
-  const double major = torus.need("major", "the radius of the ring").number(positive);
-  const Node minor = torus.need("minor", "the radius of the tube");
-  if (minor.number(positive) >= major) minor.refuse("is not below major");
-  return tess::dn::make_torus(major, minor.number(), n);
+  };
+  name = node.one_of({"sphere", "box", "boxes", "torus", "cylinder", "plate", "file"});
+  node.read({{"sphere", sphere},
+             {"box", box},
+             {"boxes", [&](const Node& of) { out = read_boxes(of); }},
+             {"torus", torus},
+             {"cylinder", cylinder},
+             {"plate", plate},
+             {"file", file}});
+  return out;
 }
 
 }  // namespace particles
