@@ -1,6 +1,6 @@
-// lb_lab: how many chares a PE, which strategy, how often, at what cost, and what is gained. Runs
-// workloads whose answer is known under every strategy and cut that are asked for, or strategies on
-// snapshots that were saved.
+// lb_lab: the effect of the number of chares per PE, of the strategy and its period on run time, and
+// their cost. Runs workloads with a known answer under every given strategy and cut, or strategies on
+// saved snapshots.
 #include "apps/command_line.hpp"
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"
@@ -18,7 +18,7 @@ tess::Task measure(Settings settings, double steps_a_second) {
   tess::Pe& pe = tess::current_pe();
   Sweep sweep;
   sweep.settings = std::move(settings);
-  sweep.tell = print_row;
+  sweep.on_row = print_row;
   sweep.machine = pe.machine().describe();
   print_head();
   co_await run_all(sweep, steps_a_second);
@@ -32,30 +32,31 @@ tess::Task measure(Settings settings, double steps_a_second) {
 
 void add_options(apps::CommandLine& line, Settings& s) {
   line.option("--workload", s.workloads, "names, or all (--list)").separated_by(',');
-  line.option("--per-pe", s.per_pe, "chares on a PE: cuts of the same work").separated_by(',');
-  line.option("--strategy", s.strategies, "names, or all (--list); none is always run")
+  line.option("--per-pe", s.per_pe, "chares per PE: cuts of the same work").separated_by(',');
+  line.option("--strategy", s.strategies, "names, or all (--list); the strategy none is always run")
       .separated_by(',');
   line.option("--period", s.period, "iterations between rounds");
   line.option("--iterations", s.n_iterations, "iterations of a run").between(1, 100'000'000);
-  line.option("--grain", s.grain, "mean work of a chare an iteration at the finest cut, as 250us");
+  line.option("--grain", s.grain, "mean work of a chare per iteration at the finest cut, as 250us");
   line.option("--when", s.when, "at_sync, periodic (no barrier), automatic");
   line.option("--prediction", s.prediction, "last, moving_average, linear_trend");
-  line.option("--speed", s.speeds, "of each PE, as 1,1,0.5").separated_by(',');
-  line.option("--seed", s.seed, "of workloads and strategies that draw");
-  line.option("--cell-bytes", s.cell_bytes, "that migrate with a chare at the finest cut")
+  line.option("--speed", s.speeds, "speed of each PE, as 1,1,0.5").separated_by(',');
+  line.option("--seed", s.seed, "of random workloads and strategies");
+  line.option("--cell-bytes", s.cell_bytes, "bytes that migrate with a chare at the finest cut")
       .between(0, 1 << 30);
-  line.option("--message-bytes", s.message_bytes, "ballast to each neighbour an iteration")
+  line.option("--message-bytes", s.message_bytes, "bytes to each neighbour per iteration")
       .between(0, 1 << 30);
   line.option("--repeat", s.repeat, "runs of each; the fastest counts").between(1, 1000);
   line.option("--json", s.json, "write the rows as JSON");
   line.option("--plot", s.plot, "write SVG plots into a directory");
-  line.option("--save-snapshot", s.snapshots, "write what strategies were shown into a directory");
+  line.option("--save-snapshot", s.snapshots,
+              "write the snapshots given to strategies into a directory");
   line.option("--replay", s.replay,
               "run the strategies on saved snapshots (vt's LBDatafile) instead");
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
-  line.option("--fold", s.fold, "how another number of PEs is filled: block, modulo");
-  line.flag("--explain", s.explain, "say what this run uses and what it left out");
+  line.option("--fold", s.fold, "how elements are placed on another number of PEs: block, modulo");
+  line.flag("--explain", s.explain, "print what this run uses and what it leaves out");
 }
 
 int start(tess::Setup& setup, int argc, char** argv) {
@@ -63,26 +64,26 @@ int start(tess::Setup& setup, int argc, char** argv) {
   bool list = false;
   apps::CommandLine line("Experiments with overdecomposition and load balancing.", "lb_lab");
   add_options(line, settings);
-  line.flag("--list", list, "say which workloads and strategies there are");
+  line.flag("--list", list, "list workloads and strategies");
   if (!line.parse(argc, argv)) return 0;
-  const bool talks = setup.machine->process() == tess::ProcessId{0};
+  const bool prints = setup.machine->process() == tess::ProcessId{0};
   if (list) {
-    if (talks) tess::print_text(list_text());
+    if (prints) tess::print_text(list_text());
     return 0;
   }
   if (!settings.replay.empty()) {
     const std::string report = replay(settings);
-    if (talks) tess::print_text(report);
+    if (prints) tess::print_text(report);
     return 0;
   }
   const std::int32_t n_pes = setup.machine->n_pes();
   complete(settings, n_pes);
-  // On all processes: a fault has to meet them all.
+  // On all processes: all of them have to end where one cannot write.
   plot::make_folder("--plot", settings.plot);
   plot::make_folder("--save-snapshot", settings.snapshots);
   plot::require_writable("--json", settings.json);
   double steps_a_second = 0;
-  if (talks) {
+  if (prints) {
     if (settings.explain) tess::print_text(explain_text(settings, n_pes));
     if (!setup.machine->virtual_time()) steps_a_second = calibrate();
   }

@@ -60,7 +60,7 @@ Row row_of(const Experiment& e, const Outcome& outcome) {
 void check(Sweep& sweep, const Row& row, std::uint64_t serial) {
   if (row.answer == serial || !sweep.wrong.empty()) return;
   sweep.wrong = fmt::format(
-      "{} with {} chares a PE under {}: the answer is {:016x}, computed serially it is {:016x}",
+      "{} with {} chares per PE under {}: the answer is {:016x}, computed serially it is {:016x}",
       row.workload, row.per_pe, row.strategy, row.answer, serial);
 }
 
@@ -96,7 +96,7 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
         row.gain = 1 - row.seconds_total / none_seconds;
         check(sweep, row, serial);
         sweep.rows.push_back(std::move(row));
-        if (sweep.tell) sweep.tell(sweep.rows.back());
+        if (sweep.on_row) sweep.on_row(sweep.rows.back());
         if (!s.snapshots.empty()) save_snapshots(s.snapshots, sweep.rows.back(), outcome);
         if (!s.plot.empty()) drawings.add(outcome, sweep.rows.back());
       }

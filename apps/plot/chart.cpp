@@ -46,7 +46,7 @@ std::string_view with(Style style) {
   return "";
 }
 
-/// Told apart by people who do not see all colours (Okabe and Ito 2008), and by their marks.
+/// Distinct also for colour-blind readers (Okabe and Ito 2008); marks differ, too.
 constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#000000", "#999999"};
 

@@ -1,6 +1,6 @@
-// Line charts as SVG, for the reports of programs: error against run time, time against chares a
-// PE, paths of particles. The data is written beside the picture as CSV (series,x,y; NAME.csv for
-// NAME.svg), so that a report without gnuplot, or with a better tool, has lost nothing.
+// Line charts as SVG, for the reports of programs: error against run time, time against chares
+// per PE. The data is written beside the picture as CSV (series,x,y; NAME.csv for
+// NAME.svg), so that no data is lost without gnuplot.
 //
 //     plot::Chart chart{.title = "transfer", .x_label = "seconds", .y_label = "L2", .x_log = true};
 //     chart.series.push_back({"kuhn", {{0.1, 1e-2}, {0.8, 2.5e-3}}});
@@ -35,7 +35,7 @@ struct Chart {
 /// Writes the data as CSV and draws it through gnuplot. True if the picture is there; false, with
 /// one line on standard error, where gnuplot is missing or no point can be drawn. A point that is
 /// not finite, or not positive on a logarithmic axis, interrupts its line and stands in the CSV
-/// alone; one line on standard error counts them. Throws tess::Error that names the path: it does
+/// only; one line on standard error counts them. Throws tess::Error that names the path: it does
 /// not end in .svg, cannot be written, or gnuplot failed.
 bool write_svg(const std::string& path, const Chart& chart);
 

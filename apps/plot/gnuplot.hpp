@@ -9,11 +9,11 @@ namespace plot {
 
 struct Drawing {
   std::string svg{};
-  std::string error{};   ///< what gnuplot complained of, in one line; empty: all is well
+  std::string error{};   ///< gnuplot's message in one line; empty: none
   bool missing = false;  ///< there is no gnuplot on the PATH
 };
 
-/// Draws what `script` says on gnuplot's standard output. Throws tess::Error where no temporary
+/// Returns the drawing that `script` makes on gnuplot's standard output. Throws tess::Error where no temporary
 /// file or process can be made.
 [[nodiscard]] Drawing draw_with_gnuplot(const std::string& script);
 

@@ -10,13 +10,13 @@ namespace plot {
 /// A field of a line of CSV (RFC 4180): quoted where it must be; every byte is kept.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
-/// What XML can hold: control characters become spaces, bytes that are not UTF-8 become U+FFFD.
+/// The text as XML can hold it: control characters become spaces, bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// Printable text between tags or in an attribute.
 [[nodiscard]] std::string xml_text(std::string_view text);
 
-/// Printable text as a string in which gnuplot interprets nothing, with its quotes.
+/// Printable text as a gnuplot string without escapes, with its quotes.
 [[nodiscard]] std::string gnuplot_string(std::string_view text);
 
 }  // namespace plot

@@ -1,5 +1,5 @@
-// What each PE did and when, as SVG: one row a PE, bars by activity, a time axis below. Written
-// without gnuplot. The bars are written beside it as CSV (row,begin,end,activity).
+// The activity of each PE over time, as SVG: one row per PE, bars by activity, a time axis below.
+// Written without gnuplot. The bars are written beside it as CSV (row,begin,end,activity).
 //
 //     PE 0  ████░░███████▒▒████
 //     PE 1  ██████████░░░▒▒████      busy █   idle ░   balancing ▒

@@ -10,15 +10,15 @@ namespace plot {
 /// Why a file cannot be written; empty where it can, as far as can be told without writing it.
 [[nodiscard]] std::string hindrance(const std::filesystem::path& file);
 
-/// For the file that an option names, before work that is long: throws tess::Error (environment)
-/// that names the option, the path and why. Nothing is asked of an empty path.
+/// Throws tess::Error (environment) that names the option, the path and the reason where a file
+/// cannot be written: called before long work. An empty path is not checked.
 void require_writable(const std::string& option, const std::string& path);
 
 /// Throws tess::Error (environment) that names the path and why it cannot be written.
 void write_file(const std::string& path, std::string_view content);
 
 /// Makes a folder to write to, and those above it. Throws tess::Error (environment) that names the
-/// option, the path and why. Nothing is made of an empty path.
+/// option, the path and the reason. An empty path makes no folder.
 void make_folder(const std::string& option, const std::filesystem::path& path);
 
 /// Where the data of a picture goes: NAME.csv for NAME.svg. Throws tess::Error (bad_argument) for a

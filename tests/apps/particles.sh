@@ -205,7 +205,7 @@ refuses 'emitters: 20000000 particles make the run' limited "$particles" "$(crow
 refuses 'memory is exhausted' limited "$particles" "$(crowded 14000000)" --pes 1 --steps 0
 refuses 'memory is exhausted' limited "$particles" "$(crowded 14000000)" --pes 2 --steps 0
 
-# --explain says what is built and for whom.
+# --explain lists what is built and what uses it.
 falls='s/, "impact": {"restitution": 0.6}//'
 explains() {  # explains LINE COMMAND…
   local line=$1

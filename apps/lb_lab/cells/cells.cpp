@@ -37,7 +37,7 @@ std::string describe_cells(const Problem& p) {
       "{} x {} cells of {} bytes; {}", p.domain.width, p.domain.height, p.cell_bytes,
       workload_of(p).traffic == Traffic::silent
           ? "elements are independent: no messages between them"
-          : fmt::format("edges and {} bytes to each neighbour an iteration", p.message_bytes));
+          : fmt::format("edges and {} bytes to each neighbour per iteration", p.message_bytes));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The kind of workload whose chares are blocks of cells (worker.hpp).
+// The kind of workload in which the chares are blocks of cells (worker.hpp).
 #pragma once
 
 #include "apps/lb_lab/run/kind.hpp"

@@ -21,7 +21,7 @@ class Clusters {
   explicit Clusters(const Problem& problem);
 
   [[nodiscard]] std::uint64_t n_objects() const { return n_objects_; }
-  /// Nominal, at speed 1, of a pair found: the objects' cost is put on the pairs.
+  /// Nominal, at speed 1, per pair: the cost of objects is distributed over their pairs.
   [[nodiscard]] double seconds_a_pair() const { return seconds_a_pair_; }
 
   /// Objects first … last − 1 of an owner in an iteration; the local id is the number.
@@ -43,11 +43,11 @@ class Clusters {
   double radius_, edge_;  // of a cluster, of a box
 };
 
-/// All colliding pairs are different boxes whose closures meet.
+/// A pair is two different boxes with closures that meet.
 inline constexpr tess::collide::PairRules pair_rules{tess::collide::Touching::counts,
                                                      tess::collide::WithinModel::test};
 
-/// A pair's part of the answer, in an iteration. Which of the two is first says nothing.
+/// A pair's part of the answer, in an iteration. It does not depend on the order of the two.
 [[nodiscard]] std::uint64_t answer_of_pair(tess::collide::LocalId a, tess::collide::LocalId b,
                                            std::int32_t iteration);
 

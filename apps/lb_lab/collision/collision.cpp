@@ -38,8 +38,8 @@ class Collision final : public Stepped {
   tess::Task end() override {
     co_await tess::epoch([this] { owners_.broadcast<&Owner::end>(); });
     // Nothing is submitted: every voxel is empty, and ends.
-    const tess::collide::Report nobody;
-    co_await tess::collide::run_collision(collider_, nobody);
+    const tess::collide::Report none;
+    co_await tess::collide::run_collision(collider_, none);
   }
 
  private:
@@ -73,8 +73,8 @@ std::uint64_t serial_answer_of_collision(const Problem& p) {
 
 std::string describe_collision(const Problem& p) {
   return fmt::format(
-      "{} boxes in clusters that drift over {} x {} cells, {} owners a PE; voxels are made on "
-      "demand, and end when nothing touches them; speeds are imitated, by work for what a PE lacks",
+      "{} boxes in clusters that drift over {} x {} cells, {} owners per PE; voxels are made on "
+      "demand, and end when no box touches them; slower PEs do extra work instead",
       Clusters(p).n_objects(), p.domain.width, p.domain.height, owners_a_pe);
 }
 

@@ -8,8 +8,8 @@ namespace {
 
 using Where = std::tuple<tess::CollectionId, tess::CollectionId>;  // owners, stations
 
-/// Runs in the voxel, which tells both owners: the lesser counts, the other is not sent.
-void tell(const tess::Callback<tess::collide::Hits>& callback, tess::collide::Hits&& hits) {
+/// Runs on the PE of the voxel, once per owner of a pair: only the lesser owner is sent the pair.
+void send_to_lesser(const tess::Callback<tess::collide::Hits>& callback, tess::collide::Hits&& hits) {
   if (hits.owner > hits.other) return;
   const auto [owners, stations] = tess::from_bytes<Where>(callback.where());
   Station& here = tess::GroupProxy<Station>(stations).local();
@@ -17,11 +17,11 @@ void tell(const tess::Callback<tess::collide::Hits>& callback, tess::collide::Hi
       static_cast<double>(hits.pairs.size()) * Clusters(here.plan().problem).seconds_a_pair();
   here.worked(nominal, nominal);
   const tess::Index1 owner = tess::collide::index_of(hits.owner);
-  tess::ArrayProxy<Owner>(owners)[owner].send<&Owner::told>(std::move(hits));
+  tess::ArrayProxy<Owner>(owners)[owner].send<&Owner::receive>(std::move(hits));
 }
 
 const tess::Callback<tess::collide::Hits>::Kind lesser_owner{"lb_lab: pairs to the lesser owner",
-                                                             &tell};
+                                                             &send_to_lesser};
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void Owner::submit(const tess::collide::Collider& collider, std::int32_t iterati
                                  tess::collide::owner_of(index()), iteration));
 }
 
-void Owner::told(const tess::collide::Hits& hits) {
+void Owner::receive(const tess::collide::Hits& hits) {
   for (const tess::collide::LocalPair& pair : hits.pairs)
     answer_ += answer_of_pair(pair.mine, pair.theirs, iteration_);
 }

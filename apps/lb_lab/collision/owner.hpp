@@ -1,6 +1,6 @@
-// Owns some of the objects of a collision: hands them to the collider in each iteration, is told of
-// their pairs, and adds them to the answer. Owners stay where they are; what is balanced are the
-// collider's voxels, where the pairs are found.
+// Owns some of the objects of a collision: submits them to the collider in each iteration, receives
+// their pairs, and adds those to the answer. Owners do not migrate; the collider's voxels, which find
+// the pairs, are balanced.
 #pragma once
 
 #include "apps/lb_lab/collision/clusters.hpp"
@@ -18,7 +18,7 @@ class Owner : public tess::Chare<Owner, tess::Index1> {
 
   // Entry methods.
   void submit(const tess::collide::Collider& collider, std::int32_t iteration);
-  void told(const tess::collide::Hits& hits);
+  void receive(const tess::collide::Hits& hits);
   void end();
 
   template <class Ar>

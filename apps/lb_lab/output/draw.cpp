@@ -58,7 +58,7 @@ plot::Timeline timeline_of(const Outcome& outcome, const Row& row) {
   plot::Timeline timeline;
   const std::size_t n = std::min(most_rows, outcome.records.size());
   timeline.title = fmt::format(
-      "{}, {} chares a PE, {}: the first iterations{}", row.workload, row.per_pe, row.strategy,
+      "{}, {} chares per PE, {}: the first iterations{}", row.workload, row.per_pe, row.strategy,
       n < outcome.records.size() ? fmt::format(", {} of {} PEs", n, outcome.records.size()) : "");
   const std::vector<std::vector<Interval>> rounds = balancing_times(outcome);
   double end = outcome.began;
@@ -88,10 +88,10 @@ void Drawings::write(const std::string& directory) const {
 
   plot::Chart time{
       .title = fmt::format("{} on {} PEs: the same work in more chares", workload_, best.row.n_pes),
-      .x_label = "chares a PE",
-      .y_label = "ms an iteration",
+      .x_label = "chares per PE",
+      .y_label = "ms per iteration",
       .x_log = true};
-  plot::Chart balance{.title = fmt::format("{} on {} PEs, {} chares a PE", workload_,
+  plot::Chart balance{.title = fmt::format("{} on {} PEs, {} chares per PE", workload_,
                                            best.row.n_pes, best.row.per_pe),
                       .x_label = "iteration",
                       .y_label = "max/average"};

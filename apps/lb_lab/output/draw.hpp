@@ -1,5 +1,5 @@
-// Pictures of one workload: time against chares a PE, imbalance over iterations, and what PEs did
-// before and after the first rounds.
+// Pictures of one workload: time against chares per PE, imbalance over iterations, and the activity
+// of PEs before and after the first rounds.
 #pragma once
 
 #include "apps/lb_lab/run/experiment.hpp"

@@ -1,5 +1,4 @@
-// Strategies on snapshots from files: what each would do, on any number of PEs, without running
-// anything.
+// Strategies on snapshots from files: the moves of each, on any number of PEs, without a run.
 #pragma once
 
 #include "apps/lb_lab/run/settings.hpp"

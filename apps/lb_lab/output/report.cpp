@@ -21,7 +21,7 @@ std::string hash_text(std::uint64_t answer) {
   return fmt::format("{:016x}", answer);
 }
 
-/// Six digits: more are noise, and a file that is read.
+/// Six digits: more are noise.
 double rounded(double value) {
   return std::stod(fmt::format("{:.6g}", value));
 }
@@ -66,7 +66,7 @@ void print_best(const Sweep& sweep) {
   for (const std::string& workload : sweep.settings.workloads) {
     const Row& row = best_of(sweep, workload);
     tess::print_text(
-        fmt::format("best of {}: {} chares a PE under {}, {:.4f} s, gain {:.1f} % over none\n",
+        fmt::format("best of {}: {} chares per PE under {}, {:.4f} s, gain {:.1f} % over none\n",
                     workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain));
   }
 }
@@ -94,7 +94,7 @@ void write_json(const std::string& path, const Sweep& sweep) {
 }
 
 std::string list_text() {
-  std::string out = "workloads (NAME_comm: the same, and each cell needs its neighbours'):\n";
+  std::string out = "workloads (NAME_comm: the same, and each cell depends on its neighbours):\n";
   for (const Workload& one : workloads())
     if (!one.name.ends_with("_comm")) out += fmt::format("  {:<18} {}\n", one.name, one.what);
   return out + fmt::format("strategies: {}\n", fmt::join(tess::balance::strategy_names(), ", "));
@@ -115,14 +115,15 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
                      s.workloads.size() * s.per_pe.size() * s.strategies.size() *
                          static_cast<std::size_t>(s.repeat),
                      s.n_iterations);
-  out += s.when == "periodic"
-             ? fmt::format(", a round about every {} iterations beside the work, no barrier\n",
-                           s.period)
-             : fmt::format(", a barrier every {} iterations{}\n", s.period,
-                           s.when == "automatic" ? ", a round where it is worth its cost" : "");
+  out +=
+      s.when == "periodic"
+          ? fmt::format(", a round about every {} iterations beside the work, no barrier\n",
+                        s.period)
+          : fmt::format(", a barrier every {} iterations{}\n", s.period,
+                        s.when == "automatic" ? ", a round where it gains more than it costs" : "");
   out += "none: no balancer is made, no load measured, no barrier\n";
   if (s.plot.empty()) out += "left out: intervals for timelines (--plot)\n";
-  if (s.snapshots.empty()) out += "left out: what strategies are shown (--save-snapshot)\n";
+  if (s.snapshots.empty()) out += "left out: snapshots for strategies (--save-snapshot)\n";
   return out;
 }
 

@@ -1,4 +1,4 @@
-// What the laboratory tells: a table as it goes, JSON at the end, what it will use before.
+// Reports of the laboratory: before the run an explanation, a table row per run, JSON at the end.
 #pragma once
 
 #include "apps/lb_lab/run/experiment.hpp"
@@ -17,13 +17,13 @@ void print_best(const Sweep& sweep);
 /// where the file cannot be written.
 void write_json(const std::string& path, const Sweep& sweep);
 
-/// The workloads and strategies there are, a line each.
+/// All workloads and strategies, a line each.
 [[nodiscard]] std::string list_text();
 
 /// What these settings use, and what they leave out.
 [[nodiscard]] std::string explain_text(const Settings& settings, std::int32_t n_pes);
 
-/// Writes the phases that a strategy was shown, one file a PE:
+/// Writes the phases that a strategy was given, one file per PE:
 /// DIR/WORKLOAD-PER_PE-STRATEGY/data.PE.json.
 void save_snapshots(const std::string& directory, const Row& row, const Outcome& outcome);
 

@@ -76,7 +76,7 @@ std::uint64_t serial_answer_of_particles(const Problem& p) {
 std::string describe_particles(const Problem& p) {
   return fmt::format(
       "{} particles on {} x {} cells, in blocks made on demand; those that leave go to the next "
-      "block; speeds are imitated, by work for what a PE lacks",
+      "block; slower PEs do extra work instead",
       Swarm(p).size(), p.domain.width, p.domain.height);
 }
 

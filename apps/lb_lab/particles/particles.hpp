@@ -1,4 +1,4 @@
-// The kind of workload whose chares are regions of space with the particles in them (region.hpp).
+// The kind of workload in which the chares are regions of space with their particles (region.hpp).
 #pragma once
 
 #include "apps/lb_lab/run/kind.hpp"

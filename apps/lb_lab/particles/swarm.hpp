@@ -1,6 +1,6 @@
 // Particles on the plane of a problem, drawn to an attractor that travels: each moves by itself,
-// with drag and random kicks, so that they bunch up without meeting in a point. What becomes of a
-// particle depends on its number and the iteration alone, not on who computes it, and beside whom.
+// with drag and random kicks, so that they bunch up without meeting in a point. The path of a
+// particle depends on its number only, not on the chare, the PE or the other particles.
 #pragma once
 
 #include "apps/lb_lab/workload/workload.hpp"

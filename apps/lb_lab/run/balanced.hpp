@@ -1,4 +1,4 @@
-// Balancing of an array in a run, as the experiment wants it; for all kinds of workloads.
+// Balancing of an array in a run, for all kinds of workloads.
 #pragma once
 
 #include "apps/lb_lab/run/experiment.hpp"
@@ -10,7 +10,7 @@ namespace lb_lab {
   return experiment.balance.strategy != "none";
 }
 
-/// The experiment's strategy, which notes what it is shown.
+/// The strategy of the options, which also records the snapshots that it is given.
 [[nodiscard]] tess::balance::Strategy noting(const tess::BalanceOptions& options,
                                              std::vector<tess::balance::Phase>& phases);
 

@@ -30,7 +30,7 @@ tess::Task run(const Experiment& experiment, Outcome& outcome) {
   co_await tess::epoch([&] { stations = tess::create_group<Station>(experiment.plan); });
   co_await workload_of(experiment.plan.problem).kind->run(experiment, stations, outcome);
   tess::Future<std::vector<PeRecord>> records;
-  stations.broadcast<&Station::tell>(records.callback());
+  stations.broadcast<&Station::give_record>(records.callback());
   outcome.records = co_await records;
 }
 

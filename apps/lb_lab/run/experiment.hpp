@@ -27,22 +27,22 @@ struct Outcome {
   std::uint64_t answer = 0;
   std::vector<PeRecord> records;  ///< of each PE
   std::vector<tess::balance::Round> rounds;
-  std::vector<tess::balance::Phase> phases;  ///< what the strategy saw, if it is kept
+  std::vector<tess::balance::Phase> phases;  ///< snapshots given to the strategy, if they are kept
 };
 
 /// Runs it to its end; PE 0 awaits it. Both arguments outlive the run.
 tess::Task run(const Experiment& experiment, Outcome& outcome);
 
-/// max/average of PE time over the iterations [first, last): the sums over the iterations of the
-/// slowest PE, and of all by their speeds.
+/// max/average of PE time over the iterations [first, last): the sum of the slowest PE over that of
+/// all, weighted by their speeds.
 [[nodiscard]] double imbalance(const Outcome& outcome, const Plan& plan, std::int32_t first,
                                std::int32_t last);
 
 /// Seconds that the run would take if work were a fluid: measured work over all speeds.
 [[nodiscard]] double ideal_seconds(const Outcome& outcome, const Plan& plan);
 
-/// Rounds as intervals on the clock of the run, for each PE: from where the last element of all
-/// came to the barrier to where the first of this PE went on. Without a barrier: as PE 0 saw them.
+/// Rounds as intervals on the clock of the run, per PE: they begin when the last of all elements has
+/// reached the barrier, and end when the first on this PE goes on. Without a barrier: by PE 0.
 [[nodiscard]] std::vector<std::vector<Interval>> balancing_times(const Outcome& outcome);
 
 }  // namespace lb_lab

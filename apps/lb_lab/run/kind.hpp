@@ -1,6 +1,6 @@
-// A kind of workload: what its chares are. Of cells with a given cost there are many workloads
-// (workloads.cpp); a collision and a swarm of particles do real work, whose cost nobody gave. Each
-// kind knows how chares compute the answer, and how one does without them.
+// A kind of workload, by its chares. Many workloads have cells of given cost (workloads.cpp); a
+// collision and a swarm of particles do real work, whose cost is not given. Each kind computes the
+// answer in two ways: by chares, and serially.
 #pragma once
 
 #include "apps/lb_lab/run/experiment.hpp"
@@ -15,19 +15,19 @@ struct Kind {
   std::uint64_t (*serial_answer)(const Problem&) = nullptr;
   /// Seconds at speed 1 of all iterations: exact for cells, nominal for real work.
   double (*total_seconds)(const Problem&) = nullptr;
-  /// What the chares work on and send, for --explain.
+  /// The work and the messages of the chares, for --explain.
   std::string (*describe)(const Problem&) = nullptr;
-  /// Makes the chares, has them balanced, runs them to their end: fills what the outcome says of
-  /// times, answer and rounds. Awaited on PE 0; all arguments outlive it.
+  /// Makes the chares, balances them, runs them to their end, and fills times, answer and rounds of
+  /// the outcome. Awaited on PE 0; all arguments outlive it.
   tess::Task (*run)(const Experiment&, tess::GroupProxy<Station>, Outcome&) = nullptr;
 };
 
-/// How much real work there is: as many items as the grain asks for at `nominal_seconds` each, but
-/// no more than memory and a simulated machine stand. The same for every cut and machine.
+/// The amount of real work: as many items as the grain makes at `nominal_seconds` each, limited by
+/// memory and by the time of a simulated machine. The same for every cut and machine.
 [[nodiscard]] std::uint64_t n_items(const Problem& problem, double nominal_seconds);
 
-/// Seconds at speed 1 of one of so many items in an iteration, by the grain: what a simulated
-/// machine of fixed cost charges for it.
+/// Seconds at speed 1 of one of so many items in an iteration, by the grain. A simulated machine of
+/// fixed cost charges them.
 [[nodiscard]] double item_seconds(const Problem& problem, std::uint64_t n_items);
 
 /// Nominal seconds of all iterations.

@@ -37,7 +37,7 @@ double parse_time(std::string_view option, std::string_view value) {
   const std::string_view unit(end, static_cast<std::size_t>(last - end));
   const double factor = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" ? 1 : 0;
   if (error != std::errc() || !(count * factor > 0) || count * factor > 1e6)
-    refuse(option, ": ", value, " is no time above 0, as 250us, 1ms, 0.5s");
+    refuse(option, ": ", value, " is not a time above 0; give 250us, 1ms, 0.5s or the like");
   return count * factor;
 }
 
@@ -45,7 +45,7 @@ tess::BalanceWhen parse_when(std::string_view value) {
   if (value == "at_sync") return tess::BalanceWhen::at_sync;
   if (value == "periodic") return tess::BalanceWhen::periodic;
   if (value == "automatic") return tess::BalanceWhen::automatic;
-  refuse("--when: ", value, " is none of at_sync, periodic, automatic");
+  refuse("--when: ", value, " is not a kind of rounds; choose at_sync, periodic or automatic");
 }
 
 Problem problem_of(const Settings& s, std::uint32_t workload, std::int32_t n_pes) {
@@ -74,7 +74,7 @@ void complete(Settings& s, std::int32_t n_pes) {
   if (s.period < 1 || s.period > s.n_iterations)
     refuse("--period: ", s.period, " iterations; give 1 to --iterations ", s.n_iterations);
   if (!s.speeds.empty() && s.speeds.size() != static_cast<std::size_t>(n_pes))
-    refuse("--speed: ", s.speeds.size(), " speeds for ", n_pes, " PEs; give one a PE");
+    refuse("--speed: ", s.speeds.size(), " speeds for ", n_pes, " PEs; give one per PE");
   for (const double speed : s.speeds)
     if (!(speed >= 1e-3 && speed <= 1e3))
       refuse("--speed: ", speed, " is not within 0.001 and 1000");

@@ -1,4 +1,4 @@
-// What the command line asks for, checked before anything runs.
+// The options of the command line, checked before the first run.
 #pragma once
 
 #include "apps/lb_lab/workload/workload.hpp"
@@ -33,8 +33,8 @@ struct Settings {
   std::string fold = "block";
 };
 
-/// Puts names in place of `all`, `none` in front of the strategies, and throws tess::Error for what
-/// cannot be run on that many PEs.
+/// Replaces `all` by names, puts `none` in front of the strategies, and throws tess::Error for
+/// settings that cannot be run on that many PEs.
 void complete(Settings& settings, std::int32_t n_pes);
 
 /// "250us", "1ms", "0.5s" in seconds, above 0. Throws tess::Error that names the option.

@@ -97,7 +97,7 @@ void Station::first_begins() {
 void Station::iteration_ends(std::int32_t iteration) {
   const double busy_before = busy_at_begin_, cpu_before = cpu_at_begin_, began = began_;
   first_begins();
-  // The CPU's time has the looking for messages, too; the meter's what others stole meanwhile.
+  // CPU time includes the search for messages; the meter's time includes what other threads took.
   const double busy = std::min(busy_at_begin_ - busy_before, cpu_at_begin_ - cpu_before);
   entry(record_.seconds, iteration, 0) += busy;
   draw(iteration, {began, std::min(began + busy, began_)});
@@ -109,7 +109,7 @@ void Station::round_ends(std::int32_t phase) {
   entry(record_.resumes_at, phase, -1) = began_;
 }
 
-void Station::tell(tess::Callback<std::vector<PeRecord>> target) {
+void Station::give_record(tess::Callback<std::vector<PeRecord>> target) {
   std::vector<PeRecord> mine;
   mine.push_back(record_);
   contribute(tess::in_order(tess::concatenate), std::move(mine), std::move(target));

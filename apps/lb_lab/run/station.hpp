@@ -1,5 +1,5 @@
-// What the laboratory has on each PE: the plan of the run, and a record of what the PE did. Workers
-// find the one of the PE they are on; after the run all are gathered on PE 0.
+// The laboratory's context on each PE: the plan of the run, and a record of the work of the PE.
+// Workers use the station of the PE they are on; after the run the records are gathered on PE 0.
 #pragma once
 
 #include "apps/lb_lab/workload/workload.hpp"
@@ -12,7 +12,7 @@ namespace lb_lab {
 
 enum class Sync : std::uint8_t { none, at_period };
 
-/// One run, as every PE needs to know it.
+/// One run, the same on every PE.
 struct Plan {
   Problem problem;
   Sync sync = Sync::none;  ///< at_period: at_sync() after every `period` iterations
@@ -27,7 +27,7 @@ struct Interval {
   double begin = 0, end = 0;
 };
 
-/// What one PE did.
+/// The work of one PE.
 struct PeRecord {
   std::vector<double> seconds;     ///< CPU (or virtual) time in workers, of each iteration
   std::vector<Interval> busy;      ///< of the iterations that are drawn, in order; gaps are idle
@@ -42,7 +42,7 @@ class Station : public tess::Group<Station> {
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] double speed() const { return speed_; }
 
-  /// Does a worker's work of an iteration: `seconds` at speed 1. Returns the word that it is given.
+  /// Does a worker's work of an iteration: `seconds` at speed 1. Returns its argument.
   [[nodiscard]] std::uint64_t work(double seconds, std::uint64_t word);
   /// An iteration of a worker begins and ends; nothing else runs between.
   void begins();
@@ -50,19 +50,19 @@ class Station : public tess::Group<Station> {
   void waits(std::int32_t phase);
   void resumes(std::int32_t phase);
 
-  /// Real work was done on this PE, in `measured_seconds`. A simulated machine of fixed cost is
-  /// charged the nominal ones; a PE that is slower than the fastest goes on for what it lacks.
+  /// Real work took `measured_seconds` on this PE. A simulated machine of fixed cost is charged the
+  /// nominal ones; a PE that is slower than the fastest works on for the difference.
   void worked(double measured_seconds, double nominal_seconds);
-  /// The clock that worked() is measured on.
+  /// The clock for worked().
   [[nodiscard]] double cpu() const;
   /// Part of the answer, from a chare that ends here.
   void take(std::uint64_t part) { answer_ += part; }
 
   // Entry methods.
-  void tell(tess::Callback<std::vector<PeRecord>> target);
-  void tell_answer(tess::Callback<std::uint64_t> target) { contribute(tess::sum, answer_, target); }
-  /// For workloads whose iterations end everywhere at once (stepped.hpp), between two of them: the
-  /// first begins; one is over; a round is over. What the PE did between is the iteration's.
+  void give_record(tess::Callback<std::vector<PeRecord>> target);
+  void give_answer(tess::Callback<std::uint64_t> target) { contribute(tess::sum, answer_, target); }
+  /// For workloads whose iterations end on all PEs at once (stepped.hpp), between two of them: the
+  /// first begins, one is over, a round is over. The work between two calls is the iteration's.
   void first_begins();
   void iteration_ends(std::int32_t iteration);
   void round_ends(std::int32_t phase);
@@ -74,8 +74,8 @@ class Station : public tess::Group<Station> {
 
   const Plan plan_;
   const double speed_;
-  const double slowness_;    // how many times slower than the fastest PE
-  bool fixed_cost_ = false;  // a simulated machine whose clock does not see what code costs
+  const double slowness_;    // relative to the fastest PE, at least 1
+  bool fixed_cost_ = false;  // a simulated machine whose clock does not count the cost of code
   PeRecord record_;
   double began_ = 0, cpu_at_begin_ = 0;
   double busy_at_begin_ = 0;  // as the PE's meter has it

@@ -27,7 +27,7 @@ tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> s
 
   co_await workload.end();
   tess::Future<std::uint64_t> answer;
-  stations.broadcast<&Station::tell_answer>(answer.callback());
+  stations.broadcast<&Station::give_answer>(answer.callback());
   outcome.answer = co_await answer;
   if (balances(experiment)) outcome.rounds = balancer.history();
 }

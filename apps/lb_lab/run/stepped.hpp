@@ -1,7 +1,7 @@
-// Runs of workloads whose iterations end everywhere at once: each is closed by epochs, and rounds
-// of the balancer come between two of them. For chares that come and go.
+// Runs of workloads whose iterations end on all PEs at the same time: epochs close each iteration,
+// and rounds of the balancer come between two of them. For chares that come and go.
 //
-//     iteration, its epochs │ the stations note it │ every period: a round │ iteration …
+//     iteration, its epochs │ the stations record it │ every period: a round │ iteration …
 #pragma once
 
 #include "apps/lb_lab/run/experiment.hpp"
@@ -9,7 +9,7 @@
 
 namespace lb_lab {
 
-/// What one such workload does; PE 0 calls.
+/// One such workload. PE 0 calls it.
 class Stepped {
  public:
   Stepped() = default;
@@ -17,16 +17,16 @@ class Stepped {
   Stepped& operator=(const Stepped&) = delete;
   virtual ~Stepped() = default;
 
-  /// Makes the arrays, called in an epoch. The balancer is empty where the experiment wants none.
+  /// Makes the arrays, called in an epoch. The balancer is empty where the experiment has none.
   virtual tess::BalancerProxy create() = 0;
-  /// Creates what the first iteration finds.
+  /// Creates the chares of the first iteration.
   virtual tess::Task begin() = 0;
   virtual tess::Task step(std::int32_t iteration) = 0;
   /// All chares give their part of the answer to the station of their PE, and end.
   virtual tess::Task end() = 0;
 };
 
-/// Runs it, and fills the outcome but for the records.
+/// Runs it, and fills the outcome except for the records.
 tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> stations,
                        Stepped& workload, Outcome& outcome);
 

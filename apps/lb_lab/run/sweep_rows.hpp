@@ -27,10 +27,10 @@ struct Row {
 
 struct Sweep {
   Settings settings;
-  std::function<void(const Row&)> tell;  ///< called with each row as it comes; may be empty
+  std::function<void(const Row&)> on_row;  ///< called with each row; may be empty
   std::string machine;
   std::vector<Row> rows;
-  std::string wrong;  ///< in which run the answer was not the serial one; empty: all is well
+  std::string wrong;  ///< the first run with another answer than the serial one; empty: none
 };
 
 /// The fastest row of a workload.

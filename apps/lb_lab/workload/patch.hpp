@@ -1,4 +1,4 @@
-// The cells of one element with a halo of one: the numerics of a workload, which know no message.
+// The cells of one element with a halo of one: the numerics of a workload, without messages.
 #pragma once
 
 #include "apps/lb_lab/workload/workload.hpp"
@@ -21,8 +21,8 @@ class Patch {
   /// One iteration of all cells.
   void advance(const Problem& problem, std::int32_t iteration);
 
-  /// What the walk of this iteration starts from, and what came of it: states change if it is not
-  /// the same.
+  /// The word that the walk of this iteration starts from, and the word that it ends with: the state
+  /// changes if they differ.
   [[nodiscard]] std::uint64_t word() const { return now_[at(0, 0)]; }
   void take(std::uint64_t walked) { now_[at(0, 0)] = walked; }
 

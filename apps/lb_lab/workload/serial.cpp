@@ -1,5 +1,5 @@
-// The whole domain at once. It shares with the chares what a cell becomes, and nothing
-// of blocks, halos, messages and migrations.
+// The whole domain at once. It shares the next state of a cell with the chares, but no code of
+// blocks, halos, messages or migrations.
 #include "apps/lb_lab/workload/serial.hpp"
 
 #include "runtime/core/hash.hpp"

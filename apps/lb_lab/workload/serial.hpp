@@ -1,4 +1,4 @@
-// The oracle for workloads of cells, and what they cost.
+// The oracle for workloads of cells, and their cost.
 #pragma once
 
 #include "apps/lb_lab/workload/workload.hpp"

@@ -1,8 +1,8 @@
-// What is computed: work that moves through a domain of cells, and an answer that does not depend
-// on where, when and in how many elements it is computed. One function says what a cell costs, one
-// what it becomes; the second never looks at the first. A new workload of cells is a line in
-// workloads.cpp; one whose chares are something else is a kind of its own (kind.hpp), to which the
-// domain is the space that its chares share.
+// A workload: work that moves through a domain of cells, and an answer that does not depend on
+// where, when and in how many elements it is computed. One function gives the cost of a cell,
+// another one its next state; states do not depend on costs. A new workload of cells is a line in
+// workloads.cpp. A workload with other chares is a kind of its own (kind.hpp); the domain is then
+// the space that its chares share.
 #pragma once
 
 #include "apps/lb_lab/workload/domain.hpp"
@@ -23,7 +23,7 @@ struct Problem {
   std::int32_t n_iterations = 1;
   std::uint64_t seed = 1;
   double cell_seconds = 0;          ///< work of a cell of relative work 1 on a PE of speed 1
-  std::uint64_t cell_bytes = 0;     ///< that a cell carries along when it migrates
+  std::uint64_t cell_bytes = 0;     ///< cargo that migrates with a cell
   std::uint64_t message_bytes = 0;  ///< ballast of a message to a neighbour
 };
 
@@ -42,8 +42,8 @@ struct Workload {
   std::string name;
   std::string_view what;
   Shape shape = Shape::line;
-  Traffic traffic = Traffic::silent;  ///< silent: a cell does not look at its neighbours
-  // Of cells alone:
+  Traffic traffic = Traffic::silent;  ///< silent: a cell does not depend on its neighbours
+  // Of workloads of cells only:
   /// Relative work of a cell in an iteration, at least 0, about 1 on average.
   double (*work)(const Problem&, Cell, std::int32_t iteration) = nullptr;
   std::uint64_t (*first)(const Problem&, Cell) = nullptr;
@@ -51,7 +51,7 @@ struct Workload {
   const Kind* kind = &cells_kind;
 };
 
-/// The draw of a seed: the same wherever it is asked for.
+/// A random number of [0, 1) that depends on the seed only.
 [[nodiscard]] inline double drawn(std::uint64_t seed) {
   return tess::unit(tess::mix(seed));
 }
@@ -68,12 +68,12 @@ struct Workload {
 [[nodiscard]] double block_seconds(const Problem& problem, const Block& block,
                                    std::int32_t iteration);
 
-/// Part of the answer: of one cell, of its state after the last iteration, and of what it carried.
+/// A cell's part of the answer, from its state after the last iteration and the hash of its cargo.
 /// The answer is the sum over all cells.
 [[nodiscard]] std::uint64_t answer_of(const Problem& problem, Cell cell, std::uint64_t state,
                                       std::uint64_t carried);
 
-/// What a cell carries along: `cell_bytes` / 8 words from its number, and their hash.
+/// The cargo that migrates with a cell: `cell_bytes` / 8 words that depend on its number.
 [[nodiscard]] std::vector<std::uint64_t> cargo_of(const Problem& problem, Cell cell);
 
 /// The answer, computed without chares and messages.

@@ -80,7 +80,7 @@ TEST_CASE("the answer of a collision has every pair that brute force finds, once
   CHECK(seconds == Approx(total_seconds(p)).epsilon(0.4));
 }
 
-TEST_CASE("objects are where they are, whoever owns them", "[lb_lab]") {
+TEST_CASE("the place of an object does not depend on its owner", "[lb_lab]") {
   const Clusters clusters(problem("collision"));
   const std::uint64_t n = clusters.n_objects();
   const std::vector<tess::collide::Item> all = clusters.items(0, n, {}, 3);
@@ -107,7 +107,7 @@ TEST_CASE("clusters drift: the voxels that they touch come and go", "[lb_lab]") 
   CHECK(before.size() < static_cast<std::size_t>(p.domain.n_cells()));
 }
 
-TEST_CASE("what becomes of a particle does not depend on those beside it", "[lb_lab]") {
+TEST_CASE("the path of a particle does not depend on other particles", "[lb_lab]") {
   const Problem p = problem("particles");
   const Swarm swarm(p);
   std::uint64_t answer = 0;

@@ -124,7 +124,7 @@ TEST_CASE("the JSON has the rows of the schema", "[lb_lab]") {
   CHECK(root.at("best").at(0).at("strategy") == "greedy");
 }
 
-TEST_CASE("what a strategy was shown is saved, and replayed gives the same prediction",
+TEST_CASE("the snapshots given to a strategy are saved, and their replay gives the same prediction",
           "[lb_lab]") {
   const Scratch scratch;
   Settings s = linear();

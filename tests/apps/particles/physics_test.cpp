@@ -113,15 +113,15 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   const Ran last_step = run_scene(scene, "--pes=2");
   CHECK(last_step.last().tunnelled == 200);
   CHECK(last_step.last().inside == 200);
-  // Who begins inside has not gone through anything.
+  // A particle that begins inside has not gone through a surface.
   scene.emitters[0].low = {-0.5, -0.5, -0.2}, scene.emitters[0].high = {0.5, 0.5, 0.2};
   scene.emitters[0].velocity = {};
   CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
 }
 
-TEST_CASE("who passes a wall too thin for the field is counted, whichever way it looks",
+TEST_CASE("a particle that passes a wall too thin for the field is counted, for every orientation",
           "[particles][physics]") {
-  // A cube with a fin beside it, 0.02 thick with cells of 0.08, turned anyhow.
+  // A cube with a fin beside it, 0.02 thick with cells of 0.08, in any orientation.
   const auto falling_on_fin = [](const std::string& look_up, double speed) {
     Scene scene = parse_scene(
         R"({"dt": 0.01, "steps": 60,
@@ -146,10 +146,11 @@ TEST_CASE("who passes a wall too thin for the field is counted, whichever way it
       CHECK(ran.last().tunnelled == below);
       n_through += below;
     }
-  CHECK(n_through > 500);  // else this tests nothing
+  CHECK(n_through > 500);  // otherwise the case proves nothing
 }
 
-TEST_CASE("who dips under two walls in a corner has passed neither", "[particles][physics]") {
+TEST_CASE("a particle that dips under two walls in a corner has passed neither",
+          "[particles][physics]") {
   // Object 0 is met by its upper side, object 1 by its lower one.
   const tess::dn::Surface plate = tess::dn::make_box({1, 1, 0.01});
   const tess::dn::Field field = tess::dn::build_exact(plate, grid_around(bounds(plate), 20, 0.3));
@@ -170,7 +171,8 @@ TEST_CASE("who dips under two walls in a corner has passed neither", "[particles
   CHECK(after({}, 0, 0, 0.02).what == Mark::nothing);      // began inside
 }
 
-TEST_CASE("who bounces over a box in one step has not gone through it", "[particles][physics]") {
+TEST_CASE("a particle that bounces over a box in one step has not gone through it",
+          "[particles][physics]") {
   // Up over the box, off the ceiling, and down behind: the straight way leads through the box.
   const Scene scene = parse_scene(R"({"dt": 1, "steps": 1,
     "objects": [{"shape": {"box": {"half": [0.5, 1, 1]}}, "resolution": 60, "thickness": 0.5},
@@ -187,7 +189,8 @@ TEST_CASE("who bounces over a box in one step has not gone through it", "[partic
   CHECK(ran.last().tunnelled == 0);
 }
 
-TEST_CASE("who stands still beside what spins has not gone through it", "[particles][physics]") {
+TEST_CASE("a particle at rest beside a spinning object has not gone through it",
+          "[particles][physics]") {
   // Seen from the ball each flies a circle of three radians a step around it.
   const Scene scene = parse_scene(R"({"dt": 0.01, "steps": 20,
     "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 16}}, "resolution": 24, "thickness": 0.5,
@@ -199,7 +202,7 @@ TEST_CASE("who stands still beside what spins has not gone through it", "[partic
 }
 
 TEST_CASE(
-    "a corner into which gravity pulls gives nobody energy, and who cannot bounce rests in it",
+    "a corner into which gravity pulls gives no particle energy, and one that cannot bounce rests",
     "[particles][physics]") {
   // Voxels in the corner know one wall, by up to half a cell too late: lifting out is paid for.
   for (const std::string look_up : {"nearest", "tangent", "trilinear"})
@@ -269,7 +272,7 @@ TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negati
       CHECK(norm(to.velocity) == Approx(2).epsilon(1e-12));  // the flow keeps the speed
       const Vec3 at{from.position.x, from.position.y, 0};
       const double distance = norm(at) - radius;
-      // Off the rim of the reach and off the surface, where a voxel decides who is in.
+      // Off the rim of the reach and off the surface, where a voxel decides which particle is within.
       if (distance < 0.1 || distance > reach - 0.1) continue;
       const Vec3 normal = direction(at);
       const double along = dot(normal, from.velocity) / 2;

@@ -104,7 +104,8 @@ TEST_CASE("a run gives the same bits on any PEs, under any schedule and any cut 
     }
 }
 
-TEST_CASE("a block ends when it is empty and is made again by who enters it", "[particles][run]") {
+TEST_CASE("a block ends when it is empty and is made again by a particle that enters",
+          "[particles][run]") {
   // One particle to and fro between two walls, through ten blocks.
   const Scene scene = parse_scene(R"({"dt": 0.1, "steps": 200, "block": 0.2, "exchange": 1,
     "objects": [{"shape": {"boxes": [{"low": [-2, -1, -1], "high": [-1, 1, 1]}, {"low": [1, -1, -1], "high": [2, 1, 1]}]},

@@ -135,7 +135,8 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
   CHECK(told.find('\n') == std::string::npos);
 }
 
-TEST_CASE("what is nested deeper than any scene is refused, however deep", "[particles][scene]") {
+TEST_CASE("JSON that is nested deeper than any scene is refused, however deep",
+          "[particles][scene]") {
   const auto depth = GENERATE(std::size_t{40}, std::size_t{100'000});
   for (const auto& [open, close] : {std::pair("[", "]"), std::pair("{\"a\":", "}")}) {
     std::string text = "{\"dt\":";
@@ -166,8 +167,7 @@ TEST_CASE("keys and values are shown in one line, and cut between characters",
   CHECK(refusal("{\"" + long_key).size() < 400);
 }
 
-TEST_CASE("what is wrong with an OBJ file is told with the scene, the key and the file",
-          "[particles][scene]") {
+TEST_CASE("errors of an OBJ file name the scene, the key and the file", "[particles][scene]") {
   const auto folder =
       std::filesystem::temp_directory_path() / ("scene_test_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
@@ -280,7 +280,7 @@ TEST_CASE("bodies too thin for their field are refused where impacts or springs 
         std::string::npos);
 }
 
-TEST_CASE("units in which floats cannot reckon are refused", "[particles][scene]") {
+TEST_CASE("units beyond the range of floats are refused", "[particles][scene]") {
   const auto scene = [](const std::string& size, const std::string& more, const std::string& dt) {
     return R"({"dt": )" + dt + R"(, "steps": 1, "objects": [{"shape": {"sphere": {"radius": )" +
            size + "}}" + more + R"(}], "emitters": [{"count": 1, "sphere": {"radius": 1}}],
