@@ -23,7 +23,7 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
   if (s.speeds.empty()) return snapshot;
   if (s.speeds.size() != n_pes)
     tess::fail(tess::ErrorCode::bad_argument, "--speed: ", s.speeds.size(),
-               " speeds for a replay on ", n_pes, " PEs; give one a PE");
+               " speeds for a replay on ", n_pes, " PEs; give one per PE");
   snapshot.pes.speed = s.speeds;
   tess::balance::validate(snapshot);
   return snapshot;
