@@ -1,49 +1,36 @@
 #include "apps/particles/audit/fields.hpp"
 
+#include "collide/dn_field/compressed.hpp"
+
 #include <algorithm>
 
 namespace particles {
-namespace {
+
 using namespace tess::dn;
 
-/// Interpolated between the voxels of a grid; value: double(int i, int j, int k).
-template <class Value>
-double interpolated(const Grid& grid, const Value& value, Vec3 p) {
+double distance_at(const Object& object, Vec3 p) {
+  const Grid& grid = object.field->grid;
+  const auto voxel = [&](int i, int j, int k) {
+    return static_cast<double>(object.compressed != nullptr
+                                   ? voxel_distance(*object.compressed, i, j, k)
+                                   : object.field->distance[grid.index(i, j, k)]);
+  };
   std::array<int, 3> low{};
   std::array<double, 3> part{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double at = (component(p, axis) - component(grid.origin, axis)) / grid.cell;
-    const int last = grid.n[static_cast<std::size_t>(axis)] - 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int a = static_cast<int>(axis), last = grid.n[axis] - 1;
+    const double at = (component(p, a) - component(grid.origin, a)) / grid.cell;
     if (!(at >= 0 && at <= last)) return HUGE_VAL;
-    const double floor = std::min(std::floor(at), last - 1.0);
-    low[static_cast<std::size_t>(axis)] = static_cast<int>(floor);
-    part[static_cast<std::size_t>(axis)] = at - floor;
+    low[axis] = static_cast<int>(std::min(std::floor(at), last - 1.0));
+    part[axis] = at - low[axis];
   }
+  const auto between = [](double t, double a, double b) { return (1 - t) * a + t * b; };
   const auto along_x = [&](int j, int k) {
-    return (1 - part[0]) * value(low[0], low[1] + j, low[2] + k) +
-           part[0] * value(low[0] + 1, low[1] + j, low[2] + k);
+    return between(part[0], voxel(low[0], low[1] + j, low[2] + k),
+                   voxel(low[0] + 1, low[1] + j, low[2] + k));
   };
-  const auto in_plane = [&](int k) {
-    return (1 - part[1]) * along_x(0, k) + part[1] * along_x(1, k);
-  };
-  return (1 - part[2]) * in_plane(0) + part[2] * in_plane(1);
-}
-
-}  // namespace
-
-double distance_at(const Field& field, Vec3 p) {
-  const auto value = [&field](int i, int j, int k) {
-    return static_cast<double>(field.distance[field.grid.index(i, j, k)]);
-  };
-  return interpolated(field.grid, value, p);
-}
-
-double distance_at(const Object& object, Vec3 p) {
-  if (object.compressed == nullptr) return distance_at(*object.field, p);
-  const auto value = [&object](int i, int j, int k) {
-    return static_cast<double>(voxel_distance(*object.compressed, i, j, k));
-  };
-  return interpolated(object.field->grid, value, p);
+  return between(part[2], between(part[1], along_x(0, 0), along_x(1, 0)),
+                 between(part[1], along_x(0, 1), along_x(1, 1)));
 }
 
 }  // namespace particles

@@ -1,152 +1,150 @@
-// What the keys of a scene say together: each may be right by itself, and the run still impossible.
+// Checks that need several keys of a scene: each may be right by itself, and the run impossible.
 #include "apps/particles/scene/json.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace particles {
 namespace {
+using namespace tess::dn;
 
-/// How far from the origin the object reaches in the whole run, at most.
-double furthest(const Scene& scene, const SceneObject& object) {
-  const tess::dn::Frame& frame = object.frame;
-  const double time = scene.dt * scene.steps;
-  const tess::dn::Bounds box = bounds(object.surface);
-  const double radius = std::max(norm(box.low), norm(box.high)) + object.thickness;
-  return norm(frame.position) + norm(frame.velocity) * time +
-         greatest_scale(scene, object) * radius;
-}
-
-/// Fields and look-ups reckon in floats, and with squares: what they are given must be within
-/// their reach, the way of a step too.
-void check_units(const Scene& scene, const std::string& file) {
-  constexpr double largest = 1e15, least = 1e-15;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    const auto check = [&](double value, const char* what) {
-      if (value >= least && value <= largest) return;
-      tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i, "]: ", what, " is ", value,
-                 ", not within ", least, " … ", largest,
-                 ", in which fields can be reckoned; choose other units");
-    };
-    check(object.grid.cell, "a cell of its field");
-    check(object.thickness, "its thickness");
-    check(object.grid.cell * least_scale(scene, object), "a cell in the world, at its smallest");
-    check(object.thickness * greatest_scale(scene, object), "its thickness in the world");
-    check(object.grid.cell * object.frame.scale / scene.dt, "a cell a step, as a speed,");
+/// The checks of one object in its scene.
+class ObjectCheck {
+ public:
+  ObjectCheck(const Scene& scene, std::size_t number)
+      : scene_(scene), object_(scene.objects[number]), number_(number) {
+    const Frame& frame = object_.frame;
+    const Bounds box = bounds(object_.surface);
+    const double radius = std::max(norm(box.low), norm(box.high)) + object_.thickness;
+    least_ = least_scale(scene, object_), greatest_ = greatest_scale(scene, object_);
+    reach_ =
+        norm(frame.position) + norm(frame.velocity) * scene.dt * scene.steps + greatest_ * radius;
   }
-}
 
-/// A cell must be wide against what tells positions apart where the object is: particles there
-/// stand on a lattice of doubles.
-void check_offset(const Scene& scene, const std::string& file) {
-  constexpr double positions_a_cell = 16, unit = 2.2e-16;  // of a double, relative
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    const double cell = object.grid.cell * least_scale(scene, object),
-                 reach = furthest(scene, object);
-    if (cell >= positions_a_cell * unit * reach) continue;
-    tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i, "]: a cell of its field is ",
-               cell, " wide in the world, and positions ", reach,
-               " from the origin, where it gets, are ", unit * reach,
-               " apart; move the scene to the origin, or choose a coarser field");
+  /// All positions are numbers that doubles can square; the scale stays positive.
+  void check_magnitude() const {
+    if (!(reach_ <= largest_number))
+      refuse("]: by its shape, transform and motion it reaches ", reach_, " from the origin in ",
+             scene_.steps, " steps of ", scene_.dt, ", beyond ", largest_number,
+             ", the largest number supported; choose other units, or a slower motion");
+    if (!(least_ > 0))
+      refuse("].motion.scale: ", object_.frame.scale_rate, " a second takes the scale from ",
+             object_.frame.scale, " to ", least_, " in ", scene_.steps, " steps of ", scene_.dt,
+             "; it must stay above 0");
   }
-}
 
-void check_magnitude(const Scene& scene, const std::string& file) {
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const double reach = furthest(scene, scene.objects[i]);
-    if (reach <= largest_number) continue;
-    tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i,
-               "]: by its shape, transform and motion it reaches ", reach, " from the origin in ",
-               scene.steps, " steps of ", scene.dt, ", beyond ", largest_number,
-               ", the largest that can be reckoned with; choose other units, or a slower motion");
-  }
-}
-
-/// A field knows no wall that fits between its voxels: particles would pass and nobody see it.
-void check_walls(const Scene& scene, const std::string& file) {
-  constexpr double most_thin = 0.1, most_slanted = 0.5;  // of the surface; the latter with edges
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    const double needed = least_wall(scene, object), thin = thin_share(scene, object);
-    const bool by_walls = object.walls.share_thinner(needed) > most_thin;
-    if (thin == 0 || (!by_walls && thin <= most_slanted)) continue;
-    // All but as many as are let through are thicker than this one.
-    const auto& list = by_walls ? object.walls.opposite : object.walls.slanted;
-    const double let_through = (by_walls ? most_thin : most_slanted) * object.walls.n_places();
-    const double wall =
-        list[static_cast<std::size_t>(std::min(let_through, static_cast<double>(list.size() - 1)))];
-    const double shrink = (wall + kept_off(scene, object)) / (needed + kept_off(scene, object));
-    const double resolution = std::ceil((object.grid.n[0] - 1) / shrink) + 1;
-    tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i, "].shape: ", 100 * thin,
-               " % of its surface is an open sheet, or a wall thinner than ", needed,
-               ", which a field of ", object.grid.n[0],
-               " voxels needs; particles would pass it: take ",
-               object.field.empty() ? "" : "a field of ", "sides two",
-               object.method == tess::dn::Method::normals ? " and another method" : "",
-               shrink > 0 && resolution <= 1024
-                   ? tess::text(", or a resolution of ", resolution, " or more")
-                   : "");
-  }
-}
-
-/// What no key by itself can say: the rules fit the masses, the fields cover the rules.
-void check_rules(const Scene& scene, const std::string& file) {
-  for (const double mass : masses_of(scene)) {
-    try {
-      validate(for_mass(scene.rules, mass));
-    } catch (const tess::Error& error) {
-      tess::fail(tess::ErrorCode::bad_value, file, ": rules.", error.what(), " (mass ", mass, ")");
-    }
-  }
-  const bool sweeps = scene.rules.impact && scene.rules.impact->sweep == tess::dn::Sweep::on;
-  const double reach = tess::dn::reach(scene.rules);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    const tess::dn::Frame& frame = object.frame;
-    const double least = least_scale(scene, object);
-    if (!(least > 0))
-      tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i,
-                 "].motion.scale: ", frame.scale_rate, " a second takes the scale from ",
-                 frame.scale, " to ", least, " in ", scene.steps, " steps of ", scene.dt,
-                 "; it must stay above 0");
-    const double covered = object.thickness * least,
-                 within = least * tess::dn::covered(object.thickness, object.grid.cell,
-                                                    object.sides, look_up_of(scene.rules));
-    if (reach > within)
-      tess::fail(tess::ErrorCode::bad_value, file, ": objects[", i,
-                 "].thickness: ", object.thickness, " times scale ", least,
-                 within < covered
-                     ? tess::text(", less ", covered - within, " that a sheet keeps off,")
-                     : "",
-                 " is below the distance ", reach, " at which a rule begins to act");
-    if (sweeps || !needs_field(scene.rules)) continue;
-    const double extent = norm(bounds(object.surface).size());
+  /// The field is as thick as the rules reach and, without sweep, as a particle flies in a step.
+  void check_thickness() const {
+    const bool sweeps = scene_.rules.impact && scene_.rules.impact->sweep == Sweep::on;
+    const double reach = tess::dn::reach(scene_.rules), thickness = object_.thickness * least_;
+    const double covers = least_ * covered(object_.thickness, object_.grid.cell, object_.sides,
+                                           look_up_of(scene_.rules));
+    if (reach > covers)
+      refuse("].thickness: ", object_.thickness, " times scale ", least_,
+             covers < thickness
+                 ? fmt::format(", less {:g} that a sheet keeps off,", thickness - covers)
+                 : "",
+             " is below the distance ", reach, " at which a rule begins to act");
+    if (sweeps || !needs_field(scene_.rules)) return;
+    const Frame& frame = object_.frame;
+    const double extent = norm(bounds(object_.surface).size());
     const double surface = norm(frame.velocity) +
                            norm(frame.angular_velocity) * frame.scale * extent +
                            std::abs(frame.scale_rate) * extent;
-    for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
-      const Emitter& emitter = scene.emitters[e];
+    for (std::size_t e = 0; e < scene_.emitters.size(); ++e) {
+      const Emitter& emitter = scene_.emitters[e];
       const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
                            std::abs(emitter.outward) + surface;
-      if (speed * scene.dt > covered)
-        tess::fail(tess::ErrorCode::bad_value, file, ": emitters[", e, "]: speed ", speed,
-                   " times dt ", scene.dt, " passes the field of objects[", i, "], ", covered,
+      if (speed * scene_.dt > thickness)
+        tess::fail(tess::ErrorCode::bad_value, scene_.name, ": emitters[", e, "]: speed ", speed,
+                   " times dt ", scene_.dt, " passes the field of objects[", number_, "], ",
+                   thickness,
                    " thick, in one step; use impact with sweep, a thicker field or a shorter step");
     }
   }
-}
+
+  /// Fields and look-ups compute in floats, and with squares: lengths and speeds are within range.
+  void check_units() const {
+    constexpr double largest = 1e15, least = 1e-15;
+    const auto check = [&](double value, const char* what) {
+      if (value >= least && value <= largest) return;
+      refuse("]: ", what, " is ", value, ", not within ", least, " … ", largest,
+             ", which fields support; choose other units");
+    };
+    check(object_.grid.cell, "a cell of its field");
+    check(object_.thickness, "its thickness");
+    check(object_.grid.cell * least_, "a cell in the world, at its smallest");
+    check(object_.thickness * greatest_, "its thickness in the world");
+    check(object_.grid.cell * object_.frame.scale / scene_.dt, "a cell a step, as a speed,");
+  }
+
+  /// A cell is wide against the distance of neighbouring doubles where the object is.
+  void check_offset() const {
+    constexpr double positions_a_cell = 16, unit = 2.2e-16;  // of a double, relative
+    const double cell = object_.grid.cell * least_;
+    if (!(cell >= positions_a_cell * unit * reach_))
+      refuse("]: a cell of its field is ", cell, " wide in the world, and positions ", reach_,
+             " from the origin, where it gets, are ", unit * reach_,
+             " apart; move the scene to the origin, or choose a coarser field");
+  }
+
+  /// No large part of the surface is a wall that fits between voxels: particles would pass it.
+  void check_walls() const {
+    constexpr double most_thin = 0.1, most_slanted = 0.5;  // of the surface; the latter with edges
+    const double needed = least_wall(scene_, object_), thin = thin_share(scene_, object_);
+    const bool by_walls = object_.walls.share_thinner(needed) > most_thin;
+    if (thin == 0 || (!by_walls && thin <= most_slanted)) return;
+    // The remedy is the resolution at which no more than the allowed share is thinner.
+    const auto& list = by_walls ? object_.walls.opposite : object_.walls.slanted;
+    const double allowed = (by_walls ? most_thin : most_slanted) * object_.walls.n_places();
+    const double wall =
+        list[static_cast<std::size_t>(std::min(allowed, static_cast<double>(list.size() - 1)))];
+    const double off = kept_off(scene_, object_), shrink = (wall + off) / (needed + off);
+    const double resolution = std::ceil((object_.grid.n[0] - 1) / shrink) + 1;
+    refuse("].shape: ", 100 * thin, " % of its surface is an open sheet, or a wall thinner than ",
+           needed, ", which a field of ", object_.grid.n[0],
+           " voxels needs; particles would pass it: take ",
+           object_.field.empty() ? "" : "a field of ", "sides two",
+           object_.method == Method::normals ? " and another method" : "",
+           shrink > 0 && resolution <= 1024
+               ? fmt::format(", or a resolution of {} or more", resolution)
+               : "");
+  }
+
+ private:
+  template <class... Text>
+  [[noreturn]] void refuse(const Text&... text) const {
+    tess::fail(tess::ErrorCode::bad_value, scene_.name, ": objects[", number_, text...);
+  }
+
+  const Scene& scene_;
+  const SceneObject& object_;
+  std::size_t number_;
+  double least_, greatest_;  // scales in the run
+  double reach_;             // the largest distance from the origin in the run, at most
+};
 
 }  // namespace
 
 void check_scene(const Scene& scene) {
-  check_magnitude(scene, scene.name);
-  check_rules(scene, scene.name);
-  if (builds_fields(scene)) check_units(scene, scene.name);
-  if (needs_field(scene.rules)) check_offset(scene, scene.name);
-  check_walls(scene, scene.name);
+  for (const double mass : masses_of(scene)) {
+    try {
+      validate(for_mass(scene.rules, mass));
+    } catch (const tess::Error& error) {
+      tess::fail(tess::ErrorCode::bad_value, scene.name, ": rules.", error.what(), " (mass ", mass,
+                 ")");
+    }
+  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const ObjectCheck check(scene, i);
+    check.check_magnitude();
+    check.check_thickness();
+    if (builds_fields(scene)) check.check_units();
+    if (needs_field(scene.rules)) check.check_offset();
+    check.check_walls();
+  }
 }
 
 }  // namespace particles
