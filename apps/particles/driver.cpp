@@ -1,31 +1,24 @@
 #include "apps/particles/driver.hpp"
 
-#include "apps/particles/output/explain.hpp"
-#include "apps/particles/output/output_check.hpp"
-#include "apps/particles/output/picture.hpp"
+#include "apps/particles/output/files.hpp"
 #include "apps/particles/output/report.hpp"
-#include "apps/particles/output/vtp.hpp"
 #include "apps/particles/simulation/memory.hpp"
-#include "apps/particles/simulation/simulate.hpp"
-#include "apps/particles/study/study.hpp"
 #include "apps/plot/write_file.hpp"
-#include "collide/dn_field/field_file.hpp"
 
-#include <filesystem>
 #include <fmt/ranges.h>
 
 namespace particles {
 namespace {
 
-/// Lives on process 0; other processes hold it, too, but do not use it.
+/// Used on process 0 only.
 struct Problem {
   const Options& options;
   Scene scene;
   Report report;
 };
 
-/// What the fields take compressed; of flat ones, what they would by the usual compression. None
-/// where that cannot be made, as for lack of memory: a run is more than this number.
+/// The size of the compressed fields; of flat ones, of copies by the usual compression. None where
+/// these cannot be made, for instance for lack of memory: the run is worth more than this number.
 std::optional<std::uint64_t> compressed_bytes(const Stage& stage) {
   std::uint64_t bytes = 0;
   try {
@@ -40,24 +33,6 @@ std::optional<std::uint64_t> compressed_bytes(const Stage& stage) {
   return bytes;
 }
 
-tess::dn::Field flat_field(const FieldInTheMaking& of) {
-  return of.compressed() ? expanded(*of.compressed()) : of.field();
-}
-
-void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {
-  const Scene& scene = stage.scene;
-  const std::filesystem::path in(folder);
-  if (scene.outputs.fields)
-    for (std::size_t i = 0; i < stage.fields.size(); ++i)
-      save_field(stage.fields[i].field(), (in / field_file_name(i)).string());
-  if (const auto& slice = scene.outputs.slice)
-    plot::write_file((in / "field.svg").string(), slice_svg(flat_field(stage.fields[slice->object]),
-                                                            scene.outputs.axes.front(), slice->at));
-  if (result.trajectories.empty()) return;
-  write_series(folder, result.trajectories, scene.dt);
-  plot::write_file((in / "paths.svg").string(), paths_svg(scene, result.trajectories));
-}
-
 tess::Task run(Problem& problem, apps::Progress& progress) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
   RunResult result;
@@ -67,7 +42,7 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
   co_await simulate(stage, result, run_options);
   progress.clear();
   tess::print(table(stage->scene, result, problem.report));
-  // First what the run has found: an extra that fails shall not take it along.
+  // The results are written first: a failure of an extra below must not lose them.
   if (!options.out.empty()) write_files(options.out, *stage, result);
   const auto write_json = [&] {
     if (!options.json.empty())
@@ -91,16 +66,16 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
 
 int drive(tess::Setup& setup, const Options& options) {
   if (!options.resolutions.empty() && !options.study)
-    tess::fail(
-        tess::ErrorCode::bad_argument, "--resolutions ",
-        fmt::format("{}", fmt::join(options.resolutions, ",")),
-        ": is for a study; add --study, or leave it out (a scene has objects[i].resolution)");
+    tess::fail(tess::ErrorCode::bad_argument, "--resolutions ",
+               fmt::format("{}", fmt::join(options.resolutions, ",")),
+               ": is for a study; add --study, or leave it out (a scene has "
+               "objects[i].resolution)");
   Problem problem{options, read_scene(options.scene), {}};
   if (options.steps >= 0) {
     problem.scene.steps = options.steps;
     check_scene(problem.scene);
   }
-  if (options.out.empty()) {  // nobody asks for them
+  if (options.out.empty()) {
     problem.scene.outputs.trajectories = 0;
     problem.scene.outputs.slice.reset();
     problem.scene.outputs.fields = false;
@@ -112,7 +87,7 @@ int drive(tess::Setup& setup, const Options& options) {
     tess::fail(tess::ErrorCode::bad_value, options.scene,
                ": objects: is empty; --study needs an object to bounce off");
   check_memory(problem.scene, machine.n_processes());
-  prepare_outputs(problem.scene, options);
+  prepare_files(problem.scene, options);
   if (options.explain && machine.process().value == 0)
     tess::print(explanation(problem.scene, options));
   apps::Progress progress(machine.process().value == 0 ? stderr : nullptr);

@@ -1,5 +1,5 @@
-// particles SCENE.json: moves particles among objects by distance/normal fields, and says what came
-// of it: energies, particles that tunnelled, time a particle and step.
+// particles SCENE.json: moves particles among objects by distance/normal fields, and reports energies,
+// particles that tunnelled, and the time per particle and step.
 #include "apps/command_line.hpp"
 #include "apps/particles/driver.hpp"
 #include "apps/particles/scene/scene.hpp"
@@ -26,19 +26,19 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--json", options.json, "write the result as JSON");
   line.option("--out", options.out,
               "folder for trajectories, pictures, files of fields and the study");
-  line.flag("--explain", options.explain, "say what this scene uses and what it left out");
+  line.flag("--explain", options.explain, "print what this scene uses and what it leaves out");
   line.flag("--study", options.study,
             "error against run time of every choice, on the first object");
   line.option("--resolutions", options.resolutions,
-              "voxels an axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
+              "voxels per axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
               "16,32,64)")
       .separated_by(',')
       .between(4, 1024);
   line.flag("--compressed", options.compressed,
-            "steps look up in compressed fields (as the scene's key compression)");
+            "use compressed fields (as the scene's key compression)");
   std::string balance;
   line.option("--balance", balance,
-              "blocks migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
+              "migrate blocks: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
               "strategies: " +
                   fmt::format("{}", fmt::join(tess::balance::strategy_names(), ", ")));
   bool stability = false;
@@ -48,8 +48,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.flag("--help-scene", help_scene, "describe the keys of a scene file");
   if (!line.parse(argc, argv)) return 0;
   if (!balance.empty()) options.run.balance = tess::parse_balance(balance);
-  const bool speaks = setup.machine->process().value == 0;
-  if (stability && !particles::print_stability(speaks)) return 1;
+  const bool prints = setup.machine->process().value == 0;
+  if (stability && !particles::print_stability(prints)) return 1;
   if (options.scene.empty()) {
     if (stability) return 0;
     tess::fail(tess::ErrorCode::bad_argument, "SCENE is missing; give a scene file (--help)");

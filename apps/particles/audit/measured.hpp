@@ -1,5 +1,5 @@
-// What a step's particles show: sums, extremes and counts that come out the same bit for bit in
-// whichever order particles, blocks and PEs are joined.
+// Measures of all particles after a step: sums, extremes and counts that are the same bit for bit
+// for every order in which particles, blocks and PEs are joined.
 #pragma once
 
 #include "apps/particles/audit/exact_sum.hpp"
@@ -15,7 +15,7 @@ struct Measured {
   std::uint64_t blocks = 0;
   std::uint64_t nonfinite = 0;
   std::uint64_t inside = 0;     ///< below the surface of an object
-  std::uint64_t tunnelled = 0;  ///< that ever went through a surface
+  std::uint64_t tunnelled = 0;  ///< went through a surface
   double fastest = 0;           ///< speed
   double nearest = HUGE_VAL;    ///< least signed distance to an object, in world units
   ExactSum kinetic, potential;  ///< m v²/2 and −m g·x
@@ -33,8 +33,8 @@ struct Measured {
     potential.add(other.potential);
     hash += other.hash;
   }
-  /// Kinetic and potential; infinite or not a number where a particle's is beyond all doubles, as
-  /// is kinetic.total(). Particles that are not finite themselves have no part in it.
+  /// Kinetic and potential; like kinetic.total() infinite or not a number where that of a particle is
+  /// beyond all doubles. Particles with positions or velocities that are not finite are left out.
   [[nodiscard]] double energy() const {
     ExactSum both = kinetic;
     both.add(potential);

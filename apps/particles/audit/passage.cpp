@@ -8,9 +8,9 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-/// A direction to 30 degrees as a number, and back.
+/// A direction, to 30 degrees, as a number, and back.
 std::uint8_t code_of(Vec3 normal) {
-  constexpr double none = 0.38;  // of a unit vector: a component that counts as 0
+  constexpr double none = 0.38;  // a smaller component of a unit vector counts as 0
   const auto third = [](double part) { return part > none ? 2 : part < -none ? 0 : 1; };
   return static_cast<std::uint8_t>(third(normal.x) + 3 * third(normal.y) + 9 * third(normal.z));
 }
@@ -18,12 +18,11 @@ Vec3 direction_of(int code) {
   return direction({code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0});
 }
 
-/// Follows who enters the body and leaves it. Between two crossings the winding number says where
-/// the way is: faces that parts of the body have inside of it, and those that touch, count for
-/// nothing, however shallow the way.
+/// Follows a particle into the body and out of it. Between two crossings the winding number decides
+/// whether the path is inside: faces that lie inside the body, and those that touch, do not count.
 Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 from, Vec3 to) {
   constexpr double opposite = -0.5;
-  constexpr double together = 1e-9;  // of the way: an edge, or faces that touch
+  constexpr double together = 1e-9;  // part of the path: an edge, or faces that touch
   std::vector<Crossing> crossings;
   triangles.crossings(from, to, crossings);
   if (crossings.empty()) return mark;
@@ -50,13 +49,12 @@ Mark after_walls(Mark mark, std::uint16_t number, const Bvh& triangles, Vec3 fro
   return mark;
 }
 
-/// Whether a way reaches deeper below the surface than `depth`, and begins above that, at the
-/// distance `begin`.
+/// Whether a path that begins at the distance `begin`, above −depth, reaches below −depth.
 bool goes_below(const Object& object, double depth, double begin, Vec3 from, Vec3 to) {
   const Field& field = *object.field;
   const double length = norm(to - from), cell = field.grid.cell;
   if (begin < -depth) return false;
-  // The part of the way that lies in the grid, cut into pieces of half a cell.
+  // The part of the path that lies in the grid, cut into pieces of half a cell.
   const Vec3 low = field.grid.origin, along = to - from;
   const Vec3 high =
       field.grid.centre(field.grid.n[0] - 1, field.grid.n[1] - 1, field.grid.n[2] - 1);

@@ -1,4 +1,4 @@
-// A particle's way through an object in one step, as the audit sees it.
+// The audit of one particle and one object: whether a path leads through the surface.
 #pragma once
 
 #include "collide/dn_field/bvh.hpp"
@@ -8,32 +8,33 @@
 
 namespace particles {
 
-/// What a particle has done so far.
+/// The state of a particle in the audit.
 struct Mark {
   enum What : std::uint8_t { nothing, inside, through } what = nothing;
-  std::uint8_t looks = 0;    ///< inside, by a thin wall: which way that looks, to 30 degrees
-  std::uint16_t object = 0;  ///< inside: of this one; numbers above 65535 begin again
+  std::uint8_t looks = 0;    ///< inside: direction of the wall through which it came, to 30 degrees
+  std::uint16_t object = 0;  ///< inside: number of the object, modulo 65536
 };
 
-/// How deep below a surface particles may come, in cells: for all that the field says they are on
-/// it. Two by nearest look-up, which errs by up to half a diagonal in where it stops them and
-/// leaves them as much deeper in a voxel that says less; else one.
+/// The depth below a surface, in cells, at which the field may still report the surface: two by
+/// nearest look-up, which errs by up to half a diagonal where it stops a particle, and by as much
+/// again in the voxel below; otherwise one.
 [[nodiscard]] double greatest_depth(const tess::dn::Rules& rules);
 
-/// An object as the audit sees it.
+/// An object in the audit.
 struct Audited {
   std::uint16_t number;
-  const tess::dn::Object& object;  ///< its triangles: not of fields of one side without thin walls
-  double depth;                    ///< greatest_depth()
+  const tess::dn::Object&
+      object;    ///< with its triangles, except one-sided bodies without thin walls
+  double depth;  ///< greatest_depth()
 };
 
-/// The mark after a straight way in the coordinates of an object. A particle has been through a
+/// The mark after a straight path in the coordinates of an object. A particle has been through a
 /// surface
-/// - of two sides: where it crosses a triangle;
-/// - of one side: where it is deeper below it than it may come, and was not when it began;
-/// - of one side with thin walls, which have no place so deep: where it leaves the body
-///   through a triangle that looks the opposite way from the one it came in by, in this step or
-///   before, or crosses an open sheet of it.
+/// - of two sides: if it crosses a triangle;
+/// - of one side: if it is deeper below the surface than `depth`, and was not at the begin;
+/// - of one side with thin walls, which have no place so deep: if it leaves the body through a
+///   triangle of opposite direction to the one by which it entered, in this step or before, or
+///   crosses an open sheet of the body.
 [[nodiscard]] Mark mark_after(Mark mark, const Audited& audited, tess::dn::Vec3 from,
                               tess::dn::Vec3 to);
 

@@ -163,7 +163,7 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
                   {"bytes", fields.bytes},
-                  {"bytes_compressed", nullptr},  // where it is not known
+                  {"bytes_compressed", nullptr},  // unless it is known
                   {"stored", scene.compression ? "compressed" : "flat"}};
   if (report.bytes_compressed) out["field"]["bytes_compressed"] = *report.bytes_compressed;
   out["nonfinite"] = end.nonfinite;
@@ -191,7 +191,7 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
   out["study"] = nlohmann::ordered_json::array();
   for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
-  // A file's name may be any bytes; JSON holds UTF-8 alone.
+  // The name of a file may have any bytes; JSON holds only UTF-8.
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

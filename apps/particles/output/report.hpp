@@ -1,4 +1,4 @@
-// What a run of a scene has to show: a table for people, JSON for programs.
+// Reports of a run: what it will use, its table, and its JSON file.
 #pragma once
 
 #include "apps/particles/options.hpp"
@@ -19,6 +19,9 @@ struct Report {
   std::optional<std::uint64_t> bytes_compressed{};  ///< of all fields
   std::vector<StudyRow> study{};
 };
+
+/// For --explain: what a run of the scene uses and builds, what for, and what it leaves out.
+[[nodiscard]] std::string explanation(const Scene& scene, const Options& options);
 
 [[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);
 [[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);

@@ -39,7 +39,7 @@ void compress_fields(Scene& scene) {
   if (needs_field(scene.rules) && scene.rules.look_up == tess::dn::LookUp::trilinear)
     tess::fail(
         tess::ErrorCode::bad_value, scene.name,
-        ": rules.look_up: trilinear cannot ask compressed fields; choose nearest or tangent, "
+        ": rules.look_up: trilinear does not support compressed fields; choose nearest or tangent, "
         "or leave out the compression");
 }
 
@@ -76,10 +76,6 @@ double least_wall(const Scene& scene, const SceneObject& object) {
 
 std::uint64_t n_audited(const Scene& scene) {
   return needs_field(scene.rules) ? std::min(scene.outputs.audited, scene.n_particles()) : 0;
-}
-
-std::string field_file_name(std::size_t object) {
-  return tess::text("field_", object, ".dnf");
 }
 
 std::vector<double> masses_of(const Scene& scene) {

@@ -1,6 +1,6 @@
-// A scene: objects with their fields and motions, emitters of particles, rules, and what to write.
-// Read once by every process from the same file, then only read. The keys of the file are described
-// by scene_help() and nowhere else.
+// A scene: objects with their fields and motions, emitters of particles, rules, and outputs. Every
+// process reads it once from the same file, and does not change it then. scene_help() describes the
+// keys of the file.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
@@ -33,19 +33,18 @@ struct SceneObject {
   tess::dn::Sides sides = tess::dn::Sides::one;
   tess::dn::Blur blur;    ///< of the methods that blur; no rounds: chosen from the thickness
   std::string field;      ///< file that the field is read from; empty: it is built
-  tess::dn::Walls walls;  ///< of one-sided bodies that impacts or springs ask; else none
+  tess::dn::Walls walls;  ///< of one-sided bodies if impacts or springs act; otherwise none
   tess::dn::Frame frame;  ///< at the first step, with its velocities
 };
 
-/// How far the voxels of compressed fields may be off: by default no more than nearest look-up adds
-/// by itself.
+/// The error bounds of compressed fields: by default no more than the error of nearest look-up.
 struct Compression {
   double cells = 0.125;  ///< of the distance, in cells of the field
   double degrees = 3;    ///< of the normal
 };
 
-/// Where particles begin. Particle i of the scene is the same on every PE: its random numbers are
-/// computed from the seed and i.
+/// Where particles begin. Particle i of the scene is the same on every PE: its random numbers depend
+/// on the seed and i only.
 struct Emitter {
   enum class Where : std::uint8_t { box, sphere, lattice, surface } where = Where::box;
   std::uint64_t count = 0;
@@ -61,9 +60,9 @@ struct Emitter {
   std::uint64_t seed = 1;
 };
 
-/// What a run writes besides its table.
+/// The output of a run besides its table.
 struct Outputs {
-  int statistics = 0;          ///< a row of the table every so many steps; 0: first and last alone
+  int statistics = 0;          ///< a row of the table every so many steps; 0: first and last only
   int trajectories = 0;        ///< positions every so many steps; 0: none
   std::uint64_t traced = 200;  ///< how many particles, evenly spread over the ids
   std::vector<int> axes{2};    ///< the pictures look along these; that of the field along the first
@@ -107,8 +106,8 @@ struct Scene {
 /// The same from a text; files that it names are looked for beside `name`.
 [[nodiscard]] Scene parse_scene(const std::string& text, const std::string& name);
 
-/// What keys say together: rules, masses, motions, steps and fields must fit one another. Done by
-/// those that read; to be done again by who changes a scene. Throws tess::Error.
+/// Checks that rules, masses, motions, steps and fields fit one another. Readers do it; to be
+/// repeated after a change of a scene. Throws tess::Error.
 void check_scene(const Scene& scene);
 
 /// Whether a rule keeps particles off surfaces: impact or spring.
@@ -118,27 +117,24 @@ void check_scene(const Scene& scene);
 /// than least_wall(), and open sheets. 0 for fields of two sides, and where no rule stops particles.
 [[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
 
-/// Whether anything asks for the fields: rules, a picture, or files of them.
+/// Whether rules, a picture or outputs need the fields.
 [[nodiscard]] bool builds_fields(const Scene& scene);
 
-/// Of an object in the whole run.
+/// The least and the greatest scale of an object in the whole run.
 [[nodiscard]] double least_scale(const Scene& scene, const SceneObject& object);
 [[nodiscard]] double greatest_scale(const Scene& scene, const SceneObject& object);
 
-/// What the impact's threshold adds to a wall on both sides, in the object's units, at least.
+/// The least that the impact's threshold adds to a wall on both sides, in the object's units.
 [[nodiscard]] double kept_off(const Scene& scene, const SceneObject& object);
 
-/// The thickness, in the object's units, that its field needs of a wall: a voxel's diagonal; by
-/// nearest look-up, which errs by half of one wherever it stops and lifts, one and a half, or three
-/// if the object moves; less kept_off().
+/// The least thickness of a wall, in the object's units, that its field can represent: a voxel's
+/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, one and
+/// a half, or three if the object moves; less kept_off().
 [[nodiscard]] double least_wall(const Scene& scene, const SceneObject& object);
 
-/// Has the fields compressed, within the scene's bounds or the usual ones. Throws where the scene's
-/// look-up cannot ask compressed fields, and where files of the fields are asked for.
+/// Sets the compression, within the scene's bounds or the usual ones. Throws where the scene has a
+/// look-up that compressed fields do not support, or writes files of the fields.
 void compress_fields(Scene& scene);
-
-/// What a run calls the file of its object's field.
-[[nodiscard]] std::string field_file_name(std::size_t object);
 
 /// All keys of a scene file, with their units and defaults.
 [[nodiscard]] std::string scene_help();

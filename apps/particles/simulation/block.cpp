@@ -10,7 +10,7 @@
 namespace particles {
 namespace {
 
-/// Whether an explosion acts in these steps, or in one before or after: rounding of times aside.
+/// Whether an explosion acts in these steps, or in the one before or after: times are rounded.
 bool explodes_within(const Scene& scene, const Stretch& stretch) {
   const double begin = (stretch.first - 1) * scene.dt,
                end = (stretch.first + stretch.n_steps + 1) * scene.dt;
@@ -20,8 +20,7 @@ bool explodes_within(const Scene& scene, const Stretch& stretch) {
                      });
 }
 
-/// Whether any particle stands outside of the box: one pass without branches, since most stretches
-/// end with none.
+/// Whether any particle is outside of the box: one pass without branches, since usually none is.
 bool any_outside(const tess::dn::Particles& motion, const tess::dn::Bounds& box) {
   const auto [low, high] = box;
   std::size_t n = 0;

@@ -1,9 +1,9 @@
-// A cube of space with the particles in it: a chare of a sparse three-dimensional array. The first
-// particle that enters creates it, and it ends when a stretch of steps finds it empty. Particles do
-// not meet one another, so a block serves locality alone: no result depends on how space is cut.
+// A cube of space with its particles: a chare of a sparse three-dimensional array. The first particle
+// that enters creates it, and it ends when it is empty at the begin of a stretch of steps. Particles
+// do not collide with one another: blocks serve locality only, and no result depends on them.
 //
-// A stretch is closed by an epoch. Within it particles change blocks; one that has done its steps
-// waits among the arrivals until the next stretch, so that none is moved twice.
+// An epoch closes each stretch. Within it particles change blocks; a particle that has done its steps
+// waits among the arrivals until the next stretch, so that it is not moved twice.
 #pragma once
 
 #include "apps/particles/simulation/flock.hpp"
@@ -32,7 +32,7 @@ class Block : public tess::Chare<Block, tess::Index3> {
   void enter(Arrivals arrivals);
   void move(const Stretch& stretch);
 
-  // For a balancer: blocks that stand side by side have neighbouring positions.
+  // For a balancer: adjacent blocks have neighbouring positions.
   [[nodiscard]] std::array<double, 3> balance_position() const {
     return {1.0 * index().x, 1.0 * index().y, 1.0 * index().z};
   }

@@ -11,13 +11,17 @@ namespace {
 using tess::dn::Bounds;
 using tess::dn::Vec3;
 
-/// The random numbers of one particle: the k-th is mixed from seed, number and k.
+/// The random numbers of one particle, from the seed and its number.
 class Numbers {
  public:
   Numbers(std::uint64_t seed, std::uint64_t number)
       : random_(tess::mix(tess::mix(seed) + number)) {}
   double unit() { return random_.unit(); }
   double between(double low, double high) { return low + (high - low) * unit(); }
+  Vec3 between(Vec3 low, Vec3 high) {
+    const double x = between(low.x, high.x), y = between(low.y, high.y);
+    return {x, y, between(low.z, high.z)};
+  }
   Vec3 direction() {  // uniform on the sphere (Archimedes)
     const double z = between(-1, 1), turn = 2 * std::numbers::pi * unit();
     const double r = std::sqrt(std::max(0.0, 1 - z * z));
@@ -33,13 +37,6 @@ double lattice_at(double low, double high, std::uint64_t i, std::uint64_t n) {
                 : low + (high - low) * (static_cast<double>(i) / static_cast<double>(n - 1));
 }
 
-void add_random_velocity(Start& start, double spread, Numbers& random) {
-  if (spread == 0) return;
-  const double x = random.between(-spread, spread), y = random.between(-spread, spread),
-               z = random.between(-spread, spread);
-  start.velocity += {x, y, z};
-}
-
 }  // namespace
 
 Source::Source(const Scene& scene) : scene_(scene), first_{0}, areas_(scene.objects.size()) {
@@ -50,42 +47,23 @@ Source::Source(const Scene& scene) : scene_(scene), first_{0}, areas_(scene.obje
   }
 }
 
-Start Source::from_surface(const Emitter& emitter, std::uint64_t number) const {
-  Numbers random(emitter.seed, number);
-  const SceneObject& object = scene_.objects[emitter.object];
-  const double first = random.unit(), second = random.unit(), third = random.unit();
-  const auto [on, normal, triangle] =
-      tess::dn::point_on(object.surface, areas_[emitter.object], first, second, third);
-  const tess::dn::Frame& frame = object.frame;
-  Start start;
-  start.position =
-      frame.to_world(on) + random.between(emitter.inner, emitter.outer) * frame.rotate(normal);
-  start.velocity = emitter.velocity + emitter.outward * frame.rotate(normal);
-  add_random_velocity(start, emitter.spread, random);
-  return start;
-}
-
 Start Source::particle(std::uint64_t id) const {
-  const auto after = std::upper_bound(first_.begin(), first_.end(), id);
+  const auto after = std::ranges::upper_bound(first_, id);
   const auto which = static_cast<std::size_t>(after - first_.begin()) - 1;
   const Emitter& emitter = scene_.emitters[which];
+  const Vec3 low = emitter.low, high = emitter.high;
   const std::uint64_t number = id - first_[which];
   Numbers random(emitter.seed, number);
-  Start start;
-  start.velocity = emitter.velocity;
+  Start start{{}, emitter.velocity, emitter.mass};
   switch (emitter.where) {
-    case Emitter::Where::box: {
-      const double x = random.between(emitter.low.x, emitter.high.x),
-                   y = random.between(emitter.low.y, emitter.high.y),
-                   z = random.between(emitter.low.z, emitter.high.z);
-      start.position = {x, y, z};
+    case Emitter::Where::box:
+      start.position = random.between(low, high);
       break;
-    }
     case Emitter::Where::lattice: {
       const auto [nx, ny, nz] = emitter.lattice;
-      start.position = {lattice_at(emitter.low.x, emitter.high.x, number % nx, nx),
-                        lattice_at(emitter.low.y, emitter.high.y, number / nx % ny, ny),
-                        lattice_at(emitter.low.z, emitter.high.z, number / nx / ny, nz)};
+      start.position = {lattice_at(low.x, high.x, number % nx, nx),
+                        lattice_at(low.y, high.y, number / nx % ny, ny),
+                        lattice_at(low.z, high.z, number / nx / ny, nz)};
       break;
     }
     case Emitter::Where::sphere: {
@@ -96,12 +74,21 @@ Start Source::particle(std::uint64_t id) const {
       start.velocity += emitter.outward * towards;
       break;
     }
-    case Emitter::Where::surface:
-      start = from_surface(emitter, number);
+    case Emitter::Where::surface: {
+      const SceneObject& object = scene_.objects[emitter.object];
+      const double first = random.unit(), second = random.unit(), third = random.unit();
+      const auto [on, normal, triangle] =
+          tess::dn::point_on(object.surface, areas_[emitter.object], first, second, third);
+      const Vec3 out = object.frame.rotate(normal);
+      start.position =
+          object.frame.to_world(on) + random.between(emitter.inner, emitter.outer) * out;
+      start.velocity = emitter.velocity + emitter.outward * out;
       break;
+    }
   }
-  if (emitter.where != Emitter::Where::surface) add_random_velocity(start, emitter.spread, random);
-  start.mass = emitter.mass;
+  const double spread = emitter.spread;
+  if (spread != 0)
+    start.velocity += random.between({-spread, -spread, -spread}, {spread, spread, spread});
   return start;
 }
 

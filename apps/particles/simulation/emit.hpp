@@ -1,5 +1,5 @@
-// The particles of a scene at the first step. Every number of particle i is computed from the seed
-// of its emitter and i alone, so any PE can make any of them.
+// The particles of a scene at the first step. All numbers of particle i are computed from the seed
+// of its emitter and i only, so that any PE can make any of them.
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"
@@ -9,7 +9,7 @@
 
 namespace particles {
 
-/// A particle by itself: as it is emitted.
+/// A particle as it is emitted.
 struct Start {
   tess::dn::Vec3 position, velocity;
   double mass = 1;
@@ -21,17 +21,15 @@ class Source {
 
   /// Of all emitters.
   [[nodiscard]] std::uint64_t size() const { return first_.back(); }
-  /// Particle `id`, 0 … size() − 1: the emitters one behind the other.
+  /// Particle `id`, 0 … size() − 1, in the order of the emitters.
   [[nodiscard]] Start particle(std::uint64_t id) const;
   /// A box that holds all first positions.
   [[nodiscard]] tess::dn::Bounds bounds() const;
 
  private:
-  [[nodiscard]] Start from_surface(const Emitter& emitter, std::uint64_t number) const;
-
   const Scene& scene_;
   std::vector<std::uint64_t> first_;        // id of the first particle of each emitter, and the end
-  std::vector<std::vector<double>> areas_;  // of each object that emits: sums up to each triangle
+  std::vector<std::vector<double>> areas_;  // per object that emits: sums up to each triangle
 };
 
 }  // namespace particles

@@ -10,14 +10,14 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-constexpr int block_layers = 4;  // that are built together
+constexpr int block_layers = 4;  // are built together
 
 /// The layers `first` to `last` − 1.
 struct Layers {
   int first, last;
 };
 
-/// The part-th of n_parts of them, cut where blocks of layers that are built together end.
+/// Part `part` of n_parts, cut between blocks of layers.
 Layers share(Layers of, int part, int n_parts) {
   const int n_blocks = (of.last - of.first + block_layers - 1) / block_layers;
   const auto edge = [&](int at) {

@@ -14,24 +14,23 @@
 
 namespace particles {
 
-/// What the fields of this scene must hold: what its rules need, and normals for pictures and
-/// files.
+/// The content of the fields of this scene: what its rules need, and normals for pictures and files.
 [[nodiscard]] tess::dn::Content content_of(const Scene& scene);
 
 /// The field of an object in the making: begun by one PE of the process, filled by all in stages,
 /// finished by one. The field does not depend on how many there are.
 class FieldInTheMaking {
  public:
-  /// The part that is one PE's: a tree of the triangles, and for the methods that blur the voxels
-  /// of the surface; or the whole field from a file. Throws Error(bad_file) for one without normals
+  /// The part of one PE: the tree of triangles and, for the methods that blur, the voxels of the
+  /// surface; or the whole field from a file. Throws Error(bad_file) for a file without normals
   /// where `content` has them.
   void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
   /// Known once begun; none for a field from a file.
   [[nodiscard]] int n_stages() const;
-  /// Fills one of the parts in a stage, if there is one of that number. Different parts at once,
-  /// all before the next stage begins.
+  /// Fills a part in a stage, if the part exists. PEs fill different parts at the same time, and all
+  /// before the next stage begins.
   void fill(int stage, int part);
-  /// With a compression the flat arrays are given up for the compressed field.
+  /// With a compression the compressed field replaces the flat arrays.
   void finish(const std::optional<Compression>& compression = {});
 
   /// The flat field; of a compressed one its outline.
@@ -41,18 +40,18 @@ class FieldInTheMaking {
   }
   /// The flat field, moved out.
   [[nodiscard]] tess::dn::Field take() && { return std::move(field_); }
-  /// What the step loop asks, for an object that stands there.
+  /// For the step loop, of an object that stands at `frame`.
   [[nodiscard]] tess::dn::Object object(const tess::dn::Frame& frame,
                                         const tess::dn::Bvh* triangles) const {
     return {&field_, frame, compressed_ ? &*compressed_ : nullptr, triangles};
   }
-  /// Bytes of the flat field, whether it is kept or not.
+  /// Bytes of the flat field, also where the compressed one has replaced it.
   [[nodiscard]] std::uint64_t flat_bytes() const { return flat_bytes_; }
   /// From begin() to finish().
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  /// Of large fields more than one, so that somebody who waits sees them go by.
+  /// More than one for large fields, so that the progress line moves.
   [[nodiscard]] int n_distance_stages() const;
 
   std::optional<tess::dn::ExactBuilder> exact_;

@@ -1,5 +1,5 @@
-// Particles of one species together, with what each of them carries besides its motion. They are
-// independent of one another: their order means nothing, an id names a particle.
+// Particles of one species, with the id and the audit's mark of each. They are independent of one
+// another; their order has no meaning.
 #pragma once
 
 #include "apps/particles/audit/passage.hpp"

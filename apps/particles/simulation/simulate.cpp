@@ -16,7 +16,7 @@ std::int32_t next_after(std::int32_t step, std::int32_t every, std::int32_t last
       std::min<std::int64_t>((std::int64_t{step} / every + 1) * every, last));
 }
 
-/// What is to be looked at after `step` steps.
+/// The measures that the scene asks for after `step` steps.
 std::uint32_t asked(const Scene& scene, std::int32_t step) {
   const Outputs& outputs = scene.outputs;
   const bool at_end = step == 0 || step == scene.steps;

@@ -1,6 +1,6 @@
 // One run of a scene on the runtime: fields are built, particles sent to their blocks, and moved
-// stretch by stretch, each closed by an epoch. What it gives does not depend on PEs, processes,
-// blocks or schedule, times excepted.
+// stretch by stretch, each closed by an epoch. Except for times, the result does not depend on PEs,
+// processes, blocks or schedule.
 #pragma once
 
 #include "apps/particles/audit/measured.hpp"
@@ -14,13 +14,13 @@
 
 namespace particles {
 
-/// What is measured after so many steps.
+/// The measures after so many steps.
 struct Row {
   std::int32_t step = 0;
   Measured measured;
 };
 
-/// Where the traced particles are after so many steps; in the order of ids.
+/// The traced particles after so many steps, in the order of ids.
 struct Snapshot {
   std::int32_t step = 0;
   std::vector<Sample> samples;
@@ -29,7 +29,7 @@ struct Snapshot {
 struct FieldCost {
   double build_seconds = 0;
   std::uint64_t cells = 0, bytes = 0;  ///< of the flat field
-  std::uint64_t bytes_used = 0;        ///< of the compressed one, where the run uses that
+  std::uint64_t bytes_used = 0;        ///< of the compressed one, if the run uses it
 };
 
 struct RunResult {
@@ -54,7 +54,7 @@ struct RunResult {
 [[nodiscard]] double block_edge(const Scene& scene);
 [[nodiscard]] std::int32_t exchange_interval(const Scene& scene);
 
-/// Runs the scene from PE 0. `stage`: of this process; its fields are there afterwards.
+/// Runs the scene from PE 0. `stage`: of this process; holds the fields afterwards.
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options = {});
 
 }  // namespace particles

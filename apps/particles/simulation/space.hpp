@@ -1,5 +1,5 @@
-// How space is cut into cubes: which block a point belongs to. The cubes cover an arena; those on
-// its border reach to infinity, so that particles that fly away do not make blocks without end.
+// The cut of space into cubes, one per block. The cubes cover an arena; those on its border reach to
+// infinity, so that particles that fly away do not create blocks without end.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"
@@ -34,7 +34,7 @@ struct Space {
  private:
   static constexpr std::int32_t most = 1 << 30;
 
-  /// What is not a number belongs to the first block.
+  /// NaN belongs to the first block.
   [[nodiscard]] std::int32_t on_axis(double at, std::int32_t from, std::int32_t to) const {
     const double block = std::floor(at / edge);
     return std::isnan(block) ? from

@@ -1,6 +1,6 @@
-// What all blocks of a process share, read-only once it is set up: the scene, its particles'
-// source, the fields. It is handed from PE to PE within a process as a pointer; on its way to
-// another process it becomes the scene, and the fields are built there again.
+// The data that all blocks of a process share, read-only once it is set up: the scene, the source of
+// its particles, the fields. PEs of a process share it by a pointer; a message to another process
+// holds the scene, and the fields are built there again.
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"
@@ -54,7 +54,7 @@ struct Stage {
     return s;
   }
   [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
-  /// As they stand at the start, once their fields are built.
+  /// The objects as they stand at the start; after their fields are built.
   [[nodiscard]] std::vector<tess::dn::Object> objects() const {
     std::vector<tess::dn::Object> objects;
     for (std::size_t i = 0; i < fields.size(); ++i)

@@ -1,5 +1,5 @@
-// What the blocks on a PE have in common: a group, one member a PE. It holds the stage of its
-// process, the step loops, the objects where they stand now, and takes what the blocks measure.
+// The context of the blocks on a PE: a group with one member per PE. It holds the stage of its
+// process, the step loops, the objects at their current step, and the measures of the blocks.
 #pragma once
 
 #include "apps/particles/audit/measured.hpp"
@@ -17,7 +17,7 @@ class Block;
 struct Stretch {
   enum Ask : std::uint32_t { nothing = 0, measure = 1, trace = 2, judge = 4 };
   std::int32_t first = 0;       ///< steps done before
-  std::int32_t n_steps = 0;     ///< may be 0: to look without moving
+  std::int32_t n_steps = 0;     ///< may be 0: to measure without moving
   std::uint32_t ask = nothing;  ///< at the end; judge: which particles ended inside an object
 };
 
@@ -29,7 +29,8 @@ struct Sample {
 
 class Station : public tess::Group<Station> {
  public:
-  // Set-up, an epoch each. The first PEs of processes take the stage, and pass it on; all build.
+  // Set-up, an epoch each. The first PE of each process takes the stage and passes it on; all PEs
+  // build.
   void take(StageHandle handle);
   void begin_fields();
   void fill_fields(std::int32_t stage);
@@ -54,16 +55,16 @@ class Station : public tess::Group<Station> {
   };
   [[nodiscard]] Spent& spent() { return spent_; }
 
-  // Reductions; each empties what it gives.
+  // Reductions; the members keep nothing of what they give.
   void give_measured(tess::Callback<Measured> target);
   void give_samples(tess::Callback<std::vector<Sample>> target);
   /// CPU seconds of the rules and of the audit, summed over PEs.
   void give_spent(tess::Callback<std::vector<double>> target);
-  /// Seconds of building each field, as its process measured them.
+  /// Seconds of building each field; the longest of all processes.
   void give_build_seconds(tess::Callback<std::vector<double>> target);
 
  private:
-  /// Does `action` to a field; what it throws is said of its object.
+  /// Does `action` to a field; errors name its object.
   template <class Action>
   void make(std::size_t field, const Action& action);
 
@@ -71,7 +72,7 @@ class Station : public tess::Group<Station> {
   Space space_;
   std::vector<tess::dn::Stepper> steppers_;  // one per mass
   std::vector<tess::dn::Object> objects_;
-  std::int32_t at_step_ = 0;  // where objects_ stand
+  std::int32_t at_step_ = 0;  // of objects_
   Measured measured_;
   std::vector<Sample> samples_;
   Spent spent_;

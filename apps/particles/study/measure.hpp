@@ -13,7 +13,7 @@
 
 namespace particles {
 
-/// The object, and what is exact about it.
+/// The object and its exact reference.
 struct Subject {
   const SceneObject& object;
   tess::dn::Bvh tree;
@@ -21,7 +21,7 @@ struct Subject {
   double thickness;
 };
 
-/// Points around the surface whose closest point is in the midst of a triangle: off the medial
+/// Points around the surface whose closest point is inside a triangle, not on an edge: off the medial
 /// axis, where the distance is smooth.
 struct Samples {
   std::vector<float> x, y, z;

@@ -70,7 +70,7 @@ class Study {
     return row;
   }
 
-  /// Rows of fields, and of memory apart.
+  /// Rows of fields; those of memory in memory_.
   void study_fields() {
     const Samples samples = samples_of(subject_, options_.n_samples);
     const std::size_t n_fields = 3 * options_.resolutions.size();

@@ -1,0 +1,20 @@
+// The files that a run writes to the folder of --out, and whether they can be written: checked before
+// the run begins, since a run is long. Process 0 writes, all processes check.
+#pragma once
+
+#include "apps/particles/options.hpp"
+#include "apps/particles/scene/scene.hpp"
+#include "apps/particles/simulation/simulate.hpp"
+
+#include <string>
+
+namespace particles {
+
+/// Makes the folder of --out and checks every file that this run will write there, and that of
+/// --json. Throws Error(environment) that names the option, the path and the remedy.
+void prepare_files(const Scene& scene, const Options& options);
+
+/// Fields, trajectories and pictures, as the scene asks for them.
+void write_files(const std::string& folder, const Stage& stage, const RunResult& result);
+
+}  // namespace particles
