@@ -24,14 +24,12 @@ struct Balanced {
   double seconds = 0;
 };
 
-std::string method_of(const Scene& scene) {
+std::string_view method_of(const Scene& scene) {
   if (scene.objects.empty()) return "none";
-  const auto name = [](const SceneObject& object) {
-    return std::string(method_names[static_cast<std::size_t>(object.method)]);
-  };
+  const auto method = scene.objects.front().method;
   for (const SceneObject& object : scene.objects)
-    if (object.method != scene.objects.front().method) return "mixed";
-  return name(scene.objects.front());
+    if (object.method != method) return "mixed";
+  return method_names[static_cast<std::size_t>(method)];
 }
 
 FieldCost total(const std::vector<FieldCost>& fields) {
@@ -50,31 +48,15 @@ double per_particle_step(const Scene& scene, double seconds) {
   return n > 0 ? seconds * 1e9 / n : 0;
 }
 
-std::string distance_text(double distance) {
-  return distance < HUGE_VAL ? fmt::format("{:.4g}", distance) : "-";
-}
-
-std::string row_text(const Row& row, double dt) {
-  const Measured& m = row.measured;
-  return fmt::format(
-      "  {:>9} {:>10.4g} {:>9} {:>7} {:>13.6e} {:>13.6e} {:>10.4g} {:>10} {:>8} {:>9} {:>9}\n",
-      row.step, row.step * dt, m.particles, m.blocks, m.kinetic.total(), m.energy(), m.fastest,
-      distance_text(m.nearest), m.inside, m.tunnelled, m.nonfinite);
-}
-
 nlohmann::ordered_json json_of(const Row& row, double dt) {
   const Measured& m = row.measured;
-  nlohmann::ordered_json out;
-  out["step"] = row.step;
-  out["time"] = row.step * dt;
-  out["blocks"] = m.blocks;
-  out["kinetic"] = m.kinetic.total();  // what is not finite is written as null
-  out["energy"] = m.energy();
-  out["fastest"] = m.fastest;
-  if (m.nearest < HUGE_VAL) out["nearest"] = m.nearest;
-  out["inside"] = m.inside;
-  out["tunnelled"] = m.tunnelled;
-  out["nonfinite"] = m.nonfinite;
+  nlohmann::ordered_json out = {
+      {"step", row.step},         {"time", row.step * dt},
+      {"blocks", m.blocks},       {"kinetic", m.kinetic.total()},  // null where it is not finite
+      {"energy", m.energy()},     {"fastest", m.fastest},
+      {"nearest", m.nearest},     {"inside", m.inside},
+      {"tunnelled", m.tunnelled}, {"nonfinite", m.nonfinite}};
+  if (!(m.nearest < HUGE_VAL)) out.erase("nearest");
   return out;
 }
 
@@ -127,7 +109,12 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
   out += fmt::format("  {:>9} {:>10} {:>9} {:>7} {:>13} {:>13} {:>10} {:>10} {:>8} {:>9} {:>9}\n",
                      "step", "time", "particles", "blocks", "kinetic", "energy", "fastest",
                      "nearest", "inside", "tunnelled", "nonfinite");
-  for (const Row& row : result.rows) out += row_text(row, scene.dt);
+  for (const auto& [step, m] : result.rows)
+    out += fmt::format(
+        "  {:>9} {:>10.4g} {:>9} {:>7} {:>13.6e} {:>13.6e} {:>10.4g} {:>10} {:>8} {:>9} {:>9}\n",
+        step, step * scene.dt, m.particles, m.blocks, m.kinetic.total(), m.energy(), m.fastest,
+        m.nearest < HUGE_VAL ? fmt::format("{:.4g}", m.nearest) : "-", m.inside, m.tunnelled,
+        m.nonfinite);
   line("time", fmt::format("{:.4f} s, {:.3f} ns per particle and step; CPU in the rules {:.3f} ns",
                            result.seconds, per_particle_step(scene, result.seconds),
                            per_particle_step(scene, result.loop_seconds)));
@@ -148,17 +135,17 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   const Measured& begin = result.rows.front().measured;
   const Measured& end = result.rows.back().measured;
   const FieldCost fields = total(result.fields);
-  nlohmann::ordered_json out;
-  out["scene"] = scene.name;
-  out["particles"] = scene.n_particles();
-  out["steps"] = scene.steps;
-  out["dt"] = scene.dt;
-  out["pes"] = report.pes;
-  out["processes"] = report.processes;
-  out["machine"] = report.machine;
-  out["ns_per_particle_step"] = per_particle_step(scene, result.seconds);
-  out["ns_in_rules"] = per_particle_step(scene, result.loop_seconds);
-  out["seconds"] = result.seconds;
+  nlohmann::ordered_json out = {{"scene", scene.name},
+                                {"particles", scene.n_particles()},
+                                {"steps", scene.steps},
+                                {"dt", scene.dt},
+                                {"pes", report.pes},
+                                {"processes", report.processes},
+                                {"machine", report.machine},
+                                {"ns_per_particle_step", per_particle_step(scene, result.seconds)},
+                                {"ns_in_rules", per_particle_step(scene, result.loop_seconds)},
+                                {"ns_in_audit", per_particle_step(scene, result.audit_seconds)},
+                                {"seconds", result.seconds}};
   out["field"] = {{"method", method_of(scene)},
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
@@ -172,7 +159,6 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
                               : result.audited == scene.n_particles() ? "each step"
                                                                       : "sampled";
   out["audited"] = result.audited;
-  out["ns_in_audit"] = per_particle_step(scene, result.audit_seconds);
   out["energy_start"] = begin.energy();
   out["energy_end"] = end.energy();
   out["block"] = result.block;

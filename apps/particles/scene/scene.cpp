@@ -14,18 +14,11 @@ std::uint64_t Scene::n_particles() const {
 }
 
 tess::dn::Rules for_mass(tess::dn::Rules rules, double mass) {
-  if (mass == 1) return rules;
-  if (rules.spring) {
-    rules.spring->stiffness /= mass;
-    rules.spring->damping /= mass;
-  }
-  if (rules.surface_drag) rules.surface_drag->rate /= mass;
-  if (rules.surface_flow) {
-    rules.surface_flow->alpha_in /= mass;
-    rules.surface_flow->alpha_out /= mass;
-  }
-  if (rules.wind) rules.wind->rate /= mass;
-  if (rules.air_drag) rules.air_drag->rate /= mass;
+  if (auto& spring = rules.spring) spring->stiffness /= mass, spring->damping /= mass;
+  if (auto& drag = rules.surface_drag) drag->rate /= mass;
+  if (auto& flow = rules.surface_flow) flow->alpha_in /= mass, flow->alpha_out /= mass;
+  if (auto& wind = rules.wind) wind->rate /= mass;
+  if (auto& drag = rules.air_drag) drag->rate /= mass;
   for (tess::dn::Explosion& explosion : rules.explosions) explosion.strength /= mass;
   return rules;
 }
@@ -81,8 +74,7 @@ std::uint64_t n_audited(const Scene& scene) {
 std::vector<double> masses_of(const Scene& scene) {
   std::vector<double> masses;
   for (const Emitter& emitter : scene.emitters)
-    if (std::find(masses.begin(), masses.end(), emitter.mass) == masses.end())
-      masses.push_back(emitter.mass);
+    if (std::ranges::find(masses, emitter.mass) == masses.end()) masses.push_back(emitter.mass);
   return masses;
 }
 

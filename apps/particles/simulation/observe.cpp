@@ -1,6 +1,5 @@
 #include "apps/particles/simulation/observe.hpp"
 
-#include "apps/particles/audit/fields.hpp"
 #include "apps/particles/audit/passage.hpp"
 #include "collide/dn_field/path.hpp"
 #include "runtime/core/hash.hpp"

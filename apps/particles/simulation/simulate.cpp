@@ -70,35 +70,26 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   };
   co_await tess::epoch(hand_out);
   now_at("building fields");
-  const auto begin_fields = [&] { stations.broadcast<&Station::begin_fields>(); };
-  co_await tess::epoch(begin_fields);
+  co_await tess::epoch([&] { stations.broadcast<&Station::begin_fields>(); });
   int n_stages = 0;  // the same in all processes
   for (const FieldInTheMaking& field : stage->fields)
     n_stages = std::max(n_stages, field.n_stages());
-  std::int32_t filled = 0;
-  const auto fill_fields = [&] { stations.broadcast<&Station::fill_fields>(filled); };
-  for (; filled < n_stages; ++filled) {
+  for (std::int32_t filled = 0; filled < n_stages; ++filled) {
     now_at_part(filled + 1, n_stages);
-    co_await tess::epoch(fill_fields);
+    co_await tess::epoch([&] { stations.broadcast<&Station::fill_fields>(filled); });
   }
   now_at_part(0, 0);
-  const auto finish_fields = [&] { stations.broadcast<&Station::finish_fields>(); };
-  co_await tess::epoch(finish_fields);
+  co_await tess::epoch([&] { stations.broadcast<&Station::finish_fields>(); });
   result.block = block_edge(scene);
   result.exchange = exchange_interval(scene);
   result.audited = stage->n_audited;
-  const auto prepare = [&] { stations.broadcast<&Station::prepare>(result.block); };
-  co_await tess::epoch(prepare);
+  co_await tess::epoch([&] { stations.broadcast<&Station::prepare>(result.block); });
   now_at("placing particles");
-  const tess::Time before_emission = pe.now();
-  const auto emit = [&] { stations.broadcast<&Station::emit>(blocks); };
-  co_await tess::epoch(emit);
-  result.emit_seconds = tess::seconds(pe.now() - before_emission);
+  co_await tess::epoch([&] { stations.broadcast<&Station::emit>(blocks); });
 
   tess::BalancerProxy balancer;
-  const auto begin_balancing = [&] { balancer = tess::start_balancing(blocks, *options.balance); };
   if (options.balance) {
-    co_await tess::epoch(begin_balancing);
+    co_await tess::epoch([&] { balancer = tess::start_balancing(blocks, *options.balance); });
     co_await balancer.begin_phase();
   }
   const bool rounds_between =
@@ -117,15 +108,13 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     if ((stretch.ask & Stretch::measure) != 0) {
       tess::Future<Measured> measured;
       stations.broadcast<&Station::give_measured>(measured.callback());
-      Measured all = co_await measured;
-      result.rows.push_back({step, all});
+      result.rows.push_back({step, co_await measured});
     }
     if ((stretch.ask & Stretch::trace) != 0) {
       tess::Future<std::vector<Sample>> samples;
       stations.broadcast<&Station::give_samples>(samples.callback());
       std::vector<Sample> all = co_await samples;
-      std::sort(all.begin(), all.end(),
-                [](const Sample& a, const Sample& b) { return a.id < b.id; });
+      std::ranges::sort(all, {}, &Sample::id);
       result.trajectories.push_back({step, std::move(all)});
     }
     if (step == scene.steps) break;

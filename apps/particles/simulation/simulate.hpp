@@ -36,10 +36,9 @@ struct RunResult {
   std::vector<Row> rows;  ///< the first before the first step, the last after the last
   std::vector<Snapshot> trajectories;
   std::vector<FieldCost> fields;
-  double seconds = 0;        ///< of all steps with exchanges and audit, without measuring
-  double loop_seconds = 0;   ///< CPU in the step loops, summed over PEs
-  double audit_seconds = 0;  ///< CPU in the audit, summed over PEs
-  double emit_seconds = 0;
+  double seconds = 0;         ///< of all steps with exchanges and audit, without measuring
+  double loop_seconds = 0;    ///< CPU in the step loops, summed over PEs
+  double audit_seconds = 0;   ///< CPU in the audit, summed over PEs
   std::uint64_t audited = 0;  ///< particles
   double block = 0;
   std::int32_t exchange = 0;

@@ -1,7 +1,7 @@
 #include "apps/particles/study/measure.hpp"
 
 #include "apps/cpu_clock.hpp"
-#include "apps/particles/audit/fields.hpp"
+#include "apps/particles/audit/passage.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
