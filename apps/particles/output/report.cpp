@@ -32,17 +32,6 @@ std::string_view method_of(const Scene& scene) {
   return method_names[static_cast<std::size_t>(method)];
 }
 
-FieldCost total(const std::vector<FieldCost>& fields) {
-  FieldCost sum;
-  for (const FieldCost& field : fields) {
-    sum.build_seconds = std::max(sum.build_seconds, field.build_seconds);  // made together
-    sum.cells += field.cells;
-    sum.bytes += field.bytes;
-    sum.bytes_used += field.bytes_used;
-  }
-  return sum;
-}
-
 double per_particle_step(const Scene& scene, double seconds) {
   const double n = static_cast<double>(scene.n_particles()) * scene.steps;
   return n > 0 ? seconds * 1e9 / n : 0;
@@ -80,17 +69,17 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
 }  // namespace
 
 std::string table(const Scene& scene, const RunResult& result, const Report& report) {
-  const FieldCost fields = total(result.fields);
+  const FieldCost& fields = result.fields;
   std::string out = fmt::format("{}: {} particles, {} steps of {}\n", scene.name,
                                 scene.n_particles(), scene.steps, scene.dt);
   const auto line = [&out](const char* name, const std::string& value) {
     out += fmt::format("  {:<10} {}\n", name, value);
   };
   line("machine", report.machine);
-  if (!result.fields.empty())
+  if (fields.cells > 0)
     line("fields",
          fmt::format("{} of method {}, {} cells, {:.3f} MB{}, made in {:.3f} s",
-                     result.fields.size(), method_of(scene), fields.cells,
+                     scene.objects.size(), method_of(scene), fields.cells,
                      static_cast<double>(fields.bytes) / 1e6,
                      scene.compression ? fmt::format(" compressed to {:.3f} MB",
                                                      static_cast<double>(fields.bytes_used) / 1e6)
@@ -134,7 +123,7 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
 std::string json(const Scene& scene, const RunResult& result, const Report& report) {
   const Measured& begin = result.rows.front().measured;
   const Measured& end = result.rows.back().measured;
-  const FieldCost fields = total(result.fields);
+  const FieldCost& fields = result.fields;
   nlohmann::ordered_json out = {{"scene", scene.name},
                                 {"particles", scene.n_particles()},
                                 {"steps", scene.steps},

@@ -132,17 +132,11 @@ double Node::number(const Interval& allowed) const {
 }
 
 std::int64_t Node::whole(std::int64_t low, std::int64_t high) const {
-  constexpr double exact = 9007199254740992;
-  const bool is_float = value_->is_number_float();  // 1e6 is whole, too
-  const double near = value_->is_number() ? value_->get<double>() : NAN;
-  if (!value_->is_number_integer() && !(is_float && near == std::floor(near)))
-    refuse("is not a whole number");
-  const bool fits = is_float ? std::abs(near) <= exact : std::abs(near) < 9.2e18;
-  const std::int64_t value = !fits      ? 0
-                             : is_float ? static_cast<std::int64_t>(near)
-                                        : value_->get<std::int64_t>();
-  if (!fits || value < low || value > high) refuse(fmt::format("is not within {} … {}", low, high));
-  return value;
+  const double value = value_->is_number() ? value_->get<double>() : NAN;  // 1e6 is whole, too
+  if (!(value == std::floor(value))) refuse("is not a whole number");
+  if (value < static_cast<double>(low) || value > static_cast<double>(high))
+    refuse(fmt::format("is not within {} … {}", low, high));
+  return static_cast<std::int64_t>(value);
 }
 
 bool Node::is_yes_or_no() const {

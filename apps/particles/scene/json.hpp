@@ -35,6 +35,8 @@ inline constexpr Interval any_number{}, positive{0, HUGE_VAL, true}, not_negativ
 /// another in doubles. A number that must be above 0 is at least the inverse, for the same reason.
 inline constexpr double largest_number = 1e100, least_positive = 1e-100;
 
+inline constexpr std::int64_t largest_whole = std::int64_t{1} << 53;
+
 using Words = std::vector<std::string_view>;
 class Key;
 
@@ -52,6 +54,7 @@ class Node {
   [[nodiscard]] std::string_view one_of(const Words& keys) const;
 
   [[nodiscard]] double number(const Interval& allowed = any_number) const;
+  /// Bounds within ±largest_whole, so that doubles hold all values.
   [[nodiscard]] std::int64_t whole(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] bool is_yes_or_no() const;
   [[nodiscard]] bool yes_or_no() const;

@@ -50,7 +50,7 @@ emitters    a list of at least one; of each:
   spread      a random velocity up to this in each component (default 0)
   outward     speed away from the sphere's centre, or along the surface's normal (default 0)
   mass        above 0 (default 1)
-  seed        of the random numbers (default 1); particle i is the same on any number of PEs
+  seed        of the random numbers, 0 … 2^53 (default 1); particle i is the same on any number of PEs
 rules       each may be left out
   look_up     nearest (springs take the tangent instead), tangent (default), trilinear
   spring      {"stiffness": k, "reach": d, "damping": 0}          force over depth below d

@@ -71,7 +71,7 @@ Emitter read_emitter(const Node& node, std::size_t n_objects) {
              {"spread", out.spread, not_negative},
              {"outward", out.outward},
              {"mass", out.mass, positive},
-             {"seed", out.seed, 0, INT64_MAX}});
+             {"seed", out.seed, 0, largest_whole}});
   if (out.outward != 0 && kind != "sphere" && kind != "surface")
     node["outward"].refuse(fmt::format("has no direction in a {}; use velocity", kind));
   return out;

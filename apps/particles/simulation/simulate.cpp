@@ -135,14 +135,14 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   stations.broadcast<&Station::give_spent>(spent.callback());
   const std::vector<double> of = co_await spent;
   result.loop_seconds = of[0], result.audit_seconds = of[1];
-  tess::Future<std::vector<double>> build_seconds;
+  tess::Future<double> build_seconds;
   stations.broadcast<&Station::give_build_seconds>(build_seconds.callback());
-  const std::vector<double> built = co_await build_seconds;
-  for (std::size_t i = 0; i < built.size(); ++i) {
-    const tess::dn::Field& field = stage->fields[i].field();
-    result.fields.push_back({built[i], field.grid.size(), stage->fields[i].flat_bytes()});
-    if (const auto& compressed = stage->fields[i].compressed())
-      result.fields.back().bytes_used = compressed->bytes();
+  result.fields.build_seconds = co_await build_seconds;
+  for (const FieldInTheMaking& field : stage->fields) {
+    result.fields.cells += field.field().grid.size();
+    result.fields.bytes += field.flat_bytes();
+    if (const auto& compressed = field.compressed())
+      result.fields.bytes_used += compressed->bytes();
   }
 }
 

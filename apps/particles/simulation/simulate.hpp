@@ -26,8 +26,9 @@ struct Snapshot {
   std::vector<Sample> samples;
 };
 
+/// All fields of a run together.
 struct FieldCost {
-  double build_seconds = 0;
+  double build_seconds = 0;            ///< of the slowest; they are built at the same time
   std::uint64_t cells = 0, bytes = 0;  ///< of the flat field
   std::uint64_t bytes_used = 0;        ///< of the compressed one, if the run uses it
 };
@@ -35,7 +36,7 @@ struct FieldCost {
 struct RunResult {
   std::vector<Row> rows;  ///< the first before the first step, the last after the last
   std::vector<Snapshot> trajectories;
-  std::vector<FieldCost> fields;
+  FieldCost fields;
   double seconds = 0;         ///< of all steps with exchanges and audit, without measuring
   double loop_seconds = 0;    ///< CPU in the step loops, summed over PEs
   double audit_seconds = 0;   ///< CPU in the audit, summed over PEs

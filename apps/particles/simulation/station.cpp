@@ -40,16 +40,22 @@ void Station::make(std::size_t field, const Action& action) {
   }
 }
 
-void Station::begin_fields() {
+template <class Action>
+void Station::make_mine(const Action& action) {
   const auto [first, n] = pes_of_process();
-  const auto mine = static_cast<std::size_t>(pe().value - first);
+  for (auto i = static_cast<std::size_t>(pe().value - first); i < stage_->fields.size();
+       i += static_cast<std::size_t>(n))
+    make(i, [&, i](FieldInTheMaking& field) { action(field, i); });
+}
+
+void Station::begin_fields() {
   const Scene& scene = stage_->scene;
-  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
-    make(i, [&, parts = n](FieldInTheMaking& field) {
-      const SceneObject& object = scene.objects[i];
-      field.begin(object, content_of(scene), parts);
-      if (keeps_triangles(scene, object)) stage_->triangles[i].emplace(object.surface);
-    });
+  const std::int32_t n_parts = pes_of_process().second;
+  make_mine([&](FieldInTheMaking& field, std::size_t i) {
+    const SceneObject& object = scene.objects[i];
+    field.begin(object, content_of(scene), n_parts);
+    if (keeps_triangles(scene, object)) stage_->triangles[i].emplace(object.surface);
+  });
 }
 
 void Station::fill_fields(std::int32_t stage) {
@@ -59,10 +65,7 @@ void Station::fill_fields(std::int32_t stage) {
 }
 
 void Station::finish_fields() {
-  const auto [first, n] = pes_of_process();
-  const auto mine = static_cast<std::size_t>(pe().value - first);
-  for (std::size_t i = mine; i < stage_->fields.size(); i += static_cast<std::size_t>(n))
-    make(i, [&](FieldInTheMaking& field) { field.finish(stage_->scene.compression); });
+  make_mine([&](FieldInTheMaking& field, std::size_t) { field.finish(stage_->scene.compression); });
 }
 
 void Station::prepare(double block_edge) {
@@ -124,10 +127,10 @@ void Station::give_spent(tess::Callback<std::vector<double>> target) {
   contribute(tess::in_order(tess::sum), std::vector{spent_.rules, spent_.audit}, std::move(target));
 }
 
-void Station::give_build_seconds(tess::Callback<std::vector<double>> target) {
-  std::vector<double> seconds;
-  for (const FieldInTheMaking& field : stage_->fields) seconds.push_back(field.seconds());
-  contribute(tess::max, std::move(seconds), std::move(target));
+void Station::give_build_seconds(tess::Callback<double> target) {
+  double longest = 0;
+  for (const FieldInTheMaking& field : stage_->fields) longest = std::max(longest, field.seconds());
+  contribute(tess::max, longest, std::move(target));
 }
 
 }  // namespace particles

@@ -60,13 +60,16 @@ class Station : public tess::Group<Station> {
   void give_samples(tess::Callback<std::vector<Sample>> target);
   /// CPU seconds of the rules and of the audit, summed over PEs.
   void give_spent(tess::Callback<std::vector<double>> target);
-  /// Seconds of building each field; the longest of all processes.
-  void give_build_seconds(tess::Callback<std::vector<double>> target);
+  /// Seconds of building the slowest field.
+  void give_build_seconds(tess::Callback<double> target);
 
  private:
   /// Does `action` to a field; errors name its object.
   template <class Action>
   void make(std::size_t field, const Action& action);
+  /// The same to each field that this PE begins and finishes, with its number.
+  template <class Action>
+  void make_mine(const Action& action);
 
   std::shared_ptr<Stage> stage_;
   Space space_;

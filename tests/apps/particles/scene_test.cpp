@@ -91,7 +91,7 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
       {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},
       {"\"count\": 5", "\"count\": 5, \"seed\": -1",
-       "emitters[0].seed: -1 is not within 0 … 9223372036854775807"},
+       "emitters[0].seed: -1 is not within 0 … 9007199254740992"},
       {"\"count\": 5", "\"count\": 5, \"outward\": 1",
        "emitters[0].outward: 1 has no direction in a box"},
       {"\"restitution\": 0.7", "\"restitution\": 1.5",
