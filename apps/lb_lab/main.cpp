@@ -1,6 +1,6 @@
-// lb_lab: the effect of the number of chares per PE, of the strategy and its period on run time, and
-// their cost. Runs workloads with a known answer under every given strategy and cut, or strategies on
-// saved snapshots.
+// lb_lab: the effect of the number of chares per PE, of the strategy and its period on run time,
+// and their cost. Runs workloads with a known answer under every given strategy and cut, or
+// strategies on saved snapshots.
 #include "apps/command_line.hpp"
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"

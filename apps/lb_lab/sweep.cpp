@@ -22,7 +22,7 @@ Experiment experiment_of(const Settings& s, const Problem& problem, const std::s
   e.balance.prediction = s.prediction;
   e.balance.seed = s.seed;
   e.balance.speeds = s.speeds;
-  // Without a barrier a period is a time: that of so many iterations of a PE with average work.
+  // Without a barrier a period is a time: of so many iterations of a PE with average work.
   e.balance.period = std::chrono::nanoseconds(static_cast<std::int64_t>(
       1e9 * problem.cell_seconds * static_cast<double>(problem.domain.n_cells()) / problem.n_pes *
       s.period));

@@ -19,7 +19,7 @@ double linear(const Problem& p, Cell cell, std::int32_t) {
   return 2.0 * (cell.x + 1) / (p.domain.width + 1);
 }
 
-/// One cell has half a PE's work on top: no cut makes it smaller, only others can make way.
+/// One cell has half a PE's work on top: no cut makes it smaller, only other cells can move away.
 double one_hot(const Problem& p, Cell cell, std::int32_t) {
   const double extra = 0.5 * static_cast<double>(p.domain.n_cells()) / p.n_pes;
   return cell.x == p.domain.width / 8 ? 1 + extra : 1;
@@ -38,7 +38,7 @@ double moving_hot_spot(const Problem& p, Cell cell, std::int32_t t) {
   return (1 + 2 * covered) / 1.5;
 }
 
-/// Pareto with exponent 1.5, cut at 64, by the cell alone.
+/// Pareto with exponent 1.5, cut at 64; depends on the cell only.
 double heavy_tailed(const Problem& p, Cell cell, std::int32_t) {
   const double tail = 1 - std::pow(64.0, -1.5);
   const double u = drawn(p.seed ^ tess::mix(p.domain.number(cell)));

@@ -1,5 +1,5 @@
-// particles SCENE.json: moves particles among objects by distance/normal fields, and reports energies,
-// particles that tunnelled, and the time per particle and step.
+// particles SCENE.json: moves particles among objects by distance/normal fields, and reports
+// energies, particles that tunnelled, and the time per particle and step.
 #include "apps/command_line.hpp"
 #include "apps/particles/driver.hpp"
 #include "apps/particles/scene/scene.hpp"

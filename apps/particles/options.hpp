@@ -1,4 +1,4 @@
-// What the command line asks for. Every room may include this header; it includes none of them.
+// The options of the command line. Every room may include this header; it includes none of them.
 #pragma once
 
 #include "apps/progress.hpp"

@@ -30,8 +30,8 @@ std::vector<std::vector<Point>> contours(int n_columns, int n_rows,
         const Place a = corners[k], b = corners[(k + 1) % 4];
         return Place{2 * i + a.first + b.first, 2 * j + a.second + b.second};
       };
-      // A line enters the square where the region ends, going around it, and leaves where the region
-      // began before that.
+      // A line enters the square where the region ends, going around it, and leaves where the
+      // region began before that.
       for (std::size_t k = 0; k < 4; ++k) {
         if (!below[k] || below[(k + 1) % 4]) continue;
         std::size_t began = k;

@@ -1,10 +1,10 @@
 // Contour lines of values on a grid, by marching squares with linear interpolation.
 //
-//      o───o───o      o: at or above the level; •: below. Each crossing of a grid edge belongs to the
-//      │ ╭─┼─╮ │      two squares beside that edge, so that lines close by themselves. Beyond the
-//      o─┼─•─┼─o      border everything is above: lines that reach it follow it.
-//      │ ╰─┼─╯ │
-//      o───o───o
+//     o───o───o    o: at or above the level; •: below. Each crossing of a grid edge belongs to the
+//     │ ╭─┼─╮ │    two squares beside that edge, so that lines close by themselves. Everything
+//     o─┼─•─┼─o    beyond the border is above: lines that reach the border follow it.
+//     │ ╰─┼─╯ │
+//     o───o───o
 #pragma once
 
 #include "apps/plot/chart.hpp"

@@ -13,8 +13,8 @@ struct Drawing {
   bool missing = false;  ///< there is no gnuplot on the PATH
 };
 
-/// Returns the drawing that `script` makes on gnuplot's standard output. Throws tess::Error where no temporary
-/// file or process can be made.
+/// Returns the drawing that `script` makes on gnuplot's standard output. Throws tess::Error where
+/// no temporary file or process can be made.
 [[nodiscard]] Drawing draw_with_gnuplot(const std::string& script);
 
 }  // namespace plot

@@ -10,7 +10,8 @@ namespace plot {
 /// A field of a line of CSV (RFC 4180): quoted where it must be; every byte is kept.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
-/// The text as XML can hold it: control characters become spaces, bytes that are not UTF-8 become U+FFFD.
+/// The text as XML can hold it: control characters become spaces, bytes that are not UTF-8 become
+/// U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// Printable text between tags or in an attribute.

@@ -7,7 +7,7 @@
 
 namespace plot {
 
-/// Why a file cannot be written; empty where it can, as far as can be told without writing it.
+/// The reason why a file cannot be written; empty if none is found without writing it.
 [[nodiscard]] std::string hindrance(const std::filesystem::path& file);
 
 /// Throws tess::Error (environment) that names the option, the path and the reason where a file

@@ -1,6 +1,6 @@
-// An element of a laboratory run: iterates on its block, sends its edges to its neighbours where the
-// workload has traffic, and calls at_sync() once per phase. Workers run ahead of each other as far as
-// their neighbours and the barrier allow.
+// An element of a laboratory run: iterates on its block, sends its edges to its neighbours where
+// the workload has traffic, and calls at_sync() once per phase. Workers run ahead of each other as
+// far as their neighbours and the barrier allow.
 #pragma once
 
 #include "apps/lb_lab/run/station.hpp"

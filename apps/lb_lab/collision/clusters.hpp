@@ -1,6 +1,6 @@
 // Clusters of small boxes that drift through space, turn, and pass through each other. The space is
-// a problem's plane of cells, one layer deep. Where an object is is a function of its number and
-// the iteration alone: owners and oracle compute it alike.
+// a problem's plane of cells, one layer deep. The place of an object is a function of its number
+// and the iteration: owners and oracle compute it in the same way.
 //
 //     ┌──────────────┐   Clusters have one size; the n-th has n² times the objects of the first,
 //     │ ∴ →    ⁖     │   and n⁴ times its pairs. Objects are numbered cluster by cluster.

@@ -1,6 +1,6 @@
 // Owns some of the objects of a collision: submits them to the collider in each iteration, receives
-// their pairs, and adds those to the answer. Owners do not migrate; the collider's voxels, which find
-// the pairs, are balanced.
+// their pairs, and adds those to the answer. Owners do not migrate; the collider's voxels, which
+// find the pairs, are balanced.
 #pragma once
 
 #include "apps/lb_lab/collision/clusters.hpp"

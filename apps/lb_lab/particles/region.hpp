@@ -1,16 +1,17 @@
-// A block of the plane with its particles: a chare of a sparse array. The first particle that enters
-// creates it, on the PE that the particle comes from, and it ends when it is empty at the begin of an
-// iteration. A particle that enters has done its iteration, and waits among the arrivals.
+// A block of the plane with its particles: a chare of a sparse array. The first particle that
+// enters creates it, on the PE that the particle comes from, and it ends when it is empty at the
+// begin of an iteration. A particle that enters has done its iteration, and waits among the
+// arrivals.
 //
 // apps/particles has such a chare, too (simulation/block.hpp), and this one does not use it. The
 // laboratory needs a plane with a given number of blocks, one epoch per iteration, an answer with a
 // serial oracle that does not depend on the cut, and work that it can charge to a simulated PE or
-// stretch on a slow one. A Block of apps/particles lives in three dimensions, moves its particles for
-// many steps per epoch by the rules of a scene, and depends on a station that holds fields, objects
-// and the audit. What both have in common is the protocol: arrivals wait for their iteration, an
-// empty chare ends, leavers are sent with create-on-demand. These are the 30 lines of enter(),
-// take_in() and send_leavers(), and a shared base class with its two parameters (particle, context)
-// would not be shorter.
+// stretch on a slow one. A Block of apps/particles lives in three dimensions, moves its particles
+// for many steps per epoch by the rules of a scene, and depends on a station that holds fields,
+// objects and the audit. What both have in common is the protocol: arrivals wait for their
+// iteration, an empty chare ends, leavers are sent with create-on-demand. These are the 30 lines of
+// enter(), take_in() and send_leavers(), and a shared base class with its two parameters (particle,
+// context) would not be shorter.
 #pragma once
 
 #include "apps/lb_lab/particles/swarm.hpp"

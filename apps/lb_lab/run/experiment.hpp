@@ -41,8 +41,8 @@ tess::Task run(const Experiment& experiment, Outcome& outcome);
 /// Seconds that the run would take if work were a fluid: measured work over all speeds.
 [[nodiscard]] double ideal_seconds(const Outcome& outcome, const Plan& plan);
 
-/// Rounds as intervals on the clock of the run, per PE: they begin when the last of all elements has
-/// reached the barrier, and end when the first on this PE goes on. Without a barrier: by PE 0.
+/// Rounds as intervals on the clock of the run, per PE: they begin when the last of all elements
+/// has reached the barrier, and end when the first on this PE goes on. Without a barrier: by PE 0.
 [[nodiscard]] std::vector<std::vector<Interval>> balancing_times(const Outcome& outcome);
 
 }  // namespace lb_lab

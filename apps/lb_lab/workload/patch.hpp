@@ -21,8 +21,8 @@ class Patch {
   /// One iteration of all cells.
   void advance(const Problem& problem, std::int32_t iteration);
 
-  /// The word that the walk of this iteration starts from, and the word that it ends with: the state
-  /// changes if they differ.
+  /// The word that the walk of this iteration starts from, and the word that it ends with: the
+  /// state changes if they differ.
   [[nodiscard]] std::uint64_t word() const { return now_[at(0, 0)]; }
   void take(std::uint64_t walked) { now_[at(0, 0)] = walked; }
 

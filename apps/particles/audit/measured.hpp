@@ -33,8 +33,9 @@ struct Measured {
     potential.add(other.potential);
     hash += other.hash;
   }
-  /// Kinetic and potential; like kinetic.total() infinite or not a number where that of a particle is
-  /// beyond all doubles. Particles with positions or velocities that are not finite are left out.
+  /// Kinetic and potential; like kinetic.total() infinite or not a number where that of a particle
+  /// is beyond all doubles. Particles with positions or velocities that are not finite are left
+  /// out.
   [[nodiscard]] double energy() const {
     ExactSum both = kinetic;
     both.add(potential);

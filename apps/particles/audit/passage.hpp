@@ -9,8 +9,8 @@
 namespace particles {
 
 /// The signed distance of an object's field, flat or compressed, at a point in the object's
-/// coordinates, interpolated between eight voxels; HUGE_VAL outside the grid. Its error is of second
-/// order in the cell, off the medial axis. (The step loop has its own look-ups.)
+/// coordinates, interpolated between eight voxels; HUGE_VAL outside the grid. Its error is of
+/// second order in the cell, off the medial axis. (The step loop has its own look-ups.)
 [[nodiscard]] double distance_at(const tess::dn::Object& object, tess::dn::Vec3 p);
 
 /// The state of a particle in the audit.

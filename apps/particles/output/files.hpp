@@ -1,5 +1,5 @@
-// The files that a run writes to the folder of --out, and whether they can be written: checked before
-// the run begins, since a run is long. Process 0 writes, all processes check.
+// The files that a run writes to the folder of --out, and whether they can be written: checked
+// before the run begins, since a run is long. Process 0 writes, all processes check.
 #pragma once
 
 #include "apps/particles/options.hpp"

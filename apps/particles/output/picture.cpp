@@ -108,8 +108,8 @@ std::string text(double x, const std::string& words) {
 }
 
 /// The border of a surface's shadow, seen along the frame's axis: every triangle is turned to face
-/// the viewer; edges between two triangles then cancel, unless both lie on one side of the edge. The
-/// lines that are left fill the shadow by winding number.
+/// the viewer; edges between two triangles then cancel, unless both lie on one side of the edge.
+/// The lines that are left fill the shadow by winding number.
 std::vector<std::vector<Point>> shadow(const Surface& surface, const Frame& frame,
                                        const Frame2D& in) {
   std::vector<Point> points;

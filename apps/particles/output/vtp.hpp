@@ -1,5 +1,5 @@
-// Trajectories for ParaView: one VTP file of points per snapshot, and a .pvd file that lists them by
-// time. ASCII: the traced particles are few.
+// Trajectories for ParaView: one VTP file of points per snapshot, and a .pvd file that lists them
+// by time. ASCII: the traced particles are few.
 #pragma once
 
 #include "apps/particles/simulation/simulate.hpp"

@@ -121,8 +121,8 @@ class Key {
 /// `name`: of the file, in messages.
 [[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& name);
 
-/// A text as messages show it: in one line, cut between characters of UTF-8; " …" stands for what is
-/// beyond `longest` bytes.
+/// A text as messages show it: in one line, cut between characters of UTF-8; " …" stands for what
+/// is beyond `longest` bytes.
 [[nodiscard]] std::string shown(std::string_view text, std::size_t longest = 60);
 
 }  // namespace particles

@@ -43,8 +43,8 @@ struct Compression {
   double degrees = 3;    ///< of the normal
 };
 
-/// Where particles begin. Particle i of the scene is the same on every PE: its random numbers depend
-/// on the seed and i only.
+/// Where particles begin. Particle i of the scene is the same on every PE: its random numbers
+/// depend on the seed and i only.
 struct Emitter {
   enum class Where : std::uint8_t { box, sphere, lattice, surface } where = Where::box;
   std::uint64_t count = 0;
@@ -114,7 +114,8 @@ void check_scene(const Scene& scene);
 [[nodiscard]] bool stops_particles(const Scene& scene);
 
 /// The share of an object's surface where particles may pass its field: walls and edges thinner
-/// than least_wall(), and open sheets. 0 for fields of two sides, and where no rule stops particles.
+/// than least_wall(), and open sheets. 0 for fields of two sides, and where no rule stops
+/// particles.
 [[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
 
 /// Whether rules, a picture or outputs need the fields.
@@ -128,8 +129,8 @@ void check_scene(const Scene& scene);
 [[nodiscard]] double kept_off(const Scene& scene, const SceneObject& object);
 
 /// The least thickness of a wall, in the object's units, that its field can represent: a voxel's
-/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, one and
-/// a half, or three if the object moves; less kept_off().
+/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, one
+/// and a half, or three if the object moves; less kept_off().
 [[nodiscard]] double least_wall(const Scene& scene, const SceneObject& object);
 
 /// Sets the compression, within the scene's bounds or the usual ones. Throws where the scene has a

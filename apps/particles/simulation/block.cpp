@@ -75,7 +75,8 @@ void Block::advance(std::size_t species, const Stretch& stretch, Station& statio
     advance_audited(flock, stepper, stretch, station);
     return;
   }
-  // Near an explosion each step is a call of its own: its times are then the same for every exchange.
+  // Near an explosion each step is a call of its own: its times are then the same for every
+  // exchange.
   const Scene& scene = station.stage().scene;
   const std::int32_t at_once = explodes_within(scene, stretch) ? 1 : stretch.n_steps;
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);

@@ -1,9 +1,10 @@
-// A cube of space with its particles: a chare of a sparse three-dimensional array. The first particle
-// that enters creates it, and it ends when it is empty at the begin of a stretch of steps. Particles
-// do not collide with one another: blocks serve locality only, and no result depends on them.
+// A cube of space with its particles: a chare of a sparse three-dimensional array. The first
+// particle that enters creates it, and it ends when it is empty at the begin of a stretch of steps.
+// Particles do not collide with one another: blocks serve locality only, and no result depends on
+// them.
 //
-// An epoch closes each stretch. Within it particles change blocks; a particle that has done its steps
-// waits among the arrivals until the next stretch, so that it is not moved twice.
+// An epoch closes each stretch. Within it particles change blocks; a particle that has done its
+// steps waits among the arrivals until the next stretch, so that it is not moved twice.
 #pragma once
 
 #include "apps/particles/simulation/flock.hpp"

@@ -14,7 +14,8 @@
 
 namespace particles {
 
-/// The content of the fields of this scene: what its rules need, and normals for pictures and files.
+/// The content of the fields of this scene: what its rules need, and normals for pictures and
+/// files.
 [[nodiscard]] tess::dn::Content content_of(const Scene& scene);
 
 /// The field of an object in the making: begun by one PE of the process, filled by all in stages,
@@ -27,8 +28,8 @@ class FieldInTheMaking {
   void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
   /// Known once begun; none for a field from a file.
   [[nodiscard]] int n_stages() const;
-  /// Fills a part in a stage, if the part exists. PEs fill different parts at the same time, and all
-  /// before the next stage begins.
+  /// Fills a part in a stage, if the part exists. PEs fill different parts at the same time, and
+  /// all before the next stage begins.
   void fill(int stage, int part);
   /// With a compression the compressed field replaces the flat arrays.
   void finish(const std::optional<Compression>& compression = {});

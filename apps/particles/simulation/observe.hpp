@@ -1,5 +1,5 @@
-// What a run observes in a flock: sums and counts, positions of traced particles, and particles that
-// went through a surface. No message is sent here.
+// What a run observes in a flock: sums and counts, positions of traced particles, and particles
+// that went through a surface. No message is sent here.
 #pragma once
 
 #include "apps/particles/audit/measured.hpp"
@@ -17,8 +17,8 @@ void measure(const Stage& stage, const std::vector<tess::dn::Object>& objects, c
 /// Appends the traced particles of the flock.
 void trace(const Stage& stage, const Flock& flock, std::vector<Sample>& into);
 
-/// Marks particles whose last step, from `before` over `waypoints` to their position, went through a
-/// surface of the objects, which stand as at the begin of the step.
+/// Marks particles whose last step, from `before` over `waypoints` to their position, went through
+/// a surface of the objects, which stand as at the begin of the step.
 void note_tunnelled(const Stage& stage, const std::vector<tess::dn::Object>& at_begin,
                     const tess::dn::Particles& before,
                     std::span<const tess::dn::Waypoint> waypoints, Flock& flock);

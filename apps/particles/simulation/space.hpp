@@ -1,5 +1,5 @@
-// The cut of space into cubes, one per block. The cubes cover an arena; those on its border reach to
-// infinity, so that particles that fly away do not create blocks without end.
+// The cut of space into cubes, one per block. The cubes cover an arena; those on its border reach
+// to infinity, so that particles that fly away do not create blocks without end.
 #pragma once
 
 #include "collide/dn_field/vec3.hpp"

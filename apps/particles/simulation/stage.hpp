@@ -1,6 +1,6 @@
-// The data that all blocks of a process share, read-only once it is set up: the scene, the source of
-// its particles, the fields. PEs of a process share it by a pointer; a message to another process
-// holds the scene, and the fields are built there again.
+// The data that all blocks of a process share, read-only once it is set up: the scene, the source
+// of its particles, the fields. PEs of a process share it by a pointer; a message to another
+// process holds the scene, and the fields are built there again.
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"

@@ -69,7 +69,8 @@ Flight exact_drag(const Bvh& tree, const Flight& start, const SurfaceDrag& drag,
   double way = 0, speed = norm(start.velocity);
   while (time > 0 && speed > 0) {
     const double distance = std::sqrt(tree.closest(start.position + way * along).distance2);
-    // The distance changes by no more than the way: the drag acts on the whole piece, or not at all.
+    // The distance changes by no more than the way: the drag acts on the whole piece, or not at
+    // all.
     const double piece = std::max(std::abs(distance - drag.threshold), shortest);
     if (!(distance < drag.threshold)) {
       const double took = std::min(time, piece / speed);

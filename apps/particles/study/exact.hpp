@@ -1,9 +1,10 @@
 // The reference of the study: what particles do at the triangles themselves, without a field.
 //
-// Bounces: straight flight, reflection at the first triangle, straight flight; closed forms. Flights
-// in front of the triangles, for rules that act at a distance: linear drag takes as much speed per
-// length as its rate, a closed form between the places where its reach begins and ends, which exact
-// distances give; surface flow is followed in short steps of second order with exact normals.
+// Bounces: straight flight, reflection at the first triangle, straight flight; closed forms.
+// Flights in front of the triangles, for rules that act at a distance: linear drag takes as much
+// speed per length as its rate, a closed form between the places where its reach begins and ends,
+// which exact distances give; surface flow is followed in short steps of second order with exact
+// normals.
 #pragma once
 
 #include "collide/dn_field/rules.hpp"

@@ -21,8 +21,8 @@ struct Subject {
   double thickness;
 };
 
-/// Points around the surface whose closest point is inside a triangle, not on an edge: off the medial
-/// axis, where the distance is smooth.
+/// Points around the surface whose closest point is inside a triangle, not on an edge: off the
+/// medial axis, where the distance is smooth.
 struct Samples {
   std::vector<float> x, y, z;
   std::vector<double> distance;

@@ -203,7 +203,8 @@ class Study {
     spring.spring = Spring{4 / (reach * reach), 0, reach};
     study_bounces("spring", spring);
 
-    // A particle that comes straight on has no tangent to turn to: a rounding error decides its side.
+    // A particle that comes straight on has no tangent to turn to: a rounding error decides its
+    // side.
     const double straight = std::cos(std::numbers::pi / 12);
     constexpr std::size_t most_flights = 100;
     std::vector<Flight> starts;
@@ -218,8 +219,8 @@ class Study {
         compare_flights(object, rules, dt, time, starts, exact, now);
       });
     };
-    // Flights begin at 0.8 of the thickness with speed 1: the drag stops those that come straight on
-    // in front of the surface, and the flow turns them to the tangent there.
+    // Flights begin at 0.8 of the thickness with speed 1: the drag stops those that come straight
+    // on in front of the surface, and the flow turns them to the tangent there.
     Rules drag, flow;
     drag.surface_drag = SurfaceDrag{2.5 / thickness, 0.5 * thickness, DragLaw::linear};
     flow.surface_flow = SurfaceFlow{4 / thickness, 4 / thickness, 0.7 * thickness};

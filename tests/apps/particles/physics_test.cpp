@@ -272,7 +272,8 @@ TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negati
       CHECK(norm(to.velocity) == Approx(2).epsilon(1e-12));  // the flow keeps the speed
       const Vec3 at{from.position.x, from.position.y, 0};
       const double distance = norm(at) - radius;
-      // Off the rim of the reach and off the surface, where a voxel decides which particle is within.
+      // Off the rim of the reach and off the surface, where a voxel decides which particle is
+      // within.
       if (distance < 0.1 || distance > reach - 0.1) continue;
       const Vec3 normal = direction(at);
       const double along = dot(normal, from.velocity) / 2;

@@ -31,7 +31,8 @@ inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& h
   return ran;
 }
 
-/// The last row of a run, computed step by step over all particles; the fields of the stage are built.
+/// The last row of a run, computed step by step over all particles; the fields of the stage are
+/// built.
 inline Measured run_serially(const Stage& stage) {
   const Scene& scene = stage.scene;
   std::vector<tess::dn::Object> objects = stage.objects();
