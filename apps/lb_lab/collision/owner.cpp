@@ -9,7 +9,8 @@ namespace {
 using Where = std::tuple<tess::CollectionId, tess::CollectionId>;  // owners, stations
 
 /// Runs on the PE of the voxel, once per owner of a pair: only the lesser owner is sent the pair.
-void send_to_lesser(const tess::Callback<tess::collide::Hits>& callback, tess::collide::Hits&& hits) {
+void send_to_lesser(const tess::Callback<tess::collide::Hits>& callback,
+                    tess::collide::Hits&& hits) {
   if (hits.owner > hits.other) return;
   const auto [owners, stations] = tess::from_bytes<Where>(callback.where());
   Station& here = tess::GroupProxy<Station>(stations).local();
