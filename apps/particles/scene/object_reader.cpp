@@ -1,6 +1,6 @@
 #include "apps/particles/scene/readers.hpp"
 #include "collide/dn_field/field_file.hpp"
-#include "collide/dn_field/tree/outward.hpp"
+#include "collide/dn_field/orientation.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

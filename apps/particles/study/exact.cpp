@@ -1,6 +1,6 @@
 #include "apps/particles/study/exact.hpp"
 
-#include "collide/dn_field/geometry/surface_points.hpp"
+#include "collide/dn_field/surface.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>

@@ -7,8 +7,8 @@
 // normals.
 #pragma once
 
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/rules.hpp"
-#include "collide/dn_field/tree/bvh.hpp"
 
 #include <cstdint>
 #include <vector>

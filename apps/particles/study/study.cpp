@@ -170,7 +170,7 @@ class Study {
     row.bytes = static_cast<double>(compressed.bytes());
     row.build_seconds = compression.wall, row.build_cpu_seconds = compression.cpu;
     measure([&](const Points& points, const Answers& answers) {
-      nearest(compressed, points, answers.distance, {answers.nx, answers.ny, answers.nz});
+      look_up(compressed, LookUp::nearest, points, answers);
     });
   }
 
