@@ -68,11 +68,11 @@ class Array final : public ArrayOf<typename C::Index> {
         first = (rank * size + n_pes - 1) / n_pes;
         last = ((rank + 1) * size + n_pes - 1) / n_pes;
       }
-      this->bear_initial([&] {
+      this->construct_initial([&] {
         for (std::int64_t rank = first; rank < last; ++rank) {
           const auto index = index_at<Index>(this->range(), rank);
           if (home(index) != this->pe_.id()) continue;
-          this->bear(index, Version{1, 1}, [&args...] { return make_chare<C>(args...); });
+          this->construct(index, Version{1, 1}, [&args...] { return make_chare<C>(args...); });
         }
       });
     }
@@ -93,7 +93,7 @@ class Array final : public ArrayOf<typename C::Index> {
           // What its constructor asks for, it had done when it was born.
           this->drop_after_construction();
           own(*arrival.element).migrate_to_ = PeId{-1};
-          own(*arrival.element).doomed_ = false;
+          own(*arrival.element).destroy_requested_ = false;
         }
         ar(own(*arrival.element).state_);
         if (ar.template take<bool>()) {
@@ -113,7 +113,7 @@ class Array final : public ArrayOf<typename C::Index> {
 #endif
       }
     }
-    this->land(std::exchange(arrival.element, nullptr), arrival.from);
+    this->add_arrived(std::exchange(arrival.element, nullptr), arrival.from);
   }
 
   static void pack_element(C& element, Writer& ar) {
@@ -153,10 +153,10 @@ class Array final : public ArrayOf<typename C::Index> {
   void resume(Element& element) override {
     if constexpr (ResumesFromSync<C>) {
       C& chare = static_cast<C&>(element);
-      auto* letter = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
-      letter->epoch = own(chare).balance_->sync.epoch;  // counted there since at_sync()
-      letter->led_by = own(chare).balance_->sync.led_by;
-      this->post(letter);
+      auto* message = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
+      message->epoch = own(chare).balance_->sync.epoch;  // counted there since at_sync()
+      message->led_by = own(chare).balance_->sync.led_by;
+      this->post(message);
     } else {
       Base::resume(element);
     }
@@ -331,21 +331,21 @@ class ElementProxy {
   void post(Demand demand, Args&&... args) const {
     static_assert(check_entry<C, F, Args...>());
     Pe& pe = current_pe();
-    auto* letter = Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
-    letter->demand = demand;
-    letter->ask = demand == Demand::here;
+    auto* message = Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
+    message->demand = demand;
+    message->ask = demand == Demand::here;
     if constexpr (!OnePerPe<C>)  // a balancer has no say in where members are
       if (Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages()) [[unlikely]]
-        meter->sent({collection_, IndexHash<Index>()(index_)}, payload_bytes(letter->arguments));
-    post_letter(pe, letter);
+        meter->sent({collection_, IndexHash<Index>()(index_)}, payload_bytes(message->arguments));
+    post_message(pe, message);
   }
-  void post_letter(Pe& pe, ElementMessage<Index>* letter) const {
-    pe.completion().sent(letter->epoch);
+  void post_message(Pe& pe, ElementMessage<Index>* message) const {
+    pe.completion().sent(message->epoch);
     if (Collection* collection = find_collection(pe, collection_); collection != nullptr)
         [[likely]] {
-      static_cast<Array<C>*>(collection)->post(letter);
+      static_cast<Array<C>*>(collection)->post(message);
     } else {
-      pe.send_here(letter);  // it waits until the array is known here
+      pe.send_here(message);  // it waits until the array is known here
     }
   }
   template <class... Args>
@@ -354,22 +354,22 @@ class ElementProxy {
                   "the chare has no constructor that takes these arguments");
     Pe& pe = current_pe();
     check_exists(pe, where);
-    auto* letter = Construction<C, std::decay_t<Args>...>::make(pe, collection_, index_,
-                                                                std::forward<Args>(args)...);
-    letter->demand = demand;
-    letter->ask = true;
-    letter->asker = where;
+    auto* message = Construction<C, std::decay_t<Args>...>::make(pe, collection_, index_,
+                                                                 std::forward<Args>(args)...);
+    message->demand = demand;
+    message->ask = true;
+    message->asker = where;
     if (where == pe.id()) {
-      post_letter(pe, letter);
+      post_message(pe, message);
     } else {
-      pe.completion().sent(letter->epoch);
-      pe.send(where, letter);
+      pe.completion().sent(message->epoch);
+      pe.send(where, message);
     }
   }
-  template <class Letter, class... Args>
+  template <class Kind, class... Args>
   void system(Args... args) const {
     Pe& pe = current_pe();
-    post_letter(pe, Letter::make(pe, collection_, index_, args...));
+    post_message(pe, Kind::make(pe, collection_, index_, args...));
   }
 
   template <auto F, class T>

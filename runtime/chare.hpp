@@ -38,7 +38,7 @@ class Chare : public IndexedElement<IndexType> {
   }
 
   /// Ends this element once what runs of it, and what waits, is done.
-  void destroy() { this->doomed_ = true; }
+  void destroy() { this->destroy_requested_ = true; }
 
   /// At the balancer's barrier (start_balancing): this element has done its part of the phase, and
   /// waits. Once all members have said so and the round is over, its resume_from_sync() is called,

@@ -16,7 +16,7 @@ namespace {
 struct Lives {
   Trial& trial;
   std::uint64_t seed = 0;
-  double birth_chance = 0, move_chance = 0;
+  double create_chance = 0, move_chance = 0;
   std::mutex mutex{};
   std::map<std::pair<int, int>, int> phases_run{};
   std::int64_t n_contributed = 0, n_collected = 0;
@@ -29,15 +29,15 @@ struct Lives {
   [[nodiscard]] int n_phases(int root, int path) const {
     return 1 + static_cast<int>(draws(root, path, 15).below(6));
   }
-  [[nodiscard]] bool bears(int root, int path, int phase) const {
-    return path < 100 && draws(root, path, phase).chance(birth_chance);
+  [[nodiscard]] bool creates(int root, int path, int phase) const {
+    return path < 100 && draws(root, path, phase).chance(create_chance);
   }
   /// What one life and all that it bears run, in phases.
   void expect_life(std::map<std::pair<int, int>, int>& expected, int root, int path) const {
     const int n = n_phases(root, path);
     expected[{root, path}] = n;
     for (int phase = 0; phase < n; ++phase)
-      if (bears(root, path, phase)) expect_life(expected, root, path * 10 + phase + 1);
+      if (creates(root, path, phase)) expect_life(expected, root, path * 10 + phase + 1);
   }
 };
 Lives* lives_of_trial = nullptr;
@@ -85,7 +85,7 @@ void Life::live() {
   }
   charge(std::chrono::microseconds(1 + root % 5));
   contribute(sum, std::int64_t{1}, collector_of_trial[PeId{0}].target<&Collector::collected>());
-  if (l.bears(root, path, phase)) {
+  if (l.creates(root, path, phase)) {
     const auto child = array()[{root, path * 10 + phase + 1}];
     child.insert();
     child.send<&Life::begin>();
@@ -232,7 +232,7 @@ void balance_rounds(Trial& trial) {
   Lives l{trial};
   lives_of_trial = &l;
   l.seed = trial.seed();
-  l.birth_chance = 0.1 * trial.draw(0, 3);
+  l.create_chance = 0.1 * trial.draw(0, 3);
   l.move_chance = 0.1 * trial.draw(0, 3);
   const int n = trial.draw(0, 24);
   BalanceOptions options;

@@ -17,7 +17,7 @@ using PhasesOf = std::map<std::int32_t, std::vector<std::int32_t>>;  // by eleme
 struct Town {
   Trial& trial;
   int n_phases = 1, n_first = 1;
-  double birth_chance = 0, death_chance = 0;
+  double create_chance = 0, destroy_chance = 0;
   bool rotates = false;
   std::mutex mutex{};
   PhasesOf lived{};
@@ -27,11 +27,11 @@ struct Town {
                                          static_cast<std::uint64_t>(phase))))
         .chance(chance);
   }
-  [[nodiscard]] bool bears(std::int32_t element, std::int32_t phase) const {
-    return element < 1000 && draw(element, phase, birth_chance);
+  [[nodiscard]] bool creates(std::int32_t element, std::int32_t phase) const {
+    return element < 1000 && draw(element, phase, create_chance);
   }
   [[nodiscard]] bool ends(std::int32_t element, std::int32_t phase) const {
-    return draw(element, phase + 32, death_chance);
+    return draw(element, phase + 32, destroy_chance);
   }
   [[nodiscard]] static std::int32_t child(std::int32_t element, std::int32_t phase) {
     return 16 * (element + 1) + phase;
@@ -39,7 +39,7 @@ struct Town {
   void expect_life(PhasesOf& expected, std::int32_t element, std::int32_t first) const {
     for (std::int32_t phase = first; phase < n_phases; ++phase) {
       expected[element].push_back(phase);
-      if (bears(element, phase)) expect_life(expected, child(element, phase), phase + 1);
+      if (creates(element, phase)) expect_life(expected, child(element, phase), phase + 1);
       if (ends(element, phase)) return;
     }
   }
@@ -48,7 +48,7 @@ Town* town_of_trial = nullptr;
 
 class Citizen : public Chare<Citizen, Index1> {
  public:
-  void born(std::int32_t first_phase) { first_phase_ = first_phase; }
+  void create(std::int32_t first_phase) { first_phase_ = first_phase; }
   void live(std::int32_t phase);
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
   template <class Ar>
@@ -75,8 +75,8 @@ void Citizen::live(std::int32_t phase) {
                       " was on ", was_on_, " before the round, and is on ", pe.id());
   was_on_ = pe.id();
   charge(std::chrono::microseconds(1 + me % 5));
-  if (town.bears(me, phase))
-    array()[{Town::child(me, phase)}].send_or_create_here<&Citizen::born>(phase + 1);
+  if (town.creates(me, phase))
+    array()[{Town::child(me, phase)}].send_or_create_here<&Citizen::create>(phase + 1);
   if (town.ends(me, phase)) destroy();
 }
 
@@ -89,7 +89,7 @@ Task live_all(Town& town, BalanceOptions options) {
   });
   co_await epoch([&] {
     for (std::int32_t i = 0; i < town.n_first; ++i)
-      citizens[{i}].send_or_create_home<&Citizen::born>(0);
+      citizens[{i}].send_or_create_home<&Citizen::create>(0);
   });
   for (std::int32_t phase = 0; phase < town.n_phases; ++phase) {
     co_await epoch([&] { citizens.broadcast<&Citizen::live>(phase); });
@@ -107,8 +107,8 @@ void balance_epochs(Trial& trial) {
   town_of_trial = &town;
   town.n_phases = trial.draw(1, 12);
   town.n_first = trial.draw(0, 12);
-  town.birth_chance = 0.1 * trial.draw(0, 3);
-  town.death_chance = 0.1 * trial.draw(0, 3);
+  town.create_chance = 0.1 * trial.draw(0, 3);
+  town.destroy_chance = 0.1 * trial.draw(0, 3);
   BalanceOptions options;
   if (trial.draw(0, 1) == 0) {
     options.strategy = "rotate";

@@ -7,15 +7,15 @@
 namespace tess::fuzz {
 namespace {
 
-constexpr int most_births = 100;
+constexpr int most_created = 100;
 
 struct Heard {
   Trial& trial;
   std::uint64_t seed = 0;
   int n_first = 0;
-  double birth_chance = 0, death_chance = 0, move_chance = 0;
+  double create_chance = 0, destroy_chance = 0, move_chance = 0;
   std::mutex mutex{};
-  int n_born = 0;
+  int n_created = 0;
   std::vector<std::pair<int, std::vector<int>>> lists{};  // index, broadcasts met
   std::vector<int> ended{};                               // indices
 
@@ -29,17 +29,17 @@ Heard* heard = nullptr;
 class Listener : public Chare<Listener, Index1> {
  public:
   Listener() = default;
-  explicit Listener(bool born) : born_(born) {}
+  explicit Listener(bool created) : created_(created) {}
 
   /// What was created for this message must not end before it: it would be created again.
-  void born() { born_ = true; }
+  void create() { created_ = true; }
 
   void hear(int id) {
     met_.push_back(id);
     Random random(mix(heard->seed ^ mix(static_cast<std::uint64_t>(id * 4096 + index().x))));
-    if (random.chance(heard->birth_chance)) give_birth(random);
+    if (random.chance(heard->create_chance)) create_child(random);
     if (random.chance(heard->move_chance)) move(random);
-    if (index().x != 0 && born_ && random.chance(heard->death_chance)) {
+    if (index().x != 0 && created_ && random.chance(heard->destroy_chance)) {
       heard->add(index().x, met_);
       const std::lock_guard lock(heard->mutex);
       heard->ended.push_back(index().x);
@@ -51,7 +51,7 @@ class Listener : public Chare<Listener, Index1> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(born_, met_);
+    ar(created_, met_);
   }
 
  private:
@@ -60,29 +60,29 @@ class Listener : public Chare<Listener, Index1> {
         static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
   }
   void move(Random& random) {
-    if (heard->death_chance > 0 || random.chance(0.5)) {  // else it would be a dead letter
+    if (heard->destroy_chance > 0 || random.chance(0.5)) {  // else it would be a dead letter
       migrate_to(draw_pe(random));
     } else {
       array()[index()].migrate_to(draw_pe(random));
     }
   }
-  void give_birth(Random& random) {
+  void create_child(Random& random) {
     int index = 0;
     {
       const std::lock_guard lock(heard->mutex);
-      if (heard->n_born >= most_births) return;
-      index = heard->n_first + heard->n_born++;
+      if (heard->n_created >= most_created) return;
+      index = heard->n_first + heard->n_created++;
     }
     if (random.chance(0.3)) {
       array()[{index}].insert_on(draw_pe(random), true);
     } else if (random.chance(0.5)) {
-      array()[{index}].send_or_create_here<&Listener::born>();
+      array()[{index}].send_or_create_here<&Listener::create>();
     } else {
-      array()[{index}].send_or_create_home<&Listener::born>();
+      array()[{index}].send_or_create_home<&Listener::create>();
     }
   }
 
-  bool born_ = false;
+  bool created_ = false;
   std::vector<int> met_;
 };
 
@@ -111,8 +111,8 @@ void broadcasts(Trial& trial) {
   const bool long_run = trial.seed() % 50 == 0;
   const int n_each = long_run ? 500 / trial.n_pes() : trial.draw(1, 12);
   // In the long run few are born for each that dies, so that the population stays small.
-  here.birth_chance = long_run ? 0.002 : 0.1 * trial.random().unit();
-  here.death_chance = long_run ? 0.01 : trial.draw(0, 1) * 0.1 * trial.random().unit();
+  here.create_chance = long_run ? 0.002 : 0.1 * trial.random().unit();
+  here.destroy_chance = long_run ? 0.01 : trial.draw(0, 1) * 0.1 * trial.random().unit();
   here.move_chance = trial.random().unit() * 0.6;
   trial.run_clean([&]() -> Task { return drive(range(here.n_first), n_each); });
 
@@ -136,7 +136,7 @@ void broadcasts(Trial& trial) {
       trial.expect(static_cast<std::size_t>(all.end() - begin) == met.size(), "element ", index,
                    " missed the last broadcasts");
   }
-  const auto n_lives = static_cast<std::size_t>(here.n_first + here.n_born);
+  const auto n_lives = static_cast<std::size_t>(here.n_first + here.n_created);
   trial.expect(here.lists.size() == n_lives, here.lists.size(), " of ", n_lives, " elements told");
 }
 

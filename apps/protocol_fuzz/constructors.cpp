@@ -11,16 +11,16 @@ namespace {
 
 struct Nursery {
   bool syncs = false;
-  Callback<int> born{};
+  Callback<int> created{};
   Callback<int> members{};
   std::atomic<int> n_resumed{0};
 };
 Nursery* nursery = nullptr;
 
-class Newborn : public Chare<Newborn, Index1> {
+class NewElement : public Chare<NewElement, Index1> {
  public:
-  Newborn() {
-    contribute(sum, 1, nursery->born);
+  NewElement() {
+    contribute(sum, 1, nursery->created);
     if (nursery->syncs) at_sync();
     if (index().x % 3 == 0)
       migrate_to(PeId{(current_pe().id().value + index().x) % current_pe().n_pes()});
@@ -41,21 +41,21 @@ class Midwife : public Group<Midwife> {
   Midwife() { contribute(sum, 1, nursery->members); }
 };
 
-Task bear_all(Trial& trial, int n, int n_rounds) {
-  Future<int> born, members;
-  nursery->born = born.callback();
+Task construct_all(Trial& trial, int n, int n_rounds) {
+  Future<int> created, members;
+  nursery->created = created.callback();
   nursery->members = members.callback();
-  const auto newborns = tess::create<Newborn>(range(n));
+  const auto elements = tess::create<NewElement>(range(n));
   create_group<Midwife>();
   BalanceOptions options;
   options.strategy = "rotate";
-  if (nursery->syncs) start_balancing(newborns, options);
-  const int n_born = co_await born, n_members = co_await members;
-  trial.expect(n_born == n, n_born, " of ", n, " constructors' contributions are in the sum");
+  if (nursery->syncs) start_balancing(elements, options);
+  const int n_created = co_await created, n_members = co_await members;
+  trial.expect(n_created == n, n_created, " of ", n, " constructors' contributions are in the sum");
   trial.expect(n_members == trial.n_pes(), n_members, " members' contributions are in the sum");
   for (int round = 0; round < n_rounds; ++round) {
     Future<int> given;
-    newborns.broadcast<&Newborn::give>(given.callback());
+    elements.broadcast<&NewElement::give>(given.callback());
     const int n_given = co_await given;
     trial.expect(n_given == n, n_given, " of ", n, " contribute in round ", round);
   }
@@ -68,7 +68,7 @@ void constructors(Trial& trial) {
   nursery = &here;
   const int n = trial.draw(1, 24), n_rounds = trial.draw(0, 6);
   here.syncs = trial.draw(0, 1) == 1;
-  trial.run_clean([&]() -> Task { return bear_all(trial, n, n_rounds); });
+  trial.run_clean([&]() -> Task { return construct_all(trial, n, n_rounds); });
   trial.expect(here.n_resumed == (here.syncs ? n : 0), here.n_resumed.load(), " are resumed");
 }
 

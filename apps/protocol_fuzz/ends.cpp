@@ -176,11 +176,11 @@ void exceptions(Trial& trial) {
 }
 
 namespace {
-Task kill_and_send(int n, int n_letters) {
+Task kill_and_send(int n, int n_messages) {
   const auto patients = tess::create<Patient>(range(n));
   co_await epoch([&] { patients.broadcast<&Patient::end>(); });
   co_await epoch([&] {
-    for (int k = 0; k < n_letters; ++k) patients[{k % n}].send<&Patient::nothing>();
+    for (int k = 0; k < n_messages; ++k) patients[{k % n}].send<&Patient::nothing>();
   });
   for (int i = 0; i < n; ++i) patients[{i}].insert();
   co_await epoch([&] {
@@ -190,15 +190,15 @@ Task kill_and_send(int n, int n_letters) {
 }  // namespace
 
 void dead_letters(Trial& trial) {
-  const int n = trial.draw(1, 9), n_letters = trial.draw(0, 20);
-  const Ending ending = trial.run([&]() -> Task { return kill_and_send(n, n_letters); });
+  const int n = trial.draw(1, 9), n_messages = trial.draw(0, 20);
+  const Ending ending = trial.run([&]() -> Task { return kill_and_send(n, n_messages); });
   trial.expect(ending.exit_code == 0, "exit code ", ending.exit_code, ": ", ending.report);
-  // A message that overtakes the insertion is a dead letter, too: at least n_letters, at most n
+  // A message that overtakes the insertion is a dead letter, too: at least n_messages, at most n
   // more.
   int n_dead = 0;
   if (const std::size_t at = ending.report.find("tessera: "); at != std::string::npos)
     n_dead = std::atoi(ending.report.c_str() + at + 9);
-  trial.expect(n_dead >= n_letters && n_dead <= n_letters + n, n_dead, " dead of ", n_letters);
+  trial.expect(n_dead >= n_messages && n_dead <= n_messages + n, n_dead, " dead of ", n_messages);
 }
 
 }  // namespace tess::fuzz

@@ -46,7 +46,7 @@ struct Drop {
   }
   std::uint64_t seed = 0;
 };
-struct Letter {
+struct Parcel {
   int key = 0;
   Drop drop{};
 };
@@ -95,9 +95,9 @@ class Wave : public Chare<Wave, Index1> {
   }
   void gathered(std::vector<Drop> /*drops*/) { flood->runs(current_pe().id()); }
   Task wait(Drop drop) {
-    const Letter letter = co_await letters_.take(static_cast<int>(drop.seed % 3));
+    const Parcel parcel = co_await parcels_.take(static_cast<int>(drop.seed % 3));
     flood->runs(current_pe().id());
-    (void)co_await letters_.take(letter.key + 1);
+    (void)co_await parcels_.take(parcel.key + 1);
   }
   Task nest(Drop drop) {
     flood->runs(current_pe().id());
@@ -107,17 +107,17 @@ class Wave : public Chare<Wave, Index1> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(drop_, letters_);
+    ar(drop_, parcels_);
   }
 
  private:
   Task inner(Drop drop) {
-    letters_.put(Letter{static_cast<int>(drop.seed % 2), drop});
+    parcels_.put(Parcel{static_cast<int>(drop.seed % 2), drop});
     co_await epoch([&] { array()[index()].send<&Wave::splash>(drop); });
   }
 
   Drop drop_;
-  Mailbox<&Letter::key> letters_;
+  Mailbox<&Parcel::key> parcels_;
 };
 
 }  // namespace

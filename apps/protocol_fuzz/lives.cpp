@@ -39,7 +39,8 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
   Mortal() { begin(); }
   explicit Mortal(int number) {
     begin();
-    population->trial.expect(number == this->index().x, "element ", number, " is born elsewhere");
+    population->trial.expect(number == this->index().x, "element ", number,
+                             " is created elsewhere");
   }
   Mortal(const Mortal&) = delete;
   Mortal& operator=(const Mortal&) = delete;

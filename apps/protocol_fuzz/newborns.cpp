@@ -26,7 +26,7 @@ struct Nursery {
   int n_rounds = 0;
   int n_parts = 1;  // reductions of a round
   bool in_epochs = false, self_driven = false, has_ways = false;
-  double birth_chance = 0, death_chance = 0, move_chance = 0, remark_chance = 0;
+  double create_chance = 0, destroy_chance = 0, move_chance = 0, remark_chance = 0;
 
   [[nodiscard]] Random draws(int round, Name name, int what) const {
     return Random(mix(seed ^ mix(name * 1000003 + static_cast<std::uint64_t>(round * 16 + what))));
@@ -37,7 +37,7 @@ struct Nursery {
   enum class Fate : std::uint8_t { lives, gives_and_ends, ends };
   [[nodiscard]] Fate fate(int round, Name name, bool may_end) const {
     Random random = draws(round, name, 1);
-    if (name == 0 || !may_end || !random.chance(death_chance)) return Fate::lives;
+    if (name == 0 || !may_end || !random.chance(destroy_chance)) return Fate::lives;
     return random.chance(0.5) ? Fate::gives_and_ends : Fate::ends;
   }
 };
@@ -87,11 +87,11 @@ struct Wake {
 class Cell : public Chare<Cell, Name> {
  public:
   Cell() = default;
-  explicit Cell(int floor) : born_(true), floor_(floor) {}
+  explicit Cell(int floor) : created_(true), floor_(floor) {}
 
   /// The first message of what was created on demand: it does not end before.
-  void born(int floor) {
-    born_ = true;
+  void create(int floor) {
+    created_ = true;
     floor_ = std::max(floor_, floor);
   }
   /// Where the first element has results judged that are orders, too.
@@ -116,7 +116,7 @@ class Cell : public Chare<Cell, Name> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(born_, may_end_, floor_, first_round_, last_round_, children_, judge_, waits_);
+    ar(created_, may_end_, floor_, first_round_, last_round_, children_, judge_, waits_);
   }
 
  private:
@@ -129,7 +129,7 @@ class Cell : public Chare<Cell, Name> {
     if (random.chance(nursery->move_chance)) migrate_to(draw_pe(random));
   }
 
-  bool born_ = false, may_end_ = false;
+  bool created_ = false, may_end_ = false;
   int floor_ = 0;
   int first_round_ = -1, last_round_ = -1;
   std::vector<Name> children_;
@@ -149,10 +149,10 @@ void insert_cell(const ArrayProxy<Cell>& cells, Name name, int floor) {
       cells[name].insert_on(draw_pe(random), floor);
       break;
     case 3:
-      cells[name].send_or_create_here<&Cell::born>(floor);
+      cells[name].send_or_create_here<&Cell::create>(floor);
       break;
     default:
-      cells[name].send_or_create_home<&Cell::born>(floor);
+      cells[name].send_or_create_home<&Cell::create>(floor);
   }
 }
 
@@ -170,7 +170,7 @@ Task Cell::step(Order order) {
   children_.clear();
   Random random = nursery->draws(round, index(), 3);
   for (int k = 0; k < 2; ++k)
-    if (round + 1 < nursery->n_rounds && random.chance(nursery->birth_chance))
+    if (round + 1 < nursery->n_rounds && random.chance(nursery->create_chance))
       children_.push_back(nursery->child_of(index(), round, k));
   const bool inserts_first = random.chance(0.5);
   if (inserts_first)
@@ -208,7 +208,7 @@ Task Cell::step(Order order) {
 }
 
 void Cell::give_all(const Order& order) {
-  may_end_ = born_;
+  may_end_ = created_;
   const Entry entry{index(), first_round_, floor_, may_end_, children_};
   for (int part = 0; part < nursery->n_parts; ++part)
     contribute(JoinShares{}, Share{order.round, order.round, part, part, {entry}},
@@ -223,11 +223,13 @@ void Cell::give_all(const Order& order) {
 class Governor : public Group<Governor> {
  public:
   Governor() { known_[0].due = true; }
-  struct Birth {
+  struct Creation {
     Name name = 0;
     int round = 0;
   };
-  void insert(ArrayProxy<Cell> cells, Birth birth) { insert_cell(cells, birth.name, birth.round); }
+  void insert(ArrayProxy<Cell> cells, Creation creation) {
+    insert_cell(cells, creation.name, creation.round);
+  }
   struct Passed {
     Order order;
     Name to = 0;
@@ -262,7 +264,7 @@ class Governor : public Group<Governor> {
     bool told_to_end = false;
     bool due = false;  // in the next result
   };
-  std::map<Name, Known> known_;  // born, and not ended
+  std::map<Name, Known> known_;  // created, and not ended
   std::map<int, Share> heard_;
   int n_judged_ = 0;
 };
@@ -281,13 +283,13 @@ void Governor::populate(const ArrayProxy<Cell>& cells, int round, Random& random
     if (random.chance(0.5)) {
       insert_cell(cells, name, round);
     } else {
-      group()[draw_pe(random)].send<&Governor::insert>(cells, Birth{name, round});
+      group()[draw_pe(random)].send<&Governor::insert>(cells, Creation{name, round});
     }
   }
 }
 
 void Governor::depopulate(const ArrayProxy<Cell>& cells, Random& random) {
-  if (!random.chance(nursery->death_chance)) return;
+  if (!random.chance(nursery->destroy_chance)) return;
   for (auto& [name, known] : known_) {
     // Not before its first message: that would create it again.
     if (name == 0 || !known.may_end || known.told_to_end) continue;
@@ -303,7 +305,7 @@ void Governor::judge_new(int round, const Entry& entry) {
   trial.expect(entry.first_round == round, "element ", entry.name, " met round ", entry.first_round,
                " first and is in no result before ", round);
   trial.expect(entry.floor <= round, "element ", entry.name, " meets round ", round,
-               ", whose result was awaited before it was born in ", entry.floor);
+               ", whose result was awaited before it was created in ", entry.floor);
 }
 
 void Governor::judge(int round, int part, const Share& share) {
@@ -426,8 +428,8 @@ void run_nursery(Trial& trial, const Nursery& here) {
   });
   trial.expect(ending.exit_code == 0, "exit code ", ending.exit_code, "; ", ending.report);
   // An element that is told to end in the middle of a step may leave messages to itself.
-  trial.expect(ending.report.empty() ||
-                   (here.death_chance > 0 && ending.report.find("destroyed") != std::string::npos),
+  trial.expect(ending.report.empty() || (here.destroy_chance > 0 &&
+                                         ending.report.find("destroyed") != std::string::npos),
                "report: ", ending.report);
 }
 
@@ -446,8 +448,8 @@ void refinement(Trial& trial) {
   here.in_epochs = !here.self_driven && trial.draw(0, 2) == 0;
   here.has_ways = trial.draw(0, 2) != 0;
   here.n_parts = here.self_driven ? 1 : trial.draw(1, 3);
-  here.birth_chance = trial.random().unit() * 0.12;
-  here.death_chance = trial.draw(0, 1) * trial.random().unit() * 0.2;
+  here.create_chance = trial.random().unit() * 0.12;
+  here.destroy_chance = trial.draw(0, 1) * trial.random().unit() * 0.2;
   here.move_chance = trial.draw(0, 1) * 0.3;
   here.remark_chance = trial.draw(0, 1) * 0.5;
   if (trial.draw(0, 1) == 0) trial.forbid_forced_migration();

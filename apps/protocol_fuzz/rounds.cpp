@@ -31,11 +31,11 @@ struct Records {
   Trial& trial;
   std::uint64_t seed = 0;
   int n_first = 0, n_rounds = 0;
-  double birth_chance = 0, death_chance = 0, move_chance = 0, late_chance = 0;
+  double create_chance = 0, destroy_chance = 0, move_chance = 0, late_chance = 0;
   std::mutex mutex{};
   std::vector<std::set<int>> given{};  // by round
   std::map<int, int> ended{};          // index -> round in which it ended
-  int n_born = 0;
+  int n_created = 0;
   int n_results = 0;
   GroupProxy<Judge> judge{};
 
@@ -53,7 +53,7 @@ struct Records {
 };
 Records* records = nullptr;
 
-struct Birth {
+struct Creation {
   int round = 0;
   int parent = 0;
 };
@@ -61,27 +61,27 @@ struct Birth {
 class Player : public Chare<Player, Index1> {
  public:
   Player() = default;
-  explicit Player(bool born) : born_(born) {}
+  explicit Player(bool created) : created_(created) {}
 
   void play(int round);
   /// Comes to life within a round: its parent gives once it knows of it. The child itself gives
   /// where it meets a round: this one or the next.
-  void born(Birth birth);
+  void create(Creation creation);
   void give(int round);
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(born_, last_round_);
+    ar(created_, last_round_);
   }
 
  private:
-  void bear(int round);
+  void create_child(int round);
   void move(Random& random) {
     migrate_to(PeId{
         static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
   }
 
-  bool born_ = false;  // what was created on demand does not end before its first message
+  bool created_ = false;  // what was created on demand does not end before its first message
   int last_round_ = -1;
 };
 
@@ -160,7 +160,7 @@ void Player::play(int round) {
                         " meets round ", round, " after ", last_round_);
   last_round_ = round;
   Random random = records->draws(round, index().x, 0);
-  if (index().x != 0 && born_ && random.chance(records->death_chance)) {
+  if (index().x != 0 && created_ && random.chance(records->destroy_chance)) {
     const bool gives = random.chance(0.5);
     if (gives) give(round);
     {
@@ -170,8 +170,8 @@ void Player::play(int round) {
     destroy();
     return;
   }
-  if (random.chance(records->birth_chance)) {
-    bear(round);
+  if (random.chance(records->create_chance)) {
+    create_child(round);
     return;
   }
   if (random.chance(records->move_chance)) move(random);
@@ -183,23 +183,23 @@ void Player::play(int round) {
   }
 }
 
-void Player::bear(int round) {
+void Player::create_child(int round) {
   int child = 0;
   {
     const std::lock_guard lock(records->mutex);
-    child = records->n_first + records->n_born++;
+    child = records->n_first + records->n_created++;
   }
-  const Birth birth{round, index().x};
+  const Creation creation{round, index().x};
   if (records->draws(round, index().x, 1).chance(0.5)) {
-    array()[{child}].send_or_create_here<&Player::born>(birth);
+    array()[{child}].send_or_create_here<&Player::create>(creation);
   } else {
-    array()[{child}].send_or_create_home<&Player::born>(birth);
+    array()[{child}].send_or_create_home<&Player::create>(creation);
   }
 }
 
-void Player::born(Birth birth) {
-  born_ = true;
-  array()[{birth.parent}].send<&Player::give>(birth.round);
+void Player::create(Creation creation) {
+  created_ = true;
+  array()[{creation.parent}].send<&Player::give>(creation.round);
 }
 
 void Player::give(int round) {
@@ -240,9 +240,9 @@ void rounds(Trial& trial) {
   records = &here;
   const bool long_run = trial.seed() % 100 == 0 && !trial.on_threads();
   here.n_rounds = long_run ? 500 : trial.draw(1, 14);
-  const double births = long_run ? 0.01 : 0.1;
-  here.birth_chance = trial.draw(0, 1) * births * trial.random().unit();
-  here.death_chance = trial.draw(0, 1) * (long_run ? 0.015 : 0.1) * trial.random().unit();
+  const double creates = long_run ? 0.01 : 0.1;
+  here.create_chance = trial.draw(0, 1) * creates * trial.random().unit();
+  here.destroy_chance = trial.draw(0, 1) * (long_run ? 0.015 : 0.1) * trial.random().unit();
   here.move_chance = trial.draw(0, 2) * 0.3;
   here.late_chance = trial.draw(0, 2) * 0.4;
   here.given.resize(static_cast<std::size_t>(here.n_rounds));

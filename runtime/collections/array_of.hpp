@@ -82,7 +82,7 @@ template <class Index>
 class ArrayOf : public Collection {
  public:
   using Indexed = IndexedElement<Index>;
-  using Letter = ElementMessage<Index>;
+  using CallMessage = ElementMessage<Index>;
 
   ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
       : Collection(pe, id, std::move(name)),
@@ -107,29 +107,29 @@ class ArrayOf : public Collection {
   }
 
   /// A user's message starts here.
-  void post(Letter* letter) {
-    Record* record = table_.find(letter->index);
+  void post(CallMessage* message) {
+    Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
-      letter->receiver = record->element();
-      letter->n_departures = n_departures_;
-      pe_.send_here(letter);
+      message->receiver = record->element();
+      message->n_departures = n_departures_;
+      pe_.send_here(message);
     } else {
-      route(letter, record);
+      route(message, record);
     }
   }
 
   /// A message arrived: it runs if its element is here.
-  void arrive(Letter* letter) {
-    if (letter->receiver != nullptr && letter->n_departures == n_departures_) [[likely]] {
-      execute(static_cast<Indexed&>(*letter->receiver), letter);
+  void arrive(CallMessage* message) {
+    if (message->receiver != nullptr && message->n_departures == n_departures_) [[likely]] {
+      execute(static_cast<Indexed&>(*message->receiver), message);
       return;
     }
-    letter->receiver = nullptr;
-    Record* record = table_.find(letter->index);
+    message->receiver = nullptr;
+    Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
-      execute(*record->element(), letter);
+      execute(*record->element(), message);
     } else {
-      route(letter, record);
+      route(message, record);
     }
   }
 
@@ -139,8 +139,8 @@ class ArrayOf : public Collection {
 
   void settle(Element& element) override {
     if (element.n_suspended_ != 0) return;
-    if (element.doomed_) {
-      bury(static_cast<Indexed&>(element));
+    if (element.destroy_requested_) {
+      destroy_here(static_cast<Indexed&>(element));
     } else if (element.migrate_to_.value >= 0) {
       const PeId to = element.migrate_to_;
       element.migrate_to_ = PeId{-1};
@@ -167,37 +167,41 @@ class ArrayOf : public Collection {
     Index index;
     Version version;
   };
-  struct Where {
+  struct LocationUpdate {
     Index index;
     Place place;
   };
-  struct Landed {
+  struct MoveReport {
     Index index;
     Place place;
     PeId from;
     std::uint64_t seen;
   };
-  struct Known {
+  struct MoveNoted {
     Index index;
     Version version;
     std::uint64_t seen;
   };
-  struct Died {
+  struct DestroyReport {
     Index index;
     Version version;
     PeId from;
   };
-  struct Buried {
+  struct DestroyNoted {
     Index index;
   };
   static void request_arrives(ArrayOf& self, Request&& m) { self.on_request(m); }
   static void grant_arrives(ArrayOf& self, Grant&& m) { self.on_grant(m); }
-  static void where_arrives(ArrayOf& self, Where&& m) { self.on_where(m); }
-  static void hint_arrives(ArrayOf& self, Where&& m) { self.learn(m.index, m.place); }
-  static void landed_arrives(ArrayOf& self, Landed&& m) { self.on_landed(m); }
-  static void known_arrives(ArrayOf& self, Known&& m) { self.on_known(m); }
-  static void died_arrives(ArrayOf& self, Died&& m) { self.on_died(m); }
-  static void buried_arrives(ArrayOf& self, Buried&& m) { self.on_buried(m); }
+  static void location_update_arrives(ArrayOf& self, LocationUpdate&& m) {
+    self.on_location_update(m);
+  }
+  static void hint_arrives(ArrayOf& self, LocationUpdate&& m) { self.learn(m.index, m.place); }
+  static void move_report_arrives(ArrayOf& self, MoveReport&& m) { self.on_move_report(m); }
+  static void move_noted_arrives(ArrayOf& self, MoveNoted&& m) { self.on_move_noted(m); }
+  static void destroy_report_arrives(ArrayOf& self, DestroyReport&& m) {
+    self.on_destroy_report(m);
+  }
+  static void destroy_noted_arrives(ArrayOf& self, DestroyNoted&& m) { self.on_destroy_noted(m); }
 
  protected:
   /// Makes an element by its default constructor; misuse if it has none.
@@ -209,23 +213,23 @@ class ArrayOf : public Collection {
 
   /// Enters an element that is born on this PE.
   template <class Make>
-  void bear(const Index& index, Version version, const Make& make) {
+  void construct(const Index& index, Version version, const Make& make) {
     Indexed* element = [&] {
       const Pe::Construction construction(pe_, &index, this);
       return make();
     }();
     element->state_.version = version;
-    born(*element);
+    register_new(*element);
     table_.at(index).set_here(*element);
     list(*element);
-    if (element->migrate_to_.value >= 0 || element->doomed_) [[unlikely]]
+    if (element->migrate_to_.value >= 0 || element->destroy_requested_) [[unlikely]]
       after_construction([this, element] { settle(*element); });  // its constructor asked for it
     if (has_after_construction() && !makes_initial_) [[unlikely]]
       run_after_construction();
   }
   /// Makes the first elements, which are all born at once.
   template <class Make>
-  void bear_initial(const Make& make_all) {
+  void construct_initial(const Make& make_all) {
     makes_initial_ = true;
     make_all();
     makes_initial_ = false;
@@ -233,87 +237,87 @@ class ArrayOf : public Collection {
   }
 
   /// Takes in an element that comes from another PE.
-  void land(Indexed* element, PeId from);
+  void add_arrived(Indexed* element, PeId from);
 
   void destroy_all() {
     table_.for_each([this](const Index& /*index*/, const Record& record) {
       if (record.element() != nullptr) destroy(*record.element());
     });
-    for (Letters* letters : {&pending_, &waiting_, &graves_})
-      for (auto& [index, parked] : *letters)
-        for (Letter* letter : parked) discard(letter);
+    for (Messages* messages : {&pending_, &waiting_, &destroyed_})
+      for (auto& [index, parked] : *messages)
+        for (CallMessage* message : parked) discard(message);
   }
 
  private:
   using Record = IndexRecord<Indexed>;
   template <class Value>
   using ByIndex = boost::unordered_flat_map<Index, Value, IndexHash<Index>>;
-  using Letters = ByIndex<std::vector<Letter*>>;
+  using Messages = ByIndex<std::vector<CallMessage*>>;
 
   static constexpr std::uint8_t most_hops = 6;
   static constexpr std::size_t most_hints = 1U << 18U;
 
-  void execute(Indexed& element, Letter* letter);
-  void route(Letter* letter, Record* record);
-  void at_home(Letter* letter, const Record* record);
-  [[nodiscard]] Letters& parked(Parked why) {
-    return why == Parked::pending ? pending_ : why == Parked::waiting ? waiting_ : graves_;
+  void execute(Indexed& element, CallMessage* message);
+  void route(CallMessage* message, Record* record);
+  void at_home(CallMessage* message, const Record* record);
+  [[nodiscard]] Messages& parked(Parked why) {
+    return why == Parked::pending ? pending_ : why == Parked::waiting ? waiting_ : destroyed_;
   }
-  void park(Letter* letter, Parked why);
+  void park(CallMessage* message, Parked why);
   /// Takes out the messages that are parked; the caller routes them again.
-  [[nodiscard]] std::vector<Letter*> unpark(const Index& index, Parked why);
-  void ask(Letter* letter);
+  [[nodiscard]] std::vector<CallMessage*> unpark(const Index& index, Parked why);
+  void ask(CallMessage* message);
   void grant(const Index& index, Version version);
-  void forward(Letter* letter, const Place& place);
+  void forward(CallMessage* message, const Place& place);
   void depart(Indexed& element, PeId to);
-  void bury(Indexed& element);
-  void dead_letter(Letter* letter);
+  void destroy_here(Indexed& element);
+  void dead_letter(CallMessage* message);
   void end_element(Indexed& element);
-  void reroute(std::vector<Letter*>&& letters) {
-    for (Letter* letter : letters) arrive_later(letter);
+  void reroute(std::vector<CallMessage*>&& messages) {
+    for (CallMessage* message : messages) arrive_later(message);
   }
   /// To this PE's queue, where it meets the element or is routed.
-  void arrive_later(Letter* letter) { pe_.send_here(letter); }
+  void arrive_later(CallMessage* message) { pe_.send_here(message); }
   /// A hint applies only if it is newer than what is known.
   void learn(const Index& index, const Place& place);
 
   void on_request(const Request& request);
   void on_grant(const Grant& m) { grant(m.index, m.version); }
-  void on_where(const Where& where);
-  void on_landed(const Landed& landed);
-  void on_known(const Known& known);
-  void on_died(const Died& died);
-  void on_buried(const Buried& buried);
+  void on_location_update(const LocationUpdate& update);
+  void on_move_report(const MoveReport& report);
+  void on_move_noted(const MoveNoted& noted);
+  void on_destroy_report(const DestroyReport& report);
+  void on_destroy_noted(const DestroyNoted& noted);
 
   const Range range_;
   const BlockMap block_map_;
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
-  std::uint32_t n_departures_ = 0;      // elements that left or died here: no message counts on one
-  std::size_t n_hints_ = 0;             // learnt since they were last forgotten
-  Letters pending_, waiting_, graves_;  // what is parked, by the reason (Parked)
-  ByIndex<std::uint32_t> n_deaths_;     // of the indices with a grave
+  std::uint32_t n_departures_ = 0;  // elements that left or died here: no message counts on one
+  std::size_t n_hints_ = 0;         // learnt since they were last forgotten
+  Messages pending_, waiting_, destroyed_;  // what is parked, by the reason (Parked)
+  ByIndex<std::uint32_t> n_destroyed_;      // of the indices with a grave
 };
 
 template <class Index>
-inline void ArrayOf<Index>::execute(Indexed& element, Letter* letter) {
-  const auto& action = static_cast<const ElementAction<Index>&>(*letter->action);
-  const EpochId epoch = letter->epoch;
+inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
+  const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
+  const EpochId epoch = message->epoch;
   if (action.invoke == nullptr) [[unlikely]] {
-    TESS_CHECK(letter->demand == Demand::insert_if_absent, name(), index_text(letter->index),
+    TESS_CHECK(message->demand == Demand::insert_if_absent, name(), index_text(message->index),
                " is inserted, but it exists already on ", pe_.id(),
                "; insert_if_absent() allows for that");
-    discard(letter);
+    discard(message);
   } else {
-    const ElementScope scope(pe_, element, letter->action, epoch, letter->led_by);
+    const ElementScope scope(pe_, element, message->action, epoch, message->led_by);
     try {
-      action.invoke(element, *letter);
+      action.invoke(element, *message);
     } catch (...) {
       pe_.note_place();
-      discard(letter);
+      discard(message);
       throw;
     }
-    discard(letter);
+    discard(message);
   }
   pe_.completion().processed(epoch);
 }

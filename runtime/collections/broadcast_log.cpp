@@ -64,7 +64,7 @@ void BroadcastLog::on_call(NumberedCall&& call) {
   }
 }
 
-void BroadcastLog::landed(std::uint64_t seen) {
+void BroadcastLog::arrived(std::uint64_t seen) {
   const auto at = in_flight_.find(seen);
   if (--at->second == 0) in_flight_.erase(at);
   settle();

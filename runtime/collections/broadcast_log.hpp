@@ -34,7 +34,7 @@ class BroadcastLog {
 
   /// Elements leave and, later, have landed.
   void left(std::uint64_t seen) { ++in_flight_[seen]; }
-  void landed(std::uint64_t seen);
+  void arrived(std::uint64_t seen);
 
   /// The collection ends: what is kept here is dropped.
   void end();

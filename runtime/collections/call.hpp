@@ -37,55 +37,55 @@ template <class... T>
 /// Making, packing and ending of a message type that derives from ElementMessage and has
 /// `arguments`.
 template <class Derived, class C, class Arguments>
-struct TypedLetter : ElementMessage<typename C::Index> {
+struct TypedMessage : ElementMessage<typename C::Index> {
   using Index = typename C::Index;
   Arguments arguments;
 
   template <class... A>
-  explicit TypedLetter(A&&... a) : arguments(std::forward<A>(a)...) {}
+  explicit TypedMessage(A&&... a) : arguments(std::forward<A>(a)...) {}
 
   template <class... A>
   static Derived* make(Pe& pe, CollectionId collection, const Index& index, A&&... a) {
-    auto* letter = new (allocate_block(pe, sizeof(Derived))) Derived(std::forward<A>(a)...);
-    letter->action = &Derived::entry;
-    letter->collection = collection;
-    letter->index = index;
-    letter->asker = pe.id();
-    if (pe.context().led_by != 0) letter->led_by = Collection::led_by(pe.context(), collection);
+    auto* message = new (allocate_block(pe, sizeof(Derived))) Derived(std::forward<A>(a)...);
+    message->action = &Derived::entry;
+    message->collection = collection;
+    message->index = index;
+    message->asker = pe.id();
+    if (pe.context().led_by != 0) message->led_by = Collection::led_by(pe.context(), collection);
 #ifdef TESS_CHECKS_ALL
-    const std::string difference = arguments_difference(letter->arguments);
+    const std::string difference = arguments_difference(message->arguments);
     TESS_CHECK(difference.empty(), difference);
 #endif
-    return pe.stamp(letter);
+    return pe.stamp(message);
   }
   static void run(Pe& pe, Envelope* envelope) {
-    auto* letter = static_cast<Derived*>(envelope);
-    Collection* collection = find_collection(pe, letter->collection);
+    auto* message = static_cast<Derived*>(envelope);
+    Collection* collection = find_collection(pe, message->collection);
     if (collection == nullptr) [[unlikely]] {
-      pe.keep_early(letter->collection, envelope, &drop);
+      pe.keep_early(message->collection, envelope, &drop);
       return;
     }
-    static_cast<Array<C>*>(collection)->arrive(letter);
+    static_cast<Array<C>*>(collection)->arrive(message);
   }
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
     pe.completion().processed(envelope.epoch);
     return static_cast<const ElementAction<Index>&>(*envelope.action).n_dead_letters();
   }
   static void destroy(Envelope* envelope) {
-    auto* letter = static_cast<Derived*>(envelope);
-    letter->~Derived();
-    release_block(letter, sizeof(Derived));
+    auto* message = static_cast<Derived*>(envelope);
+    message->~Derived();
+    release_block(message, sizeof(Derived));
   }
   static void pack(Envelope& envelope, Writer& ar) {
-    auto& letter = static_cast<Derived&>(envelope);
-    letter.serialize_head(ar);
-    ar(letter.arguments);
+    auto& message = static_cast<Derived&>(envelope);
+    message.serialize_head(ar);
+    ar(message.arguments);
   }
   static Envelope* unpack(Pe& pe, Reader& ar) {
-    auto* letter = new (allocate_block(pe, sizeof(Derived))) Derived();
-    letter->serialize_head(ar);
-    ar(letter->arguments);
-    return letter;
+    auto* message = new (allocate_block(pe, sizeof(Derived))) Derived();
+    message->serialize_head(ar);
+    ar(message->arguments);
+    return message;
   }
 
  protected:
@@ -99,26 +99,26 @@ struct TypedLetter : ElementMessage<typename C::Index> {
 
 /// A call of entry method F of an element of C.
 template <class C, auto F>
-struct Call final : TypedLetter<Call<C, F>, C, typename EntryTraits<F>::Arguments> {
-  using Base = TypedLetter<Call, C, typename EntryTraits<F>::Arguments>;
+struct Call final : TypedMessage<Call<C, F>, C, typename EntryTraits<F>::Arguments> {
+  using Base = TypedMessage<Call, C, typename EntryTraits<F>::Arguments>;
   using Index = typename C::Index;
   using Base::Base;
 
-  static void invoke(Element& element, ElementMessage<Index>& message) {
-    auto& letter = static_cast<Call&>(message);
+  static void invoke(Element& element, ElementMessage<Index>& envelope) {
+    auto& message = static_cast<Call&>(envelope);
     std::apply(
         [&element](auto&... argument) {
           (void)(static_cast<C&>(element).*F)(std::move(argument)...);
         },
-        letter.arguments);
+        message.arguments);
   }
   static inline const ElementAction<Index> entry = Base::make_action(&Call::invoke);
 };
 
 /// A call of the constructor of C with these argument types.
 template <class C, class... Args>
-struct Construction final : TypedLetter<Construction<C, Args...>, C, std::tuple<Args...>> {
-  using Base = TypedLetter<Construction, C, std::tuple<Args...>>;
+struct Construction final : TypedMessage<Construction<C, Args...>, C, std::tuple<Args...>> {
+  using Base = TypedMessage<Construction, C, std::tuple<Args...>>;
   using Index = typename C::Index;
   using Base::Base;
 
@@ -132,8 +132,8 @@ struct Construction final : TypedLetter<Construction<C, Args...>, C, std::tuple<
 
 /// Ends an element where it lives.
 template <class C>
-struct Destruction final : TypedLetter<Destruction<C>, C, std::tuple<>> {
-  using Base = TypedLetter<Destruction, C, std::tuple<>>;
+struct Destruction final : TypedMessage<Destruction<C>, C, std::tuple<>> {
+  using Base = TypedMessage<Destruction, C, std::tuple<>>;
   using Index = typename C::Index;
   using Base::Base;
 
@@ -145,8 +145,8 @@ struct Destruction final : TypedLetter<Destruction<C>, C, std::tuple<>> {
 
 /// Moves an element to a PE.
 template <class C>
-struct Relocation final : TypedLetter<Relocation<C>, C, std::tuple<PeId>> {
-  using Base = TypedLetter<Relocation, C, std::tuple<PeId>>;
+struct Relocation final : TypedMessage<Relocation<C>, C, std::tuple<PeId>> {
+  using Base = TypedMessage<Relocation, C, std::tuple<PeId>>;
   using Index = typename C::Index;
   using Base::Base;
 
@@ -158,8 +158,8 @@ struct Relocation final : TypedLetter<Relocation<C>, C, std::tuple<PeId>> {
 
 /// Ends the wait of an element at its balancer's barrier.
 template <class C>
-struct Awakening final : TypedLetter<Awakening<C>, C, std::tuple<>> {
-  using Base = TypedLetter<Awakening, C, std::tuple<>>;
+struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
+  using Base = TypedMessage<Awakening, C, std::tuple<>>;
   using Index = typename C::Index;
   using Base::Base;
 

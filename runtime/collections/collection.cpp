@@ -33,8 +33,8 @@ void Collection::list(Element& element) {
   elements_.push_back(&element);
   ++n_local_;
   reductions_.enter(element.state_.next_reduction);
-  if (element.state_.born_after != 0) [[unlikely]] {
-    ++n_newborn_;
+  if (element.state_.created_after != 0) [[unlikely]] {
+    ++n_new_;
     postpone(element);
   }
   if (watcher_ != nullptr) [[unlikely]] {
@@ -47,8 +47,8 @@ void Collection::list(Element& element) {
 void Collection::unlist(Element& element) {
   --n_local_;
   reductions_.leave(element.state_.next_reduction);
-  if (element.state_.born_after != 0) [[unlikely]]
-    --n_newborn_;
+  if (element.state_.created_after != 0) [[unlikely]]
+    --n_new_;
   if (watcher_ != nullptr) [[unlikely]]
     watcher_->left(element);
   if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat one
@@ -60,12 +60,12 @@ void Collection::unlist(Element& element) {
   elements_.pop_back();
 }
 
-void Collection::born(Element& element) {
+void Collection::register_new(Element& element) {
   const std::uint64_t applied = broadcasts_.applied();
   element.state_.seen_broadcast = applied;
-  element.state_.born_after = static_cast<std::uint32_t>(applied);
+  element.state_.created_after = static_cast<std::uint32_t>(applied);
   element.state_.next_reduction = reductions_.joins_at();  // list() postpones it
-  reductions_.born(element.state_.next_reduction);
+  reductions_.add_member(element.state_.next_reduction);
 }
 
 void Collection::run_after_construction() {
@@ -75,13 +75,13 @@ void Collection::run_after_construction() {
 
 void Collection::postpone(Element& element) {
   ElementState& state = element.state_;
-  state.next_reduction = reductions_.postpone(state.next_reduction, state.born_after);
+  state.next_reduction = reductions_.postpone(state.next_reduction, state.created_after);
 }
 
-void Collection::postpone_newborns() {
-  if (n_newborn_ == 0) return;
+void Collection::postpone_new_elements() {
+  if (n_new_ == 0) return;
   for (Element* element : elements_)
-    if (element != nullptr && element->state_.born_after != 0) postpone(*element);
+    if (element != nullptr && element->state_.created_after != 0) postpone(*element);
 }
 
 void Collection::call(Element& element, const NumberedCall& call) {
@@ -161,7 +161,7 @@ void Collection::end() {
   if (watcher_ != nullptr) watcher_->collection_ends();
   watcher_ = nullptr;
   for (Element* element : elements_) {
-    if (element->n_suspended_ != 0) element->doomed_ = true;
+    if (element->n_suspended_ != 0) element->destroy_requested_ = true;
     end_wait(*element);
   }
   broadcasts_.end();
@@ -208,9 +208,9 @@ std::uint64_t Collection::packed_bytes(Element& /*element*/) const {
   return 0;
 }
 
-void ElementScope::take_whim() {
+void ElementScope::force_migration() {
   if (!element_.collection_->migratable()) return;
-  const PeId to = pe_.whim();
+  const PeId to = pe_.forced_migration();
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 

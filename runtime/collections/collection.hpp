@@ -35,7 +35,7 @@ class ElementWatcher {
   /// It is no longer listed here.
   virtual void left(Element& element) = 0;
   /// It ends; called after left().
-  virtual void died(Element& element) = 0;
+  virtual void destroyed(Element& element) = 0;
   virtual void at_sync(Element& element) = 0;
   /// The collection ends on this PE; its elements are still listed, and it tells no more of them.
   virtual void collection_ends() = 0;
@@ -78,13 +78,13 @@ class Collection : public HostedCollection {
 
   /// From here on the element stays with the number of its next reduction.
   void settle_join(Element& element) {
-    if (element.state_.born_after == 0) return;
-    element.state_.born_after = 0;
-    --n_newborn_;
+    if (element.state_.created_after == 0) return;
+    element.state_.created_after = 0;
+    --n_new_;
   }
   /// It has become known which reductions broadcasts led to: elements that were born after these
   /// broadcasts join later.
-  void postpone_newborns();
+  void postpone_new_elements();
 
   /// The broadcast of a collection that led to what runs; 0 if none did.
   [[nodiscard]] static std::uint32_t led_by(const Context& context, CollectionId collection) {
@@ -169,7 +169,7 @@ class Collection : public HostedCollection {
   /// An element was made to be read from bytes: what its constructor asks for it has done before.
   void drop_after_construction() { after_construction_.clear(); }
   /// Registers a new element as born here and now.
-  void born(Element& element);
+  void register_new(Element& element);
 
   Pe& pe_;
 
@@ -188,7 +188,7 @@ class Collection : public HostedCollection {
   std::int64_t n_away_ = 0;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
-  std::size_t n_newborn_ = 0;  // local elements that have not contributed since their birth
+  std::size_t n_new_ = 0;  // local elements that have not contributed since their birth
   unsigned applying_ = 0;
   bool ended_ = false;
   BroadcastLog broadcasts_;
@@ -220,14 +220,14 @@ class ElementScope {
       meter_->leave(outer_);
     if (--element_.n_suspended_ == 0) {
       if (pe_.intercepts()) [[unlikely]]
-        take_whim();
-      if (element_.migrate_to_.value >= 0 || element_.doomed_) [[unlikely]]
+        force_migration();
+      if (element_.migrate_to_.value >= 0 || element_.destroy_requested_) [[unlikely]]
         element_.collection_->settle(element_);
     }
   }
 
  private:
-  void take_whim();
+  void force_migration();
   [[nodiscard]] static LoadRecord* load_of(const Element& element) {
     return element.balance_ ? &element.balance_->load : nullptr;
   }

@@ -25,7 +25,8 @@ struct EndRecord {
 struct ElementState {
   Version version{};
   std::uint32_t next_reduction = 0;
-  std::uint32_t born_after = 0;  // the last broadcast before its birth; 0 once it has contributed
+  std::uint32_t created_after =
+      0;  // the last broadcast before its birth; 0 once it has contributed
   std::uint64_t seen_broadcast = 0;
 };
 
@@ -62,11 +63,11 @@ class Element {
   Collection* collection_ = nullptr;
   std::unique_ptr<BalanceRecord, EndRecord> balance_;  // while a balancer watches its array
   ElementState state_;
-  std::uint32_t slot_ = 0;         // in the collection's list
-  std::uint32_t n_suspended_ = 0;  // coroutines of this element that wait, and handlers that run
-  PeId migrate_to_{-1};            // where it goes once nothing of it runs or waits
-  bool doomed_ = false;            // destroyed once nothing of it runs or waits
-  bool has_run_ = false;           // code of it has run here, besides its constructor
+  std::uint32_t slot_ = 0;          // in the collection's list
+  std::uint32_t n_suspended_ = 0;   // coroutines of this element that wait, and handlers that run
+  PeId migrate_to_{-1};             // where it goes once nothing of it runs or waits
+  bool destroy_requested_ = false;  // destroyed once nothing of it runs or waits
+  bool has_run_ = false;            // code of it has run here, besides its constructor
 };
 
 /// "Block[3,4]".

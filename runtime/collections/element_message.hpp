@@ -47,7 +47,7 @@ struct ElementAction : Action {
                 Traffic t)
       : Action(name, r, d, p, u, t), invoke(i), construct(c) {}
 
-  /// How many dead letters a message of this kind is that does not meet its element.
+  /// How many dead messages a message of this kind is that does not meet its element.
   [[nodiscard]] std::uint64_t n_dead_letters() const { return traffic == Traffic::user ? 1 : 0; }
 
   Invoke invoke;

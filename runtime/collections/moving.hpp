@@ -24,7 +24,7 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
 }
 
 template <class Index>
-void ArrayOf<Index>::land(Indexed* element, PeId from) {
+void ArrayOf<Index>::add_arrived(Indexed* element, PeId from) {
   const Index index = element->index_;
   const EpochId epoch = pe_.context().epoch;
   const std::uint64_t seen = element->state_.seen_broadcast;
@@ -35,16 +35,16 @@ void ArrayOf<Index>::land(Indexed* element, PeId from) {
   // It stays until it has met the broadcasts that it missed on its way: only then has it landed.
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
-    if (element->doomed_ || pe_.stopped()) break;
+    if (element->destroy_requested_ || pe_.stopped()) break;
     this->call(*element, call);
     // Who asks it to move on waits for that.
     if (element->migrate_to_.value >= 0) pe_.context().epoch = call.epoch;
   }
-  const Landed landed{index, Place{pe_.id(), version}, from, seen};
+  const MoveReport report{index, Place{pe_.id(), version}, from, seen};
   if (home(index) == pe_.id()) {
-    on_landed(landed);
+    on_move_report(report);
   } else {
-    send_to_collection<&landed_arrives, Traffic::location>(*this, home(index), landed);
+    send_to_collection<&move_report_arrives, Traffic::location>(*this, home(index), report);
   }
   pe_.completion().processed(epoch);
   --element->n_suspended_;
@@ -52,41 +52,41 @@ void ArrayOf<Index>::land(Indexed* element, PeId from) {
 }
 
 template <class Index>
-void ArrayOf<Index>::on_landed(const Landed& landed) {
-  send_to_collection<&known_arrives, Traffic::location>(
-      *this, landed.from, Known{landed.index, landed.place.version, landed.seen});
-  if (landed.place.pe != pe_.id()) {
-    Record& record = table_.at(landed.index);
+void ArrayOf<Index>::on_move_report(const MoveReport& report) {
+  send_to_collection<&move_noted_arrives, Traffic::location>(
+      *this, report.from, MoveNoted{report.index, report.place.version, report.seen});
+  if (report.place.pe != pe_.id()) {
+    Record& record = table_.at(report.index);
     if (record.state() == IndexState::here) return;  // it has come home since
-    const bool newer = record.state() == IndexState::dead
-                           ? landed.place.version.incarnation > record.version().incarnation
-                           : landed.place.version >= record.version();
+    const bool newer = record.state() == IndexState::destroyed
+                           ? report.place.version.incarnation > record.version().incarnation
+                           : report.place.version >= record.version();
     if (!newer) return;
-    record.set(IndexState::live, landed.place.pe, landed.place.version);
+    record.set(IndexState::live, report.place.pe, report.place.version);
   }
-  reroute(unpark(landed.index, Parked::waiting));
+  reroute(unpark(report.index, Parked::waiting));
 }
 
 template <class Index>
-void ArrayOf<Index>::on_known(const Known& known) {
-  if (Record* record = table_.find(known.index); record != nullptr &&
+void ArrayOf<Index>::on_move_noted(const MoveNoted& noted) {
+  if (Record* record = table_.find(noted.index); record != nullptr &&
                                                  record->state() == IndexState::departed &&
-                                                 record->version() == known.version) {
+                                                 record->version() == noted.version) {
     record->confirm();
     ++n_hints_;
   }
-  broadcasts().landed(known.seen);
+  broadcasts().arrived(noted.seen);
 }
 
 template <class Index>
 void ArrayOf<Index>::end() {
   Collection::end();
-  const auto drop = [this](const auto& letters) {
-    for (Letter* letter : letters) dead_letter(letter);
+  const auto drop = [this](const auto& messages) {
+    for (CallMessage* message : messages) dead_letter(message);
   };
-  for (Letters* letters : {&pending_, &waiting_, &graves_}) {
-    for (const auto& [index, parked] : *letters) drop(parked);
-    letters->clear();
+  for (Messages* messages : {&pending_, &waiting_, &destroyed_}) {
+    for (const auto& [index, parked] : *messages) drop(parked);
+    messages->clear();
   }
   std::vector<Indexed*> ready;
   table_.for_each([&ready](const Index& /*index*/, const Record& record) {
@@ -106,7 +106,7 @@ void ArrayOf<Index>::end_element(Indexed& element) {
 }
 
 template <class Index>
-void ArrayOf<Index>::bury(Indexed& element) {
+void ArrayOf<Index>::destroy_here(Indexed& element) {
   if (ended()) {
     end_element(element);
     if (n_local() == 0) free_later(*this);
@@ -120,35 +120,36 @@ void ArrayOf<Index>::bury(Indexed& element) {
   table_.at(index).set_unknown();
   end_wait(element);
   if (watcher() != nullptr) [[unlikely]]
-    watcher()->died(element);
+    watcher()->destroyed(element);
   destroy(element);
-  reductions().died(next);
+  reductions().remove_member(next);
   reductions().advance();
   if (home(index) == pe_.id()) {
-    table_.at(index).set(IndexState::dead, pe_.id(), version);
+    table_.at(index).set(IndexState::destroyed, pe_.id(), version);
     return;
   }
-  ++n_deaths_[index];
-  table_.at(index).park(Parked::grave);
-  send_to_collection<&died_arrives, Traffic::location>(*this, home(index),
-                                                       Died{index, version, pe_.id()});
+  ++n_destroyed_[index];
+  table_.at(index).park(Parked::destroyed);
+  send_to_collection<&destroy_report_arrives, Traffic::location>(
+      *this, home(index), DestroyReport{index, version, pe_.id()});
 }
 
 template <class Index>
-void ArrayOf<Index>::on_died(const Died& died) {
+void ArrayOf<Index>::on_destroy_report(const DestroyReport& report) {
   // It is the last life that this home knows of: the home grants the next only once this has come.
-  table_.at(died.index).set(IndexState::dead, died.from, died.version);
-  send_to_collection<&buried_arrives, Traffic::location>(*this, died.from, Buried{died.index});
-  reroute(unpark(died.index, Parked::waiting));
+  table_.at(report.index).set(IndexState::destroyed, report.from, report.version);
+  send_to_collection<&destroy_noted_arrives, Traffic::location>(*this, report.from,
+                                                                DestroyNoted{report.index});
+  reroute(unpark(report.index, Parked::waiting));
 }
 
 template <class Index>
-void ArrayOf<Index>::on_buried(const Buried& buried) {
-  const auto n_deaths = n_deaths_.find(buried.index);
-  if (--n_deaths->second != 0) return;
-  n_deaths_.erase(n_deaths);
-  reroute(unpark(buried.index, Parked::grave));
-  table_.tidy(buried.index);
+void ArrayOf<Index>::on_destroy_noted(const DestroyNoted& noted) {
+  const auto n_destroyed = n_destroyed_.find(noted.index);
+  if (--n_destroyed->second != 0) return;
+  n_destroyed_.erase(n_destroyed);
+  reroute(unpark(noted.index, Parked::destroyed));
+  table_.tidy(noted.index);
 }
 
 }  // namespace tess

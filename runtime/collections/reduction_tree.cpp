@@ -65,7 +65,7 @@ void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
 
 bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
   if (led_by == 0 || !led_to_.learn(led_by, number)) return false;
-  collection_.postpone_newborns();
+  collection_.postpone_new_elements();
   return true;
 }
 
@@ -108,7 +108,7 @@ void ReductionTree::merge(Gathering& into, const EpochShare& share) {
   into.shares.push_back(share);
 }
 
-void ReductionTree::died(std::uint32_t next) {
+void ReductionTree::remove_member(std::uint32_t next) {
   if (next >= next_report_) {
     changes_[next] -= 1;
     return;
@@ -125,16 +125,16 @@ void ReductionTree::send_late_change(std::uint32_t number, std::uint32_t joins) 
   send(root_, std::move(late));
 }
 
-std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t born_after) {
-  const std::uint32_t later = led_to_.end(born_after);
+std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_after) {
+  const std::uint32_t later = led_to_.end(created_after);
   if (later <= next) return next;
   leave(next);
   enter(later);
   if (later < next_report_) {
     send_late_change(next, later);  // one message: the root completes no number between the two
   } else {
-    died(next);
-    born(later);
+    remove_member(next);
+    add_member(later);
   }
   return later;
 }

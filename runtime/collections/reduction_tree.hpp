@@ -78,12 +78,12 @@ class ReductionTree {
   /// The number at which an element joins that is born here now, unless it is postponed.
   [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
 
-  void born(std::uint32_t at) { changes_[at] += 1; }
+  void add_member(std::uint32_t at) { changes_[at] += 1; }
   /// An element on this PE that was born after this broadcast, and is a member from `next` on: the
   /// number at which it joins by what is known now.
-  [[nodiscard]] std::uint32_t postpone(std::uint32_t next, std::uint32_t born_after);
+  [[nodiscard]] std::uint32_t postpone(std::uint32_t next, std::uint32_t created_after);
   /// An element died that would have contributed to `next`.
-  void died(std::uint32_t next);
+  void remove_member(std::uint32_t next);
 
   /// An element with that next number is on this PE from now on, or no more.
   void enter(std::uint32_t next);

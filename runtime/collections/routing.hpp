@@ -7,34 +7,34 @@
 namespace tess {
 
 template <class Index>
-void ArrayOf<Index>::forward(Letter* letter, const Place& place) {
-  letter->tried = place.version;
-  letter->ask = false;
-  if (letter->source != pe_.id()) {
+void ArrayOf<Index>::forward(CallMessage* message, const Place& place) {
+  message->tried = place.version;
+  message->ask = false;
+  if (message->source != pe_.id()) {
     ++pe_.statistics().forwards;
-    if (letter->hops < 255) ++letter->hops;
-    send_to_collection<&hint_arrives, Traffic::location>(*this, letter->source,
-                                                         Where{letter->index, place});
+    if (message->hops < 255) ++message->hops;
+    send_to_collection<&hint_arrives, Traffic::location>(*this, message->source,
+                                                         LocationUpdate{message->index, place});
   }
-  pe_.send(place.pe, letter);
+  pe_.send(place.pe, message);
 }
 
 template <class Index>
-void ArrayOf<Index>::park(Letter* letter, Parked why) {
-  table_.at(letter->index).park(why);
-  parked(why)[letter->index].push_back(letter);
+void ArrayOf<Index>::park(CallMessage* message, Parked why) {
+  table_.at(message->index).park(why);
+  parked(why)[message->index].push_back(message);
 }
 
 template <class Index>
-auto ArrayOf<Index>::unpark(const Index& index, Parked why) -> std::vector<Letter*> {
+auto ArrayOf<Index>::unpark(const Index& index, Parked why) -> std::vector<CallMessage*> {
   Record* record = table_.find(index);
   if (record == nullptr || !record->parks(why)) return {};
   record->unpark(why);
-  Letters& letters = parked(why);
-  const auto at = letters.find(index);
-  if (at == letters.end()) return {};  // a grave to which no message came
-  std::vector<Letter*> out = std::move(at->second);
-  letters.erase(at);
+  Messages& messages = parked(why);
+  const auto at = messages.find(index);
+  if (at == messages.end()) return {};  // a grave to which no message came
+  std::vector<CallMessage*> out = std::move(at->second);
+  messages.erase(at);
   return out;
 }
 
@@ -55,95 +55,95 @@ void ArrayOf<Index>::learn(const Index& index, const Place& place) {
 
 /// `record`: what this PE knows of the index, or null.
 template <class Index>
-void ArrayOf<Index>::route(Letter* letter, Record* record) {
+void ArrayOf<Index>::route(CallMessage* message, Record* record) {
   if (pe_.constructed_index() != nullptr) [[unlikely]] {
     // A constructor sent it: it may be to an element that is made next, or to its own.
-    arrive_later(letter);
+    arrive_later(message);
     return;
   }
   if (record != nullptr && record->parks_any()) {
-    for (const Parked why : {Parked::pending, Parked::grave}) {
+    for (const Parked why : {Parked::pending, Parked::destroyed}) {
       if (!record->parks(why)) continue;
-      park(letter, why);
+      park(message, why);
       return;
     }
   }
-  const PeId at = home(letter->index);
+  const PeId at = home(message->index);
   if (at == pe_.id()) {
-    at_home(letter, record);
+    at_home(message, record);
     return;
   }
   if (record != nullptr && record->state() != IndexState::unknown &&
-      record->version() > letter->tried) {
-    if (letter->hops < most_hops) {
-      forward(letter, Place{record->pe(), record->version()});
+      record->version() > message->tried) {
+    if (message->hops < most_hops) {
+      forward(message, Place{record->pe(), record->version()});
       return;
     }
     // The home waits with it for news of that place: it would send it back here until then.
-    letter->tried = record->version();
-    letter->ask = false;
+    message->tried = record->version();
+    message->ask = false;
   }
-  if (letter->ask) {
-    ask(letter);
+  if (message->ask) {
+    ask(message);
   } else {
-    pe_.send(at, letter);
+    pe_.send(at, message);
   }
 }
 
 template <class Index>
-void ArrayOf<Index>::at_home(Letter* letter, const Record* record) {
-  const Index index = letter->index;
+void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
+  const Index index = message->index;
   const IndexState state = record == nullptr ? IndexState::unknown : record->state();
   if (state == IndexState::live || state == IndexState::moving) {
-    if (record->version() > letter->tried ||
-        (record->version() == letter->tried && state == IndexState::live)) {
-      forward(letter, Place{record->pe(), record->version()});
+    if (record->version() > message->tried ||
+        (record->version() == message->tried && state == IndexState::live)) {
+      forward(message, Place{record->pe(), record->version()});
     } else {
-      park(letter, Parked::waiting);
+      park(message, Parked::waiting);
     }
     return;
   }
-  const bool died = state == IndexState::dead;
-  const Version last = died ? record->version() : Version{};
-  if (letter->tried.incarnation > last.incarnation) {
-    park(letter, Parked::waiting);  // it knows a life that this home has yet to hear of
+  const bool destroyed = state == IndexState::destroyed;
+  const Version last = destroyed ? record->version() : Version{};
+  if (message->tried.incarnation > last.incarnation) {
+    park(message, Parked::waiting);  // it knows a life that this home has yet to hear of
     return;
   }
   const bool revives =
-      letter->demand == Demand::none && died && dead_letters() == DeadLetters::recreate;
-  if (letter->demand == Demand::home || revives) {
+      message->demand == Demand::none && destroyed && dead_letters() == DeadLetters::recreate;
+  if (message->demand == Demand::home || revives) {
     grant(index, Version{last.incarnation + 1, 1});
-    arrive_later(letter);
-  } else if (letter->demand == Demand::none) {
-    if (!died || dead_letters() == DeadLetters::wait) {
-      park(letter, Parked::waiting);
+    arrive_later(message);
+  } else if (message->demand == Demand::none) {
+    if (!destroyed || dead_letters() == DeadLetters::wait) {
+      park(message, Parked::waiting);
     } else {
-      dead_letter(letter);
+      dead_letter(message);
     }
-  } else if (letter->asker == pe_.id()) {
-    park(letter, Parked::pending);
+  } else if (message->asker == pe_.id()) {
+    park(message, Parked::pending);
     grant(index, Version{last.incarnation + 1, 1});
   } else {
-    letter->ask = true;
-    letter->tried = last;  // not to be misled by a hint to the life that is over
-    pe_.send(letter->asker, letter);
+    message->ask = true;
+    message->tried = last;  // not to be misled by a hint to the life that is over
+    pe_.send(message->asker, message);
   }
 }
 
 template <class Index>
-void ArrayOf<Index>::dead_letter(Letter* letter) {
-  const EpochId epoch = letter->epoch;
+void ArrayOf<Index>::dead_letter(CallMessage* message) {
+  const EpochId epoch = message->epoch;
   pe_.statistics().dead_letters +=
-      static_cast<const ElementAction<Index>&>(*letter->action).n_dead_letters();
-  discard(letter);
+      static_cast<const ElementAction<Index>&>(*message->action).n_dead_letters();
+  discard(message);
   pe_.completion().processed(epoch);
 }
 
 template <class Index>
-void ArrayOf<Index>::ask(Letter* letter) {
-  const Index index = letter->index;
-  letter->ask = false;
-  park(letter, Parked::pending);
+void ArrayOf<Index>::ask(CallMessage* message) {
+  const Index index = message->index;
+  message->ask = false;
+  park(message, Parked::pending);
   send_to_collection<&request_arrives, Traffic::location>(*this, home(index),
                                                           Request{index, pe_.id()});
 }
@@ -151,8 +151,8 @@ void ArrayOf<Index>::ask(Letter* letter) {
 template <class Index>
 void ArrayOf<Index>::on_request(const Request& request) {
   const auto reply = [&](const Place& place) {
-    send_to_collection<&where_arrives, Traffic::location>(*this, request.from,
-                                                          Where{request.index, place});
+    send_to_collection<&location_update_arrives, Traffic::location>(
+        *this, request.from, LocationUpdate{request.index, place});
   };
   Record& record = table_.at(request.index);
   if (record.state() == IndexState::here) {
@@ -176,58 +176,60 @@ template <class Index>
 void ArrayOf<Index>::grant(const Index& granted, Version version) {
   const Index index = granted;
   // What waits stays parked until the constructor is through: if it throws, nothing is lost.
-  Letter* insert = nullptr;
+  CallMessage* insert = nullptr;
   Record& record = table_.at(index);
   record.set_unknown();
   if (record.parks(Parked::pending)) {
-    for (Letter* letter : pending_.at(index)) {
+    for (CallMessage* message : pending_.at(index)) {
       const bool inserts =
-          letter->demand == Demand::insert || letter->demand == Demand::insert_if_absent;
-      if (insert == nullptr && inserts) insert = letter;
+          message->demand == Demand::insert || message->demand == Demand::insert_if_absent;
+      if (insert == nullptr && inserts) insert = message;
     }
   }
   if (insert == nullptr) {
-    bear(index, version, [this] { return construct_default(); });
+    construct(index, version, [this] { return construct_default(); });
   } else {
     const EpochId before = pe_.context().epoch;
     pe_.context().epoch = insert->epoch;
-    bear(index, version, [insert] {
+    construct(index, version, [insert] {
       return static_cast<Indexed*>(
           static_cast<const ElementAction<Index>&>(*insert->action).construct(*insert));
     });
     pe_.context().epoch = before;
   }
-  std::vector<Letter*> letters = unpark(index, Parked::pending);
+  std::vector<CallMessage*> messages = unpark(index, Parked::pending);
   if (insert != nullptr) {
-    std::erase(letters, insert);
+    std::erase(messages, insert);
     const EpochId epoch = insert->epoch;
     discard(insert);
     pe_.completion().processed(epoch);
   }
-  reroute(std::move(letters));
+  reroute(std::move(messages));
   reroute(unpark(index, Parked::waiting));
 }
 
 template <class Index>
-void ArrayOf<Index>::on_where(const Where& where) {
-  learn(where.index, where.place);
-  reroute(unpark(where.index, Parked::pending));
-  table_.tidy(where.index);
+void ArrayOf<Index>::on_location_update(const LocationUpdate& update) {
+  learn(update.index, update.place);
+  reroute(unpark(update.index, Parked::pending));
+  table_.tidy(update.index);
 }
 
 template <class Index>
 void ArrayOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
   Collection::describe_waiting(lines);
-  const auto say = [&](const Index& index, const std::vector<Letter*>& letters, const char* what) {
-    if (letters.empty()) return;
-    lines.push_back(text(letters.size(), letters.size() == 1 ? " message" : " messages", " (",
-                         plain_name(letters.front()->action->name()), ") on ", pe_.id(), " to ",
+  const auto say = [&](const Index& index, const std::vector<CallMessage*>& messages,
+                       const char* what) {
+    if (messages.empty()) return;
+    lines.push_back(text(messages.size(), messages.size() == 1 ? " message" : " messages", " (",
+                         plain_name(messages.front()->action->name()), ") on ", pe_.id(), " to ",
                          name(), index_text(index), ", ", what));
   };
-  for (const auto& [index, letters] : waiting_) say(index, letters, "which does not exist");
-  for (const auto& [index, letters] : pending_)
-    say(index, letters, "whose creation was not answered");
-  for (const auto& [index, letters] : graves_) say(index, letters, "whose death was not noted");
+  for (const auto& [index, messages] : waiting_) say(index, messages, "which does not exist");
+  for (const auto& [index, messages] : pending_)
+    say(index, messages, "whose creation was not answered");
+  for (const auto& [index, messages] : destroyed_)
+    say(index, messages, "whose death was not noted");
 }
 
 }  // namespace tess

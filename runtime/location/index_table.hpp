@@ -27,13 +27,13 @@
 
 namespace tess {
 
-enum class IndexState : std::uint8_t { unknown, here, hint, departed, live, moving, dead };
+enum class IndexState : std::uint8_t { unknown, here, hint, departed, live, moving, destroyed };
 
 /// Why messages to an index are parked, a bit each; the messages are in a table of their own.
 enum class Parked : std::uint8_t {
-  pending = 1,  ///< this PE asked the home for leave to create the element
-  grave = 2,    ///< the element died here, and its home has not noted that
-  waiting = 4,  ///< this is the home: there is no element, or it is not known where
+  pending = 1,    ///< this PE asked the home for leave to create the element
+  destroyed = 2,  ///< the element died here, and its home has not noted that
+  waiting = 4,    ///< this is the home: there is no element, or it is not known where
 };
 
 template <class Element>

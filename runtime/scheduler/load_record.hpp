@@ -29,7 +29,7 @@ struct LoadRecord {
   /// Since when the element is measured.
   enum class Since : std::uint8_t {
     somewhere,  ///< after it had run already: what it costs in a phase is not known
-    birth,
+    construction,
     phase,  ///< from the beginning of the phase
   };
 
@@ -42,7 +42,7 @@ struct LoadRecord {
   /// Whether `ticks` are all that the element cost in this phase. Of a newborn that has not run yet
   /// they say nothing.
   [[nodiscard]] bool known() const {
-    return since == Since::phase || (since == Since::birth && !entries.empty());
+    return since == Since::phase || (since == Since::construction && !entries.empty());
   }
 
   void spend(const Action* action, std::uint64_t spent) {

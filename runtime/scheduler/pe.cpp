@@ -342,7 +342,7 @@ std::vector<HostedCollection*> Pe::collections() const {
   return all;
 }
 
-PeId Pe::whim() {
+PeId Pe::forced_migration() {
   if (migration_chance_ == 0 || !random_.chance(migration_chance_)) return id_;
   return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
 }

@@ -186,7 +186,7 @@ class Pe {
 
   /// With a simulated machine that forces migrations: the PE an element has to go to now, or this
   /// one.
-  [[nodiscard]] PeId whim();
+  [[nodiscard]] PeId forced_migration();
   void set_migration_chance(double chance) { migration_chance_ = chance; }
 
   /// Futures that were made on this PE, by number; a result for one that is gone is an error.

@@ -114,14 +114,14 @@ TEST_CASE("ten thousand arrays, groups and balancers that end leave no memory be
 
 class Waiter : public tess::Chare<Waiter, tess::Index1> {
  public:
-  struct Letter {
+  struct Note {
     int key = 0;
   };
-  tess::Task wait() { (void)co_await letters_.take(3); }
-  void put() { letters_.put(Letter{3}); }
+  tess::Task wait() { (void)co_await notes_.take(3); }
+  void put() { notes_.put(Note{3}); }
 
  private:
-  tess::Mailbox<&Letter::key> letters_;
+  tess::Mailbox<&Note::key> notes_;
 };
 
 TEST_CASE("a coroutine that waits for a message of its destroyed array is reported",

@@ -76,11 +76,11 @@ TEST_CASE("every element meets every broadcast of its life once", "[runtime][pro
 TEST_CASE("reductions are exact while elements move, come and go", "[runtime][protocol]") {
   run_seeds("rounds");
 }
-TEST_CASE("an element born after a result was awaited takes part in later rounds only",
+TEST_CASE("an element created after a result was awaited takes part in later rounds only",
           "[runtime][protocol]") {
   run_seeds("newborns", &two_to_eight);
 }
-TEST_CASE("an element born in the middle of a step is never one ahead or behind",
+TEST_CASE("an element created in the middle of a step is never one ahead or behind",
           "[runtime][protocol]") {
   run_seeds("refinement", &two_to_eight);
 }

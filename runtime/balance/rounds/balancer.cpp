@@ -122,7 +122,7 @@ void Balancer::attached_everywhere(std::int64_t n_under_way) {
   begin_if_ready();
 }
 
-void Balancer::landed_late() {
+void Balancer::late_arrival() {
   --n_under_way_;
   begin_if_ready();
 }
@@ -149,7 +149,7 @@ void Balancer::entered(Element& element) {
   if (plan_.passes) {
     pass(element);
   } else if (barrier_.entered(element)) {
-    group()[plan_.coordinator].send<&Balancer::landed_late>();
+    group()[plan_.coordinator].send<&Balancer::late_arrival>();
   }
 }
 
@@ -158,8 +158,8 @@ void Balancer::left(Element& element) {
   if (barrier_is_open_ && !plan_.passes) barrier_.left(element);
 }
 
-void Balancer::died(Element& element) {
-  if (barrier_is_open_ && !plan_.passes) barrier_.died(element);
+void Balancer::destroyed(Element& element) {
+  if (barrier_is_open_ && !plan_.passes) barrier_.destroyed(element);
 }
 
 void Balancer::at_sync(Element& element) {

@@ -71,7 +71,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
 
   // Entry methods.
   void attached_everywhere(std::int64_t n_under_way);
-  void landed_late();
+  void late_arrival();
   void begin();
   Task reached(std::uint64_t n_elements);
   Task due(std::uint64_t round);
@@ -88,7 +88,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   // ElementWatcher.
   void entered(Element& element) override;
   void left(Element& element) override;
-  void died(Element& element) override;
+  void destroyed(Element& element) override;
   void at_sync(Element& element) override;
   void collection_ends() override { array_ends(); }
 

@@ -44,7 +44,7 @@ void Barrier::join_first(SyncState& sync) {
   sync.known = true;
   sync.member = true;
   sync.next = 0;
-  tree_.born(0);
+  tree_.add_member(0);
 }
 
 bool Barrier::entered(Element& element) {
@@ -70,10 +70,10 @@ void Barrier::left(Element& element) {
   tree_.advance();
 }
 
-void Barrier::died(Element& element) {
+void Barrier::destroyed(Element& element) {
   const SyncState& sync = sync_of(element);
   if (!sync.member) return;
-  tree_.died(sync.next);
+  tree_.remove_member(sync.next);
   tree_.advance();
 }
 
@@ -86,7 +86,7 @@ void Barrier::at_sync(Element& element) {
   sync.member = true;
   sync.next = tree_.joins_at();
   tree_.enter(sync.next);
-  tree_.born(sync.next);
+  tree_.add_member(sync.next);
   if (sync.next > n_resumed_) {
     sync.waits_for = sync.next - 1;
   } else {

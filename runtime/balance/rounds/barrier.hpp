@@ -35,7 +35,7 @@ class Barrier {
   /// True if it is a member of round 0 that was under way when balancing started.
   bool entered(Element& element);
   void left(Element& element);
-  void died(Element& element);
+  void destroyed(Element& element);
   void at_sync(Element& element);
 
   /// Round `round` is over: all that wait for it go on.

@@ -27,7 +27,7 @@ void Measured::detach() {
 
 void Measured::entered(Element& element) {
   BalanceRecord& record = Collection::make_record(element);
-  if (Collection::never_ran(element)) record.load.since = LoadRecord::Since::birth;
+  if (Collection::never_ran(element)) record.load.since = LoadRecord::Since::construction;
   record.load.of_pe = &in_elements_;
   record.position = BalanceRecord::nowhere;
 }
