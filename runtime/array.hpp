@@ -3,7 +3,7 @@
 //
 //     // dense: 64 elements, each Block(size)
 //     auto blocks = tess::create<Block>(tess::range(8, 8), size);
-//     // sparse: elements as they are inserted or demanded
+//     // sparse: elements exist once they are inserted or demanded
 //     auto voxels = tess::create<Voxel>(tess::sparse);
 //     blocks[{3, 4}].send<&Block::step>(0);
 //     blocks.broadcast<&Block::step>(0);
@@ -18,9 +18,11 @@
 
 namespace tess {
 
-/// A chare that can be packed here and made again elsewhere.
+/// A chare that can be packed on one PE and rebuilt on another.
 template <class C>
 concept Migratable = std::is_default_constructible_v<C> && serialization::HasSerialize<C>;
+
+namespace detail {
 
 /// A member of a group.
 template <class C>
@@ -47,13 +49,13 @@ class Array final : public ArrayOf<typename C::Index> {
         if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
           return this->block_map().home(rank);
       }
-      // The high bits: the low ones choose the slot in hash tables, which would cluster.
+      // The high bits: hash tables use the low ones for the slot, which would cluster.
       return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) %
                                             static_cast<std::uint64_t>(this->pe_.n_pes()))};
     }
   }
 
-  /// Makes the elements of the initial range whose home is this PE.
+  /// Constructs the elements of the initial range whose home is this PE.
   template <class... Args>
   void make_initial(const Args&... args) {
     if constexpr (Coordinates<Index>) {
@@ -78,7 +80,7 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
 
-  /// What the runtime keeps of an element: the user's class may have members of the same names.
+  /// The runtime's part of an element: the user's class may have members of the same names.
   static Indexed& own(C& element) { return element; }
 
   void take_in(Arrival<C>& arrival) {
@@ -90,7 +92,7 @@ class Array final : public ArrayOf<typename C::Index> {
         {
           const Pe::Construction construction(this->pe_, &index, this);
           arrival.element = make_chare<C>();
-          // What its constructor asks for, it had done when it was born.
+          // The first construction has already done what the constructor asks for.
           this->drop_after_construction();
           own(*arrival.element).migrate_to_ = PeId{-1};
           own(*arrival.element).destroy_requested_ = false;
@@ -125,7 +127,7 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
 
-  /// An element arrives after the end of the array: it ends, too.
+  /// An element that arrives after the end of the array is destroyed.
   static void drop(Pe& pe, Arrival<C>& arrival) {
     BalanceRecord unpacked;
     const BalanceRecord* record = nullptr;
@@ -144,7 +146,8 @@ class Array final : public ArrayOf<typename C::Index> {
       pe.completion().processed(record->sync.epoch);
     pe.completion().processed(arrival.epoch);
     if (arrival.element == nullptr) return;
-    // The part of the array that it left may be freed: its destructor may ask for array() still.
+    // The part of the array that the element left may have been freed, but its destructor may call
+    // array().
     Array gone(pe, arrival.collection, Range{});
     own(*arrival.element).collection_ = &gone;
     delete std::exchange(arrival.element, nullptr);
@@ -154,7 +157,7 @@ class Array final : public ArrayOf<typename C::Index> {
     if constexpr (ResumesFromSync<C>) {
       C& chare = static_cast<C&>(element);
       auto* message = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
-      message->epoch = own(chare).balance_->sync.epoch;  // counted there since at_sync()
+      message->epoch = own(chare).balance_->sync.epoch;  // counted in this epoch since at_sync()
       message->led_by = own(chare).balance_->sync.led_by;
       this->post(message);
     } else {
@@ -211,8 +214,8 @@ class Array final : public ArrayOf<typename C::Index> {
     arrival->from = pe.id();
     arrival->element = &static_cast<C&>(element);
 #ifdef TESS_CHECKS_ALL
-    // Within a process, too, the element is made again from its bytes: what serialize() forgets is
-    // lost on one PE as it is on a cluster.
+    // Within a process the element is also rebuilt from its bytes, so members that serialize()
+    // omits are lost on one PE as they are on a cluster.
     arrival->pack_state();
 #endif
     pe.send(to, arrival);
@@ -249,7 +252,9 @@ void Arrival<C>::pack_state() {
   delete std::exchange(element, nullptr);
 }
 
-/// One element, by its index; it need not exist.
+}  // namespace detail
+
+/// The proxy of one element, by its index. The element need not exist.
 template <class C>
 class ElementProxy {
  public:
@@ -258,60 +263,60 @@ class ElementProxy {
   ElementProxy(CollectionId collection, const Index& index)
       : collection_(collection), index_(index) {}
 
-  /// Sends a message; it waits at the home of the index while there is no element.
+  /// Sends a message. If there is no element, the message waits at the home of the index.
   template <auto F, class... Args>
   void send(Args&&... args) const {
-    post<F>(Demand::none, std::forward<Args>(args)...);
+    post<F>(detail::Demand::none, std::forward<Args>(args)...);
   }
-  /// The same; if there is no element, one is created on this PE. Of many that ask at once exactly
-  /// one creates.
+  /// Sends a message. If there is no element, it is created on this PE; of several PEs that demand
+  /// it at once exactly one creates it.
   template <auto F, class... Args>
   void send_or_create_here(Args&&... args) const {
     static_assert(std::is_default_constructible_v<C>,
                   "a chare that is created on demand needs a default constructor");
-    post<F>(Demand::here, std::forward<Args>(args)...);
+    post<F>(detail::Demand::here, std::forward<Args>(args)...);
   }
-  /// The same; if there is no element, one is created on the home PE of the index.
+  /// Sends a message. If there is no element, it is created on the home PE of the index.
   template <auto F, class... Args>
   void send_or_create_home(Args&&... args) const {
     static_assert(std::is_default_constructible_v<C>,
                   "a chare that is created on demand needs a default constructor");
-    post<F>(Demand::home, std::forward<Args>(args)...);
+    post<F>(detail::Demand::home, std::forward<Args>(args)...);
   }
 
-  /// Creates the element on this PE with these constructor arguments; misuse if there is one. It
-  /// meets the broadcasts that come after its birth and joins the reductions that they lead to: see
-  /// Chare::contribute().
+  /// Creates the element on this PE with these constructor arguments; it is misuse if the element
+  /// exists. The element receives the broadcasts that reach its PE after its construction, and
+  /// joins the reductions that they lead to: see Chare::contribute().
   template <class... Args>
   void insert(Args&&... args) const {
-    construct(current_pe().id(), Demand::insert, std::forward<Args>(args)...);
+    construct(current_pe().id(), detail::Demand::insert, std::forward<Args>(args)...);
   }
-  /// The same on another PE.
+  /// Creates the element on another PE; otherwise like insert().
   template <class... Args>
   void insert_on(PeId pe, Args&&... args) const {
-    construct(pe, Demand::insert, std::forward<Args>(args)...);
+    construct(pe, detail::Demand::insert, std::forward<Args>(args)...);
   }
-  /// Creates the element on this PE unless there is one.
+  /// Creates the element on this PE unless it exists.
   template <class... Args>
   void insert_if_absent(Args&&... args) const {
-    construct(current_pe().id(), Demand::insert_if_absent, std::forward<Args>(args)...);
+    construct(current_pe().id(), detail::Demand::insert_if_absent, std::forward<Args>(args)...);
   }
 
-  /// Ends the element.
-  void destroy() const { system<Destruction<C>>(); }
+  /// Destroys the element.
+  void destroy() const { system<detail::Destruction<C>>(); }
   /// Moves the element to a PE.
   void migrate_to(PeId pe) const {
-    check_exists(current_pe(), pe);
-    system<Relocation<C>>(pe);
+    detail::check_exists(current_pe(), pe);
+    system<detail::Relocation<C>>(pe);
   }
 
-  /// Where a message to it goes from this PE.
+  /// The PE to which a message for the element is sent from this PE.
   [[nodiscard]] PeId next_pe() const { return branch(current_pe()).next_pe(index_); }
 
   /// A target for results: entry method F of this element.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
+    using T = std::tuple_element_t<0, typename detail::EntryTraits<F>::Arguments>;
     if constexpr (Bitwise<Index>) {
       return Callback<T>(target_kind<F, T>, std::in_place, collection_, index_);
     } else {
@@ -320,42 +325,44 @@ class ElementProxy {
   }
 
  private:
-  [[nodiscard]] Array<C>& branch(Pe& pe) const {
-    Collection* collection = find_collection(pe, collection_);
+  [[nodiscard]] detail::Array<C>& branch(Pe& pe) const {
+    detail::Collection* collection = detail::find_collection(pe, collection_);
     TESS_CHECK(collection != nullptr, "the array of this proxy is not known on ", pe.id(),
                ": it was created by a message that has not arrived");
-    return *static_cast<Array<C>*>(collection);
+    return *static_cast<detail::Array<C>*>(collection);
   }
 
   template <auto F, class... Args>
-  void post(Demand demand, Args&&... args) const {
-    static_assert(check_entry<C, F, Args...>());
+  void post(detail::Demand demand, Args&&... args) const {
+    static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
-    auto* message = Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
+    auto* message = detail::Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
     message->demand = demand;
-    message->ask = demand == Demand::here;
-    if constexpr (!OnePerPe<C>)  // a balancer has no say in where members are
-      if (Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages()) [[unlikely]]
-        meter->sent({collection_, IndexHash<Index>()(index_)}, payload_bytes(message->arguments));
+    message->ask = demand == detail::Demand::here;
+    if constexpr (!detail::OnePerPe<C>)  // a balancer does not move members of groups
+      if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
+          [[unlikely]]
+        meter->sent({collection_, IndexHash<Index>()(index_)},
+                    detail::payload_bytes(message->arguments));
     post_message(pe, message);
   }
-  void post_message(Pe& pe, ElementMessage<Index>* message) const {
+  void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
     pe.completion().sent(message->epoch);
-    if (Collection* collection = find_collection(pe, collection_); collection != nullptr)
-        [[likely]] {
-      static_cast<Array<C>*>(collection)->post(message);
+    if (detail::Collection* collection = detail::find_collection(pe, collection_);
+        collection != nullptr) [[likely]] {
+      static_cast<detail::Array<C>*>(collection)->post(message);
     } else {
       pe.send_here(message);  // it waits until the array is known here
     }
   }
   template <class... Args>
-  void construct(PeId where, Demand demand, Args&&... args) const {
+  void construct(PeId where, detail::Demand demand, Args&&... args) const {
     static_assert(std::is_constructible_v<C, std::decay_t<Args>...>,
                   "the chare has no constructor that takes these arguments");
     Pe& pe = current_pe();
-    check_exists(pe, where);
-    auto* message = Construction<C, std::decay_t<Args>...>::make(pe, collection_, index_,
-                                                                 std::forward<Args>(args)...);
+    detail::check_exists(pe, where);
+    auto* message = detail::Construction<C, std::decay_t<Args>...>::make(
+        pe, collection_, index_, std::forward<Args>(args)...);
     message->demand = demand;
     message->ask = true;
     message->asker = where;
@@ -385,7 +392,7 @@ class ElementProxy {
   Index index_;
 };
 
-/// A whole array.
+/// The proxy of a whole array.
 template <class C>
 class ArrayProxy {
  public:
@@ -393,48 +400,51 @@ class ArrayProxy {
   explicit ArrayProxy(CollectionId id) : id_(id) {}
 
   [[nodiscard]] CollectionId id() const { return id_; }
-  /// The element of that index. (A template, so that a proxy may be a member where C is not
-  /// complete yet.)
+  /// The element of this index. (A template, so that a proxy may be a member of a class before C is
+  /// complete.)
   template <class Of = C>
   [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
     return ElementProxy<C>(id_, index);
   }
 
-  /// How many elements the array was created with.
+  /// The number of elements that the array was created with.
   [[nodiscard]] std::int64_t size() const {
     return static_cast<std::int64_t>(here().range().size());
   }
   [[nodiscard]] const Range& range() const { return here().range(); }
 
-  /// Calls entry method F of every element that exists when the broadcast comes by.
+  /// Calls entry method F of every element that exists when the broadcast reaches its PE.
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
-    static_assert(check_entry<C, F, Args...>());
-    using Arguments = typename EntryTraits<F>::Arguments;
-    start_broadcast(id_, SharedCall(new CallOfAll<C, F>(Arguments(std::forward<Args>(args)...))));
+    static_assert(detail::check_entry<C, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    detail::start_broadcast(
+        id_,
+        detail::SharedCall(new detail::CallOfAll<C, F>(Arguments(std::forward<Args>(args)...))));
   }
 
-  /// Ends the array: on every PE its elements are destroyed and all that it holds is freed, its
-  /// balancer included. Messages, broadcasts, contributions and elements that are still under way
-  /// to it are dropped where they arrive; messages and broadcasts count as dead letters. An element
-  /// whose coroutine waits gets no more messages, and ends once the coroutine is done. The epoch
-  /// that runs waits until all PEs have freed the array. The second end of an array does nothing.
-  void destroy() const { end_collection(id_); }
+  /// Ends the array: on every PE its elements are destroyed and its memory is freed, including that
+  /// of its balancer. Messages, broadcasts, contributions and elements that are still under way to
+  /// it are dropped where they arrive; messages and broadcasts count as dead letters. An element
+  /// with a waiting coroutine gets no more messages and is destroyed once the coroutine is done.
+  /// The current epoch waits until all PEs have freed the array. Ending an array again has no
+  /// effect.
+  void destroy() const { detail::end_collection(id_); }
 
   /// A target for results: entry method F of all elements.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = std::tuple_element_t<0, typename EntryTraits<F>::Arguments>;
+    using T = std::tuple_element_t<0, typename detail::EntryTraits<F>::Arguments>;
     return Callback<T>(target_kind<F, T>, std::in_place, id_);
   }
 
-  /// The part of the array on this PE: its local elements, for libraries and tests.
-  [[nodiscard]] Array<C>& here() const {
-    Collection* collection = find_collection(current_pe(), id_);
+  /// The part of the array on this PE with its local elements, for libraries and tests.
+  [[nodiscard]] detail::Array<C>& here() const {
+    detail::Collection* collection = detail::find_collection(current_pe(), id_);
     TESS_CHECK(collection != nullptr, "the array of this proxy ",
                current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
                current_pe().id());
-    return *static_cast<Array<C>*>(collection);
+    return *static_cast<detail::Array<C>*>(collection);
   }
 
   friend auto operator<=>(const ArrayProxy&, const ArrayProxy&) = default;
@@ -499,14 +509,15 @@ CollectionId create_collection(const Range& range, Args&&... args) {
     pe.completion().sent(message.epoch);
     if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
   }
-  handler(pe, std::move(message));  // here at once: the proxy is good from now on
+  handler(pe, std::move(message));  // locally at once, so that the proxy is valid from now on
   return id;
 }
 
 }  // namespace detail
 
-/// Creates an array on all PEs; each element of the range is made with these arguments on the home
-/// PE of its index. Returns at once: messages to the array wait where it is not known yet.
+/// Creates an array on all PEs. Each element of the range is constructed with these arguments on
+/// the home PE of its index. Returns immediately: messages wait on PEs that do not know the array
+/// yet.
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
   if constexpr (Coordinates<typename C::Index>) {

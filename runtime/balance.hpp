@@ -1,26 +1,29 @@
-// Measurement-based load balancing of an array: tess::start_balancing(blocks, {.strategy =
-// "greedy"}). What elements cost and send is measured from then on; at a round a strategy sees the
-// measured loads, and elements migrate.
+// Measurement-based load balancing of an array:
 //
-//     at_sync     each element calls at_sync() once a phase; when all have, a round runs, and then
-//                 every element's resume_from_sync() is called
-//     automatic   the same barrier, but a round runs only when it is worth its cost
-//     periodic    no barrier: a round whenever `period` has passed, beside the elements' work
+//     tess::start_balancing(blocks, {.strategy = "greedy"});
 //
-// Elements that exist where balancing starts are waited for from the first round on; later ones
-// from their first at_sync() on. An element that ends is no longer waited for. The balancer ends
-// with its array.
+// From then on the runtime measures what elements compute and send. In a balance round a strategy
+// sees the measured loads, and elements migrate.
 //
-// A load is known once a whole phase of the element was measured. That is so from the first round
-// on for arrays that are created, balanced and only then called. An element that ran before it was
-// measured has an unknown load until the next phase: it counts as the mean of the others and is not
-// moved; a round without known loads moves nothing. A program that starts balancing later awaits
-// balancer.begin_phase() before it goes on.
+//     at_sync     each element calls at_sync() once per phase; when all have called it, a round
+//                 runs, and then every element's resume_from_sync() is called
+//     automatic   the same barrier, but a round runs only if it pays off
+//     periodic    no barrier: a round runs whenever `period` has passed, beside the elements' work
+//
+// The barrier waits for elements that exist when balancing starts from the first round on, and for
+// later elements from their first at_sync() on. It does not wait for destroyed elements. The
+// balancer ends with its array.
+//
+// A load is known once a whole phase of the element has been measured. For arrays that are created,
+// balanced and only then called this holds from the first round on. An element that ran before it
+// was measured has an unknown load until the next phase: it counts as the mean of the others and is
+// not moved. A round without known loads moves nothing. A program that starts balancing later
+// awaits balancer.begin_phase() before it continues.
 //
 // A program whose phases are epochs has a barrier already: between two of them it awaits
-// balancer.round(), and no element calls at_sync(). That is the way for arrays whose elements come
-// and go: at a barrier of theirs an element may be too new for the phase that ends, and would wait
-// for the next.
+// balancer.round(), and no element calls at_sync(). This is the right way for arrays whose elements
+// come and go: at a barrier an element may be too new for the phase that ends, and would wait for
+// the next one.
 #pragma once
 
 #include "runtime/array.hpp"
@@ -29,42 +32,42 @@
 
 namespace tess {
 
-/// The balancer of an array. A value that can be copied; history() on the PE that started it. After
-/// the end of the array neither history() nor round() may be called.
+/// The balancer of an array, as a value that can be copied. history() and round() may be called
+/// only on the PE that called start_balancing(), and not after the end of the array.
 class BalancerProxy {
  public:
   BalancerProxy() = default;
   explicit BalancerProxy(GroupProxy<balance::Balancer> group) : group_(group) {}
 
-  /// The rounds so far, in order. On the PE that called start_balancing() alone.
+  /// The rounds so far, in order. Only on the PE that called start_balancing().
   [[nodiscard]] const std::vector<balance::Round>& history() const {
     return group_.local().history();
   }
 
-  /// Awaited while no element of the array has work: its first phase begins here. For arrays that
-  /// have run before balancing starts, whose loads would not be known in the first round. On the PE
-  /// that called start_balancing() only.
+  /// Begins the first phase; awaited while no element of the array has work. For arrays that ran
+  /// before balancing started, whose loads would be unknown in the first round. Only on the PE that
+  /// called start_balancing().
   [[nodiscard]] Task begin_phase() const { return group_.local().begin_phase(); }
 
-  /// Awaited between two phases, while no element of the array has work: a round (automatic: where
-  /// it is worth it); all that it moves has arrived. On the PE that called start_balancing() alone.
-  /// Not beside at_sync(), nor periodic rounds.
+  /// Runs a round (with `automatic` only if it pays off); awaited between two phases, while no
+  /// element of the array has work. All moved elements have arrived when it returns. Only on the PE
+  /// that called start_balancing(). It cannot be combined with at_sync() or periodic rounds.
   [[nodiscard]] Task round() const { return group_.local().phase_ends(); }
 
  private:
   GroupProxy<balance::Balancer> group_;
 };
 
-/// Balances an array from now on; once an array. The PE that calls it coordinates the rounds.
-/// Throws Error for options that name no strategy or prediction, or that fit not the PEs of the
-/// run.
+/// Starts balancing an array; may be called once per array. The calling PE coordinates the rounds.
+/// Throws Error for options with an unknown strategy or prediction, and for options that do not
+/// match the PEs of the run.
 template <class C>
 BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options = {}) {
   return BalancerProxy(balance::start(array.id(), options, {}));
 }
 
-/// The same by the user's own strategy: Assignment(const Snapshot&), of which what may not be moved
-/// is left where it is.
+/// Starts balancing with the user's own strategy: Assignment(const Snapshot&). Elements that may
+/// not move stay, whatever it returns.
 template <class C>
 BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options,
                               balance::Strategy strategy) {

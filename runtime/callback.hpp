@@ -1,5 +1,6 @@
-// Where a result goes: an entry method of one element, of all elements of a collection, or of a
-// group's member on a PE. A value that can be stored and sent; it is called once or many times.
+// The target of a result: an entry method of one element, of all elements of a collection, or of a
+// group's member on a PE. It is a value that can be stored and sent; it may be called several
+// times.
 #pragma once
 
 #include "runtime/core/check.hpp"
@@ -17,8 +18,10 @@
 
 namespace tess {
 
-/// The bytes that name a target: an array and an index, say. Few, never changed, often copied:
-/// short ones are kept in place, long ones are shared.
+namespace detail {
+
+/// The bytes that name a target, such as an array and an index. They are few, constant and often
+/// copied: short names are stored in place, long ones are shared.
 class TargetName {
  public:
   TargetName() = default;
@@ -29,8 +32,8 @@ class TargetName {
       long_ = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
     }
   }
-  /// Names made of values that are their bytes; packed as a tuple of them would be. They are
-  /// written where they stay: a copy of what was just written would stall.
+  /// Names made of bitwise values, packed as a tuple of them. They are written directly to their
+  /// place, since a copy of bytes that were just written would stall.
   template <Bitwise... Values>
   explicit TargetName(std::in_place_t /*tag*/, const Values&... values)
       : n_((sizeof(Values) + ... + 0)) {
@@ -63,18 +66,20 @@ class TargetName {
   std::shared_ptr<const std::vector<std::byte>> long_;
 };
 
+}  // namespace detail
+
 template <class T>
 class Callback {
  public:
-  /// How to call: one static object for each (target kind, entry method).
-  struct Kind : Registered {
+  /// How to call the target: one static object for each pair of target kind and entry method.
+  struct Kind : detail::Registered {
     using Call = void (*)(const Callback&, T&&);
     Kind(std::string_view name, Call call_) : Registered(name), call(call_) {}
     Call call;
   };
 
   Callback() = default;
-  /// For the proxies: `where` is what the kind's function reads.
+  /// For the proxies; the kind's function reads `where`.
   Callback(const Kind& kind, const std::vector<std::byte>& where) : kind_(&kind), where_(where) {}
   template <Bitwise... Values>
   Callback(const Kind& kind, std::in_place_t tag, const Values&... where)
@@ -83,7 +88,7 @@ class Callback {
   [[nodiscard]] explicit operator bool() const { return kind_ != nullptr; }
   [[nodiscard]] std::span<const std::byte> where() const { return where_.view(); }
 
-  /// An empty one is misuse.
+  /// Calls the target with a value. Calling an empty Callback is misuse.
   void operator()(T value) const {
     TESS_CHECK(kind_ != nullptr, "an empty Callback<", name_of_type<T>, "> is called");
     kind_->call(*this, std::move(value));
@@ -93,7 +98,7 @@ class Callback {
   void serialize(Ar& ar) {
     if constexpr (Ar::is_reading) {
       const auto id = ar.template take<std::uint32_t>();
-      kind_ = id == ~0U ? nullptr : &static_cast<const Kind&>(Registry::at(id));
+      kind_ = id == ~0U ? nullptr : &static_cast<const Kind&>(detail::Registry::at(id));
     } else {
       ar(kind_ == nullptr ? ~0U : kind_->id());
     }
@@ -102,7 +107,7 @@ class Callback {
 
  private:
   const Kind* kind_ = nullptr;
-  TargetName where_;
+  detail::TargetName where_;
 };
 
 }  // namespace tess

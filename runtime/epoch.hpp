@@ -1,6 +1,11 @@
-// co_await tess::epoch(body): runs body now, on this PE, and goes on when all that it caused is
-// done: every message it sent, every message those sent, and so on, wherever they went, coroutines
-// that wait included. Epochs nest, and several run at once; each counts its own messages.
+// Epochs: a coroutine waits until all consequences of some work are done.
+//
+//     co_await tess::epoch([&] { blocks.broadcast<&Block::step>(0); });
+//
+// The body runs immediately, on this PE. The coroutine continues when everything that the body
+// caused is done: every message it sent, every message that those sent, and so on, on every PE,
+// including coroutines that wait. Epochs nest, and several may run at once; each counts its own
+// messages.
 #pragma once
 
 #include "runtime/task.hpp"
@@ -8,6 +13,8 @@
 #include <utility>
 
 namespace tess {
+
+namespace detail {
 
 template <class Body>
 class [[nodiscard]] EpochAwait {
@@ -24,7 +31,7 @@ class [[nodiscard]] EpochAwait {
     try {
       body_();
     } catch (...) {
-      error_ = std::current_exception();  // for the coroutine, when what the body began is done
+      error_ = std::current_exception();  // rethrown in the coroutine once the started work is done
     }
     pe.context().epoch = outer;
     pe.completion().close(epoch);
@@ -38,10 +45,12 @@ class [[nodiscard]] EpochAwait {
   std::exception_ptr error_;
 };
 
-/// Awaited, runs `body` and is done when all that it caused is done.
+}  // namespace detail
+
+/// When awaited, runs `body` and completes once all its consequences are done.
 template <class Body>
-[[nodiscard]] EpochAwait<Body> epoch(Body body) {
-  return EpochAwait<Body>(std::move(body));
+[[nodiscard]] detail::EpochAwait<Body> epoch(Body body) {
+  return detail::EpochAwait<Body>(std::move(body));
 }
 
 }  // namespace tess

@@ -1,7 +1,11 @@
-// A result that a coroutine waits for: tess::Future<double> total; … contribute(tess::sum, x,
-// total.callback()); … double t = co_await total;  The callback can be sent anywhere; the result
-// comes to the PE that made the future. It is taken once, and the future must outlive it: a local
-// variable of the coroutine that awaits it.
+// A result that a coroutine waits for:
+//
+//     tess::Future<double> total;
+//     blocks.broadcast<&Block::add>(total.callback());  // each calls contribute(tess::sum, x, target)
+//     const double t = co_await total;
+//
+// The callback can be sent anywhere; the result arrives at the PE that made the future. It is taken
+// once, and the future must outlive it: make it a local variable of the coroutine that awaits it.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -22,7 +26,7 @@ class Future {
   Future& operator=(const Future&) = delete;
   ~Future() { pe_.leave_future(id_); }
 
-  /// Where the result has to be given.
+  /// The target that receives the result.
   [[nodiscard]] Callback<T> callback() const {
     return Callback<T>(kind_, to_bytes(std::tuple(pe_.id(), id_)));
   }
@@ -48,12 +52,14 @@ class Future {
     const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
     Pe& here = current_pe();
     here.completion().sent(here.context().epoch);
-    send_system<&Future::arrives>(here, pe, Result{id, std::move(value)});
+    detail::send_system<&Future::arrives>(here, pe, Result{id, std::move(value)});
   }
   static void arrives(Pe& pe, Result&& result) {
     auto* future = static_cast<Future*>(pe.find_future(result.id));
-    TESS_CHECK(future != nullptr,
-               "the result of a future came after its coroutine had gone on or ended");
+    TESS_CHECK(
+        future != nullptr,
+        "the result of a future arrived after its coroutine had continued or ended: keep the "
+        "future until its result is there");
     TESS_CHECK(!future->value_, "a future was given two results");
     future->value_ = std::move(result.value);
     if (future->waiting_) resume_later(future->waiting_);

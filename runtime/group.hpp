@@ -1,8 +1,12 @@
-// Groups: one member on each PE, until destroy() or the end of the run. class Manager : public
-// tess::Group<Manager> { … }; Messages go to the member on a PE; the member on this PE is an
-// ordinary object to its neighbours: proxy.local().
+// Groups: one member on each PE, until destroy() or the end of the run.
 //
-// A group is an array whose elements have the numbers of the PEs and stay there.
+//     class Manager : public tess::Group<Manager> { … };
+//     auto managers = tess::create_group<Manager>(args…);
+//
+// Messages go to the member on a PE. For code on the same PE the member is an ordinary object:
+// managers.local().
+//
+// A group is an array whose elements are numbered by PE and do not move.
 #pragma once
 
 #include "runtime/array.hpp"
@@ -12,32 +16,32 @@ namespace tess {
 template <class G>
 class GroupProxy;
 
-/// The base of a group's members.
+/// The base class of a group's members.
 template <class Derived>
-class Group : public IndexedElement<Index1> {
+class Group : public detail::IndexedElement<Index1> {
  public:
   using Index = Index1;
-  /// For Array: the element of index i is on PE i, and there is one on each.
+  /// For Array: there is one element per PE, and the element with index i is on PE i.
   static constexpr bool one_per_pe = true;
   [[nodiscard]] static PeId place(const Index1& index, std::int32_t /*n_pes*/) {
     return PeId{index.x};
   }
 
   [[nodiscard]] PeId pe() const { return PeId{this->index_.x}; }
-  /// The group this is a member of.
+  /// The group of this member.
   [[nodiscard]] GroupProxy<Derived> group() const {
     return GroupProxy<Derived>(this->collection_id());
   }
 
-  /// Gives this member's value to the next reduction of the group; every member gives one.
-  /// in_order(op) combines in the order of PEs.
+  /// Contributes this member's value to the next reduction of the group; every member contributes
+  /// one value. in_order(op) combines the values in the order of PEs.
   template <class Op, class T>
   void contribute(Op op, T value, Callback<T> target) {
-    Contribution::give(this->index_, *this, op, std::move(value), std::move(target));
+    detail::Contribution::give(this->index_, *this, op, std::move(value), std::move(target));
   }
 };
 
-/// The member of a group on one PE.
+/// The proxy of a group's member on one PE.
 template <class G>
 class MemberProxy {
  public:
@@ -45,7 +49,7 @@ class MemberProxy {
 
   template <auto F, class... Args>
   void send(Args&&... args) const {
-    check_exists(current_pe(), pe_);
+    detail::check_exists(current_pe(), pe_);
     member().template send<F>(std::forward<Args>(args)...);
   }
 
@@ -64,7 +68,7 @@ class MemberProxy {
   PeId pe_;
 };
 
-/// A whole group.
+/// The proxy of a whole group.
 template <class G>
 class GroupProxy {
  public:
@@ -74,9 +78,9 @@ class GroupProxy {
   [[nodiscard]] CollectionId id() const { return id_; }
   [[nodiscard]] MemberProxy<G> operator[](PeId pe) const { return MemberProxy<G>(id_, pe); }
 
-  /// The member on this PE, or null where the group is not known yet or was destroyed.
+  /// The member on this PE; null if the group is not known here yet or was destroyed.
   [[nodiscard]] G* local_or_null() const {
-    const Collection* collection = find_collection(current_pe(), id_);
+    const detail::Collection* collection = detail::find_collection(current_pe(), id_);
     return collection == nullptr || collection->n_local() == 0
                ? nullptr
                : static_cast<G*>(collection->elements().front());
@@ -96,12 +100,12 @@ class GroupProxy {
     ArrayProxy<G>(id_).template broadcast<F>(std::forward<Args>(args)...);
   }
 
-  /// Ends the group: on every PE its member is destroyed and all that it holds is freed. What is
-  /// still under way to it is dropped where it arrives; messages and broadcasts count as dead
-  /// letters. A member whose coroutine waits gets no more messages, and ends once the coroutine is
-  /// done. The epoch that runs waits until all PEs have freed the group. The second end of a group
-  /// does nothing.
-  void destroy() const { end_collection(id_); }
+  /// Ends the group: on every PE its member is destroyed and its memory is freed. Messages that are
+  /// still under way to it are dropped where they arrive; messages and broadcasts count as dead
+  /// letters. A member with a waiting coroutine gets no more messages and is destroyed once the
+  /// coroutine is done. The current epoch waits until all PEs have freed the group. Ending a group
+  /// again has no effect.
+  void destroy() const { detail::end_collection(id_); }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -112,7 +116,7 @@ class GroupProxy {
   CollectionId id_{};
 };
 
-/// Creates a group: one G on each PE, made with these arguments. Returns at once.
+/// Creates a group: one G per PE, constructed with these arguments. Returns immediately.
 template <class G, class... Args>
 GroupProxy<G> create_group(Args&&... args) {
   return GroupProxy<G>(

@@ -1,6 +1,6 @@
-// A mailbox of a chare: messages wait in it by key until a coroutine of the chare takes them, in
-// whichever order both come. A member of the chare; serialise it with the others, early messages
-// migrate with it.
+// A mailbox of a chare: messages wait in it by key until a coroutine of the chare takes them.
+// Messages and coroutines may arrive in either order. It is a member of the chare; serialise it
+// with the other members, then early messages migrate with the chare.
 //
 //     tess::Mailbox<&Edge::step> edges_;     void receive(Edge e) { edges_.put(std::move(e)); }
 //     Edge edge = co_await edges_.take(step);
@@ -32,8 +32,8 @@ class Mailbox {
   using Key = typename detail::KeyTraits<decltype(KeyMember)>::Key;
   using Value = typename detail::KeyTraits<decltype(KeyMember)>::Value;
 
-  /// Hands a message to the coroutine that has waited longest for its key, or keeps it. Messages of
-  /// one key are taken in the order in which they were put.
+  /// Passes a message to the coroutine that has waited longest for its key; if there is none, keeps
+  /// it. Messages of one key are taken in the order in which they were put.
   void put(Value value) {
     const Key& key = value.*KeyMember;
     for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
@@ -50,7 +50,7 @@ class Mailbox {
   class Take {
    public:
     [[nodiscard]] bool await_ready() {
-      const auto at = box_.kept_.lower_bound(key_);  // the first of those that are equal
+      const auto at = box_.kept_.lower_bound(key_);  // the oldest message of this key
       if (at == box_.kept_.end() || box_.kept_.key_comp()(key_, at->first)) return false;
       value_ = std::move(at->second);
       box_.kept_.erase(at);
@@ -73,7 +73,7 @@ class Mailbox {
     std::optional<Value> value_;
   };
 
-  /// Awaited, gives the next message of that key.
+  /// When awaited, returns the next message of this key.
   [[nodiscard]] Take take(Key key) { return Take(*this, std::move(key)); }
 
   [[nodiscard]] std::size_t size() const { return kept_.size(); }
@@ -85,7 +85,7 @@ class Mailbox {
 
  private:
   // Equal keys stay in the order in which they were put.
-  std::multimap<Key, Value, std::less<>, PoolAllocator<std::pair<const Key, Value>>> kept_;
+  std::multimap<Key, Value, std::less<>, detail::PoolAllocator<std::pair<const Key, Value>>> kept_;
   std::vector<Take*> waiting_;
 };
 

@@ -1,8 +1,12 @@
-// Combining one value from each element: contribute(tess::sum, value, target). The operations here,
-// or any empty function object that combines two values: `struct Longest { std::string
-// operator()(std::string a, std::string b) const; };` It must be associative and commutative;
-// in_order(op) combines in the order of indices, so that a floating-point result does not depend on
-// where the elements are.
+// Reductions combine one value of each element: contribute(tess::sum, value, target). The operation
+// is one of those below or any empty function object that combines two values:
+//
+//     struct Longest {
+//       std::string operator()(std::string a, std::string b) const;
+//     };
+//
+// It must be associative and commutative. in_order(op) combines in the order of indices, so that a
+// floating-point result does not depend on the placement of the elements.
 #pragma once
 
 #include "runtime/core/check.hpp"
@@ -21,7 +25,7 @@ concept Listable = requires(T a) {
   a[0];
 } && !std::is_convertible_v<T, std::string_view>;
 
-/// Applies an operation to numbers, or element by element to vectors and arrays of one length.
+/// Applies an operation to numbers, or element by element to vectors and arrays of equal length.
 template <class T, class Op>
 T elementwise(T a, const T& b, const Op& op) {
   if constexpr (Listable<T>) {
@@ -63,7 +67,7 @@ struct LogicalAnd {
 struct LogicalOr {
   bool operator()(bool a, bool b) const { return a || b; }
 };
-/// Vectors (or strings) behind one another, in no promised order unless in_order().
+/// Concatenates vectors or strings, in an unspecified order unless in_order() is used.
 struct Concatenate {
   template <class T>
   T operator()(T a, const T& b) const {
@@ -78,7 +82,7 @@ inline constexpr LogicalAnd logical_and{};
 inline constexpr LogicalOr logical_or{};
 inline constexpr Concatenate concatenate{};
 
-/// The same operation, applied in the order of indices once all values are at the root.
+/// An operation that is applied in the order of indices, once all values are at the root.
 template <class Op>
 struct InOrder {};
 template <class Op>

@@ -3,10 +3,10 @@
 #include "runtime/core/check.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// Goes through the queue of another PE of this process, and back.
+/// A message that passes through the queue of another PE of this process and returns.
 struct Visit {
   PeId from;
   void* frame = nullptr;
@@ -44,4 +44,4 @@ void RoomAwait::await_suspend(Task::Handle task) const {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,19 +1,21 @@
-// co_await tess::room(to): a producer waits until what it sent has been worked off, so that it
-// keeps only a little of its output in memory.
+// Flow control: a producer waits until its earlier messages have been processed, so that only a
+// little of its output is in memory.
 //
 //     for (const Tile& tile : tiles) {
 //       co_await tess::room(sink[{0}]);
 //       sink[{0}].send<&Sink::take>(render(tile));
 //     }
 //
-// To another process there is room while messages are not held back there (--message-memory). The
-// producers of a PE that wait for one process go on one after the other. Within a process there is
-// room once the destination's PE has come to this point of its queue.
+// There is room to another process if no messages to it are held back (--message-memory). Producers
+// of a PE that wait for the same process continue one after the other. Within a process there is
+// room once the destination's PE has reached this point of its queue.
 #pragma once
 
 #include "runtime/task.hpp"
 
 namespace tess {
+
+namespace detail {
 
 class [[nodiscard]] RoomAwait {
  public:
@@ -27,16 +29,18 @@ class [[nodiscard]] RoomAwait {
   PeId to_;
 };
 
-/// Awaited, is done when there is room for a message to that PE.
-[[nodiscard]] inline RoomAwait room(PeId to) {
-  return RoomAwait(to);
+}  // namespace detail
+
+/// When awaited, completes once there is room for a message to this PE.
+[[nodiscard]] inline detail::RoomAwait room(PeId to) {
+  return detail::RoomAwait(to);
 }
-/// The same for a message to an element, or to a member of a group: array[index], group[pe].
+/// The same for a message to an element or to a member of a group: array[index], group[pe].
 template <class Proxy>
-[[nodiscard]] RoomAwait room(const Proxy& to)
+[[nodiscard]] detail::RoomAwait room(const Proxy& to)
   requires requires { to.next_pe(); }
 {
-  return RoomAwait(to.next_pe());
+  return detail::RoomAwait(to.next_pe());
 }
 
 }  // namespace tess

@@ -37,7 +37,7 @@ std::size_t memory_size(std::string_view option, std::string_view value) {
   constexpr std::size_t most = std::size_t{1} << 40U;
   if (error != std::errc() || shift < 0 || number == 0 || number > most >> shift)
     fail(ErrorCode::bad_argument, option, ": ", value,
-         " is no size of 1 byte to 1024 GiB: write 64MiB (KiB, MiB, GiB, or bytes)");
+         " is not a size of 1 byte to 1024 GiB: write it as 64MiB (KiB, MiB, GiB, or bytes)");
   return number << shift;
 }
 
@@ -48,31 +48,31 @@ void print_error(const char* program, const Error& error) {
   std::fflush(stderr);
 }
 
-/// Memory ran out outside of any message: while input was read, or results written.
+/// Memory was exhausted outside of any message: while input was read or results were written.
 const Error& out_of_memory() {
   static const Error error(ErrorCode::environment,
                            "memory is exhausted; ask for less, or give this machine more");
   return error;
 }
 
-/// What a process that refuses its input gives to Machine::agree(), where others may give the
+/// The number that a process that refuses its input passes to Machine::agree(); others pass the
 /// fingerprint of the program.
 constexpr std::uint64_t refused = 0x7265667573656421U;
 
-/// An Error before the run: process 0 speaks for all, if all have one. If not, the others stand at
-/// the start of the run, and this process ends the job.
+/// Handles an Error before the run. If all processes have one, process 0 prints it. Otherwise the
+/// other processes wait at the start of the run, and this process ends the job.
 void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
   if (!setup.machine && under_mpirun()) {
     try {
       setup.machine = make_mpi_machine(argc, argv, {});
-    } catch (const Error&) {  // then each speaks for itself
+    } catch (const Error&) {  // then each process prints its own
     }
   }
   if (!setup.machine || setup.started) return print_error(argv[0], error);
   const bool all = setup.machine->agree(refused);
   if (!all || setup.machine->process().value == 0) print_error(argv[0], error);
   if (!all) setup.machine->abort(2);
-  // A process that leaves makes mpirun end the others: not before the line is out.
+  // mpirun ends the others when a process leaves: wait until the line is printed.
   (void)setup.machine->agree(refused);
 }
 
@@ -80,7 +80,7 @@ void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
 
 std::string options_help() {
   return "Runtime:\n"
-         "  --pes N     PEs of each process (default: as many as cores)\n"
+         "  --pes N     PEs per process (default: one per core)\n"
          "  --sim KEYS  run on a simulated machine: "
          "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
          "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations)\n"
@@ -145,7 +145,7 @@ Setup take_options(int& argc, char** argv) {
 
 int run_on(Setup& setup, std::function<void()> main) {
   setup.started = true;
-  Runtime runtime(*setup.machine, setup.options, &element_text, std::move(main));
+  detail::Runtime runtime(*setup.machine, setup.options, &detail::element_text, std::move(main));
   return runtime.run();
 }
 

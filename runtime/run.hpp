@@ -1,13 +1,18 @@
-// Starting a run: tess::run(argc, argv, function) takes the options below out of the command line,
-// chooses the machine, runs `function` on PE 0 as the first message, and returns the exit code at
-// quiescence.
+// Starting a run.
 //
-//     --pes N      PEs of each process (default: all cores; under mpirun: the cores each process
-//     was given)
-//     --sim KEYS   the simulated machine: pes=8,latency=2us,bandwidth=10GB/s,cost=100ns,seed=7
+//     int main(int argc, char** argv) {
+//       return tess::run(argc, argv, [] { … });
+//     }
+//
+// run() removes the options below from the command line, chooses the machine, runs the function on
+// PE 0 as the first message, and returns the exit code at quiescence.
+//
+//     --pes N                 PEs per process (default: one per core; under mpirun: one per core
+//                             that was given to the process)
+//     --sim KEYS              the simulated machine: pes=8,latency=2us,bandwidth=10GB/s,cost=100ns
 //     --message-memory SIZE   most bytes under way from one process to another (default 32MiB)
-//     --stats      what each PE did, at the end
-//     --trace F    what each PE ran when, as JSON for Perfetto
+//     --stats                 print the counters of each PE at the end
+//     --trace FILE            write what each PE ran, as JSON for Perfetto
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -25,33 +30,34 @@
 
 namespace tess {
 
-/// A machine and how to run on it.
+/// A machine and the options of the run.
 struct Setup {
   std::unique_ptr<Machine> machine;
   RuntimeOptions options;
   bool started = false;  ///< run_on() was called
 };
 
-/// Takes the runtime's options out of argc and argv, and makes the machine they name. Throws Error
-/// for a bad value.
+/// Removes the runtime's options from argc and argv, and makes the machine that they name. Throws
+/// Error for an invalid value.
 [[nodiscard]] Setup take_options(int& argc, char** argv);
 
 /// The lines of --help that describe the runtime's options.
 [[nodiscard]] std::string options_help();
 
-/// Runs `main` on PE 0 of that machine; returns the exit code.
+/// Runs `main` on PE 0 of this machine; returns the exit code.
 int run_on(Setup& setup, std::function<void()> main);
 
 /// A whole program, for main(): takes the runtime's options, runs `body`, returns its exit code. An
-/// Error is one line and exit code 2: of a job under mpirun, too, in which all processes meet the
-/// same fault of the command line. `argc` holds what is left when `body` runs.
+/// Error is printed in one line and gives exit code 2; under mpirun it is printed once if all
+/// processes have the same error in their command line. When `body` runs, `argc` counts the
+/// remaining arguments.
 int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body);
 
-/// The same for a program that makes no machine, or several.
+/// The same for a program that makes no machine or several.
 int guarded(const char* program, const std::function<int()>& body);
 
 namespace detail {
-/// For a program without options: true if it was asked for help, which is printed then. Any other
+/// For a program without options: prints the help if it was requested and returns true. Any other
 /// option is an Error.
 bool asks_for_help(int argc, char** argv);
 template <class Main>
@@ -78,12 +84,12 @@ int run(int argc, char** argv, Main main) {
   });
 }
 
-/// On the simulated machine: this PE works for that long, in virtual time. True there; on a real
-/// machine nothing happens, and the caller does the work itself.
+/// On the simulated machine: advances the virtual clock of this PE by the duration of its work and
+/// returns true. On a real machine it does nothing and returns false, and the caller does the work.
 bool charge(std::chrono::nanoseconds work);
 
-/// Ends the run on all PEs; no user code runs afterwards. The greatest code that any PE gives is
-/// the exit code: 0 … 255; the system passes no other on.
+/// Ends the run on all PEs; no user code runs afterwards. If several PEs call it, the greatest code
+/// is the exit code. The code must be in 0 … 255, which is what the system passes on.
 void exit(int code);
 
 /// Writes the parts to standard output in one piece.

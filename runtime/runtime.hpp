@@ -1,4 +1,4 @@
-// Everything a chare program needs.
+// Includes everything that a chare program needs.
 #pragma once
 
 #include "runtime/array.hpp"

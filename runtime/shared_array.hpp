@@ -1,14 +1,14 @@
-// tess::SharedArray<T>: numbers that are made once and then only read, by any number of owners.
+// tess::SharedArray<T>: numbers that are computed once and then only read, by any number of owners.
 //
 //     std::vector<double> values = …;
 //     const tess::SharedArray<double> edge(std::move(values));   // no copy
-//     left.send<&Block::receive>(edge);                          // nor here
+//     left.send<&Block::receive>(edge);                          // no copy
 //     right.send<&Block::receive>(edge);
 //
-// A copy of it is one more owner of the same memory, on whatever PE of the process; the last owner
-// frees it. A message to another process sends the numbers from that memory, which it owns until
-// they have left, and receives them into memory of their own: MPI copies them, if it has to, and
-// nothing else does. A reference to a number, or a span of them, is valid while there is an owner.
+// A copy is another owner of the same memory, on any PE of the process; the last owner frees it. A
+// message to another process sends the numbers from this memory, which it owns until they are sent,
+// and receives them into new memory; only MPI may copy them. A reference to a number or a span is
+// valid while there is an owner.
 #pragma once
 
 #include "runtime/core/serialize.hpp"
@@ -43,7 +43,7 @@ class SharedArray {
   [[nodiscard]] const T& operator[](std::size_t i) const { return (*values_)[i]; }
   [[nodiscard]] std::span<const T> view() const { return {data(), size()}; }
 
-  /// Equal numbers, in the same memory or not.
+  /// True if the numbers are equal, in the same memory or not.
   friend bool operator==(const SharedArray& a, const SharedArray& b) {
     return a.values_ == b.values_ || std::equal(a.begin(), a.end(), b.begin(), b.end());
   }

@@ -5,9 +5,10 @@
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {
+namespace detail {
 namespace {
 
-/// A coroutine handle on its way through the queue of its own PE; it never leaves it.
+/// A coroutine handle in the queue of its own PE, which it never leaves.
 struct Resumption {
   void* frame = nullptr;
   template <class Ar>
@@ -33,11 +34,6 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
 
 }  // namespace
 
-Task::promise_type::promise_type() {
-  account.pe = &current_pe();
-  account.context = account.pe->context();
-}
-
 void TaskAccount::hold() {
   if (held) return;
   held = true;
@@ -60,8 +56,15 @@ void TaskAccount::unpin(Element& element) {
   --element.n_suspended_;
 }
 
+}  // namespace detail
+
+Task::promise_type::promise_type() {
+  account.pe = &current_pe();
+  account.context = account.pe->context();
+}
+
 void suspend(Task::Handle task, std::function<std::string()> waits_for) {
-  TaskAccount& account = task.promise().account;
+  detail::TaskAccount& account = task.promise().account;
   account.hold();
   account.entry = {account.context.element, account.context.action, account.context.epoch,
                    std::move(waits_for),    task.address(),         &task.promise().detached};
@@ -70,9 +73,9 @@ void suspend(Task::Handle task, std::function<std::string()> waits_for) {
 
 void resume_later(Task::Handle task) {
   Pe& pe = *task.promise().account.pe;
-  using Held = Message<Resumption>;
-  auto* message =
-      pe.stamp(Held::make(pe, PeAction<&run_resumption>::action, Resumption{task.address()}));
+  using Held = detail::Message<detail::Resumption>;
+  auto* message = pe.stamp(Held::make(pe, detail::PeAction<&detail::run_resumption>::action,
+                                      detail::Resumption{task.address()}));
   message->epoch = task.promise().account.context.epoch;
   pe.send_here(message);
 }

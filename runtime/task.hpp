@@ -1,7 +1,7 @@
-// tess::Task: an entry method that may wait. It runs at once, up to the first co_await that is not
-// ready; what it waits for puts it back into the queue of its PE. While it waits its element
-// neither migrates nor ends, and the epoch that called it is not done. Only named member functions
-// (and the function given to run()) are coroutines.
+// tess::Task: the result type of an entry method that may wait. It runs immediately up to the first
+// co_await that is not ready; when the awaited result is there, the coroutine is put back into the
+// queue of its PE. While a coroutine waits, its element neither migrates nor ends, and its epoch is
+// not done. Only named member functions (and the function passed to run()) may be coroutines.
 #pragma once
 
 #include "runtime/scheduler/block.hpp"
@@ -14,11 +14,13 @@
 
 namespace tess {
 
-/// What a coroutine belongs to: the element and epoch that are restored when it goes on.
+namespace detail {
+
+/// The context of a coroutine: the element and epoch that are restored when it continues.
 struct TaskAccount {
   Pe* pe = nullptr;
   Context context;
-  bool held = false;  // it waits: the element and the epoch are held
+  bool held = false;  // the coroutine waits, and holds the element and the epoch
   Suspended entry;
 
   void hold();
@@ -29,14 +31,20 @@ struct TaskAccount {
   static void unpin(Element& element);
 };
 
+}  // namespace detail
+
 class [[nodiscard]] Task {
  public:
   struct promise_type {
-    /// Frames come from the pool of the PE.
-    static void* operator new(std::size_t n_bytes) { return allocate_block(current_pe(), n_bytes); }
-    static void operator delete(void* frame, std::size_t n_bytes) { release_block(frame, n_bytes); }
+    /// Frames are allocated from the pool of the PE.
+    static void* operator new(std::size_t n_bytes) {
+      return detail::allocate_block(current_pe(), n_bytes);
+    }
+    static void operator delete(void* frame, std::size_t n_bytes) {
+      detail::release_block(frame, n_bytes);
+    }
 
-    TaskAccount account;
+    detail::TaskAccount account;
     std::coroutine_handle<promise_type> parent;
     std::exception_ptr error;
 
@@ -61,11 +69,11 @@ class [[nodiscard]] Task {
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
   Task& operator=(Task&&) = delete;
-  /// A task that waits goes on by itself, on its element's account.
-  /// (It does not throw: g++ 12 fails on a coroutine whose result does.)
+  /// A waiting task continues by itself, for its element. (The destructor does not throw: g++ 12
+  /// fails on a coroutine whose result type throws.)
   ~Task();
 
-  // A task may await another: the parent goes on, through the queue, when the child is done.
+  // A task may await another: the parent continues, through the queue, when the child is done.
   [[nodiscard]] bool await_ready() const noexcept { return handle_.done(); }
   void await_suspend(Handle parent);
   void await_resume() {
@@ -78,11 +86,11 @@ class [[nodiscard]] Task {
   Handle handle_;
 };
 
-/// Suspends a coroutine and says what for; whoever has it resumes it through resume_later(). For
-/// awaitables.
+/// For awaitables: suspends a coroutine and records what it waits for. The awaitable resumes it
+/// through resume_later().
 void suspend(Task::Handle task, std::function<std::string()> waits_for);
 
-/// Puts a suspended coroutine into the queue of its PE; call it on that PE.
+/// Puts a suspended coroutine into the queue of its PE; must be called on that PE.
 void resume_later(Task::Handle task);
 
 }  // namespace tess

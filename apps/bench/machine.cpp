@@ -1,8 +1,8 @@
-// What a bare machine costs, each figure checked and printed with median and spread over
-// repetitions:
-//   bench_machine                          pool, one way between two PEs of a process, small posts
-//   mpirun -n 2 bench_machine              one way between two ranks, beside plain MPI in the same
-//   run
+// The costs of a machine without the runtime; each figure is checked and printed with median and
+// spread over repetitions:
+//
+//     bench_machine               pool, one way between two PEs of a process, small posts
+//     mpirun -n 2 bench_machine   one way between two ranks, and plain MPI in the same run
 #include "runtime/base/pool.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/machine/mpi.hpp"
@@ -16,7 +16,7 @@
 #include <fmt/core.h>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -231,12 +231,13 @@ void bench_threads() {
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail
 
 int main(int argc, char** argv) {
   const bool multiple = argc > 1 && std::strcmp(argv[1], "--multiple") == 0;
   if (tess::under_mpirun())
-    tess::bench_processes(argc, argv, multiple ? MPI_THREAD_MULTIPLE : MPI_THREAD_SERIALIZED);
+    tess::detail::bench_processes(argc, argv,
+                                  multiple ? MPI_THREAD_MULTIPLE : MPI_THREAD_SERIALIZED);
   else
-    tess::bench_threads();
+    tess::detail::bench_threads();
 }

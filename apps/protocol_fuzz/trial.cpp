@@ -8,7 +8,7 @@
 
 namespace tess::fuzz {
 namespace {
-// A run of the scenarios takes some 10⁵ events; one that takes this many goes in circles.
+// A run of a scenario takes about 10⁵ events; a run with this many is a livelock.
 constexpr std::uint64_t most_events = 20'000'000;
 }  // namespace
 
@@ -20,8 +20,8 @@ std::int32_t pes_of_seed(std::uint64_t seed) {
 std::unique_ptr<Machine> make_job_machine(std::int32_t pes_per_process) {
   int argc = 0;
   char** argv = nullptr;
-  return make_mpi_machine(argc, argv,
-                          MpiOptions{.pes_per_process = pes_per_process, .pinning = Pinning::none});
+  return make_mpi_machine(
+      argc, argv, MpiOptions{.pes_per_process = pes_per_process, .pinning = detail::Pinning::none});
 }
 
 Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_processes)
@@ -48,7 +48,7 @@ Ending Trial::run_message(std::function<void()> main) {
     SimulatedOptions options;
     options.n_pes = n_pes_;
     options.seed = mix(seed_ * 16 + n_runs_++) >> 16U;
-    // Against a latency of 1000: a PE is quicker than its messages, or they pile up.
+    // Relative to a latency of 1000: a PE is faster than its messages, or they pile up.
     constexpr std::array<int, 4> costs{100, 100, 300, 1500};
     options.cost = Time(costs[mix(*options.seed ^ 0x636f7374U) % costs.size()]);
     options.most_events = most_events;

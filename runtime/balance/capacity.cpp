@@ -24,7 +24,7 @@ std::vector<double> capacities(const Snapshot& s) {
     if (!s.elements.migratable[i])
       busy[slot(s.elements.pe[i])] += s.elements.load[i] / s.pes.speed[slot(s.elements.pe[i])];
 
-  // Fill as water does: PEs in order of their time, until the level is below the next of them.
+  // Fills PEs in order of their time, until the level is below the next PE's time.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, [&](auto a, auto b) { return busy[a] < busy[b]; });

@@ -1,17 +1,17 @@
-// How much migrating work each PE should get: for strategies that cut space or a graph into parts.
+// How much migrating work each PE should get, for strategies that partition space or a graph.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
 
 namespace tess::balance {
 
-/// Work at speed 1 for each PE, such that all PEs that get any are done at the same time; their
-/// background and pinned elements come first. Sums to the load of the elements that migrate; equal
-/// shares of 1 where these have none.
+/// Work at speed 1 for each PE, such that all PEs that get any finish at the same time, after their
+/// background and pinned elements. The sum is the load of the elements that migrate; if these have
+/// no load, equal shares of 1.
 [[nodiscard]] std::vector<double> capacities(const Snapshot& snapshot);
 
-/// What each element weighs against these capacities: its load; where no element that migrates has
-/// any, n_pes / n_elements.
+/// The weight of each element relative to these capacities: its load, or n_pes / n_elements if no
+/// element that migrates has any.
 [[nodiscard]] std::vector<double> weights(const Snapshot& snapshot);
 
 }  // namespace tess::balance

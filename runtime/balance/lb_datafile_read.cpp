@@ -14,10 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-/// No machine has more PEs: above it a node number is damage, not a demand for memory.
+/// No machine has more PEs: a higher node number means a damaged file, not a demand for memory.
 constexpr std::uint64_t most_pes = 1U << 20U;
 
-/// A value and where it stands; every access says what is wrong there.
+/// A value and its place in the file; every access reports errors with the place.
 class Place {
  public:
   Place(const json& value, std::string where) : value_(value), where_(std::move(where)) {}
@@ -59,7 +59,7 @@ class Place {
     if (result < 0) damaged("is below 0");
     return result;
   }
-  /// A count that other writers give as a floating-point number.
+  /// A count that other programs write as a floating-point number.
   [[nodiscard]] std::uint64_t whole_amount() const {
     if (is_count()) return count();
     if (amount() >= 0x1p63) damaged("is above 2^63");
@@ -76,7 +76,7 @@ class Place {
   std::string where_;
 };
 
-/// By which a file names an entity: an id is unique, a sequence number only with its home.
+/// The name of an entity in a file: an id is unique, a sequence number only together with its home.
 using Name = std::tuple<bool, std::uint64_t, std::uint64_t>;
 
 Name name_of(const Place& entity) {
@@ -121,7 +121,7 @@ class Gathering {
 
   [[nodiscard]] std::size_t n_pes() const { return std::max(s_.pes.size(), highest_ + 1); }
 
-  /// With `n_pes` PEs where no file told of them.
+  /// With `n_pes` PEs if no file describes them.
   [[nodiscard]] Snapshot finish(std::size_t n_pes) {
     auto& e = s_.elements;
     if (n_positions_ != e.size()) e.position.clear();
@@ -143,7 +143,7 @@ class Gathering {
     const double time = task["time"].amount();
     if (entity["type"].word() != "object") return;
     const bool is_new = positions_.try_emplace(name_of(entity), s_.elements.size()).second;
-    if (!is_new && time == 0) return;  // vt's mark of a rank without work, the same in all files
+    if (!is_new && time == 0) return;  // vt marks a rank without work so, equally in all files
     if (!is_new) entity.damaged("is there twice");
     auto& e = s_.elements;
     highest_ = std::max(highest_, static_cast<std::size_t>(node));

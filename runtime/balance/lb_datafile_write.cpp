@@ -8,7 +8,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Sequence numbers and homes of elements: by first appearance, the same in all phases and files.
+/// Sequence numbers and homes of elements: assigned at first appearance, equal in all phases and
+/// files.
 class Identities {
  public:
   explicit Identities(const std::vector<Phase>& phases) {

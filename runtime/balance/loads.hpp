@@ -1,7 +1,7 @@
-// Time and memory of every PE while a strategy decides. Memory starts as it is now and follows each
-// decided move: what has not been decided yet still occupies its present PE, so that an element can
-// always stay, and the moves, made in the order decided, never break a limit that held before.
-// Work starts empty, or as it is now (present()).
+// Time and memory of every PE while a strategy decides. Memory starts with the present placement
+// and follows each decided move: an undecided element still occupies its present PE. So an element
+// can always stay, and the moves, made in the order of decision, never break a limit that held
+// before. Work starts empty, or with the present placement (present()).
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -10,7 +10,7 @@ namespace tess::balance {
 
 class Loads {
  public:
-  /// Memory of the present placement; work is background alone.
+  /// Memory of the present placement; work is only the background.
   explicit Loads(const Snapshot& s)
       : snapshot_(s), work_(s.pes.size(), 0.0), memory_bytes_(s.pes.size(), 0) {
     for (std::size_t i = 0; i < s.elements.size(); ++i)
@@ -28,19 +28,19 @@ class Loads {
     memory_bytes_[from] -= snapshot_.elements.memory_bytes[element];
     memory_bytes_[to] += snapshot_.elements.memory_bytes[element];
   }
-  /// Work and memory.
+  /// Moves work and memory.
   void move(std::size_t element, std::size_t from, std::size_t to) {
     work_[from] -= snapshot_.elements.load[element];
     put(element, to);
     move_memory(element, from, to);
   }
-  /// Whether an element that occupies `from` may go to `to`; it may always stay.
+  /// True if an element that occupies `from` may go to `to`; it may always stay.
   [[nodiscard]] bool fits(std::size_t element, std::size_t from, std::size_t to) const {
     const auto limit = snapshot_.pes.memory_limit_bytes[to];
     return from == to || limit == 0 ||
            memory_bytes_[to] + snapshot_.elements.memory_bytes[element] <= limit;
   }
-  /// Seconds that a PE needs, with `more` seconds of work besides.
+  /// The seconds that a PE needs, with `more` seconds of work added.
   [[nodiscard]] double time(std::size_t pe, double more = 0) const {
     return snapshot_.pes.background[pe] + (work_[pe] + more) / snapshot_.pes.speed[pe];
   }

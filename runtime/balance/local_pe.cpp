@@ -31,7 +31,7 @@ std::optional<std::vector<Item>> LocalPe::change_for(const Item& item, double wa
   std::int64_t room_here = now_.room_bytes;
   std::int64_t room_there = giver.room_bytes + item.memory_bytes;
   while (net > wanted) {
-    // The next that is neither given yet nor more than what is too much.
+    // The next element that is neither given yet nor larger than the excess.
     const double most = net - wanted;
     auto i = items_.upper_bound({most, std::numeric_limits<std::size_t>::max(), 0});
     if (!change.empty() && most >= change.back().load) i = items_.find(change.back());

@@ -1,6 +1,6 @@
-// What one PE knows in a distributed strategy: its own elements, and of another PE no more than a
-// summary that the other has sent. The step functions of diffusion and gossip work on these alone,
-// so that a group can run them with messages; the drivers here run them over a snapshot.
+// The data of one PE in a distributed strategy: its own elements, and of another PE only the
+// summary that it has sent. The step functions of diffusion and gossip use only this, so that a
+// group can run them with messages; the drivers here run them over a snapshot.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -10,21 +10,21 @@
 
 namespace tess::balance {
 
-/// One PE as it tells others: four numbers.
+/// The summary of a PE for others: four numbers.
 struct PeSummary {
   double work = 0;  ///< seconds at speed 1
   double background = 0;
   double speed = 1;
-  std::int64_t room_bytes = 0;  ///< negative where it is above its limit already
+  std::int64_t room_bytes = 0;  ///< negative if the PE is above its limit
 
-  /// Seconds that it needs, with `more` work besides.
+  /// The seconds that it needs, with `more` work added.
   [[nodiscard]] double time(double more = 0) const { return background + (work + more) / speed; }
 };
 
-/// An element on offer.
+/// An element that is offered.
 struct Item {
   double load = 0;
-  std::size_t element = 0;  ///< who: opaque to the other PE
+  std::size_t element = 0;  ///< the element's number, opaque to the other PE
   std::int64_t memory_bytes = 0;
   friend auto operator<=>(const Item&, const Item&) = default;
 };
@@ -36,18 +36,19 @@ class LocalPe {
   [[nodiscard]] const PeSummary& summary() const { return now_; }
   [[nodiscard]] const std::set<Item>& items() const { return items_; }
 
-  /// An element that is here: it may go on where `migratable`, and it has any load.
+  /// Adds an element of this PE with any load; it may be offered if `migratable`.
   void hold(const Item& item, bool migratable);
   void give(const Item& item);
   void receive(const Item& item) { hold(item, true); }
 
-  /// What to offer to a PE that should get `wanted` work: the largest element within it that finds
-  /// room there, else the smallest above, for which the other gives change.
+  /// The element to offer to a PE that should get `wanted` work: the largest one within it for
+  /// which there is room there; otherwise the smallest larger one, for which the other PE gives
+  /// elements back.
   [[nodiscard]] std::optional<Item> offer(const PeSummary& other, double wanted) const;
 
-  /// The answer to an offer: elements to give in return, largest first, such that not much more
-  /// than `wanted` work comes in with it. Nothing, a refusal, where memory has no room for the
-  /// trade or the later of the two PEs would not be done sooner.
+  /// The answer to an offer: elements to give in return, largest first, such that the PE receives
+  /// not much more than `wanted` work. No value means a refusal: there is no memory for the trade,
+  /// or the later of the two PEs would not finish earlier.
   [[nodiscard]] std::optional<std::vector<Item>> change_for(const Item& item, double wanted,
                                                             const PeSummary& giver) const;
 
@@ -56,13 +57,13 @@ class LocalPe {
   std::set<Item> items_;
 };
 
-/// Carries out what was offered and answered.
+/// Carries out an offer and its answer.
 void trade(LocalPe& giver, LocalPe& taker, const Item& item, const std::vector<Item>& change);
 
-/// Every PE of a snapshot as it sees itself.
+/// The local view of every PE of a snapshot.
 [[nodiscard]] std::vector<LocalPe> local_pes(const Snapshot& snapshot);
 
-/// Where the elements of a snapshot are when the PEs hold these.
+/// The assignment of a snapshot's elements that these PEs hold.
 [[nodiscard]] Assignment collect(const Snapshot& snapshot, const std::vector<LocalPe>& pes);
 
 }  // namespace tess::balance

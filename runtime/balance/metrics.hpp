@@ -1,4 +1,4 @@
-// What an assignment is worth: imbalance, moves, traffic between PEs.
+// The quality of an assignment: imbalance, moves, traffic between PEs.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -6,14 +6,14 @@
 namespace tess::balance {
 
 struct Metrics {
-  double max_over_average = 1;  ///< slowest PE over the ideal time; 1 where there is no load
+  double max_over_average = 1;  ///< time of the slowest PE over the ideal time; 1 without load
   std::size_t n_moves = 0;
   std::uint64_t moved_bytes = 0;
-  std::uint64_t external_bytes = 0;  ///< over edges whose ends are on different PEs
+  std::uint64_t external_bytes = 0;  ///< bytes of edges between different PEs
 };
 
-/// Seconds that every PE would need if work were a fluid: (work + background × speed) / speed,
-/// summed first.
+/// The seconds that every PE would need if work could be divided freely: (work + background ×
+/// speed) / speed, summed first.
 [[nodiscard]] double average_time(const Snapshot& snapshot);
 [[nodiscard]] Metrics measure(const Snapshot& snapshot, const Assignment& assignment);
 

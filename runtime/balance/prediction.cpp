@@ -27,7 +27,7 @@ void Predictor::record(const Snapshot& measured) {
     if (history.size() == window_) history.erase(history.begin());
     history.push_back({n_phases_, measured.elements.load[i]});
   }
-  // Looking through all costs as much as recording: now and then is often enough.
+  // Searching all histories costs as much as recording, so it is done only now and then.
   if (n_phases_ % (forget_after_ / 4 + 1) != 0) return;
   boost::unordered::erase_if(history_, [&](const auto& entry) {
     return entry.second.back().phase + forget_after_ < n_phases_;

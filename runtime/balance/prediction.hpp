@@ -1,5 +1,5 @@
-// The load of the next phase from those of the past ones: by element key, so that an element that
-// migrates, or goes and comes back, is met with its own history.
+// Predicts the loads of the next phase from those of past ones. Histories are kept by element key,
+// so an element that migrates, or leaves and returns, keeps its history.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -12,28 +12,29 @@
 namespace tess::balance {
 
 enum class Prediction {
-  last,            ///< as in the last phase in which it was there
-  moving_average,  ///< mean of the phases within the window in which it was there
-  linear_trend,    ///< least squares through these, continued to the next phase; never below 0
+  last,            ///< the load of the last phase with the element
+  moving_average,  ///< the mean over the phases of the window with the element
+  linear_trend,    ///< least squares through these, extended to the next phase; never below 0
 };
 
-/// By name: last, moving_average, linear_trend. Throws Error that lists the names for any other.
+/// The prediction of this name: last, moving_average, linear_trend. Throws Error that lists the
+/// names for any other.
 [[nodiscard]] Prediction parse_prediction(std::string_view name);
 
 class Predictor {
  public:
-  /// `window`: how many loads of an element count, at least 1. `forget_after`: phases without an
-  /// element after which its history goes, so that memory is bounded by what is alive.
+  /// `window`: the number of loads of an element that count, at least 1. `forget_after`: the number
+  /// of phases without an element after which its history is removed, so that memory stays bounded.
   explicit Predictor(Prediction kind, std::size_t window = 5, std::size_t forget_after = 100);
 
-  /// The measured loads of one more phase; those that are not known are left out.
+  /// Records the measured loads of one more phase; unknown loads are left out.
   void record(const Snapshot& measured);
 
-  /// The load of the next phase; nothing is known of an element that no phase has had: 0.
+  /// The load of the next phase; 0 for an element without history.
   [[nodiscard]] double load(const ElementKey& key) const;
 
-  /// The snapshot with predicted loads in place of measured ones; an element that no phase has had
-  /// keeps what stands there. What has a history is of known load.
+  /// The snapshot with predicted loads in place of measured ones. An element without history keeps
+  /// its entry. An element with history has a known load.
   [[nodiscard]] Snapshot predict(Snapshot snapshot) const;
 
   [[nodiscard]] std::size_t n_known() const { return history_.size(); }

@@ -7,9 +7,9 @@
 namespace tess::balance {
 namespace {
 
-/// The same number for PEs that can change parts.
+/// Equal numbers for PEs that can exchange their parts.
 std::vector<std::size_t> kinds(const Snapshot& s) {
-  std::vector<std::size_t> alone(s.pes.size(), 0);  // above 0: like no other
+  std::vector<std::size_t> alone(s.pes.size(), 0);  // above 0: different from all others
   for (std::size_t i = 0; i < s.elements.size(); ++i)
     if (!s.elements.migratable[i]) alone[slot(s.elements.pe[i])] = 1 + slot(s.elements.pe[i]);
   std::map<std::tuple<double, double, std::uint64_t, std::size_t>, std::size_t> known;
@@ -29,7 +29,7 @@ struct Overlap {
   std::size_t pe = 0;
 };
 
-/// What each part has on each PE of its kind already, most first.
+/// The overlap of each part with each PE of its kind, largest first.
 std::vector<Overlap> overlaps(const Snapshot& s, const Assignment& wanted,
                               const std::vector<std::size_t>& kind) {
   std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> bytes;
@@ -38,7 +38,8 @@ std::vector<Overlap> overlaps(const Snapshot& s, const Assignment& wanted,
     if (kind[part] == kind[pe]) bytes[{part, pe}] += s.elements.size_bytes[i] + 1;
   }
   std::vector<Overlap> result;
-  for (const auto& [who, much] : bytes) result.push_back({much, who.first, who.second});
+  for (const auto& [part_on_pe, n_bytes] : bytes)
+    result.push_back({n_bytes, part_on_pe.first, part_on_pe.second});
   std::ranges::stable_sort(result, std::greater{}, &Overlap::bytes);
   return result;
 }

@@ -1,5 +1,5 @@
-// Which PE gets which part: a partitioner numbers its parts as it likes, and PEs that are alike can
-// change parts for nothing. Without it a partition that hardly differs from the present placement
+// Assigns parts to PEs. A partitioner numbers its parts arbitrarily, and equal PEs can exchange
+// parts for free. Without relabelling, a partition that hardly differs from the present placement
 // would move nearly every element.
 #pragma once
 
@@ -7,8 +7,9 @@
 
 namespace tess::balance {
 
-/// `wanted` with its parts renumbered among PEs of equal speed, background and memory limit that
-/// hold no pinned elements, largest packed overlap with the present placement first.
+/// `wanted` with its parts renumbered among PEs of equal speed, background and memory limit without
+/// pinned elements, such that the packed overlap with the present placement is large (greedily,
+/// largest overlap first).
 [[nodiscard]] Assignment relabel(const Snapshot& snapshot, Assignment wanted);
 
 }  // namespace tess::balance

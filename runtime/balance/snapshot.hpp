@@ -1,6 +1,6 @@
-// What was measured before a balance round: loads of elements, speeds and limits of PEs, messages
-// between elements. The balancer fills it, a strategy reads it. Structure of arrays; an element is
-// its position in them.
+// The measurements before a balance round: loads of elements, speeds and limits of PEs, messages
+// between elements. The balancer fills it, and a strategy reads it. It is a structure of arrays; an
+// element is identified by its position.
 #pragma once
 
 #include "runtime/core/element_key.hpp"
@@ -12,7 +12,7 @@
 
 namespace tess::balance {
 
-/// Messages from one element to another since the last round; ends are positions in Elements.
+/// Messages from one element to another since the last round; the ends are positions in Elements.
 struct Edge {
   std::size_t from = 0;
   std::size_t to = 0;
@@ -21,16 +21,16 @@ struct Edge {
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// All arrays have one entry an element; `position` may be empty instead, if no element gave one,
-/// and `measured`, where all are.
+/// All arrays have one entry per element. `position` may be empty if no element has one, and
+/// `measured` may be empty if all loads are measured.
 struct Elements {
   std::vector<ElementKey> key;
   std::vector<PeId> pe;
-  std::vector<double> load;                     ///< seconds on a PE of speed 1
-  std::vector<std::uint8_t> measured;           ///< 0: `load` is not known, its entry says nothing
-  std::vector<std::uint8_t> migratable;         ///< 0 stays where it is
-  std::vector<std::uint64_t> size_bytes;        ///< packed: what a migration sends
-  std::vector<std::uint64_t> memory_bytes;      ///< resident: what counts against a memory limit
+  std::vector<double> load;                 ///< seconds on a PE of speed 1
+  std::vector<std::uint8_t> measured;       ///< 0: the load is unknown and its entry meaningless
+  std::vector<std::uint8_t> migratable;     ///< 0 stays where it is
+  std::vector<std::uint64_t> size_bytes;    ///< packed size: what a migration sends
+  std::vector<std::uint64_t> memory_bytes;  ///< resident size: what counts against a memory limit
   std::vector<std::array<double, 3>> position;  ///< for rcb and hilbert
   [[nodiscard]] std::size_t size() const { return key.size(); }
   [[nodiscard]] bool knows_load(std::size_t i) const {
@@ -38,11 +38,11 @@ struct Elements {
   }
 };
 
-/// All arrays have one entry a PE.
+/// All arrays have one entry per PE.
 struct Pes {
   std::vector<double> background;                 ///< seconds of wall time not spent in elements
   std::vector<double> speed;                      ///< relative, above 0
-  std::vector<std::uint64_t> memory_limit_bytes;  ///< of elements together; 0: none
+  std::vector<std::uint64_t> memory_limit_bytes;  ///< limit of all elements together; 0: none
   [[nodiscard]] std::size_t size() const { return speed.size(); }
 };
 
@@ -55,7 +55,7 @@ struct Snapshot {
 /// The PE of every element after a round.
 using Assignment = std::vector<PeId>;
 
-/// A PE as a position in Pes, and back.
+/// The position of a PE in Pes, and back.
 [[nodiscard]] constexpr std::size_t slot(PeId pe) {
   return static_cast<std::size_t>(pe.value);
 }
@@ -63,7 +63,7 @@ using Assignment = std::vector<PeId>;
   return PeId{static_cast<std::int32_t>(slot)};
 }
 
-/// Throws Error where array lengths differ, a PE is out of range, or a load or speed cannot be.
+/// Throws Error if array lengths differ, a PE is out of range, or a load or speed is invalid.
 void validate(const Snapshot& snapshot);
 
 }  // namespace tess::balance

@@ -1,7 +1,7 @@
-// Which PE is done soonest with one more element: PEs in order of their time, one order for each
-// distinct speed, since among equal speeds the least loaded PE wins whatever the element weighs.
+// Finds the PE that finishes first with one more element. PEs are ordered by their time, one order
+// per distinct speed, since among PEs of equal speed the least loaded one wins for every element.
 // Ties go to the PE that was given fewer elements (so that elements without load spread as well),
-// then to the lower number. Cost of a query: O(number of speeds), of a change: O(log n_pes).
+// then to the lower number. A query costs O(number of speeds), a change O(log n_pes).
 #pragma once
 
 #include "runtime/balance/loads.hpp"
@@ -28,7 +28,7 @@ class Soonest {
   }
 
   /// The PE that finishes first with the element, which occupies `from`, among those with room.
-  /// `from` itself has room always.
+  /// `from` always has room.
   [[nodiscard]] std::size_t best(std::size_t element, std::size_t from) const {
     const double load = snapshot_.elements.load[element];
     Key best{0, 0, from};
@@ -46,7 +46,7 @@ class Soonest {
     return std::get<2>(best);
   }
 
-  /// To be called after the loads of a PE have changed.
+  /// Must be called after the loads of a PE have changed.
   void update(std::size_t pe) {
     auto& one_speed = classes_[class_[pe]];
     auto node = one_speed.extract(key_[pe]);

@@ -1,8 +1,7 @@
-// Strategies by name. A strategy is a pure function from a snapshot to an assignment: the same
-// snapshot and seed give the same answer. Elements that do not migrate stay; no move takes a PE
-// above its memory limit; an element that finds no room stays where it is, and so does one whose
-// load is not known: it counts as the mean of the others. One file a strategy stands in
-// strategies/.
+// Strategies by name. A strategy is a pure function from a snapshot to an assignment: equal
+// snapshots and seeds give equal results. Elements that do not migrate stay; no move takes a PE
+// above its memory limit; an element for which there is no room stays. An element of unknown load
+// also stays, and counts as the mean of the others. Each strategy has a file in strategies/.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -14,17 +13,17 @@
 
 namespace tess::balance {
 
-/// A strategy, ours or the user's.
+/// A strategy, built in or defined by the user.
 using Strategy = std::function<Assignment(const Snapshot&)>;
 
-/// What make_strategy takes, in the order of tables.
+/// The names that make_strategy accepts, in the order of tables.
 [[nodiscard]] const std::vector<std::string>& strategy_names();
 
-/// The strategy of that name. Throws Error that lists the names for any other.
+/// The strategy of this name. Throws Error that lists the names for any other.
 [[nodiscard]] Strategy make_strategy(std::string_view name, std::uint64_t seed);
 
-/// The user's function made safe: what it wants is honoured where elements may move and find room.
-/// The result throws Error where the function does not give one PE of the snapshot an element.
+/// Wraps the user's function: its assignment is followed where elements may move and there is room.
+/// The result throws Error unless the function gives one PE of the snapshot per element.
 [[nodiscard]] Strategy make_strategy(Strategy users);
 
 }  // namespace tess::balance

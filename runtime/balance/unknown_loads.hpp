@@ -1,19 +1,19 @@
-// Elements whose load is not known: they ran before they were measured, or have not run yet. They
-// are taken to weigh what the others weigh on average, and stay where they are until a whole phase
-// of theirs was seen: no strategy takes them for idle.
+// Elements with unknown loads: they ran before they were measured, or have not run yet. Each counts
+// as the mean of the others and stays until a whole phase of it has been measured, so that no
+// strategy treats it as idle.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
 
 namespace tess::balance {
 
-/// How many loads are known.
+/// The number of known loads.
 [[nodiscard]] std::size_t n_known_loads(const Snapshot& snapshot);
 
-/// Puts the mean of the known loads in place of those that are not; 0 where none is known.
+/// Replaces unknown loads by the mean of the known ones; by 0 if none is known.
 void assume_mean_loads(Snapshot& snapshot);
 
-/// What a strategy works on: mean loads where they are not known, and these elements pinned.
+/// The input of a strategy: mean loads for elements of unknown load, which are pinned.
 [[nodiscard]] Snapshot with_unknown_pinned(Snapshot snapshot);
 
 }  // namespace tess::balance

@@ -1,19 +1,19 @@
-// What a thread that finds nothing to do does next: spin, then yield, then sleep. Each stage lasts
-// a given time since the last work; where threads outnumber cores the spinning stage is left out,
-// since a spinning thread keeps from its core the one it waits for.
+// How a thread without work waits: it spins, then yields, then sleeps. Each stage lasts a given
+// time since the last work. The spinning stage is left out if there are more threads than cores,
+// since a spinning thread would occupy the core that the thread it waits for needs.
 //
-// Where another program runs on its core, a thread that spins or yields loses the core for
-// milliseconds each time, whereas one that sleeps gets it back as soon as it is woken. A gap in the
-// waiting thread's time shows such a program: for a while the thread then sleeps at once.
+// If another program runs on the same core, a thread that spins or yields loses the core for
+// milliseconds each time, whereas a sleeping thread gets it back as soon as it is woken. A gap in
+// the waiting thread's time reveals such a program; for a while the thread then sleeps at once.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <sched.h>
 
-namespace tess {
+namespace tess::detail {
 
-/// How long each stage lasts and how long a sleep is.
+/// The duration of each stage and of one sleep.
 struct Patience {
   std::chrono::nanoseconds spin{0};
   std::chrono::nanoseconds yield{0};
@@ -27,12 +27,12 @@ inline void pause_cpu() noexcept {
 #endif
 }
 
-/// One thread's; call pause() each time nothing was found, reset() each time something was.
+/// The waiting state of one thread: call pause() when no work was found and reset() when some was.
 class Backoff {
  public:
   explicit Backoff(Patience patience) noexcept : patience_(patience) {}
 
-  /// Something was found.
+  /// Work was found.
   void reset() noexcept {
     if (n_pauses_ >= 16 || (n_pauses_ > 0 && stage_ == Stage::yield)) look(Clock::now());
     n_pauses_ = 0;
@@ -70,14 +70,15 @@ class Backoff {
  private:
   using Clock = std::chrono::steady_clock;
   enum class Stage { spin, yield, sleep };
-  /// Without the core for so long: other PEs of ours yield sooner, a scheduler's slice is longer.
+  /// A gap of this length means that the core is shared: other PEs of ours yield sooner, and a time
+  /// slice of the system scheduler is longer.
   static constexpr std::chrono::microseconds gap{400};
   static constexpr std::chrono::milliseconds first_crowded{5}, longest_crowded{320};
 
-  /// True if the core is shared with another program, as the time since the last look shows.
+  /// True if the time since the last call shows that the core is shared with another program.
   bool look(Clock::time_point now) noexcept {
     if (stage_ != Stage::sleep && now - last_look_ > gap) {
-      // The longer, the sooner it was so again.
+      // The period grows if the last one ended recently.
       const bool again = now - crowded_until_ < 4 * crowded_for_;
       crowded_for_ = again ? std::min(2 * crowded_for_, longest_crowded) : first_crowded;
       crowded_until_ = now + crowded_for_;
@@ -94,4 +95,4 @@ class Backoff {
   std::chrono::milliseconds crowded_for_ = first_crowded;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,6 +1,6 @@
-// Several messages to one PE, handed over at once: the receiver gets an array of pointers, so that
-// it can fetch the next messages into its cache while it runs the first. A bundle costs its sender
-// one atomic operation, however many messages it holds.
+// Several messages to one PE, handed over at once. The receiver gets an array of pointers, so it
+// can prefetch the next messages while it runs the first. A bundle costs its sender one atomic
+// operation, independent of the number of messages.
 #pragma once
 
 #include "runtime/base/link.hpp"
@@ -8,13 +8,13 @@
 #include <array>
 #include <cstdint>
 
-namespace tess {
+namespace tess::detail {
 
-/// Four cache lines, with the header of its pool.
+/// Occupies four cache lines, including the header of its pool block.
 struct Bundle : Link {
   static constexpr std::uint32_t capacity = 28;
   std::uint32_t n = 0;
   std::array<Link*, capacity> messages;  // the first n
 };
 
-}  // namespace tess
+}  // namespace tess::detail

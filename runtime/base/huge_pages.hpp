@@ -1,5 +1,5 @@
-// Memory for large tables that are read at random: from a few MiB on it asks the system for huge
-// pages, so that a look-up does not also miss the translation of its address.
+// An allocator for large tables with random access. For sizes of a few MiB and above it requests
+// huge pages from the system, so that a lookup does not also miss the address translation cache.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace tess {
+namespace tess::detail {
 
 template <class T>
 struct HugePageAllocator {
@@ -17,7 +17,7 @@ struct HugePageAllocator {
   static constexpr std::size_t page_bytes = std::size_t{2} << 20U;
 
   HugePageAllocator() = default;
-  // Containers convert allocators without a word.
+  // Containers convert allocators implicitly.
   template <class Other>
   // NOLINTNEXTLINE(google-explicit-constructor)
   HugePageAllocator(const HugePageAllocator<Other>& /*other*/) {}
@@ -27,7 +27,8 @@ struct HugePageAllocator {
     if (n_bytes < 2 * page_bytes) return static_cast<T*>(::operator new(n_bytes));
     void* const memory = ::operator new(n_bytes, std::align_val_t{page_bytes});
 #if defined(__linux__)
-    (void)madvise(memory, n_bytes, MADV_HUGEPAGE);  // a wish; refused, the memory serves as well
+    (void)madvise(memory, n_bytes,
+                  MADV_HUGEPAGE);  // only advice: the memory is usable if it is refused
 #endif
     return static_cast<T*>(memory);
   }
@@ -41,4 +42,4 @@ struct HugePageAllocator {
   friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// A set of numbers that come nearly in a row, kept as disjoint intervals: its size is that of the
-// gaps, not of the members. What a PE remembers of collections that have ended.
+// A set of numbers that are nearly consecutive, stored as disjoint intervals: its size grows with
+// the number of gaps, not of members. A PE records ended collections in it.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 #include <iterator>
 #include <map>
 
-namespace tess {
+namespace tess::detail {
 
 class IntervalSet {
  public:
-  /// Inserting a member again does nothing. Any number but the greatest.
+  /// Inserts any number except the greatest. Inserting a member again has no effect.
   void insert(std::uint64_t number) {
     const auto after = ends_.upper_bound(number);  // the first interval that begins beyond
     const auto before = after == ends_.begin() ? ends_.end() : std::prev(after);
@@ -37,4 +37,4 @@ class IntervalSet {
   std::map<std::uint64_t, std::uint64_t> ends_;  // the first member -> one past the last
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-namespace tess {
+namespace tess::detail {
 
 std::ifstream open_file(const std::string& path, const char* what) {
   std::error_code unknown;
@@ -15,4 +15,4 @@ std::ifstream open_file(const std::string& path, const char* what) {
   return file;
 }
 
-}  // namespace tess
+}  // namespace tess::detail

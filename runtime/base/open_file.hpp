@@ -1,13 +1,14 @@
-// Files that are read from their begin to their end.
+// Opens files that are read from beginning to end.
 #pragma once
 
 #include <fstream>
 #include <string>
 
-namespace tess {
+namespace tess::detail {
 
-/// A regular file for reading, as bytes. Throws Error(bad_file) for what cannot be opened, and for
-/// pipes and devices, which may never end. what: "a field file", for the remedy.
+/// Opens a regular file for reading in binary mode. Throws Error(bad_file) if it cannot be opened,
+/// and for pipes and devices, which may never end. `what` names the kind of file in the remedy,
+/// such as "a field file".
 [[nodiscard]] std::ifstream open_file(const std::string& path, const char* what);
 
-}  // namespace tess
+}  // namespace tess::detail

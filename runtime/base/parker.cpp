@@ -5,12 +5,12 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(std::uint32_t));
 
-/// A futex and not atomic::wait: that one knows no time limit.
+/// A futex, since atomic::wait has no time limit.
 void futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value, timespec* limit) {
   syscall(SYS_futex, &word, operation, value, limit, nullptr, 0);
 }
@@ -31,4 +31,4 @@ void Parker::rouse() noexcept {
   futex(state_, FUTEX_WAKE_PRIVATE, 1, nullptr);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,18 +1,18 @@
-// How one thread sleeps until another has work for it. The sleeper announces that it is about to
-// sleep and then looks at its queues once more; a producer pushes and then looks whether the
-// sleeper announced. All four are seq_cst, so one of the two sees the other, and no wake-up is
-// lost:
+// Lets one thread sleep until another has work for it. The sleeper announces that it is about to
+// sleep and then checks its queues once more; a producer pushes and then checks for the
+// announcement. All four operations are seq_cst, so at least one thread sees the other, and no
+// wake-up is lost:
 //
-//     sleeper: state = asleep;  look at queue;  sleep       producer: push;  look at state;  wake
+//     sleeper: state = asleep;  check queue;  sleep       producer: push;  check state;  wake
 //
-// While the sleeper is awake a wake() is one load.
+// While the sleeper is awake, wake() is one load.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 
-namespace tess {
+namespace tess::detail {
 
 /// One thread parks; any thread wakes it.
 class Parker {
@@ -22,16 +22,16 @@ class Parker {
   Parker& operator=(const Parker&) = delete;
   ~Parker() = default;
 
-  /// Sleeps until wake(), or until the time is over; not at all if `ready()` holds after the
-  /// announcement. May also return for no reason. `forever` waits without limit.
+  /// Sleeps until wake() or until the time limit; does not sleep if `ready()` holds after the
+  /// announcement. It may also return without a reason. `forever` means no limit.
   template <class Ready>
   void park(std::chrono::nanoseconds limit, Ready ready) {
     state_.store(asleep, std::memory_order_seq_cst);
     if (!ready()) sleep(limit);
-    state_.store(awake, std::memory_order_relaxed);  // a wake() that comes too late does no harm
+    state_.store(awake, std::memory_order_relaxed);  // a late wake() is harmless
   }
 
-  /// Ends the park() of the other thread, if it is in one. Make the work visible first (seq_cst).
+  /// Ends the other thread's park(), if it is parked. Make the work visible first (seq_cst).
   void wake() noexcept {
     if (state_.load(std::memory_order_seq_cst) == awake) return;
     if (state_.exchange(awake, std::memory_order_seq_cst) == asleep) rouse();
@@ -49,4 +49,4 @@ class Parker {
   std::atomic<std::uint32_t> state_{awake};
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-namespace tess {
+namespace tess::detail {
 
 void* Pool::allocate_unpooled(std::size_t bytes) {
-  // At least a Link: release() writes one before it knows where the block goes.
+  // At least the size of a Link: release() writes one before it knows the block's destination.
   void* const memory = ::operator new(sizeof(Header) + std::max(bytes, sizeof(Link)));
   return ::new (memory) Header{nullptr, 0} + 1;
 }
@@ -37,7 +37,7 @@ void Pool::carve(std::size_t size_class) {
   slabs_.emplace_back(
       static_cast<std::byte*>(::operator new(n* block_bytes, std::align_val_t{granule})));
   held_bytes_ += n * block_bytes;
-  for (std::size_t i = n; i-- > 0;) {  // backwards, so that the list runs forwards in memory
+  for (std::size_t i = n; i-- > 0;) {  // backwards, so that the list is ascending in memory
     auto* const header = ::new (slabs_.back().get() + i * block_bytes) Header{this, size_class};
     free_[size_class] = ::new (header + 1) Link{free_[size_class]};
   }
@@ -71,4 +71,4 @@ void Pool::send(Batch& batch) noexcept {
   batch = {};
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,13 +1,13 @@
-// Blocks of memory for messages: one pool a PE, seventeen size classes with a free list each. Its
-// PE allocates and frees without an atomic. A block that another PE frees goes back to the pool it
-// came from, in batches, over a stack that the owner empties when a list of its own runs out; so a
-// flow in one direction reuses its blocks, and memory is bounded by the most that was in use at
-// once.
+// Blocks of memory for messages: one pool per PE, seventeen size classes with a free list each. The
+// pool's PE allocates and frees without atomics. A block that another PE frees is returned to its
+// pool in batches over a stack, which the owner empties when one of its lists is empty. So a flow
+// in one direction reuses its blocks, and memory is bounded by the largest amount that was in use
+// at once.
 //
-//     block:  | owner 8 | class 8 |  what the caller gets, 16-byte aligned …  |   64, 128 … bytes
+//     block:  | owner 8 | class 8 |  memory of the caller, 16-byte aligned …  |   64, 128 … bytes
 //
-// Large blocks, and blocks of threads without a pool, come from operator new. So do all of them
-// under AddressSanitizer, which then sees each use after free. Blocks must be freed before the
+// Large blocks, and blocks of threads without a pool, come from operator new. So do all blocks
+// under AddressSanitizer, which then detects each use after free. Blocks must be freed before the
 // pools of their process are destroyed.
 #pragma once
 
@@ -20,7 +20,7 @@
 #include <new>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Pool {
  public:
@@ -37,11 +37,11 @@ class Pool {
   Pool& operator=(const Pool&) = delete;
   ~Pool() = default;
 
-  /// Uninitialised memory, aligned to 16 bytes. The thread of this pool's PE alone.
+  /// Uninitialised memory, aligned to 16 bytes. Only the thread of this pool's PE may call it.
   [[nodiscard]] void* allocate(std::size_t bytes) {
     const std::size_t size_class = (bytes + sizeof(Header) - 1) / granule;
     if (!reuses_blocks || size_class >= n_classes) return allocate_unpooled(bytes);
-    // The last block that came from another PE is in this core's cache: an answer goes out in it.
+    // The last block that came from another PE is in this core's cache: an answer is written to it.
     if (Link* const hot = borrowed_[size_class]; hot != nullptr) {
       borrowed_[size_class] = nullptr;
       return hot;
@@ -75,7 +75,7 @@ class Pool {
       header->owner->returned_.push(link);
   }
 
-  /// Sends the unfinished batches home; when the PE idles.
+  /// Returns the unfinished batches to their owners; called when the PE idles.
   void flush() noexcept;
 
   /// Bytes this pool holds, used or free.
@@ -88,7 +88,7 @@ class Pool {
   };
   static_assert(sizeof(Header) == 16);
 
-  /// Blocks on their way to one owner.
+  /// Blocks to be returned to one owner.
   struct Batch {
     Pool* owner = nullptr;
     Link* first = nullptr;
@@ -116,12 +116,12 @@ class Pool {
   static void send(Batch& batch) noexcept;
 
   std::array<Link*, n_classes> free_{};
-  std::array<Link*, n_classes> borrowed_{};        // of another pool, at most one a class
-  std::array<std::uint8_t, n_classes> n_slabs_{};  // a class's doublings so far
+  std::array<Link*, n_classes> borrowed_{};        // of another pool, at most one per class
+  std::array<std::uint8_t, n_classes> n_slabs_{};  // slabs per class; each doubles the last
   std::array<Batch, n_batches> batches_{};
   std::vector<std::unique_ptr<std::byte, Free>> slabs_;
   std::size_t held_bytes_ = 0;
   alignas(64) MpscQueue returned_;  // other threads write it
 };
 
-}  // namespace tess
+}  // namespace tess::detail

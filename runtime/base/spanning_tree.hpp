@@ -1,6 +1,6 @@
-// The tree over all PEs that broadcasts, reductions and waves go along: any PE can be its root,
-// each has up to four children. A pure function of the number of PEs and the root, so that all
-// agree.
+// The tree over all PEs along which broadcasts, reductions and waves run. Any PE can be its root;
+// each PE has up to four children. It is a pure function of the number of PEs and the root, so all
+// PEs agree on it.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -9,15 +9,15 @@
 #include <cstdint>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class SpanningTree {
  public:
-  /// As seen from `self`; PEs are 0 … n_pes - 1.
+  /// The tree as seen from `self`; PEs are 0 … n_pes - 1.
   SpanningTree(PeId self, PeId root, std::int32_t n_pes)
       : root_(root.value), n_pes_(n_pes), rank_((self.value - root.value + n_pes) % n_pes) {}
 
-  /// The next PE towards the root; not asked of the root itself.
+  /// The next PE towards the root; the root has none.
   [[nodiscard]] PeId parent() const { return at((rank_ - 1) / fan_out); }
 
   [[nodiscard]] std::vector<PeId> children() const {
@@ -33,7 +33,7 @@ class SpanningTree {
         std::clamp<std::int64_t>(n_pes_ - first_child(), 0, std::int64_t{fan_out}));
   }
   [[nodiscard]] PeId child(std::int32_t slot) const { return at(first_child() + slot); }
-  /// The slot of a PE that is a child.
+  /// The slot of a child.
   [[nodiscard]] std::int32_t slot_of(PeId child) const {
     return static_cast<std::int32_t>((child.value - root_ + n_pes_) % n_pes_ - first_child());
   }
@@ -49,4 +49,4 @@ class SpanningTree {
   std::int32_t root_, n_pes_, rank_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,11 +1,11 @@
-// The cycle counter: the cheapest clock there is. Constant rate, common to all cores of a machine;
-// a reading costs a few nanoseconds and never enters the kernel.
+// The cycle counter: the cheapest clock. It has a constant rate and is common to all cores of a
+// machine; a reading costs a few nanoseconds and never enters the kernel.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 
-namespace tess {
+namespace tess::detail {
 
 [[nodiscard]] inline std::uint64_t read_ticks() {
 #if defined(__x86_64__)
@@ -15,7 +15,7 @@ namespace tess {
 #endif
 }
 
-/// Seconds a tick; measured once in a process, over a millisecond.
+/// Seconds per tick; measured once per process, over a millisecond.
 [[nodiscard]] inline double seconds_per_tick() {
   static const double rate = [] {
     using Clock = std::chrono::steady_clock;
@@ -29,4 +29,4 @@ namespace tess {
   return rate;
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,12 +1,13 @@
-// A lock that is taken or not, never waited for: whoever fails leaves its work to the holder, or to
-// a later try. It guards what one thread at a time may do and no thread has to: progress of MPI.
+// A lock on which no thread ever waits: a thread that fails to take it leaves its work to the
+// holder or to a later attempt. It guards work that one thread at a time may do and no thread must
+// do, such as progress of MPI.
 #pragma once
 
 #include <atomic>
 
-namespace tess {
+namespace tess::detail {
 
-/// For std::unique_lock with std::try_to_lock, too. Any thread.
+/// May be used through std::unique_lock with std::try_to_lock. Any thread.
 class TryLock {
  public:
   [[nodiscard]] bool try_lock() noexcept {
@@ -19,4 +20,4 @@ class TryLock {
   std::atomic<bool> taken_{false};
 };
 
-}  // namespace tess
+}  // namespace tess::detail

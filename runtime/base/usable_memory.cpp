@@ -8,11 +8,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 namespace fs = std::filesystem;
 
-/// The least number in the files `name` of a group and all above it; "max" is none.
+/// The smallest number in the files `name` of a control group and all its ancestors; "max" means
+/// none.
 double least_limit(const fs::path& mount, fs::path group, const char* name) {
   double least = HUGE_VAL;
   for (group = group.relative_path();; group = group.parent_path()) {
@@ -52,4 +53,4 @@ double usable_memory() {
   return std::min(there, control_group_limit(groups, "/sys/fs/cgroup"));
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,17 +1,18 @@
-// How much memory this process may have: what is asked before something large is made.
+// How much memory this process may use; checked before something large is allocated.
 #pragma once
 
 #include <filesystem>
 #include <iosfwd>
 
-namespace tess {
+namespace tess::detail {
 
-/// Bytes: the machine's memory, or less where the shell (RLIMIT_AS) or a container limits it. What
-/// others use of it meanwhile is not taken off.
+/// In bytes: the machine's memory, or less if the shell (RLIMIT_AS) or a container limits it.
+/// Memory that other processes use is not subtracted.
 [[nodiscard]] double usable_memory();
 
-/// The least memory limit of a process's control groups and of those above them; HUGE_VAL: none.
-/// `groups`: as in /proc/self/cgroup; `mount`: /sys/fs/cgroup, of either version.
+/// The smallest memory limit of a process's control groups and their ancestors; HUGE_VAL if there
+/// is none. `groups` has the format of /proc/self/cgroup; `mount` is /sys/fs/cgroup, of either
+/// version.
 [[nodiscard]] double control_group_limit(std::istream& groups, const std::filesystem::path& mount);
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -3,10 +3,10 @@
 #include "runtime/collections/moving.hpp"
 #include "runtime/collections/routing.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 template class ArrayOf<Index1>;
 template class ArrayOf<Index2>;
 template class ArrayOf<Index3>;
 
-}  // namespace tess
+}  // namespace tess::detail

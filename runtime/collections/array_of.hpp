@@ -1,21 +1,21 @@
-// An array on one PE, as far as its type of index goes: which elements live here, how a message
-// finds one that does not, creation on demand, insertion, migration and death. The chare's own type
-// is behind four virtual functions (Array).
+// An array on one PE, as far as it depends on the type of index: the local elements, the routing of
+// messages to other elements, creation on demand, insertion, migration and destruction. Array adds
+// the type of the chare by four virtual functions.
 //
-// A message that does not meet its element here goes, in this order: to the pending creation here;
-// to the grave of an element whose death the home has not noted; after the element, if it left here
-// or this PE heard where it is; to the home. It carries the version it has been sent after, so each
-// hop follows newer knowledge than the last, and what knows more than the home waits there: no
-// message runs in circles, whatever overtakes what.
+// A message whose element is not here goes to the first of these that applies: the pending creation
+// here; the messages that wait until the home confirms a destruction here; the PE that the element
+// left for or was last heard of; the home. The message carries the version it was last sent after,
+// so each hop follows newer knowledge than the last one. A message with newer knowledge than the
+// home's waits at the home. So no message runs in circles, whatever the order of delivery.
 //
-// At home an index is absent, live or dead:
-//     absent, dead(i)  -- grant -->     live(pe, incarnation i + 1)
-//     live             -- it left -->   moving(its next PE, version + 1)
-//     live, moving     -- landed -->    live(that PE and version), if newer
-//     live             -- died -->      dead(incarnation)
-// A grant makes the record live at once: the PE that asked keeps what reaches it until the grant
-// does, so of two PEs that ask at once exactly one creates, and nothing needs to wait for a
-// confirmation.
+// At home an index is absent, live or destroyed:
+//     absent, destroyed(i)  -- grant -->      live(pe, incarnation i + 1)
+//     live                  -- it left -->    moving(its next PE, version + 1)
+//     live, moving          -- arrived -->    live(that PE and version), if newer
+//     live                  -- destroyed -->  destroyed(incarnation)
+// A grant makes the record live at once. The PE that asked keeps messages that reach it until the
+// grant arrives. So of two PEs that ask at once exactly one creates the element, and no
+// confirmation is needed.
 #pragma once
 
 #include "runtime/collections/collection_action.hpp"
@@ -28,9 +28,9 @@
 
 #include <algorithm>
 
-namespace tess {
+namespace tess::detail {
 
-/// An element with its index. The constructor takes the index from the birth that the PE is at.
+/// An element with its index. The constructor takes the index from the PE's current construction.
 template <class Index>
 class IndexedElement : public Element {
  public:
@@ -39,7 +39,7 @@ class IndexedElement : public Element {
  protected:
   IndexedElement() : index_(*static_cast<const Index*>(constructed())) {}
 
-  /// The collection it is an element of; also in its constructor, where it is not listed yet.
+  /// The collection of this element; also valid in its constructor, where it is not listed yet.
   [[nodiscard]] CollectionId collection_id() const {
     return (this->collection_ != nullptr ? this->collection_
                                          : constructing_collection(current_pe()))
@@ -52,28 +52,28 @@ class IndexedElement : public Element {
   template <class>
   friend class Array;
   template <class, class>
-  friend class Chare;
+  friend class tess::Chare;
   template <class>
-  friend class Group;
+  friend class tess::Group;
   [[nodiscard]] static const void* constructed() {
     const void* index = current_pe().constructed_index();
     TESS_CHECK(index != nullptr,
-               "a chare is made by its array alone: create<C>(…) or array[index].insert(…)");
+               "only its array makes a chare: use create<C>(…) or array[index].insert(…)");
     return index;
   }
 
   const Index index_;
 };
 
-/// Where an element is, or was.
+/// The present or a former place of an element.
 struct Place {
   PeId pe{};
   Version version{};
 };
 
-/// What becomes of a message to an element that was destroyed.
+/// What happens to a message to an element that was destroyed.
 enum class DeadLetters : std::uint8_t {
-  report,    ///< it is counted, and the run's end reports how many there were
+  report,    ///< it is dropped as a dead letter; the end of the run reports their number
   recreate,  ///< the element is created again on its home PE
   wait,      ///< it waits at home for the next insertion
 };
@@ -99,14 +99,14 @@ class ArrayOf : public Collection {
     return record == nullptr ? nullptr : record->element();
   }
 
-  /// Where a message to that index goes from here, as far as this PE knows.
+  /// The PE to which a message for this index is sent, as far as this PE knows.
   [[nodiscard]] PeId next_pe(const Index& index) {
     const Record* record = table_.find(index);
     if (record == nullptr || record->state() == IndexState::unknown) return home(index);
     return record->state() == IndexState::here ? pe_.id() : record->pe();
   }
 
-  /// A user's message starts here.
+  /// A user's message is sent from here.
   void post(CallMessage* message) {
     Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
@@ -118,7 +118,7 @@ class ArrayOf : public Collection {
     }
   }
 
-  /// A message arrived: it runs if its element is here.
+  /// A message has arrived; it runs if its element is here.
   void arrive(CallMessage* message) {
     if (message->receiver != nullptr && message->n_departures == n_departures_) [[likely]] {
       execute(static_cast<Indexed&>(*message->receiver), message);
@@ -204,14 +204,14 @@ class ArrayOf : public Collection {
   static void destroy_noted_arrives(ArrayOf& self, DestroyNoted&& m) { self.on_destroy_noted(m); }
 
  protected:
-  /// Makes an element by its default constructor; misuse if it has none.
+  /// Constructs an element by its default constructor; misuse if it has none.
   virtual Indexed* construct_default() = 0;
   virtual void destroy(Indexed& element) = 0;
-  /// Sends the element itself to another PE; it is no longer listed here.
+  /// Sends the element to another PE; it is no longer listed here.
   virtual void ship(Indexed& element, PeId to) = 0;
   [[nodiscard]] virtual DeadLetters dead_letters() const = 0;
 
-  /// Enters an element that is born on this PE.
+  /// Constructs an element on this PE.
   template <class Make>
   void construct(const Index& index, Version version, const Make& make) {
     Indexed* element = [&] {
@@ -223,11 +223,11 @@ class ArrayOf : public Collection {
     table_.at(index).set_here(*element);
     list(*element);
     if (element->migrate_to_.value >= 0 || element->destroy_requested_) [[unlikely]]
-      after_construction([this, element] { settle(*element); });  // its constructor asked for it
+      after_construction([this, element] { settle(*element); });  // its constructor requested it
     if (has_after_construction() && !makes_initial_) [[unlikely]]
       run_after_construction();
   }
-  /// Makes the first elements, which are all born at once.
+  /// Constructs the initial elements, which all count as created at once.
   template <class Make>
   void construct_initial(const Make& make_all) {
     makes_initial_ = true;
@@ -236,7 +236,7 @@ class ArrayOf : public Collection {
     run_after_construction();
   }
 
-  /// Takes in an element that comes from another PE.
+  /// Adds an element that arrived from another PE.
   void add_arrived(Indexed* element, PeId from);
 
   void destroy_all() {
@@ -264,7 +264,7 @@ class ArrayOf : public Collection {
     return why == Parked::pending ? pending_ : why == Parked::waiting ? waiting_ : destroyed_;
   }
   void park(CallMessage* message, Parked why);
-  /// Takes out the messages that are parked; the caller routes them again.
+  /// Removes the parked messages of an index; the caller routes them again.
   [[nodiscard]] std::vector<CallMessage*> unpark(const Index& index, Parked why);
   void ask(CallMessage* message);
   void grant(const Index& index, Version version);
@@ -276,9 +276,9 @@ class ArrayOf : public Collection {
   void reroute(std::vector<CallMessage*>&& messages) {
     for (CallMessage* message : messages) arrive_later(message);
   }
-  /// To this PE's queue, where it meets the element or is routed.
+  /// Puts a message into this PE's queue, from which it reaches the element or is routed.
   void arrive_later(CallMessage* message) { pe_.send_here(message); }
-  /// A hint applies only if it is newer than what is known.
+  /// Applies a hint if it is newer than what is known.
   void learn(const Index& index, const Place& place);
 
   void on_request(const Request& request);
@@ -293,10 +293,10 @@ class ArrayOf : public Collection {
   const BlockMap block_map_;
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
-  std::uint32_t n_departures_ = 0;  // elements that left or died here: no message counts on one
-  std::size_t n_hints_ = 0;         // learnt since they were last forgotten
-  Messages pending_, waiting_, destroyed_;  // what is parked, by the reason (Parked)
-  ByIndex<std::uint32_t> n_destroyed_;      // of the indices with a grave
+  std::uint32_t n_departures_ = 0;          // elements that left or were destroyed
+  std::size_t n_hints_ = 0;                 // hints learnt since they were last forgotten
+  Messages pending_, waiting_, destroyed_;  // parked messages by reason (Parked)
+  ByIndex<std::uint32_t> n_destroyed_;      // destructions that the home has not confirmed
 };
 
 template <class Index>
@@ -322,9 +322,15 @@ inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
   pe_.completion().processed(epoch);
 }
 
-// The usual indices are compiled once, in array_of.cpp.
+// The usual types of indices are compiled once, in array_of.cpp.
 extern template class ArrayOf<Index1>;
 extern template class ArrayOf<Index2>;
 extern template class ArrayOf<Index3>;
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::DeadLetters;
 
 }  // namespace tess

@@ -3,7 +3,7 @@
 #include "runtime/collections/element.hpp"
 #include "runtime/messages/envelope.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 struct PackedEntry {
@@ -44,4 +44,4 @@ void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
     load.sent.emplace(one.to, one.sent);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// What the runtime keeps of an element for its balancer, and takes along when the element migrates:
-// its measured load, and its place in the at_sync() barrier.
+// The record of an element for its balancer, which migrates with the element: its measured load,
+// and its place in the at_sync() barrier.
 #pragma once
 
 #include "runtime/core/serialize.hpp"
@@ -10,22 +10,22 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// Where an element is on its way through the barrier.
+/// The state of an element at the barrier.
 enum class SyncPhase : std::uint8_t {
   runs,
   waits,    ///< it called at_sync()
-  resumes,  ///< the message that calls resume_from_sync() is on its way to it
+  resumes,  ///< the message that calls resume_from_sync() is under way
 };
 
 struct SyncState {
   SyncPhase phase = SyncPhase::runs;
-  bool known = false;           ///< a barrier has seen it
-  bool member = false;          ///< the barrier waits for it
-  std::uint32_t next = 0;       ///< a member: the round it reaches next
-  std::uint32_t waits_for = 0;  ///< while it waits: the round that resumes it
-  EpochId epoch{};              ///< on whose account it waits
+  bool known = false;           ///< a barrier has seen the element
+  bool member = false;          ///< the barrier waits for the element
+  std::uint32_t next = 0;       ///< for a member: the next round that it reaches
+  std::uint32_t waits_for = 0;  ///< while waiting: the round that resumes the element
+  EpochId epoch{};              ///< the epoch that the wait belongs to
   std::uint32_t led_by = 0;     ///< the broadcast that led to its wait
 };
 
@@ -34,12 +34,12 @@ struct BalanceRecord {
 
   LoadRecord load;
   SyncState sync;
-  std::uint64_t size_bytes = 0;    ///< packed, when it was last looked at; 0: never
-  std::size_t position = nowhere;  ///< among what its PE has reported in this round; stays here
+  std::uint64_t size_bytes = 0;    ///< packed size when last measured; 0: never
+  std::size_t position = nowhere;  ///< position in its PE's report of this round; does not migrate
 
-  /// Ticks travel as seconds: another machine's counter may run at another rate.
+  /// Ticks are packed as seconds, since another machine's counter may have another rate.
   void pack(Writer& ar, const Meter& meter) const;
   void unpack(Reader& ar, const Meter& meter);
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// One call for all elements of a collection: the entry method and its arguments, shared by all
-// elements of a process, packed when it crosses to another.
+// One call for all elements of a collection: the entry method and its arguments. The elements of a
+// process share it; it is packed when it is sent to another process.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -10,11 +10,12 @@
 #include <boost/smart_ptr/intrusive_ptr.hpp>
 #include <boost/smart_ptr/intrusive_ref_counter.hpp>
 
-namespace tess {
+namespace tess::detail {
 
 class BroadcastCall;
-/// Shared by the PEs of a process. It counts in place: one block of memory per call, and a count
-/// that the thread sanitizer sees (std::shared_ptr's is changed in a library).
+/// Shared by the PEs of a process. The count is inside the object: this takes one block of memory
+/// per call, and the thread sanitizer sees the count (that of std::shared_ptr is changed in a
+/// library).
 using SharedCall = boost::intrusive_ptr<const BroadcastCall>;
 class Element;
 class Pe;
@@ -36,20 +37,20 @@ class BroadcastCall
 
   [[nodiscard]] virtual const BroadcastKind& kind() const = 0;
   [[nodiscard]] virtual const Action& action() const = 0;
-  /// Calls the entry method; the arguments stay for the next element.
+  /// Calls the entry method; the arguments are kept for the next element.
   virtual void invoke(Element& element) const = 0;
   virtual void pack(Writer& ar) const = 0;
 };
 
-/// A broadcast on its way: its number (0 before the root gave it one), the epoch that pays for it,
-/// and how many reductions of the collection were complete when it got its number.
+/// A broadcast under way: its number (0 until the root assigns it), its epoch, and the number of
+/// the collection's reductions that were complete when it got its number.
 struct NumberedCall {
   std::uint64_t number = 0;
   EpochId epoch{};
   SharedCall call;
   std::uint32_t n_complete = 0;
 
-  /// Its collection has ended: no element is called. Returns whether the whole broadcast is lost.
+  /// The collection has ended, so no element is called. Returns the number of lost broadcasts.
   std::uint64_t drop(Pe& pe) const;
 
   template <class Ar>
@@ -69,4 +70,4 @@ struct NumberedCall {
   }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

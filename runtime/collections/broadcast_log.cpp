@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-// The root hears of settled broadcasts in portions, so that a broadcast costs no reply.
+// Settled broadcasts are reported to the root in portions, so that a broadcast costs no reply.
 constexpr std::uint64_t portion = 16;
 
 void start_arrives(Collection& collection, NumberedCall&& m) {
@@ -125,4 +125,4 @@ void BroadcastLog::on_drop(const Drop& drop) {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,13 +1,13 @@
-// Broadcasts of one collection, seen from one PE. The root numbers them; every PE applies them in
-// that order to its elements; each element carries the number it has met, so that one that moves
-// meanwhile meets each exactly once:
+// Broadcasts of one collection, seen from one PE. The root numbers them, and every PE applies them
+// in that order to its elements. Each element carries the number of the last broadcast it received,
+// so an element that migrates meanwhile receives each exactly once:
 //
 //     element arrives with seen < applied:  it catches up from the copies kept here
 //     element arrives with seen > applied:  it is skipped until this PE has caught up
 //
-// A PE has settled n once it has applied n and each element that left before has landed (and caught
-// up) elsewhere. Only then are the epoch's account and the root told; a copy is dropped once all
-// PEs have settled it, never by a clock.
+// A PE has settled broadcast n once it has applied n and every element that left before has arrived
+// (and caught up) elsewhere. Only then does it report to the epoch and to the root. A copy is
+// dropped once all PEs have settled it; no clock is involved.
 #pragma once
 
 #include "runtime/collections/broadcast_call.hpp"
@@ -17,29 +17,29 @@
 #include <map>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Collection;
 class Pe;
 
-/// Starts a broadcast from this PE, on which the collection need not be known yet.
+/// Starts a broadcast from this PE, even if the collection is not known here yet.
 void start_broadcast(CollectionId collection, SharedCall call);
 
 class BroadcastLog {
  public:
   BroadcastLog(Pe& pe, Collection& collection);
 
-  /// The number that an element born here now has met.
+  /// The number of the last broadcast for an element that is created here now.
   [[nodiscard]] std::uint64_t applied() const { return applied_; }
 
-  /// Elements leave and, later, have landed.
+  /// An element leaves and, later, has arrived elsewhere.
   void left(std::uint64_t seen) { ++in_flight_[seen]; }
   void arrived(std::uint64_t seen);
 
-  /// The collection ends: what is kept here is dropped.
+  /// The collection ends: its broadcasts here are dropped.
   void end();
 
-  /// The calls that an element that has met `seen` still has to meet here, oldest first.
+  /// The calls that an element with this `seen` still has to receive here, oldest first.
   [[nodiscard]] std::vector<NumberedCall> missed(std::uint64_t seen) const;
 
   struct Settled {
@@ -76,4 +76,4 @@ class BroadcastLog {
   std::uint64_t dropped_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

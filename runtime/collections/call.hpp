@@ -1,5 +1,5 @@
-// The typed messages of an array: a call of an entry method, a constructor call, an element that
-// moves, and a call of all.
+// The typed messages of an array: calls of entry methods, constructor calls, migrating elements,
+// and broadcasts.
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
@@ -8,12 +8,13 @@
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/block.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 template <class C>
 class Array;
 
-/// The first argument that does not come back from its bytes as it was; empty if all do.
+/// Describes the first argument that differs after a round trip through bytes; empty if all are
+/// equal.
 template <class... T>
 [[nodiscard]] std::string arguments_difference(const std::tuple<T...>& arguments) {
   std::string found;
@@ -24,7 +25,7 @@ template <class... T>
   return found;
 }
 
-/// What the arguments of a message take when packed.
+/// The packed size of a message's arguments.
 template <class... T>
 [[nodiscard]] std::uint64_t payload_bytes(const std::tuple<T...>& arguments) {
   if constexpr ((Bitwise<T> && ...)) {
@@ -34,7 +35,7 @@ template <class... T>
   }
 }
 
-/// Making, packing and ending of a message type that derives from ElementMessage and has
+/// Construction, packing and release of a message type that derives from ElementMessage and has
 /// `arguments`.
 template <class Derived, class C, class Arguments>
 struct TypedMessage : ElementMessage<typename C::Index> {
@@ -130,7 +131,7 @@ struct Construction final : TypedMessage<Construction<C, Args...>, C, std::tuple
       Base::make_action(nullptr, &Construction::construct);
 };
 
-/// Ends an element where it lives.
+/// Destroys an element.
 template <class C>
 struct Destruction final : TypedMessage<Destruction<C>, C, std::tuple<>> {
   using Base = TypedMessage<Destruction, C, std::tuple<>>;
@@ -156,7 +157,7 @@ struct Relocation final : TypedMessage<Relocation<C>, C, std::tuple<PeId>> {
   static inline const ElementAction<Index> entry = Base::make_action(&Relocation::invoke);
 };
 
-/// Ends the wait of an element at its balancer's barrier.
+/// Ends an element's wait at its balancer's barrier.
 template <class C>
 struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
   using Base = TypedMessage<Awakening, C, std::tuple<>>;
@@ -170,14 +171,14 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
       Base::make_action(&Awakening::invoke, nullptr, Traffic::control);
 };
 
-/// An element on its way. Within a process the object itself travels (but with CHECKS=all); between
-/// processes what it serialises.
+/// A migrating element. Within a process the object itself travels (except with CHECKS=all);
+/// between processes its serialised state.
 template <class C>
 struct Arrival final : Envelope {
   CollectionId collection{};
   PeId from{};
   C* element = nullptr;
-  Buffer state;  // what it serialised, once there is no object
+  Buffer state;  // the serialised state, once the object is gone
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* arrival = static_cast<Arrival*>(envelope);
@@ -194,9 +195,9 @@ struct Arrival final : Envelope {
     delete arrival->element;
     delete arrival;
   }
-  /// The array has ended: the element ends with the message, and no epoch waits for it.
+  /// The array has ended: the element is destroyed with the message, and no epoch waits for it.
   static std::uint64_t drop(Pe& pe, Envelope& envelope);
-  /// Leaves the bytes of the element in place of the object.
+  /// Replaces the object by its bytes.
   void pack_state();
   static void pack(Envelope& envelope, Writer& ar);
   static Envelope* unpack(Pe& /*pe*/, Reader& ar) {
@@ -235,4 +236,4 @@ class CallOfAll final : public BroadcastCall {
   Arguments arguments_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

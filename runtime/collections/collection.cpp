@@ -2,7 +2,7 @@
 
 #include "runtime/core/check.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 std::string element_text(const Element& element) {
   return element.collection_->name() + element.collection_->index_text_of(element);
@@ -40,7 +40,7 @@ void Collection::list(Element& element) {
   if (watcher_ != nullptr) [[unlikely]] {
     watcher_->entered(element);
   } else if (element.balance_) [[unlikely]] {
-    element.balance_->load.since = LoadRecord::Since::somewhere;  // nothing is measured here yet
+    element.balance_->load.since = LoadRecord::Since::somewhere;  // this PE does not measure yet
   }
 }
 
@@ -51,7 +51,7 @@ void Collection::unlist(Element& element) {
     --n_new_;
   if (watcher_ != nullptr) [[unlikely]]
     watcher_->left(element);
-  if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat one
+  if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat an element
     elements_[element.slot_] = nullptr;
     return;
   }
@@ -98,10 +98,11 @@ void Collection::call(Element& element, const NumberedCall& call) {
 
 void Collection::apply(const NumberedCall& call) {
   ++applying_;
-  // Where the call makes an element move, the broadcast's epoch waits for it.
+  // If the call makes an element migrate, the broadcast's epoch waits for it.
   const EpochId before = std::exchange(pe_.context().epoch, call.epoch);
   const std::size_t n =
-      elements_.size();  // later ones are born after this broadcast, or came having met it
+      elements_
+          .size();  // later ones were created after this broadcast or arrived after receiving it
   for (std::size_t i = 0; i < n; ++i) {
     Element* element = elements_[i];
     if (element == nullptr || element->state_.seen_broadcast >= call.number) continue;
@@ -176,7 +177,7 @@ void Collection::end_wait(Element& element) {
 }
 
 void Collection::at_sync(Element& element) {
-  if (ended_) return;  // nothing resumes it: it ends once its coroutine is done
+  if (ended_) return;  // no round resumes it: it ends once its coroutine is done
   SyncState& sync = make_record(element).sync;
   TESS_CHECK(sync.phase == SyncPhase::runs, element_text(element),
              " calls at_sync() again before it was resumed");
@@ -214,4 +215,4 @@ void ElementScope::force_migration() {
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 
-}  // namespace tess
+}  // namespace tess::detail

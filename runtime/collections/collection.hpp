@@ -1,5 +1,5 @@
 // One collection (array or group) on one PE: its local elements, its part in broadcasts and
-// reductions. What depends on the type of index and chare is in ArrayOf and Array.
+// reductions. ArrayOf and Array add what depends on the types of index and chare.
 #pragma once
 
 #include "runtime/collections/balance_record.hpp"
@@ -15,14 +15,14 @@
 #include <string>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 /// The PE that numbers the broadcasts and completes the reductions of a collection.
 [[nodiscard]] inline PeId root_of(CollectionId id, std::int32_t n_pes) {
   return PeId{static_cast<std::int32_t>(mix(id.value) % static_cast<std::uint64_t>(n_pes))};
 }
 
-/// Is told of the elements of a collection on one PE.
+/// Observes the elements of a collection on one PE.
 class ElementWatcher {
  public:
   ElementWatcher() = default;
@@ -30,14 +30,14 @@ class ElementWatcher {
   ElementWatcher& operator=(const ElementWatcher&) = delete;
   virtual ~ElementWatcher() = default;
 
-  /// It is listed here from now on: born, or come from another PE.
+  /// The element is listed here from now on: it was created here or arrived from another PE.
   virtual void entered(Element& element) = 0;
-  /// It is no longer listed here.
+  /// The element is no longer listed here.
   virtual void left(Element& element) = 0;
-  /// It ends; called after left().
+  /// The element is destroyed; called after left().
   virtual void destroyed(Element& element) = 0;
   virtual void at_sync(Element& element) = 0;
-  /// The collection ends on this PE; its elements are still listed, and it tells no more of them.
+  /// The collection ends on this PE. Its elements are still listed; no calls follow.
   virtual void collection_ends() = 0;
 };
 
@@ -52,22 +52,22 @@ class Collection : public HostedCollection {
   [[nodiscard]] BroadcastLog& broadcasts() { return broadcasts_; }
   [[nodiscard]] ReductionTree& reductions() { return reductions_; }
   [[nodiscard]] ReductionTree& tree(Track track);
-  /// A library's tree, which messages of the second track reach; it stays the library's.
+  /// Sets a library's tree, to which messages of the second track go; the library owns it.
   void set_second_tree(ReductionTree& tree) { second_tree_ = &tree; }
 
-  /// Local elements; a slot may be empty while elements leave in the middle of a broadcast.
+  /// Local elements; a slot may be null while elements leave in the middle of a broadcast.
   [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
 
-  /// Calls one element on account of a broadcast.
+  /// Calls one element for a broadcast.
   void call(Element& element, const NumberedCall& call);
 
-  /// Calls all local elements that have not met this broadcast yet.
+  /// Calls all local elements that have not received this broadcast yet.
   void apply(const NumberedCall& call);
 
   /// An element of this PE contributes to its next reduction.
   void contribute(Element& element, std::unique_ptr<Partial> value);
-  /// Where it can add its value without making a Partial; null if there is no such place. If there
-  /// is, it adds and calls contributed().
+  /// The partial result to which the element can add its value directly; null if there is none.
+  /// After adding, the caller calls contributed().
   [[nodiscard]] Partial* open_sum(Element& element, const PartialKind& kind) {
     settle_join(element);
     return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
@@ -76,84 +76,86 @@ class Collection : public HostedCollection {
     reductions_.added(element.state_.next_reduction++, cause_of(element));
   }
 
-  /// From here on the element stays with the number of its next reduction.
+  /// From now on the element keeps the number of its next reduction.
   void settle_join(Element& element) {
     if (element.state_.created_after == 0) return;
     element.state_.created_after = 0;
     --n_new_;
   }
-  /// It has become known which reductions broadcasts led to: elements that were born after these
+  /// It is now known which reductions broadcasts led to: elements that were created after these
   /// broadcasts join later.
   void postpone_new_elements();
 
-  /// The broadcast of a collection that led to what runs; 0 if none did.
+  /// The broadcast of a collection that led to the running code; 0 if none did.
   [[nodiscard]] static std::uint32_t led_by(const Context& context, CollectionId collection) {
     return context.element != nullptr && context.element->collection_->id() == collection
                ? context.led_by
                : 0;
   }
 
-  // The balancer's side.
+  // For the balancer.
 
-  /// Who is told of elements that come and go here; null: nobody.
+  /// The observer of elements that come and go here; null if there is none.
   [[nodiscard]] ElementWatcher* watcher() const { return watcher_; }
   void set_watcher(ElementWatcher& watcher) { watcher_ = &watcher; }
   void remove_watcher() { watcher_ = nullptr; }
-  /// What is kept of an element for its balancer; null while nobody asked for it.
+  /// The balancer's record of an element; null unless requested.
   [[nodiscard]] static BalanceRecord* record_of(const Element& element) {
     return element.balance_.get();
   }
   static BalanceRecord& make_record(Element& element);
-  /// Whether it has not migrated yet.
+  /// True if the element has not migrated yet.
   [[nodiscard]] static bool never_moved(const Element& element) {
     return element.state_.version.epoch <= 1;
   }
-  /// Whether nothing of it but its constructor has run, here or elsewhere.
+  /// True if only the element's constructor has run, here or elsewhere.
   [[nodiscard]] static bool never_ran(const Element& element) {
     return never_moved(element) && !element.has_run_;
   }
-  /// Migrations from this PE less those to it, of elements that no barrier knows: summed over PEs,
-  /// how many are under way.
+  /// Migrations from this PE minus those to it, of elements that no barrier knows. The sum over all
+  /// PEs is the number of such elements under way.
   [[nodiscard]] std::int64_t n_away() const { return n_away_; }
   /// The element waits until its balancer resumes it.
   void at_sync(Element& element);
-  /// The message of resume() has come: whether it was this life of the index that waited.
+  /// The message of resume() has arrived. Returns true if this incarnation of the element was
+  /// waiting.
   [[nodiscard]] static bool awake(Element& element);
-  /// Has the element leave for a PE once nothing of it runs or waits. The epoch that runs waits for
-  /// the move, unless a coroutine puts it off.
+  /// Lets the element migrate once none of its code runs or waits. The current epoch waits for the
+  /// migration, unless a waiting coroutine delays it.
   void move(Element& element, PeId to);
   /// Sends the element the message that calls its resume_from_sync().
   virtual void resume(Element& element);
   /// The hash of the element's index.
   [[nodiscard]] virtual std::uint64_t key_of(const Element& element) const;
-  /// What its balance_position() says, if it has one.
+  /// The result of its balance_position(), if it has one.
   [[nodiscard]] virtual std::optional<std::array<double, 3>> position_of(
       const Element& element) const;
-  /// What a migration to another process would send.
+  /// The number of bytes that a migration to another process would send.
   [[nodiscard]] virtual std::uint64_t packed_bytes(Element& element) const;
 
-  /// After something of the element ran: it leaves or ends now if that was asked for and nothing of
-  /// it waits.
+  /// Called after code of the element ran: the element leaves or is destroyed now if that was
+  /// requested and none of its code waits.
   virtual void settle(Element& element) = 0;
 
-  /// A constructor of an element asks for something that needs the element to be listed: `call`
-  /// runs once it is. Of the elements that an array is created with: once all of this PE are.
+  /// A constructor requests something that needs the element to be listed: `call` runs once it is.
+  /// For initial elements of an array, `call` runs once all of them are listed on this PE.
   void after_construction(std::function<void()> call) {
     after_construction_.push_back(std::move(call));
   }
 
-  /// Ends it on this PE: what it holds is dropped, and its elements are destroyed but for those
-  /// that have a coroutine that waits (they follow one by one, and free_later() the last). It is in
-  /// the PE's table no more.
+  /// Ends the collection on this PE, after it was removed from the PE's table: its contents are
+  /// dropped and its elements destroyed. Elements with a waiting coroutine follow one by one; the
+  /// last one calls free_later().
   virtual void end();
   [[nodiscard]] bool ended() const { return ended_; }
 
-  /// True if elements can be packed and made again elsewhere.
+  /// True if elements can be packed and rebuilt elsewhere.
   [[nodiscard]] virtual bool migratable() const = 0;
   [[nodiscard]] virtual std::string index_text_of(const Element& element) const = 0;
   [[nodiscard]] bool was_called() const override { return broadcasts_.applied() != 0; }
   void describe_waiting(std::vector<std::string>& lines) const override;
-  /// The first few local elements that have not contributed to `number` − 1 and below, as text.
+  /// The first few local elements that have not contributed to all reductions below `number`, as
+  /// text.
   [[nodiscard]] std::string elements_before(std::uint32_t number) const;
 
  protected:
@@ -161,14 +163,15 @@ class Collection : public HostedCollection {
   void unlist(Element& element);
   void count_departure(const Element& element) { n_away_ += known(element) ? 0 : 1; }
   void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
-  /// No epoch waits any more for an element that waits at its balancer's barrier: it ends.
+  /// Releases the epoch of an element that waits at its balancer's barrier and is being destroyed.
   void end_wait(Element& element);
-  /// Runs what constructors have asked for.
+  /// Runs the calls that constructors have requested.
   void run_after_construction();
   [[nodiscard]] bool has_after_construction() const { return !after_construction_.empty(); }
-  /// An element was made to be read from bytes: what its constructor asks for it has done before.
+  /// Drops the calls that a constructor requested: the element was constructed to be read from
+  /// bytes, and the calls have run before its migration.
   void drop_after_construction() { after_construction_.clear(); }
-  /// Registers a new element as born here and now.
+  /// Registers an element that was just created here.
   void register_new(Element& element);
 
   Pe& pe_;
@@ -188,15 +191,15 @@ class Collection : public HostedCollection {
   std::int64_t n_away_ = 0;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
-  std::size_t n_new_ = 0;  // local elements that have not contributed since their birth
+  std::size_t n_new_ = 0;  // local elements that have not contributed since their construction
   unsigned applying_ = 0;
   bool ended_ = false;
   BroadcastLog broadcasts_;
   ReductionTree reductions_;
 };
 
-/// Marks that code of an element runs: it is the context's element, and it neither leaves nor ends
-/// before the scope does.
+/// Marks that code of an element runs: the element is the context's element, and it neither leaves
+/// nor ends before the scope does.
 class ElementScope {
  public:
   ElementScope(Pe& pe, Element& element, const Action* action, EpochId epoch,
@@ -213,7 +216,7 @@ class ElementScope {
   }
   ElementScope(const ElementScope&) = delete;
   ElementScope& operator=(const ElementScope&) = delete;
-  /// Ends the scope; the element may be gone afterwards.
+  /// Ends the scope; the element may not exist afterwards.
   ~ElementScope() noexcept(false) {
     pe_.enter(before_);
     if (meter_ != nullptr) [[unlikely]]
@@ -233,7 +236,7 @@ class ElementScope {
   }
   Pe& pe_;
   Element& element_;
-  Context context_;  // in force by its address: copies of what was just written would stall
+  Context context_;  // used by address: a copy of what was just written would stall
   Context* const before_;
   Meter* const meter_;
   Meter::Scope outer_;
@@ -243,9 +246,9 @@ class ElementScope {
 [[nodiscard]] inline Collection* find_collection(Pe& pe, CollectionId id) {
   return static_cast<Collection*>(pe.find(id));
 }
-/// The collection whose element is constructed now; null between.
+/// The collection whose element is under construction; null if there is none.
 [[nodiscard]] inline Collection* constructing_collection(const Pe& pe) {
   return static_cast<Collection*>(pe.constructing_collection());
 }
 
-}  // namespace tess
+}  // namespace tess::detail

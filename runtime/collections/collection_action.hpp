@@ -1,13 +1,13 @@
-// Messages to a collection on a PE that no chare sees: a function of (Collection type&, Payload&&),
-// and its payload. One that comes before its collection is known on the PE waits for it.
+// Messages to a collection on a PE that do not involve chares: a handler function of (Collection
+// type&, Payload&&) and its payload. A message that arrives before its collection is known on the
+// PE waits for it.
 #pragma once
 
 #include "runtime/collections/collection.hpp"
 #include "runtime/scheduler/message.hpp"
 
-namespace tess {
+namespace tess::detail {
 
-namespace detail {
 template <class F>
 struct CollectionHandler;
 template <class C, class P>
@@ -25,13 +25,12 @@ struct ToCollection {
     ar(collection, payload);
   }
 };
-}  // namespace detail
 
 template <auto Handler, Traffic Kind = Traffic::control>
 struct CollectionAction {
-  using Of = detail::CollectionHandler<decltype(Handler)>;
+  using Of = CollectionHandler<decltype(Handler)>;
   using Payload = typename Of::Payload;
-  using Held = Message<detail::ToCollection<Payload>>;
+  using Held = Message<ToCollection<Payload>>;
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* message = static_cast<Held*>(envelope);
@@ -44,7 +43,7 @@ struct CollectionAction {
     Held::destroy(envelope);
     Handler(static_cast<typename Of::Collection&>(*collection), std::move(payload));
   }
-  /// The collection has ended: a payload that stands on an epoch's account says so.
+  /// The collection has ended: a payload that belongs to an epoch settles it.
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
     const Payload& payload = static_cast<Held&>(envelope).payload.payload;
     if constexpr (requires { payload.drop(pe); }) {
@@ -57,15 +56,14 @@ struct CollectionAction {
       naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};
 };
 
-/// Sends a payload to the part of a collection on a PE, which may be yet to come there; a hop of
-/// epoch 0, on no other epoch's account.
+/// Sends a payload to the part of a collection on a PE, where it may not be known yet. It counts as
+/// a hop of epoch 0 and for no other epoch.
 template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Pe& pe, CollectionId id, PeId to,
                         typename CollectionAction<Handler, Kind>::Payload payload) {
   using A = CollectionAction<Handler, Kind>;
-  pe.send(to,
-          pe.stamp(A::Held::make(
-              pe, A::action, detail::ToCollection<typename A::Payload>{id, std::move(payload)})));
+  pe.send(to, pe.stamp(A::Held::make(pe, A::action,
+                                     ToCollection<typename A::Payload>{id, std::move(payload)})));
 }
 template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Collection& collection, PeId to,
@@ -73,4 +71,4 @@ void send_to_collection(Collection& collection, PeId to,
   send_to_collection<Handler, Kind>(collection.pe(), collection.id(), to, std::move(payload));
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// How an element's value gets into a reduction: the same for chares and for members of groups. The
-// key orders the values where the reduction is in order: an index, or a PE.
+// Contributions of elements to reductions, for chares and for members of groups. The key orders the
+// values of reductions in order: an index, or a PE.
 #pragma once
 
 #include "runtime/collections/collection.hpp"
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 template <class T>
 void check_target(const Element& element, const Callback<T>& target) {
@@ -18,7 +18,7 @@ void check_target(const Element& element, const Callback<T>& target) {
              name_of_type<T>, "> for the result is empty");
 }
 
-/// Merges as it goes; the sum that the elements before it have begun takes the value in place.
+/// Merges immediately: adds to the local sum that earlier elements have started, if there is one.
 template <class Key, class Op, class T>
 void contribute_as(const Key& /*key*/, Element& element, Collection& collection, Op /*op*/, T value,
                    Callback<T>&& target) {
@@ -32,7 +32,7 @@ void contribute_as(const Key& /*key*/, Element& element, Collection& collection,
   }
 }
 
-/// Combines in the order of keys, at the end.
+/// Collects the values, which are combined in the order of keys at the end.
 template <class Key, class Op, class T>
 void contribute_as(const Key& key, Element& element, Collection& collection, InOrder<Op> /*op*/,
                    T value, Callback<T>&& target) {
@@ -43,7 +43,7 @@ void contribute_as(const Key& key, Element& element, Collection& collection, InO
       element, std::make_unique<OrderedPartial<T, Op, Key>>(std::move(values), std::move(target)));
 }
 
-/// How the bases of elements contribute. A constructor's contribution waits until the element is
+/// Called by the base classes of elements. A constructor's contribution waits until the element is
 /// listed.
 struct Contribution {
   template <class Key, class Op, class T>
@@ -59,4 +59,4 @@ struct Contribution {
   }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,6 +1,5 @@
-// What the runtime keeps of a chare: where it is registered, which life and place of its index it
-// is, which broadcasts it has met, which reduction it contributes to next. The user's class derives
-// from it through Chare or Group.
+// The runtime's part of a chare: its collection, its incarnation and version, the broadcasts it has
+// received, and its next reduction. The user's class derives from it through Chare or Group.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -13,20 +12,28 @@
 
 namespace tess {
 
+template <class, class>
+class Chare;
+template <class>
+class Group;
+
+}  // namespace tess
+
+namespace tess::detail {
+
 class Collection;
 struct BalanceRecord;
 
-/// Frees a record; out of line, for most elements have none.
+/// Frees a record; not inline, since most elements have none.
 struct EndRecord {
   void operator()(BalanceRecord* record) const;
 };
 
-/// The part of an element that travels with it besides the user's members.
+/// The part of an element that migrates in addition to the user's members.
 struct ElementState {
   Version version{};
   std::uint32_t next_reduction = 0;
-  std::uint32_t created_after =
-      0;  // the last broadcast before its birth; 0 once it has contributed
+  std::uint32_t created_after = 0;  // last broadcast before; 0 once it contributed
   std::uint64_t seen_broadcast = 0;
 };
 
@@ -39,8 +46,8 @@ class Element {
   Element() = default;
   ~Element() = default;
 
-  /// Runs `call` once the element that is constructed now is known to its collection. `what` needs
-  /// that.
+  /// Runs `call` once the element under construction is known to its collection. `what` names the
+  /// function that needs this.
   static void after_construction(const char* what, std::function<void()> call);
 
  private:
@@ -53,24 +60,24 @@ class Element {
   friend class IndexedElement;
   friend class ElementScope;
   template <class, class>
-  friend class Chare;
+  friend class tess::Chare;
   template <class>
-  friend class Group;
+  friend class tess::Group;
   friend struct Contribution;
   friend struct TaskAccount;
   friend std::string element_text(const Element& element);
 
   Collection* collection_ = nullptr;
-  std::unique_ptr<BalanceRecord, EndRecord> balance_;  // while a balancer watches its array
+  std::unique_ptr<BalanceRecord, EndRecord> balance_;  // if a balancer watches its array
   ElementState state_;
-  std::uint32_t slot_ = 0;          // in the collection's list
-  std::uint32_t n_suspended_ = 0;   // coroutines of this element that wait, and handlers that run
-  PeId migrate_to_{-1};             // where it goes once nothing of it runs or waits
-  bool destroy_requested_ = false;  // destroyed once nothing of it runs or waits
-  bool has_run_ = false;            // code of it has run here, besides its constructor
+  std::uint32_t slot_ = 0;          // slot in the collection's list
+  std::uint32_t n_suspended_ = 0;   // waiting coroutines and running handlers of this element
+  PeId migrate_to_{-1};             // the PE to move to once none of its code runs or waits
+  bool destroy_requested_ = false;  // to be destroyed once none of its code runs or waits
+  bool has_run_ = false;            // code other than its constructor has run here
 };
 
 /// "Block[3,4]".
 [[nodiscard]] std::string element_text(const Element& element);
 
-}  // namespace tess
+}  // namespace tess::detail

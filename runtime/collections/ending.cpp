@@ -3,7 +3,7 @@
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 struct End {
@@ -54,4 +54,4 @@ void free_later(Collection& collection) {
   send_system<&freeing_arrives>(pe, pe.id(), Free{collection.id()});
 }
 
-}  // namespace tess
+}  // namespace tess::detail

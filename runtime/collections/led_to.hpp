@@ -1,13 +1,14 @@
-// Which reductions the broadcasts of a collection have led to, as far as one PE knows: from this
-// follows where an element joins that was born between two broadcasts (see ReductionTree). A few
-// entries, ascending in both numbers; those of complete reductions are forgotten.
+// Which reductions the broadcasts of a collection have led to, as far as one PE knows. It
+// determines where an element joins that was created between two broadcasts (see ReductionTree).
+// The list has a few entries, ascending in both numbers; entries of complete reductions are
+// removed.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class LedTo {
  public:
@@ -21,7 +22,8 @@ class LedTo {
     return found;
   }
 
-  /// This broadcast led to a contribution to reduction `number`. False if that says nothing new.
+  /// Records that this broadcast led to a contribution to reduction `number`. Returns false if that
+  /// was known.
   bool learn(std::uint32_t broadcast, std::uint32_t number) {
     if (end(broadcast) > number) return false;
     const auto at = std::lower_bound(
@@ -33,7 +35,7 @@ class LedTo {
     return true;
   }
 
-  /// Reductions below this one are complete: no element is going to join there.
+  /// Reductions below this one are complete: no element will join there.
   void forget_below(std::uint32_t number) {
     const auto last = std::find_if(entries_.begin(), entries_.end(),
                                    [&](const Entry& entry) { return entry.end > number; });
@@ -48,4 +50,4 @@ class LedTo {
   std::vector<Entry> entries_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

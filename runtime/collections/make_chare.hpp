@@ -1,4 +1,4 @@
-// Where chares and group members are constructed, so that an exception there can be reported.
+// Construction of chares and group members, so that an exception there can be reported.
 #pragma once
 
 #include "runtime/core/registry.hpp"
@@ -8,9 +8,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace tess {
+namespace tess::detail {
 
-/// Makes a chare by its constructor. The report of an exception that leaves it names it.
+/// Constructs a chare. If the constructor throws, the report names it.
 template <class C, class... Args>
 [[nodiscard]] C* make_chare(Args&&... args) {
   try {
@@ -23,4 +23,4 @@ template <class C, class... Args>
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,10 +1,11 @@
-// How an element moves and dies: what its old place, its new one and its home tell each other.
+// Migration and destruction of elements: the messages between an element's old PE, its new PE and
+// its home.
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
 #include "runtime/collections/ending.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 template <class Index>
 void ArrayOf<Index>::depart(Indexed& element, PeId to) {
@@ -32,12 +33,12 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from) {
   table_.at(index).set_here(*element);
   count_arrival(*element);
   list(*element);
-  // It stays until it has met the broadcasts that it missed on its way: only then has it landed.
+  // It stays until it has received the broadcasts that it missed: only then has it arrived.
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
     if (element->destroy_requested_ || pe_.stopped()) break;
     this->call(*element, call);
-    // Who asks it to move on waits for that.
+    // The epoch of the call that requests the next migration waits for it.
     if (element->migrate_to_.value >= 0) pe_.context().epoch = call.epoch;
   }
   const MoveReport report{index, Place{pe_.id(), version}, from, seen};
@@ -57,7 +58,7 @@ void ArrayOf<Index>::on_move_report(const MoveReport& report) {
       *this, report.from, MoveNoted{report.index, report.place.version, report.seen});
   if (report.place.pe != pe_.id()) {
     Record& record = table_.at(report.index);
-    if (record.state() == IndexState::here) return;  // it has come home since
+    if (record.state() == IndexState::here) return;  // it has returned home since
     const bool newer = record.state() == IndexState::destroyed
                            ? report.place.version.incarnation > record.version().incarnation
                            : report.place.version >= record.version();
@@ -96,7 +97,7 @@ void ArrayOf<Index>::end() {
   for (Indexed* element : ready) end_element(*element);
 }
 
-/// Ends an element of an array that has ended.
+/// Destroys an element of an array that has ended.
 template <class Index>
 void ArrayOf<Index>::end_element(Indexed& element) {
   unlist(element);
@@ -136,7 +137,7 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
 
 template <class Index>
 void ArrayOf<Index>::on_destroy_report(const DestroyReport& report) {
-  // It is the last life that this home knows of: the home grants the next only once this has come.
+  // This is the last incarnation that the home knows: it grants the next only after this report.
   table_.at(report.index).set(IndexState::destroyed, report.from, report.version);
   send_to_collection<&destroy_noted_arrives, Traffic::location>(*this, report.from,
                                                                 DestroyNoted{report.index});
@@ -152,4 +153,4 @@ void ArrayOf<Index>::on_destroy_noted(const DestroyNoted& noted) {
   table_.tidy(noted.index);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,18 +1,18 @@
-// How many local elements are at each number of a reduction: nearly all are at one or two numbers
-// in a row, so a window of counters serves, and no number below its first has any.
+// Counts of local elements by the number of their next reduction. Nearly all elements are at one or
+// two consecutive numbers, so a window of counters suffices; no number below its first has any.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// Counts by number, with the lowest at hand.
+/// Counts by number, with fast access to the lowest.
 class NumberCounts {
  public:
   [[nodiscard]] bool empty() const { return head_ == counts_.size(); }
-  /// The lowest number that has any; there must be one.
+  /// The lowest number with a count above 0; there must be one.
   [[nodiscard]] std::uint32_t lowest() const { return first_; }
 
   void add(std::uint32_t number) {
@@ -27,7 +27,7 @@ class NumberCounts {
     ++counts_[head_ + (number - first_)];
   }
 
-  /// One that was added.
+  /// Removes a number that was added.
   void remove(std::uint32_t number) {
     --counts_[head_ + (number - first_)];
     while (!empty() && counts_[head_] == 0) {
@@ -61,10 +61,10 @@ class NumberCounts {
 
   static constexpr std::size_t most_below = 32;
 
-  // counts_[head_ + k] are at number first_ + k; those below head_ are zero.
+  // counts_[head_ + k] is the count of number first_ + k; counters below head_ are zero.
   std::vector<std::uint64_t> counts_;
   std::size_t head_ = 0;
   std::uint32_t first_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// A partial result of a reduction: some contributions, merged. It knows its type, how to merge with
-// another of its type, how to be packed, and what to do once it is whole: it carries the target.
+// A partial result of a reduction: some contributions, merged. It has a type, can be merged with
+// another of its type and packed, and holds the target for the complete result.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -11,12 +11,12 @@
 #include <memory>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Pe;
 class Partial;
 
-/// How to make a partial result from bytes; one static object for each (value, operation).
+/// Makes a partial result from bytes; one static object for each pair of value type and operation.
 struct PartialKind : Registered {
   using Unpack = std::unique_ptr<Partial> (*)(Reader&);
   PartialKind(std::string_view name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
@@ -31,14 +31,14 @@ class Partial {
   virtual ~Partial() = default;
 
   [[nodiscard]] virtual const PartialKind& kind() const = 0;
-  /// Takes in another of the same kind; a different kind is misuse.
+  /// Merges another partial result of the same kind; a different kind is misuse.
   virtual void merge(Partial&& other) = 0;
   virtual void pack(Writer& ar) const = 0;
-  /// The whole result goes to the target, on this PE.
+  /// Sends the complete result to the target; runs on this PE.
   virtual void complete(Pe& pe) = 0;
 };
 
-/// A partial result that may be packed in a message, or absent.
+/// A partial result in a message; may be absent.
 struct PartialBox {
   std::unique_ptr<Partial> held;
 
@@ -62,4 +62,4 @@ struct PartialBox {
   }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -5,7 +5,7 @@
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/core/check.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 template <Track track>
@@ -71,10 +71,10 @@ bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
 
 void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cause) {
   into.cause.met = std::max(into.cause.met, cause.met);
-  if (cause.led_by - 1 >= into.cause.led_by - 1) return;  // 0, which is none, comes last
+  if (cause.led_by - 1 >= into.cause.led_by - 1) return;  // 0 means none and is ordered last
   into.cause.led_by = cause.led_by;
   (void)learn(number, cause.led_by);
-  // A PE below that was asked or has reported may hold an element that waits for this.
+  // A PE below that was asked or has reported may hold an element that waits for this number.
   if (into.asked || into.children > 0) ask_children(number, into.cause);
 }
 
@@ -131,7 +131,8 @@ std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_
   leave(next);
   enter(later);
   if (later < next_report_) {
-    send_late_change(next, later);  // one message: the root completes no number between the two
+    send_late_change(
+        next, later);  // one message, so that the root completes no number between the two changes
   } else {
     remove_member(next);
     add_member(later);
@@ -165,7 +166,7 @@ void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> va
   pe_.completion().sent(epoch);
   leave(number);
   enter(number + 1);
-  if (number < next_report_) {  // this PE has reported: the element came later
+  if (number < next_report_) {  // this PE has reported: the element arrived later
     Report late;
     late.number = number;
     late.n = 1;
@@ -203,7 +204,7 @@ void ReductionTree::advance() {
       }
       return;
     }
-    // Who is born here after the report has met what led to it.
+    // An element that is created here after the report has received what led to the reduction.
     if (gathering.cause.met > collection_.broadcasts().applied()) {
       awaited_broadcast_ = gathering.cause.met;
       return;
@@ -236,7 +237,7 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
 
 void ReductionTree::on_report(Report&& report) {
   if (report.late) {
-    // A late death may name a number below those complete: it changes the membership from now on.
+    // A late destruction may name a number that is complete: it changes the membership from now on.
     if (report.n == 0 && report.number < next_complete_) {
       members_ += report.change;
     } else {
@@ -260,7 +261,7 @@ void ReductionTree::on_report(Report&& report) {
   merge(gathering, report.shares);
   take(report.number, gathering, report.cause);
   ++gathering.children;
-  // So may one that has reported without knowing.
+  // The same holds for a PE that reported without this knowledge.
   if (report.cause.led_by != gathering.cause.led_by && !gathering.asked)
     ask_children(report.number, gathering.cause);
   advance();
@@ -285,11 +286,11 @@ void ReductionTree::complete_if_whole() {
     if (done.value) {
       const Context before = pe_.context();
       pe_.context().epoch = done.shares.size() == 1 ? done.shares.front().epoch : EpochId{};
-      pe_.context().led_by = 0;  // what follows from the result, whoever contributed last, is new
+      pe_.context().led_by = 0;  // the result is not led to by the last contributor's broadcast
       done.value->complete(pe_);
       pe_.context() = before;
     }
-    // The result has been sent on the same account before the contributions are done with.
+    // The result has been sent in the same epoch before the contributions are settled.
     for (const EpochShare& share : done.shares)
       for (std::uint64_t k = 0; k < share.n; ++k) pe_.completion().processed(share.epoch);
   }
@@ -302,7 +303,8 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
                          " contributions on ", pe_.id(), "; it waits for ",
                          ready(number) ? "other PEs" : words_.missing_before(number + 1)));
   }
-  // Elements that came after this PE had reported; what they have yet to give is not complete.
+  // Elements that arrived after this PE had reported; the reductions that they have yet to
+  // contribute to are incomplete.
   if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
     lines.push_back(text(collection_.name(), ": ", words_.noun, " ", elements_at_.lowest(),
                          " waits for ", words_.missing_before(next_report_)));
@@ -313,4 +315,4 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,31 +1,32 @@
 // Reductions of one collection, seen from one PE. Contributions are numbered; number r is complete
-// when as many elements have contributed to r as are members of r, wherever they were when they
-// did.
+// when as many elements have contributed to r as are members of r, on whichever PEs they
+// contributed.
 //
 // The PEs form a tree. A PE reports r to its parent once every local element has contributed to r
-// and every child has reported r; the report carries the merged contributions, how many they are,
-// and the change of membership since r − 1: births that join at r, deaths before r. A contribution
-// of an element that arrived after the report goes to the root by itself, as does a late death. The
-// root completes r once it has all reports and the count equals the membership:
+// and every child has reported r. The report carries the merged contributions, their count, and the
+// change of membership since r − 1: elements that join at r, and elements destroyed before r. A
+// contribution of an element that arrived after the report goes directly to the root, as does a
+// late destruction. The root completes r once it has all reports and the count equals the
+// membership:
 //
-//     contributions that arrived ≤ contributions made ≤ members ≤ members reported     (births are
-//     never late)
+//     contributions that arrived ≤ contributions made ≤ members ≤ members reported
 //
-// A PE without elements reports as soon as it hears of r: from a child, or from a parent that is
-// ready and still waits.
+// (an element that joins is never reported late). A PE without elements reports as soon as it
+// learns of r: from a child, or from a parent that is ready and still waits.
 //
-// Where an element joins: one that is born on a PE after broadcast b was applied there meets b + 1,
-// b + 2, …, and joins at the first number that this PE has not reported and that no broadcast up to
-// b led to. (A broadcast leads to the contributions of its entry method, and of the coroutines and
-// messages among the array's elements that follow from it.) It is neither ahead nor behind:
+// Where an element joins: an element that is created on a PE after broadcast b was applied there
+// receives b + 1, b + 2, …, and joins at the first number that this PE has not reported and that no
+// broadcast up to b led to. (A broadcast leads to the contributions of its entry method, and of the
+// coroutines and messages among the array's elements that follow from it.) The element is neither
+// ahead nor behind:
 //
-//     ahead    Reports and Begins carry the last broadcast that any contributor had met, and a PE
-//              reports once it has applied that one. So an element that is born after its PE has
-//              reported r has met, or was born after, all that led to r. The result of r is
-//              delivered after all PEs have reported r: where it is known, no birth that follows
-//              from it, on whichever PE, meets those broadcasts or joins at r.
-//     behind   A newborn element holds up the number it joins at until it contributes. Once its PE
-//              learns of a contribution to r that a broadcast up to b led to, it joins after r. So
+//     ahead    Reports and Begins carry the last broadcast that any contributor had received, and a
+//              PE reports once it has applied that one. So an element that is created after its PE
+//              has reported r has received, or was created after, all that led to r. The result of
+//              r is delivered after all PEs have reported r: once it is known, no element that is
+//              created as a consequence, on any PE, receives those broadcasts or joins at r.
+//     behind   A new element delays the number it joins at until it contributes. Once its PE learns
+//              of a contribution to r that a broadcast up to b led to, the element joins after r. So
 //              r is complete without it, and the broadcast that was started when r was known finds
 //              it at the number that this broadcast leads to.
 #pragma once
@@ -42,30 +43,30 @@
 #include <string>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Pe;
 class Collection;
 
-/// Contributions on account of one epoch: the epoch is not done while they are under way.
+/// Contributions in one epoch: the epoch is not done while they are under way.
 struct EpochShare {
   EpochId epoch;
   std::uint64_t n = 0;
 };
 
-/// What contributions follow from: the last broadcast that any of the contributors had met, and the
-/// first that led to one of the contributions (0: none is known to).
+/// The causes of contributions: the last broadcast that any of the contributors had received, and
+/// the first that led to one of the contributions (0: none is known).
 struct Cause {
   std::uint64_t met = 0;
   std::uint32_t led_by = 0;
 };
 
-/// Which tree of a collection: its own, or a second one over members that a library gives it (the
+/// The tree of a collection: its own, or a second one over members that a library defines (the
 /// balancer's barrier).
 enum class Track : std::uint8_t { own, second };
 
-/// How a tree speaks of itself in reports: "reduction", and the members that have not contributed
-/// to the numbers below one.
+/// The words of a tree in reports: "reduction", and the members that have not contributed to all
+/// numbers below one.
 struct TreeWords {
   std::string noun;
   std::function<std::string(std::uint32_t)> missing_before;
@@ -75,26 +76,26 @@ class ReductionTree {
  public:
   ReductionTree(Pe& pe, Collection& collection, Track track, PeId root, TreeWords words);
 
-  /// The number at which an element joins that is born here now, unless it is postponed.
+  /// The number at which an element joins that is created here now, unless it is postponed.
   [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
 
   void add_member(std::uint32_t at) { changes_[at] += 1; }
-  /// An element on this PE that was born after this broadcast, and is a member from `next` on: the
-  /// number at which it joins by what is known now.
+  /// For an element on this PE that was created after this broadcast and is a member from `next`
+  /// on: the number at which it joins by present knowledge.
   [[nodiscard]] std::uint32_t postpone(std::uint32_t next, std::uint32_t created_after);
-  /// An element died that would have contributed to `next`.
+  /// An element was destroyed that would have contributed to `next`.
   void remove_member(std::uint32_t next);
 
-  /// An element with that next number is on this PE from now on, or no more.
+  /// An element with this next number is on this PE from now on, or no longer.
   void enter(std::uint32_t next);
   void leave(std::uint32_t next);
 
-  /// An element on this PE contributes to `number`; it was entered with it and is now entered with
-  /// the next.
+  /// An element on this PE contributes to `number`; it was entered with `number` and is now entered
+  /// with the next.
   void contribute(std::uint32_t number, std::unique_ptr<Partial> value, const Cause& cause = {});
 
-  /// The contributions to `number` gathered here, if one of this kind and epoch can be added to
-  /// them where they are; null otherwise: then contribute(). Whoever adds calls added().
+  /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
+  /// place; otherwise null, then call contribute(). After adding, the caller calls added().
   [[nodiscard]] Partial* open_sum(std::uint32_t number, const PartialKind& kind, EpochId epoch) {
     if (current_ == nullptr || current_number_ != number || !current_->value ||
         current_->kind != &kind || current_->shares.front().epoch != epoch)
@@ -104,10 +105,10 @@ class ReductionTree {
   /// A contribution was added to open_sum().
   void added(std::uint32_t number, const Cause& cause);
 
-  /// Looks whether something can be reported; called after elements came or went.
+  /// Checks whether something can be reported; called after elements came or left.
   void advance();
 
-  /// The collection ends: contributions that are gathered here are dropped.
+  /// The collection ends: contributions gathered here are dropped.
   void end();
 
   /// This PE has applied a broadcast, at whose start `n_complete` reductions were complete.
@@ -116,15 +117,15 @@ class ReductionTree {
     if (broadcast == awaited_broadcast_) [[unlikely]]
       advance();
   }
-  /// At the root: how many are complete.
+  /// At the root: the number of complete reductions.
   [[nodiscard]] std::uint32_t n_complete() const { return next_complete_; }
 
   struct Report {
     std::uint32_t number = 0;
     std::uint64_t n = 0;
     std::int64_t change = 0;
-    bool late = false;  // to the root, outside the tree
-    // Of a late report: the element that leaves the membership of `number` joins there; 0: none.
+    bool late = false;  // sent directly to the root
+    // In a late report: the element that leaves the membership of `number` joins there; 0: none.
     std::uint32_t joins = 0;
     Cause cause;
     PartialBox value;
@@ -149,10 +150,10 @@ class ReductionTree {
     std::uint64_t n = 0;
     std::int64_t change = 0;
     std::int32_t children = 0;
-    bool known = false;  // somebody contributed, reported or asked
-    bool asked = false;  // the children were told to begin
+    bool known = false;  // an element contributed, or a PE reported or asked
+    bool asked = false;  // the children were asked to begin
     std::unique_ptr<Partial> value;
-    const PartialKind* kind = nullptr;  // of the value
+    const PartialKind* kind = nullptr;  // kind of the value
     Cause cause;
     std::vector<EpochShare> shares;
   };
@@ -169,9 +170,9 @@ class ReductionTree {
   void send(PeId to, Report&& report);
   void send_late_change(std::uint32_t number, std::uint32_t joins);
   void ask_children(std::uint32_t number, const Cause& cause);
-  /// A broadcast led to a contribution to `number`. False if that says nothing new.
+  /// Records that a broadcast led to a contribution to `number`. Returns false if that was known.
   bool learn(std::uint32_t number, std::uint32_t led_by);
-  /// A contribution to `number` follows from this.
+  /// Merges the cause of a contribution to `number`.
   void take(std::uint32_t number, Gathering& into, const Cause& cause);
   void take(std::uint32_t number, const Cause& cause);
 
@@ -181,13 +182,13 @@ class ReductionTree {
   const TreeWords words_;
   PeId root_, parent_;
   std::vector<PeId> children_;
-  std::uint32_t next_report_ = 0;  // this PE has reported all numbers below
+  std::uint32_t next_report_ = 0;  // this PE has reported all lower numbers
   std::map<std::uint32_t, Gathering> gathering_;
   std::map<std::uint32_t, std::int64_t> changes_;
   LedTo led_to_;
-  std::uint64_t awaited_broadcast_ = 0;  // a report waits until it is applied
-  NumberCounts elements_at_;             // local elements by their next number
-  Gathering* current_ = nullptr;         // in gathering_, to which an element contributed last
+  std::uint64_t awaited_broadcast_ = 0;  // reports wait until this broadcast is applied
+  NumberCounts elements_at_;             // counts of local elements by their next number
+  Gathering* current_ = nullptr;         // the entry of gathering_ that got the last contribution
   std::uint32_t current_number_ = 0;
 
   // At the root: numbers in the order of completion.
@@ -200,4 +201,4 @@ class ReductionTree {
   std::int64_t members_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

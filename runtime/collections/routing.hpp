@@ -1,10 +1,9 @@
-// How a message finds its element: where it goes from a PE that does not have it, what the home
-// does with it, and creation on demand.
+// Routing of messages to elements: forwarding, the home's decisions, and creation on demand.
 #pragma once
 
 #include "runtime/collections/array_of.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 template <class Index>
 void ArrayOf<Index>::forward(CallMessage* message, const Place& place) {
@@ -32,7 +31,7 @@ auto ArrayOf<Index>::unpark(const Index& index, Parked why) -> std::vector<CallM
   record->unpark(why);
   Messages& messages = parked(why);
   const auto at = messages.find(index);
-  if (at == messages.end()) return {};  // a grave to which no message came
+  if (at == messages.end()) return {};  // no message arrived after the destruction
   std::vector<CallMessage*> out = std::move(at->second);
   messages.erase(at);
   return out;
@@ -53,11 +52,11 @@ void ArrayOf<Index>::learn(const Index& index, const Place& place) {
   table_.at(index).set(IndexState::hint, place.pe, place.version);
 }
 
-/// `record`: what this PE knows of the index, or null.
+/// `record` is this PE's knowledge of the index, or null.
 template <class Index>
 void ArrayOf<Index>::route(CallMessage* message, Record* record) {
   if (pe_.constructed_index() != nullptr) [[unlikely]] {
-    // A constructor sent it: it may be to an element that is made next, or to its own.
+    // A constructor sent it: its element may be constructed next, or may be the sender.
     arrive_later(message);
     return;
   }
@@ -79,7 +78,7 @@ void ArrayOf<Index>::route(CallMessage* message, Record* record) {
       forward(message, Place{record->pe(), record->version()});
       return;
     }
-    // The home waits with it for news of that place: it would send it back here until then.
+    // The home keeps the message until it learns of that place; before, it would send it back here.
     message->tried = record->version();
     message->ask = false;
   }
@@ -106,7 +105,7 @@ void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
   const bool destroyed = state == IndexState::destroyed;
   const Version last = destroyed ? record->version() : Version{};
   if (message->tried.incarnation > last.incarnation) {
-    park(message, Parked::waiting);  // it knows a life that this home has yet to hear of
+    park(message, Parked::waiting);  // it refers to an incarnation that this home does not know yet
     return;
   }
   const bool revives =
@@ -125,7 +124,7 @@ void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
     grant(index, Version{last.incarnation + 1, 1});
   } else {
     message->ask = true;
-    message->tried = last;  // not to be misled by a hint to the life that is over
+    message->tried = last;  // so that a hint to the former incarnation is not followed
     pe_.send(message->asker, message);
   }
 }
@@ -170,12 +169,12 @@ void ArrayOf<Index>::on_request(const Request& request) {
   reroute(unpark(request.index, Parked::waiting));
 }
 
-/// This PE creates the element now: with the first constructor call that waits for it, or by
-/// default.
+/// Creates the element on this PE: with the first constructor call that waits for it, or by the
+/// default constructor.
 template <class Index>
 void ArrayOf<Index>::grant(const Index& granted, Version version) {
   const Index index = granted;
-  // What waits stays parked until the constructor is through: if it throws, nothing is lost.
+  // Messages stay parked until the constructor has returned: if it throws, nothing is lost.
   CallMessage* insert = nullptr;
   Record& record = table_.at(index);
   record.set_unknown();
@@ -229,7 +228,7 @@ void ArrayOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [index, messages] : pending_)
     say(index, messages, "whose creation was not answered");
   for (const auto& [index, messages] : destroyed_)
-    say(index, messages, "whose death was not noted");
+    say(index, messages, "whose destruction was not confirmed");
 }
 
-}  // namespace tess
+}  // namespace tess::detail

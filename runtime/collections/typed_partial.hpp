@@ -1,4 +1,4 @@
-// The partial results of reductions over values of type T: merged as they come, or kept with their
+// Partial results of reductions over values of type T: merged immediately, or kept with their
 // indices and combined in order at the end.
 #pragma once
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// Merges as it goes.
+/// Merges immediately.
 template <class T, class Op>
 class MergedPartial final : public Partial {
  public:
@@ -75,4 +75,4 @@ class OrderedPartial final : public Partial {
   Callback<T> target_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

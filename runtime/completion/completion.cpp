@@ -3,10 +3,10 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/text.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// The PE that opened the epoch; of the run, PE 0.
+/// The PE that opened the epoch; PE 0 for epoch 0.
 PeId coordinator_of(EpochId epoch) {
   return PeId{static_cast<std::int32_t>(epoch.value & 0xffffffU)};
 }
@@ -58,7 +58,7 @@ void Completion::close(EpochId epoch) {
 
 void Completion::check_later(EpochId epoch) {
   Tally& tally = *find(epoch);
-  tally.reported = Counters{~std::uint64_t{0}, ~std::uint64_t{0}};  // unlike any sum
+  tally.reported = Counters{~std::uint64_t{0}, ~std::uint64_t{0}};  // different from any sum
   list(epoch, tally);
 }
 
@@ -71,7 +71,7 @@ bool Completion::report_epochs() {
     const auto at = tallies_.find(epoch);
     if (at == tallies_.end()) continue;
     at->second.listed = false;
-    forget_last();  // each time: reporting one epoch may have counted for the next of this list
+    forget_last();  // in each pass: reporting one epoch may have counted messages of the next
     any = report(epoch, at->second) || any;
   }
   return any;
@@ -103,7 +103,7 @@ bool Completion::report(EpochId epoch, Tally& tally) {
 }
 
 void Completion::on_report(const Report& report) {
-  if (is_over(report.epoch)) {  // the runtime's own work may still be counted there
+  if (is_over(report.epoch)) {  // the runtime may still count its own work there
     messages_.send(report.from, End{report.epoch});
     return;
   }
@@ -119,7 +119,7 @@ void Completion::on_report(const Report& report) {
 
 void Completion::on_answer(const Answer& answer) {
   Tally* tally = find(answer.epoch);
-  if (tally == nullptr) return;  // the end of the epoch overtook it
+  if (tally == nullptr) return;  // the end of the epoch overtook this message
   tally->unanswered = false;
   list(answer.epoch, *tally);
 }
@@ -192,7 +192,7 @@ void Completion::echo(Relay& relay) {
   processed(parent);
 }
 
-/// Frees the epoch's tally here and on all PEs below that have one.
+/// Frees the epoch's tallies here and on all PEs below.
 void Completion::end(EpochId epoch) {
   const auto at = tallies_.find(epoch);
   if (at == tallies_.end()) return;
@@ -218,4 +218,4 @@ void Completion::describe_open(std::vector<std::string>& lines) const {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,4 +1,4 @@
-// When is it all done? One mechanism answers for every scoped epoch and for the whole run (epoch
+// When is all work done? One mechanism answers for every scoped epoch and for the whole run (epoch
 // 0).
 //
 // Each PE counts, for each epoch, the messages it sent and those it processed (cumulative, 64
@@ -6,14 +6,13 @@
 // suspended coroutine) is sent and not yet processed. The epoch's coordinator is the PE that opened
 // it.
 //
-//   1. A PE that runs dry reports to its parent in the coordinator's tree the counters of itself
-//   and
-//      of all PEs below it. It reports again only after the parent has answered, and the parent
-//      answers when it runs dry itself. So a busy PE is seldom disturbed, and an epoch costs a PE a
-//      few messages per round trip, however fine the work is.
+//   1. An idle PE reports the counters of itself and of all PEs below it to its parent in the
+//      coordinator's tree. It reports again only after the parent has answered, and the parent
+//      answers when it is idle itself. So a busy PE is seldom disturbed, and an epoch costs a PE a
+//      few messages per round trip, however small the tasks are.
 //   2. When the coordinator's sums agree, sent = processed, it sends a wave over the tree of all
 //      PEs, which adds up fresh readings.
-//   3. If the wave's sum of *sent* equals the *processed* reported before the wave began, nothing
+//   3. If the wave's sum of *sent* equals the *processed* reported before the wave began, no message
 //      can be under way: both counters only grow, so
 //          processed(reported) ≤ processed(now) ≤ sent(now) ≤ sent(wave)
 //      are all equal (Mattern's four-counter argument; a report is a reading of an earlier,
@@ -23,8 +22,8 @@
 //           /        \      │ ▼ answer                 ▼           │
 //
 // Epoch 0 counts every hop of every message except its own control messages: while any epoch's
-// control message is under way the run is not over. Its end is quiescence; what still waits then
-// will wait for ever (census.hpp).
+// control message is under way the run is not over. Its end is quiescence. Whatever still waits
+// then will wait for ever; Runtime reports it as a deadlock.
 #pragma once
 
 #include "runtime/base/spanning_tree.hpp"
@@ -38,9 +37,9 @@
 #include <string>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// Messages sent and processed on account of one epoch.
+/// The numbers of messages of one epoch that were sent and processed.
 struct Counters {
   std::uint64_t sent = 0;
   std::uint64_t processed = 0;
@@ -53,10 +52,10 @@ struct Counters {
 /// One PE's part in one epoch: its own counters and the last report of each child in the tree.
 struct Tally {
   Counters own;
-  std::array<Counters, SpanningTree::fan_out> below{};  // by slot of the child
+  std::array<Counters, SpanningTree::fan_out> below{};  // by the child's slot
   Counters reported;        // sum() at the last report; at the coordinator, at the last check
-  std::uint8_t heard = 0;   // a bit per child that has reported
-  std::uint8_t owed = 0;    // a bit per child whose report has no answer yet
+  std::uint8_t heard = 0;   // one bit per child that has reported
+  std::uint8_t owed = 0;    // one bit per child whose report has no answer yet
   bool unanswered = false;  // the report of this PE has no answer yet
   bool listed = false;      // in Completion::changed_
 
@@ -67,7 +66,7 @@ struct Tally {
   }
 };
 
-/// What the PEs send each other about epochs.
+/// The messages about epochs between PEs.
 namespace completion {
 struct Report {
   EpochId epoch;
@@ -92,8 +91,8 @@ struct End {
 };
 }  // namespace completion
 
-/// How a PE's Completion sends; the scheduler implements it. What it sends of epoch 0 is no hop of
-/// epoch 0: it would keep alive what it measures.
+/// Sends the messages of a PE's Completion; the scheduler implements it. A message about epoch 0 is
+/// not counted as a hop of epoch 0, since it would prolong what it measures.
 class CompletionMessages {
  public:
   CompletionMessages() = default;
@@ -105,14 +104,14 @@ class CompletionMessages {
   virtual void send(PeId to, const completion::Wave& wave) = 0;
   virtual void send(PeId to, const completion::Echo& echo) = 0;
   virtual void send(PeId to, const completion::End& end) = 0;
-  /// Epoch 0 is done; on PE 0.
+  /// Epoch 0 is done. Called on PE 0.
   virtual void quiescent() = 0;
 
  protected:
   ~CompletionMessages() = default;
 };
 
-/// One PE's part in the completion of all epochs.
+/// One PE's part in detecting the completion of all epochs.
 class Completion {
  public:
   using Report = completion::Report;
@@ -121,14 +120,15 @@ class Completion {
   using Echo = completion::Echo;
   using End = completion::End;
 
-  /// Of the PE `here` of `n_pes`.
+  /// The part of PE `here` of `n_pes`.
   Completion(CompletionMessages& messages, PeId here, std::int32_t n_pes);
 
-  /// Epoch 0: every hop of every message. Inline, on the path of each message.
+  /// Counts a hop of a message in epoch 0. Inline, since every message passes here.
   void hop_sent() { ++run_.own.sent; }
   void hop_processed() { ++run_.own.processed; }
 
-  /// Another epoch: a message of a user, once at its sending and once when all it does is done.
+  /// Counts a user's message in another epoch: once when it is sent, and once when all its work is
+  /// done.
   void sent(EpochId epoch) {
     if (epoch.value != 0) ++own(epoch).sent;
   }
@@ -136,27 +136,27 @@ class Completion {
     if (epoch.value != 0) ++own(epoch).processed;
   }
 
-  /// Opens an epoch that this PE coordinates; `on_done` runs on this PE once all is done. What is
-  /// to belong to it is sent with this number; close() says that the body has run.
+  /// Opens an epoch that this PE coordinates; `on_done` runs on this PE once the epoch is done.
+  /// Messages belong to it if they are sent with its number; close() marks the end of the body.
   EpochId open(EpochId parent, std::function<void()> on_done);
   void close(EpochId epoch);
 
-  /// Reports what changed of the scoped epochs, and answers reports. True if anything was sent or
+  /// Reports changes of the scoped epochs and answers reports. Returns true if anything was sent or
   /// done.
   bool report_epochs();
-  /// True if there is something of the run (epoch 0) to report or to answer.
+  /// True if epoch 0 has something to report or to answer.
   [[nodiscard]] bool run_changed() const { return run_.owed != 0 || run_.sum() != run_.reported; }
-  /// Reports and answers for the run, when report_epochs() has nothing more to do: a report of an
-  /// epoch is sent on account of no message, so the run's counters do not show that it is due. True
-  /// if anything was sent or done.
+  /// Reports and answers for epoch 0. Called when report_epochs() has nothing more to do: the
+  /// report of a scoped epoch belongs to no message, so the counters of epoch 0 do not show that it
+  /// is due. Returns true if anything was sent or done.
   bool report_run() { return report(EpochId{}, run_); }
 
-  /// Epochs that this PE keeps counters of.
+  /// The number of epochs that this PE keeps counters of.
   [[nodiscard]] std::size_t n_epochs() const { return tallies_.size(); }
-  /// One line for each epoch that this PE opened and that is not done.
+  /// Appends one line for each unfinished epoch that this PE opened.
   void describe_open(std::vector<std::string>& lines) const;
 
-  // The messages arrive.
+  // Handlers of the messages.
   void on_report(const Report& report);
   void on_answer(const Answer& answer);
   void on_wave(const Wave& wave);
@@ -177,8 +177,8 @@ class Completion {
     std::int32_t waiting = 0;
   };
 
-  /// The counters of an epoch, to be changed now. The last one is at hand: runs of messages are of
-  /// one epoch.
+  /// The counters of an epoch, to be changed immediately. The last epoch's are cached, since
+  /// consecutive messages often belong to one epoch.
   [[nodiscard]] Counters& own(EpochId epoch) {
     if (epoch != last_epoch_) [[unlikely]]
       find_own(epoch);
@@ -189,13 +189,13 @@ class Completion {
   [[nodiscard]] Tally* find(EpochId epoch);
   void list(EpochId epoch, Tally& tally);
   [[nodiscard]] SpanningTree tree_of(EpochId epoch) const;
-  /// On the coordinator: the epoch has ended.
+  /// True on the coordinator if the epoch has ended.
   [[nodiscard]] bool is_over(EpochId epoch) const;
-  /// True if anything was sent or done. The tally may be gone afterwards.
+  /// Returns true if anything was sent or done. The tally may not exist afterwards.
   bool report(EpochId epoch, Tally& tally);
   void check(EpochId epoch, Counters sum);
-  /// On the coordinator: checks when this PE runs dry, whether or not a counter has changed by
-  /// then.
+  /// On the coordinator: requests a check for when this PE is idle, whether or not a counter
+  /// changes until then.
   void check_later(EpochId epoch);
   void echo(Relay& relay);
   void end(EpochId epoch);
@@ -205,13 +205,13 @@ class Completion {
   const PeId here_;
   const std::int32_t n_pes_;
   Tally run_;                                                              // of epoch 0
-  boost::unordered_flat_map<EpochId, Tally, std::hash<EpochId>> tallies_;  // of the others
+  boost::unordered_flat_map<EpochId, Tally, std::hash<EpochId>> tallies_;  // of other epochs
   std::vector<EpochId> changed_;  // something to report or to answer
-  EpochId last_epoch_{};          // 0: none. It is listed, and tallies_ has not changed since.
+  EpochId last_epoch_{};          // 0: none. It is listed, and tallies_ is unchanged since.
   Counters* last_ = nullptr;
   boost::unordered_flat_map<EpochId, Coordinated, std::hash<EpochId>> coordinated_;
   boost::unordered_flat_map<EpochId, Relay, std::hash<EpochId>> relays_;
   std::uint64_t n_opened_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// Bytes on their way: a block of memory that is never filled with zeros, and grows only when asked.
-// A std::vector would zero what is about to be overwritten and move what it has when it grows.
+// The bytes of a message: a block of memory that is never filled with zeros and grows only on
+// request. A std::vector would fill new bytes with zeros that are overwritten at once.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 #include <span>
 #include <utility>
 
-namespace tess {
+namespace tess::detail {
 
 class Buffer {
  public:
   using value_type = std::byte;
 
   Buffer() = default;
-  /// `n` bytes of any value.
+  /// `n` bytes of unspecified value.
   explicit Buffer(std::size_t n) { resize(n); }
   Buffer(Buffer&& other) noexcept
       : bytes_(std::move(other.bytes_)),
@@ -42,7 +42,7 @@ class Buffer {
 
   /// Keeps the memory.
   void clear() { size_ = 0; }
-  /// Room for `n` bytes in all; keeps what is there.
+  /// Reserves memory for `n` bytes in total; keeps the contents.
   void reserve(std::size_t n) {
     if (n <= capacity_) return;
     auto larger = std::make_unique_for_overwrite<std::byte[]>(n);
@@ -50,7 +50,7 @@ class Buffer {
     bytes_ = std::move(larger);
     capacity_ = n;
   }
-  /// New bytes have any value.
+  /// New bytes have unspecified values.
   void resize(std::size_t n) {
     reserve(n);
     size_ = n;
@@ -61,7 +61,7 @@ class Buffer {
     std::memcpy(bytes_.get() + size_, bytes.data(), bytes.size());
     size_ += bytes.size();
   }
-  /// What is reserved and not used.
+  /// The memory that is reserved and not used yet.
   [[nodiscard]] std::span<std::byte> room() { return {bytes_.get() + size_, capacity_ - size_}; }
 
  private:
@@ -70,4 +70,4 @@ class Buffer {
   std::size_t capacity_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,6 +1,7 @@
-// Bugs and misuse: TESS_CHECK is on in every build, says where it stands and what was expected,
-// adds what the runtime is doing on this thread (PE, array, index, entry, epoch), and ends the job.
-// TESS_DEBUG_CHECK is for what is costly: it compiles away unless CHECKS=all.
+// Checks for bugs and misuse. TESS_CHECK is on in every build. It prints the condition, its place
+// and what was expected, adds what the runtime does on this thread (PE, array, index, entry,
+// epoch), and ends the job. TESS_DEBUG_CHECK is for costly checks: it is compiled only with
+// CHECKS=all.
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -11,12 +12,11 @@ namespace tess {
 [[noreturn]] void check_failed(const char* condition, const char* file, int line,
                                const std::string& message);
 
-/// Who describes the context of this thread; the scheduler installs it. May be null.
+/// Describes the context of this thread. The scheduler installs it; it may be null.
 using CheckContext = std::string (*)();
 void set_check_context(CheckContext describe) noexcept;
 
-/// How the job is ended after the text has been printed; a machine over many processes installs its
-/// abort.
+/// Ends the job after the text has been printed. A machine of many processes installs its abort.
 using CheckAbort = void (*)();
 void set_check_abort(CheckAbort end) noexcept;
 

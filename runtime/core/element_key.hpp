@@ -1,5 +1,5 @@
-// Who an element is, whatever its array's type of index: what loads, traffic and balance rounds
-// name elements by.
+// The identity of an element, independent of its array's type of index. Loads, traffic and balance
+// rounds refer to elements by it.
 #pragma once
 
 #include "runtime/core/hash.hpp"

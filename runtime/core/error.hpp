@@ -1,5 +1,5 @@
-// Bad input: what a user can put right. Thrown before anything is sent; programs print what() in
-// one line and exit with 2. A bug is not an Error: see check.hpp.
+// Bad input, which the user can correct. It is thrown before anything is sent; programs print
+// what() in one line and exit with 2. A bug is not an Error: see check.hpp.
 #pragma once
 
 #include "runtime/core/text.hpp"
@@ -22,7 +22,7 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-/// Throws an Error whose message is the parts in a row.
+/// Throws an Error whose message is the parts, one after the other.
 template <class... Parts>
 [[noreturn]] void fail(ErrorCode code, const Parts&... parts) {
   throw Error(code, text(parts...));

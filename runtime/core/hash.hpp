@@ -1,5 +1,5 @@
-// Bit mixing: the one hash of the project, and the one generator of pseudo-random numbers. Both are
-// the same on every machine, because homes of indices and seeded schedules are computed from them.
+// The project's only hash and its only generator of pseudo-random numbers. Both give the same
+// values on every machine, because homes of indices and seeded schedules are computed from them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace tess {
   return x ^ (x >> 31U);
 }
 
-/// In [0, 1), by the upper bits of a hash.
+/// A number in [0, 1) from the upper bits of a hash.
 [[nodiscard]] constexpr double unit(std::uint64_t hash) noexcept {
   return static_cast<double>(hash >> 11U) * 0x1p-53;
 }
@@ -36,12 +36,12 @@ namespace tess {
   return mix(hash ^ tail);
 }
 
-/// A small generator (SplitMix64): one word of state, any seed is good.
+/// A small generator (SplitMix64): its state is one word, and any seed is good.
 class Random {
  public:
   explicit Random(std::uint64_t seed) noexcept : state_(seed) {}
   std::uint64_t operator()() noexcept { return mix(state_ += 0x9e3779b97f4a7c15U); }
-  /// 0 … n − 1; n must not be 0. The bias is below n / 2^64.
+  /// A number of 0 … n − 1; n must not be 0. The bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) noexcept { return (*this)() % n; }
   /// [0, 1)
   double unit() noexcept { return tess::unit((*this)()); }

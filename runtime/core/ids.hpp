@@ -1,5 +1,5 @@
-// Strong identifiers: a PE cannot be passed where a process or an array is meant. All are plain
-// integers in memory, totally ordered, hashable, and travel in messages as they are.
+// Strong identifiers: a PE cannot be passed where a process or an array is meant. They are plain
+// integers in memory, totally ordered and hashable, and messages carry them unchanged.
 #pragma once
 
 #include <compare>
@@ -31,7 +31,7 @@ struct CollectionId {
 };
 std::ostream& operator<<(std::ostream& out, CollectionId id);
 
-/// A scoped epoch; 0 is the whole run.
+/// A scoped epoch. Epoch 0 is the whole run.
 struct EpochId {
   std::uint64_t value = 0;
   friend constexpr auto operator<=>(const EpochId&, const EpochId&) = default;

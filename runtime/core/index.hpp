@@ -1,6 +1,6 @@
-// What names an element of an array: a tuple of one to six coordinates, or any type that compares
-// equal, packs and hashes: a string, the user's struct. A Range is the dense box [0, extent) of
-// such tuples.
+// The index of an array's element: a tuple of one to six coordinates, or any type that compares
+// equal, packs and hashes, such as a string or a struct of the user. A Range is the dense box [0,
+// extent) of such tuples.
 #pragma once
 
 #include "runtime/core/hash.hpp"
@@ -40,7 +40,7 @@ struct Index6 {
   friend auto operator<=>(const Index6&, const Index6&) = default;
 };
 
-/// Hash of an index: the same in every process, since homes are computed from it.
+/// The hash of an index. It is the same in every process, since homes are computed from it.
 template <class Index>
 struct IndexHash {
   using is_avalanching = void;
@@ -104,8 +104,8 @@ struct Range {
   }
 };
 
-/// The homes of a dense range: ranks in equal blocks over the PEs. The division is by a multiple of
-/// the inverse where that is exact.
+/// The homes of a dense range: equal blocks of ranks over the PEs. The division by the block size
+/// is a multiplication by its inverse where that is exact.
 class BlockMap {
  public:
   BlockMap(const Range& range, std::int32_t n_pes)
@@ -123,10 +123,10 @@ class BlockMap {
 
  private:
   std::uint64_t size_, n_pes_;
-  std::uint64_t inverse_ = 0;  // of the size, times 2^64, rounded up
+  std::uint64_t inverse_ = 0;  // 2^64 divided by the block size, rounded up
 };
 
-/// A dense range of one to six axes. Negative extents are an Error.
+/// A dense range of one to six axes. Throws Error for a negative extent.
 template <class... Extent>
 [[nodiscard]] Range range(Extent... extents) {
   static_assert(sizeof...(Extent) >= 1 && sizeof...(Extent) <= 6, "a range has one to six axes");
@@ -139,7 +139,7 @@ template <class... Extent>
   return out;
 }
 
-/// No element at first: all are inserted or created on demand.
+/// The range of a sparse array: it has no elements at first; all are inserted or created on demand.
 inline constexpr Range sparse{};
 
 /// Coordinates of an index that a Range can enumerate.

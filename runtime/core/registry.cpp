@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace tess {
+namespace tess::detail {
 
 Registered::Registered(std::string_view name) : name_(name) {
   Registry::all().push_back(this);
@@ -41,4 +41,4 @@ const Registered& Registry::at(std::uint32_t id) {
   return *all()[id];
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,7 +1,7 @@
-// Names of what travels: entry methods, system actions, reduction types. Each is one static object
-// that enters itself here before main(); at start-up the names are sorted and numbered, so that a
-// number means the same in every process. A hash of all names is compared across processes:
-// binaries that differ are found before the first message.
+// The names of entry methods, system actions and reduction types. Each is one static object that
+// registers itself before main(). At start-up the names are sorted and numbered, so a number means
+// the same in every process. Processes compare a hash of all names, so that different binaries are
+// found before the first message.
 #pragma once
 
 #include "runtime/core/type_name.hpp"
@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// A thing with a name and, once the registry is sealed, a number. Static storage only.
+/// An object with a name and, once the registry is sealed, a number. It must have static storage.
 class Registered {
  public:
   explicit Registered(std::string_view name);
@@ -36,9 +36,9 @@ class Registry {
   /// Numbers everything that is registered, in the order of names. Idempotent; called before the
   /// first PE starts.
   static void seal();
-  /// Equal in two processes exactly when they know the same names (64-bit hash).
+  /// Equal in two processes if and only if both have registered the same names (a 64-bit hash).
   [[nodiscard]] static std::uint64_t fingerprint();
-  /// The thing of that number; throws tess::Error for a number that is none.
+  /// The object of that number. Throws tess::Error for an unknown number.
   [[nodiscard]] static const Registered& at(std::uint32_t id);
 
  private:
@@ -46,4 +46,4 @@ class Registry {
   static std::vector<Registered*>& all();
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,8 +1,8 @@
-// Does a type read what it writes? Packs a value, unpacks it, packs again, and compares; what
-// differs is named by its place in serialize() (or in the aggregate) and its type. Builds with
-// CHECKS=all ask this of the arguments of every message, and of every element that migrates (it is
-// made again from its bytes then, on whatever machine); tests may ask it of any type. So
-// serialize() is called when nobody moves, and has no effect but on its archive and the members
+// Checks that a type reads what it writes: packs a value, unpacks it, packs the copy, and compares.
+// A difference is reported by its place in serialize() (or in the aggregate) and its type. Builds
+// with CHECKS=all check the arguments of every message and every element that migrates (which is
+// then rebuilt from its bytes on every machine); tests may check any type. serialize() may
+// therefore be called although nothing migrates, so it must change only its archive and the members
 // that it reads.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace tess {
 
 namespace detail {
 
-/// An archive that keeps the bytes and the type of each member by itself.
+/// An archive that keeps the bytes and the type of each member separately.
 class MemberWriter {
  public:
   static constexpr bool is_reading = false;
@@ -33,7 +33,7 @@ class MemberWriter {
   std::vector<Member> members;
 };
 
-/// Equal up to order: a hashed container may hold the same in another order.
+/// Equal up to order: a hashed container may write equal contents in another order.
 [[nodiscard]] inline bool same_bytes(std::vector<std::byte> a, std::vector<std::byte> b) {
   if (a == b) return true;
   std::sort(a.begin(), a.end());
@@ -57,7 +57,7 @@ template <class T>
 }  // namespace detail
 
 /// Empty if the copy packs like the original; otherwise one line that names the first member that
-/// does not.
+/// differs.
 template <class T>
 [[nodiscard]] std::string difference(const T& original, const T& copy) {
   const auto before = detail::members_of(original), after = detail::members_of(copy);

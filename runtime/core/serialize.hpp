@@ -1,17 +1,22 @@
-// Values to bytes and back, for messages that cross processes and for chares that migrate.
+// Serialisation of values, for messages between processes and for chares that migrate.
 //
-//   struct Edge { int step; std::vector<double> values; };          an aggregate needs nothing
-//   class Block { template <class Ar> void serialize(Ar& ar) { ar(grid_, tile_, edges_); } };   one
-//   function, both ways
+//     // an aggregate needs nothing
+//     struct Edge { int step; std::vector<double> values; };
+//     // any other class has one function for both directions
+//     class Block {
+//      public:
+//       template <class Ar>
+//       void serialize(Ar& ar) { ar(grid_, tile_, edges_); }
+//     };
 //
-// Numbers and enums are copied as they are: all processes of a job run the same binary on the same
+// Numbers and enums are copied bit by bit: all processes of a job run the same binary on the same
 // kind of machine. Standard and Boost containers, pair, tuple, optional, variant and unique_ptr
-// work when what they hold does. A raw pointer does not compile. Reading checks every length
-// against what is left and throws tess::Error.
+// work if their contents do. A raw pointer does not compile. Reading compares every length with the
+// bytes that are left and throws tess::Error.
 //
-// In a message to another process a large vector of numbers is not copied: its bytes are attached,
-// and travel from where they stand to where they are read. The stream holds its length, with the
-// highest bit set.
+// In a message to another process a large vector of numbers is not copied: its memory is attached
+// and sent from where it is to where it is read. The stream holds only its length, with the highest
+// bit set.
 //
 //     bytes:     | header | index | length of the vector, attached | next member … |
 //     attached:  | the numbers of the vector |
@@ -72,7 +77,7 @@ template <class T>
 struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::bool_constant<!std::is_same_v<T, bool>> {};
-/// What it gives to an archive are its own members, never a temporary: they may be attached.
+/// The type passes only its own members to an archive, never a temporary: they may be attached.
 template <class T>
 concept GivesMembers = requires { typename T::GivesMembers; };
 template <class T>
@@ -101,7 +106,7 @@ consteval bool fields_are_bitwise(std::index_sequence<I...> /*fields*/) {
          (sizeof(boost::pfr::tuple_element_t<I, T>) + ... + 0) == sizeof(T);
 }
 
-/// True if a copy of the bytes is a copy of the value, with no padding between.
+/// True if the value can be copied as bytes and has no padding.
 template <class T>
 consteval bool is_bitwise() {
   if constexpr (Number<T>) {
@@ -124,15 +129,17 @@ consteval bool is_bitwise() {
 
 }  // namespace serialization
 
-/// A value whose bytes are the value.
+/// A value that can be copied as bytes.
 template <class T>
 concept Bitwise = serialization::is_bitwise<std::remove_cv_t<T>>();
 
-/// Memory that belongs to a message but is not copied into its bytes. The message keeps it alive
-/// until it has been sent, or `keepers` does.
+namespace detail {
+
+/// Memory that belongs to a message but is not copied into its bytes. The message or one of
+/// `keepers` keeps it alive until it has been sent.
 struct Attached {
-  std::size_t least_bytes = 0;  ///< of an attached vector; a smaller one is copied
-  std::size_t n_bytes = 0;      ///< of all parts
+  std::size_t least_bytes = 0;  ///< a smaller vector is copied
+  std::size_t n_bytes = 0;      ///< sum over the parts
   std::vector<std::span<const std::byte>> parts;
   std::vector<std::shared_ptr<const void>> keepers;
 
@@ -144,21 +151,23 @@ struct Attached {
   }
 };
 
-/// Where the attached parts of a message are to be put, as its members are read one after the
-/// other.
+/// The destinations of a message's attached parts, collected while its members are read in order.
 struct Places {
-  std::span<const std::uint64_t> sizes;      ///< of the parts, as announced
-  std::vector<std::span<std::byte>>& taken;  ///< where each of them belongs
+  std::span<const std::uint64_t> sizes;      ///< of the parts, as announced by the sender
+  std::vector<std::span<std::byte>>& taken;  ///< the destination of each part
 };
 
-/// Writes values as bytes: at the end of a buffer, which grows; or into memory of a fixed size.
-/// What does not fit there is counted and not written, so n_bytes() says how much is needed.
+}  // namespace detail
+
+/// Writes values as bytes, either to the end of a buffer, which grows, or to memory of a fixed
+/// size. Bytes that do not fit into fixed memory are counted and not written, so n_bytes() gives
+/// the size that is needed.
 class Writer {
  public:
   static constexpr bool is_reading = false;
 
-  explicit Writer(Buffer& out) : grows_(&out) {}
-  explicit Writer(std::span<std::byte> out, Attached* attached = nullptr)
+  explicit Writer(detail::Buffer& out) : grows_(&out) {}
+  explicit Writer(std::span<std::byte> out, detail::Attached* attached = nullptr)
       : begin_(out.data()),
         at_(out.data()),
         end_(out.data() + out.size()),
@@ -177,14 +186,15 @@ class Writer {
     } else if (grows_ != nullptr) {
       grows_->append({static_cast<const std::byte*>(data), n});
     } else {
-      end_ = at_;  // nothing after it is written either
+      end_ = at_;  // nothing that follows is written either
     }
   }
   /// The bytes written, or needed.
   [[nodiscard]] std::size_t n_bytes() const { return n_bytes_; }
 
-  /// Attaches memory that `keeper` holds; false if it is to be copied. Then the length is written,
-  /// with Reader::attached_bit if it is attached (shared_array.hpp).
+  /// Attaches memory that `keeper` holds. Returns false if the memory has to be copied instead. The
+  /// caller then writes the length, with Reader::attached_bit if the memory is attached
+  /// (shared_array.hpp).
   bool attach(std::span<const std::byte> memory, std::shared_ptr<const void> keeper) {
     if (attached_ == nullptr || !fits(memory.size())) return false;
     add_part(memory);
@@ -192,7 +202,7 @@ class Writer {
     return true;
   }
   [[nodiscard]] std::size_t position() const { return n_bytes_; }
-  /// Writes over eight bytes that were written at that position.
+  /// Overwrites eight bytes that were written at this position.
   void patch(std::size_t position, std::uint64_t value) {
     if (grows_ != nullptr) {
       std::memcpy(grows_->data() + (grows_->size() - n_bytes_ + position), &value, sizeof value);
@@ -202,7 +212,7 @@ class Writer {
   }
 
  private:
-  /// While it lives nothing is attached but by attach().
+  /// During its lifetime memory is attached only by attach().
   class CopiesAll {
    public:
     explicit CopiesAll(Writer& writer)
@@ -220,7 +230,7 @@ class Writer {
   void put(const T& value);
   [[nodiscard]] bool fits(std::size_t n_bytes) const {
     return n_bytes != 0 && n_bytes >= attached_->least_bytes &&
-           attached_->parts.size() < Attached::most_parts;
+           attached_->parts.size() < detail::Attached::most_parts;
   }
   void add_part(std::span<const std::byte> memory) {
     attached_->parts.push_back(memory);
@@ -231,12 +241,12 @@ class Writer {
   std::byte* at_ = nullptr;
   std::byte* end_ = nullptr;
   std::size_t n_bytes_ = 0;
-  Buffer* grows_ = nullptr;
-  Attached* attached_ = nullptr;
+  detail::Buffer* grows_ = nullptr;
+  detail::Attached* attached_ = nullptr;
   bool may_attach_ = false;
 };
 
-/// The bytes that a value takes when written.
+/// The number of bytes that a value takes when written.
 template <class T>
 [[nodiscard]] std::size_t written_bytes(const T& value) {
   Writer count{std::span<std::byte>()};
@@ -244,13 +254,13 @@ template <class T>
   return count.n_bytes();
 }
 
-/// Takes values from bytes, in the order they were written. Throws tess::Error when the bytes end
-/// too early.
+/// Reads values in the order in which they were written. Throws tess::Error if the bytes end too
+/// early.
 class Reader {
  public:
   static constexpr bool is_reading = true;
 
-  explicit Reader(std::span<const std::byte> in, Places* places = nullptr)
+  explicit Reader(std::span<const std::byte> in, detail::Places* places = nullptr)
       : in_(in), places_(places) {}
 
   template <class... T>
@@ -268,29 +278,30 @@ class Reader {
     if (n != 0) std::memcpy(data, in_.data() + at_, n);
     at_ += n;
   }
-  /// The next n bytes, without a copy; valid as long as the bytes that are read.
+  /// The next n bytes without a copy; valid as long as the memory that is read.
   [[nodiscard]] std::span<const std::byte> view(std::size_t n) {
     need(n);
     at_ += n;
     return in_.subspan(at_ - n, n);
   }
   [[nodiscard]] std::size_t remaining() const { return in_.size() - at_; }
-  /// A reader of the next n bytes alone; attached parts are placed by both.
+  /// A reader of only the next n bytes; both readers take attached parts from the same list.
   [[nodiscard]] Reader part(std::size_t n) { return Reader(view(n), places_); }
 
-  /// The next attached part, of that many bytes, is to be put there. It comes later; nothing may
-  /// look at that memory, or move it, before the message runs.
+  /// Sets the destination of the next attached part, which has this many bytes. The part arrives
+  /// later: until the message runs, this memory may neither be read nor moved.
   void place(void* memory, std::size_t n_bytes) {
     if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
         places_->sizes[places_->taken.size()] != n_bytes)
       fail(ErrorCode::bad_value, "message has no attached part of ", n_bytes, " bytes here");
     places_->taken.emplace_back(static_cast<std::byte*>(memory), n_bytes);
   }
-  /// The length of what may be attached, in things of that many bytes each; second: it is.
+  /// The length of data that may be attached, in items of `bytes_each` bytes, and whether it is
+  /// attached.
   [[nodiscard]] std::pair<std::size_t, bool> length_or_attached(std::size_t bytes_each) {
     const auto n = take<std::uint64_t>();
     if ((n & attached_bit) == 0) return {checked_length(n, bytes_each), false};
-    // Before memory of that size is asked for.
+    // Checked before memory of that size is requested.
     const std::uint64_t length = n & ~attached_bit;
     if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
         places_->sizes[places_->taken.size()] / bytes_each != length)
@@ -319,7 +330,7 @@ class Reader {
 
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
-  Places* places_;
+  detail::Places* places_;
 };
 
 template <class T>
@@ -349,8 +360,8 @@ void Writer::put(const T& value) {
     using Each = typename T::value_type;
     const std::uint64_t n = value.size();
     if constexpr (Bitwise<Each>) {
-      // A string may hold its bytes in itself, which moves: it is copied.
-      if constexpr (IsVector<T>::value || std::is_same_v<T, Buffer>) {
+      // A string is copied: it may hold its bytes inside itself, and the string moves.
+      if constexpr (IsVector<T>::value || std::is_same_v<T, detail::Buffer>) {
         if (may_attach_ && fits(n * sizeof(Each))) {
           put(n | Reader::attached_bit);
           add_part(std::as_bytes(std::span(value.data(), n)));
@@ -364,7 +375,7 @@ void Writer::put(const T& value) {
       for (const auto& item : value) put(item);
     }
   } else if constexpr (Growable<T>) {
-    // The reader moves what it has read into the container: nothing is read in place.
+    // The reader moves each element into the container, so nothing may be placed by address.
     const CopiesAll scope(*this);
     put(static_cast<std::uint64_t>(value.size()));
     for (const auto& item : value) put(item);
@@ -411,7 +422,7 @@ void Reader::get(T& value) {
     }(std::make_index_sequence<std::variant_size_v<T>>());
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
-    if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, Buffer>)) {
+    if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, detail::Buffer>)) {
       const auto [n, attached] = length_or_attached(sizeof(Each));
       if constexpr (IsVector<T>::value)
         resize_uninitialised(value, n);
@@ -463,7 +474,7 @@ template <class T>
   return out;
 }
 
-/// The value of these bytes; throws tess::Error if they end early or are too many.
+/// The value that these bytes hold. Throws tess::Error if they end early or if bytes are left over.
 template <class T>
 [[nodiscard]] T from_bytes(std::span<const std::byte> bytes) {
   Reader read(bytes);

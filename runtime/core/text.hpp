@@ -1,5 +1,5 @@
-// Values written one behind the other, for messages to people. Needs no stream header: the headers
-// that all programs include are meant to compile fast.
+// Concatenates values as text for messages to people. It needs no stream header, because the
+// headers that all programs include must compile fast.
 #pragma once
 
 #include <concepts>
@@ -16,7 +16,7 @@ void append_number(std::string& out, std::int64_t value);
 void append_number(std::string& out, std::uint64_t value);
 void append_number(std::string& out, double value);  // six digits
 
-/// What `write` puts into a stream.
+/// Appends what `write` prints into a stream.
 void append_streamed(std::string& out, const void* value,
                      void (*write)(std::ostream& out, const void* value));
 
@@ -41,14 +41,14 @@ void append(std::string& out, const Part& part) {
 
 }  // namespace detail
 
-/// What text() can write.
+/// Types that text() can write.
 template <class Part>
 concept Writable = std::integral<Part> || std::floating_point<Part> ||
                    std::convertible_to<const Part&, std::string_view> ||
                    requires(std::ostream& out, const Part& part) { out << part; };
 
-/// The parts, written one behind the other: characters, numbers, strings, and whatever has an
-/// operator<< of its own.
+/// The parts as text, one after the other: characters, numbers, strings, and any type with its own
+/// operator<<.
 template <Writable... Parts>
 [[nodiscard]] std::string text(const Parts&... parts) {
   std::string out;
@@ -56,8 +56,8 @@ template <Writable... Parts>
   return out;
 }
 
-/// The text in one line: control characters become escapes (\n, \x1b). For messages that quote what
-/// somebody has typed.
+/// The text in one line: control characters become escapes (\n, \x1b). It is used for messages that
+/// quote user input.
 [[nodiscard]] std::string one_line(std::string_view text);
 
 }  // namespace tess

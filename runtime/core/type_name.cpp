@@ -3,10 +3,10 @@
 namespace tess {
 
 std::string plain_name(std::string_view compiler_name) {
-  // "tess::Call<Block, &Block::step>" is Block::step to a reader.
+  // "tess::detail::Call<Block, &Block::step>" is shown as Block::step.
   if (const auto function = compiler_name.rfind('&'); function != std::string_view::npos) {
     compiler_name.remove_prefix(function + 1);
-    // To the bracket that closes what is before the name: "&Block<A<int> >::step>".
+    // Find the bracket that closes the part before the name: "&Block<A<int> >::step>".
     int depth = 0;
     std::size_t end = 0;
     for (; end < compiler_name.size(); ++end) {
@@ -17,7 +17,8 @@ std::string plain_name(std::string_view compiler_name) {
     compiler_name = compiler_name.substr(0, end);
   }
   std::string name(compiler_name);
-  for (const std::string_view noise : {"{anonymous}::", "(anonymous namespace)::", "tess::"}) {
+  for (const std::string_view noise :
+       {"{anonymous}::", "(anonymous namespace)::", "tess::detail::", "tess::"}) {
     for (auto at = name.find(noise); at != std::string::npos; at = name.find(noise))
       name.erase(at, noise.size());
   }

@@ -1,4 +1,4 @@
-// Names of types and functions as the compiler spells them, and as a reader does.
+// Names of types and functions, as the compiler spells them and in a readable form.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 namespace tess {
 
 namespace naming {
-// g++ writes "… [with T = Block; std::string_view = …]".
+// g++ prints "… [with T = Block; std::string_view = …]".
 [[nodiscard]] constexpr std::string_view between(std::string_view name, std::string_view begin) {
   const auto from = name.find(begin) + begin.size();
   auto to = name.rfind("; std::string_view");

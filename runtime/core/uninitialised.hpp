@@ -1,5 +1,5 @@
-// A vector's new elements without their zeros, for numbers that are overwritten at once: by a copy
-// from a message, or by MPI. With a megabyte the zeros cost as much as the copy.
+// Resizes a vector without filling it with zeros, for numbers that are overwritten at once by a
+// copy from a message or by MPI. For a megabyte, writing the zeros costs as much as the copy.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@ namespace tess {
 
 #if defined(__GLIBCXX__) && !defined(_GLIBCXX_SANITIZE_VECTOR)
 namespace detail {
-/// libstdc++ keeps first, last and end of a vector in _M_impl, which a derived class may reach.
+/// libstdc++ keeps the begin, the end and the end of the storage in _M_impl, which a derived class
+/// can access.
 template <class T>
 struct VectorEnd : std::vector<T> {
   static void set(std::vector<T>& vector, std::size_t n) {
@@ -20,7 +21,7 @@ struct VectorEnd : std::vector<T> {
 };
 }  // namespace detail
 
-/// Makes `vector` have `n` elements of any value; what it held is lost.
+/// Gives `vector` `n` elements of unspecified value; its former contents are lost.
 template <class T>
 void resize_uninitialised(std::vector<T>& vector, std::size_t n) {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

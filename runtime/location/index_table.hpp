@@ -1,17 +1,16 @@
-// All that a PE knows of the indices of one array: one small record per index, found by one
-// look-up.
+// The index table of one array on one PE: one small record per index, found by one lookup.
 //
-//     state      on the PE that …                              the record holds
-//     here       has the element                               the element
-//     hint       heard where the element was                   PE and version
-//     departed   had it; its home has not confirmed the move   PE and version
-//     live       is the home; the element landed elsewhere     PE and version
-//     moving     is the home; the element left it              PE and version
-//     dead       is the home; the element was destroyed        the version of its last life
+//     state      on the PE that …                                record
+//     here       has the element                                 the element
+//     hint       has heard where the element was                 PE and version
+//     departed   had it; its home has not confirmed the move     PE and version
+//     live       is the home; the element is on another PE       PE and version
+//     moving     is the home; the element left this PE           PE and version
+//     destroyed  is the home; the element was destroyed          the version of its last life
 //
 // A record may also say that messages to the index are parked here (Parked). Indices within the
-// range that the array was created with are found by their rank, in pages that are made when they
-// are first used; others in a hash table with linear probing, one cache line for most look-ups.
+// array's initial range are found by their rank, in pages that are allocated on first use; others
+// in a hash table with linear probing, usually within one cache line.
 #pragma once
 
 #include "runtime/base/huge_pages.hpp"
@@ -25,15 +24,15 @@
 #include <memory>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 enum class IndexState : std::uint8_t { unknown, here, hint, departed, live, moving, destroyed };
 
-/// Why messages to an index are parked, a bit each; the messages are in a table of their own.
+/// Why messages to an index are parked; one bit each. The messages are in a separate table.
 enum class Parked : std::uint8_t {
-  pending = 1,    ///< this PE asked the home for leave to create the element
-  destroyed = 2,  ///< the element died here, and its home has not noted that
-  waiting = 4,    ///< this is the home: there is no element, or it is not known where
+  pending = 1,    ///< this PE has asked the home for permission to create the element
+  destroyed = 2,  ///< the element was destroyed here; the home has not confirmed it
+  waiting = 4,    ///< this is the home: there is no element, or its place is unknown
 };
 
 template <class Element>
@@ -42,7 +41,8 @@ class IndexRecord {
   [[nodiscard]] IndexState state() const { return state_; }
   /// The element, if it is here; null otherwise.
   [[nodiscard]] Element* element() const { return state_ == IndexState::here ? element_ : nullptr; }
-  /// Where it is, as far as known, and since which version; not if it is here.
+  /// The element's PE as far as known, and the version of this knowledge; not if the element is
+  /// here.
   [[nodiscard]] PeId pe() const { return pe_; }
   [[nodiscard]] Version version() const { return version_; }
 
@@ -56,7 +56,7 @@ class IndexRecord {
     state_ = state;
   }
   void set_unknown() { set(IndexState::unknown, PeId{}, Version{}); }
-  /// What was departed is a hint from now on, which may be forgotten.
+  /// Turns `departed` into a hint, which may be forgotten.
   void confirm() { state_ = IndexState::hint; }
 
   [[nodiscard]] bool parks(Parked why) const {
@@ -71,7 +71,7 @@ class IndexRecord {
 
  private:
   union {
-    Element* element_;  // state here
+    Element* element_;  // if the state is `here`
     Version version_{};
   };
   PeId pe_{};
@@ -79,7 +79,7 @@ class IndexRecord {
   std::uint8_t parked_ = 0;
 };
 
-/// A pointer or reference to a record holds until the next record is made or erased.
+/// A pointer or reference to a record is valid until the next record is made or erased.
 template <class Index, class Element>
 class IndexTable {
  public:
@@ -103,7 +103,7 @@ class IndexTable {
     }
   }
 
-  /// Makes the record if there is none.
+  /// Creates the record if it does not exist.
   Record& at(const Index& index) {
     if constexpr (Coordinates<Index>) {
       if (const std::int64_t rank = rank_in(range_, index); rank >= 0) {
@@ -135,7 +135,7 @@ class IndexTable {
     if (entries_[at].used && entries_[at].record.empty()) erase(at);
   }
 
-  /// Calls f(index, record) for each record; f may change records, but neither make nor free any.
+  /// Calls f(index, record) for each record; f may change records but must not create or erase any.
   template <class F>
   void for_each(F f) const {
     if constexpr (Coordinates<Index>) {
@@ -158,7 +158,7 @@ class IndexTable {
       if (record.state() == IndexState::hint) record.set_unknown();
     };
     for_each(forget);
-    // An entry that moves into the place of one that is erased is looked at again.
+    // An entry that moves into the place of an erased one is checked again.
     for (std::size_t at = 0; at < entries_.size();) {
       if (entries_[at].used && entries_[at].record.empty()) {
         erase(at);
@@ -178,7 +178,7 @@ class IndexTable {
   static constexpr std::size_t page_size = 256;
   using Page = std::array<Record, page_size>;
 
-  /// Where the search for an index begins.
+  /// The slot at which the search for an index begins.
   [[nodiscard]] std::size_t ideal(const Index& index) const {
     __extension__ using Wide = unsigned __int128;
     return static_cast<std::size_t>(Wide{IndexHash<Index>()(index)} * entries_.size() >> 64U);
@@ -196,11 +196,11 @@ class IndexTable {
       entries_[at] = std::move(entry);
     }
   }
-  /// Moves the entries behind it forward, so that no search stops at the gap.
+  /// Erases an entry and moves later ones forward, so that no search stops at the gap.
   void erase(std::size_t gap) {
     for (std::size_t at = next(gap); entries_[at].used; at = next(at)) {
       const std::size_t begin = ideal(entries_[at].index);
-      // It may move to the gap unless its search begins behind the gap.
+      // The entry may move to the gap unless its search begins behind the gap.
       const bool behind = gap <= at ? gap < begin && begin <= at : gap < begin || begin <= at;
       if (behind) continue;
       entries_[gap] = std::move(entries_[at]);
@@ -216,4 +216,4 @@ class IndexTable {
   std::size_t n_entries_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

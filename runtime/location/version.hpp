@@ -1,17 +1,17 @@
-// What orders the news of where an element is.
+// The order of location updates.
 #pragma once
 
 #include <compare>
 #include <cstdint>
 
-namespace tess {
+namespace tess::detail {
 
-/// Which life of an index (incarnation) and which place of that life (epoch, one more for each
-/// migration). Later knowledge has the greater version; {0, 0} is no knowledge.
+/// The life of an index (incarnation) and the place of that life (epoch, which each migration
+/// increments). Later knowledge has the greater version; {0, 0} means that nothing is known.
 struct Version {
   std::uint32_t incarnation = 0;
   std::uint32_t epoch = 0;
   friend constexpr auto operator<=>(const Version&, const Version&) = default;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -11,12 +11,12 @@
 #include <string_view>
 #include <thread>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// Large messages come and go: their memory stays with the process, as glibc would have it after
-/// the first free of a block of 32 MiB. Otherwise each megabyte is 256 page faults, which cost more
-/// than the transfer. Called before there are threads.
+/// Keeps the memory of freed large messages in the process, as glibc does by itself after the first
+/// free of a block of 32 MiB. Otherwise each megabyte costs 256 page faults, which is more than the
+/// transfer. Called before any thread is started.
 void keep_freed_memory() {
 #if defined(__GLIBC__)
   constexpr int largest_kept = 32 << 20;
@@ -47,7 +47,7 @@ class MpiMachine final : public Machine, private Network {
     for (std::int32_t i = 0; i < pes_per_process_; ++i) mail_.push_back(transport_->new_mail());
     team_ = std::make_unique<Team>(PeId{process_.value * pes_per_process_}, pes_per_process_,
                                    placement_, static_cast<Network*>(this));
-    must(MPI_Barrier(session_.comm()), "MPI_Barrier");  // the clocks start together
+    must(MPI_Barrier(session_.comm()), "MPI_Barrier");  // the clocks start at the same time
     start_ = std::chrono::steady_clock::now();
   }
 
@@ -67,7 +67,8 @@ class MpiMachine final : public Machine, private Network {
   void stop() override { team_->stop(); }
 
   [[noreturn]] void abort(int exit_code) override {
-    // The lock is held for microseconds, unless its holder is what went wrong: then go on without.
+    // The lock is held for microseconds, unless its holder is the cause of the abort: then continue
+    // without it.
     for (int i = 0; i < 1000 && !transport_->lock.try_lock(); ++i)
       std::this_thread::sleep_for(std::chrono::microseconds(10));
     MPI_Abort(MPI_COMM_WORLD, exit_code);
@@ -91,7 +92,7 @@ class MpiMachine final : public Machine, private Network {
       if (!held) return false;
       transport_->push_out(mail);
       transport_->take_in(mail);
-    }  // before the program unpacks: others may go on
+    }  // before the program unpacks, so that others may continue
     const bool any = mail.size() != 0;
     for (const auto bytes : mail.items()) program.receive(pe, bytes);
     for (auto& in : mail.large) take(program, pe, std::move(in));
@@ -110,11 +111,11 @@ class MpiMachine final : public Machine, private Network {
     }
   }
 
-  Topology topology_;  // first: MPI starts threads of its own
+  Topology topology_;  // before MPI, which starts threads of its own
   Session session_;
   Placement placement_;
   std::unique_ptr<Transport> transport_;
-  std::vector<Mail> mail_;  // one a PE
+  std::vector<Mail> mail_;  // one per PE
   std::unique_ptr<Team> team_;
   std::chrono::steady_clock::time_point start_;
 };
@@ -137,11 +138,11 @@ bool speaks_for_job() {
 std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv, MpiOptions options) {
   if (options.pes_per_process < 0)
     fail(ErrorCode::bad_argument, "cannot run on ", options.pes_per_process,
-         " PEs a process: give a positive number");
+         " PEs per process: give a positive number");
   if (options.chunk_bytes == 0 || options.chunk_bytes > std::size_t{1} << 30)
     fail(ErrorCode::bad_argument, "a chunk of ", options.chunk_bytes,
          " bytes cannot be sent: give 1 to 1073741824");
   return std::make_unique<MpiMachine>(argc, argv, options);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,36 +1,46 @@
-// Several processes, each with the same number of PEs, joined by MPI. Within a process it is the
-// threads machine; between processes buffers travel as MPI messages that any PE moves along, one at
-// a time under a try-lock: an idle PE whenever it finds nothing to do, a busy one every 30 us.
-// There is no dedicated core and nothing blocks. mpi.h is included by the mpi_* files alone:
+// Several processes with the same number of PEs each, connected by MPI. Within a process it works
+// like the threads machine. Between processes buffers travel as MPI messages; any PE makes them
+// progress, one PE at a time under a try-lock: an idle PE whenever it finds no work, a busy one
+// every 30 us. There is no dedicated core, and nothing blocks. Only the mpi_* files include mpi.h:
 //
-//     mpi             the machine             mpi_transport   buffers out and in, large ones in
-//     chunks mpi_session     start, end, agreement   mpi_requests    what MPI has under way
-//                                             mpi_mail        what has come, until the program has
-//                                             it
+//     mpi             the machine
+//     mpi_session     start, end and agreement
+//     mpi_transport   buffers to and from other processes, large ones in chunks
+//     mpi_requests    MPI requests under way
+//     mpi_mail        received buffers until the program takes them
 #pragma once
 
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/team.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 struct MpiOptions {
-  std::int32_t pes_per_process = 1;  // 0: the process's share of the cores it may use
+  std::int32_t pes_per_process = 1;  // 0: the process's share of the cores that it may use
   Pinning pinning = Pinning::automatic;
-  std::size_t chunk_bytes = std::size_t{1} << 30;  // at most; MPI counts with 31 bits
+  std::size_t chunk_bytes = std::size_t{1} << 30;  // largest chunk; MPI counts with 31 bits
 };
 
-/// True if this process was started by mpirun. Asks the environment, not MPI.
+/// True if mpirun started this process. Reads the environment, not MPI.
 [[nodiscard]] bool under_mpirun();
 
-/// True of process 0 under mpirun, and of a process that was started alone: the one that says what
-/// a job has to say once, before MPI is there to ask.
+/// True for process 0 under mpirun, and for a process that was started alone: this process prints
+/// what a job prints once, before MPI is initialised.
 [[nodiscard]] bool speaks_for_job();
 
-/// Initialises MPI if nobody has, and then finalises it when destroyed. Every process of the job
-/// calls it; the thread that does drives the process's first PE. Throws Error for options that
-/// cannot be, or that differ between processes.
+/// Initialises MPI unless the program has done so, and then finalises it when destroyed. Every
+/// process of the job calls it; the calling thread drives the process's first PE. Throws Error for
+/// options that are invalid or that differ between processes.
 [[nodiscard]] std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv,
                                                         MpiOptions options);
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::make_mpi_machine;
+using detail::MpiOptions;
+using detail::speaks_for_job;
+using detail::under_mpirun;
 
 }  // namespace tess

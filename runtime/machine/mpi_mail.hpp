@@ -1,6 +1,7 @@
-// What one call of progress() received, for the PE that made it. A buffer of the usual size stays
-// in the block it was received into, and the receiver is given an empty block of ours for it: no
-// bytes are copied, no memory is allocated. What is larger comes on its own. One thread's.
+// The buffers that one call of progress() received, for the calling PE. A buffer of the usual size
+// stays in the block into which it was received, and the receiver gets an empty block in exchange:
+// no bytes are copied and no memory is allocated. Larger buffers arrive separately. Used by one
+// thread.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
@@ -12,27 +13,27 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// A large buffer, or a parcel, that comes in chunks: first its bytes, unless they came with the
-/// announcement; then, where the program wants them, its parts.
+/// A large buffer or a parcel that arrives in chunks: first its bytes, unless the announcement
+/// contained them; then its parts, to the places that the program names.
 struct Incoming : Link {
   int source = 0;
   int tag = 0;
-  std::vector<std::uint64_t> sizes;  // of the parts; a buffer has none
+  std::vector<std::uint64_t> sizes;  // sizes of the parts; a buffer has none
   Buffer bytes;
   std::size_t n_requests = 0;  // not yet complete
   bool has_bytes = false;
-  Link* message = nullptr;                   // once the program has seen the bytes
+  Link* message = nullptr;                   // set once the program has seen the bytes
   std::vector<std::span<std::byte>> places;  // of the parts
 };
 
-/// What is on its way out, until MPI has all of it.
+/// A transfer that is being sent, until MPI is done with its memory.
 struct Outgoing : Link {
   int to = 0;
   int tag = 0;
   bool announces = false;
-  Buffer first;  // all of it, or its announcement
+  Buffer first;  // the whole buffer, or the announcement
   Parcel rest;
   std::size_t n_requests = 0;  // not yet complete
 };
@@ -41,13 +42,13 @@ class Mail {
  public:
   using Block = std::unique_ptr<std::byte[]>;
 
-  /// A call of progress() that always finds something leaves the rest to the next one.
+  /// One call of progress() takes at most so many items and leaves the rest to the next call.
   static constexpr std::size_t most_items = 16;
 
-  /// Of each block, here and at the receiver.
+  /// The size of each block, here and at the receiver.
   explicit Mail(std::size_t block_bytes) : block_bytes_(block_bytes) {}
 
-  /// Frees what was sent, too; not under the lock, for that is work of the program.
+  /// Also frees what was sent. Not called under the lock, since freeing runs code of the program.
   void clear() {
     items_.clear();
     large.clear();
@@ -57,7 +58,7 @@ class Mail {
   [[nodiscard]] std::size_t size() const { return items_.size() + large.size(); }
   [[nodiscard]] std::span<const std::span<const std::byte>> items() const { return items_; }
 
-  /// Takes a block that is filled so far, and leaves an empty one in its place.
+  /// Takes a block that is filled up to `n_bytes` and leaves an empty one in its place.
   void exchange(Block& block, std::size_t n_bytes) {
     items_.emplace_back(block.get(), n_bytes);
     if (n_used_ == blocks_.size())
@@ -65,7 +66,7 @@ class Mail {
     std::swap(block, blocks_[n_used_++]);
   }
 
-  /// Of each the bytes have come, or all parts.
+  /// Large transfers whose bytes have arrived, or all of whose parts have.
   std::vector<std::unique_ptr<Incoming>> large;
   std::vector<std::unique_ptr<Outgoing>> sent;
 
@@ -76,4 +77,4 @@ class Mail {
   std::vector<std::span<const std::byte>> items_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,4 +1,4 @@
-// Requests of MPI under way, each a part of a transfer: a buffer that goes out, or comes in.
+// MPI requests under way. Each is a part of a transfer: a buffer that is sent or received.
 #pragma once
 
 #include "runtime/machine/mpi_session.hpp"
@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// A transfer counts its requests that are not yet complete: `n_requests`. One thread at a time.
+/// A transfer counts its incomplete requests in `n_requests`. Used by one thread at a time.
 template <class Transfer>
 class Requests {
  public:
@@ -20,7 +20,7 @@ class Requests {
     ++transfer->n_requests;
   }
 
-  /// Calls done(transfer) for each transfer whose last part has completed; forgets those parts.
+  /// Calls done(transfer) for each transfer whose last part has completed, and forgets these parts.
   template <class Done>
   void poll(Done done) {
     if (requests_.empty()) return;
@@ -49,4 +49,4 @@ class Requests {
   std::vector<int> places_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 void must(int result, const char* call) {
   if (result == MPI_SUCCESS) return;
@@ -91,4 +91,4 @@ Session::Sharing Session::sharing(const std::string& cpuset) const {
           static_cast<std::int32_t>(std::count(all.begin(), all.begin() + me, mine))};
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,6 +1,5 @@
-// MPI around the messages: from its first use to its last, what a failed call means, what processes
-// find out about one another before the first message. Called by one thread, before and after the
-// run.
+// The use of MPI apart from messages: initialisation and finalisation, failed calls, and the data
+// that processes exchange before the first message. One thread calls it, before and after the run.
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -10,14 +9,14 @@
 #include <cstdint>
 #include <string>
 
-namespace tess {
+namespace tess::detail {
 
-/// Ends the job, naming the call and the process, if a call of MPI failed: a process is lost, or
-/// memory.
+/// If a call of MPI failed, ends the job and names the call and the process: a process or memory is
+/// lost.
 void must(int result, const char* call);
 
-/// MPI from first use to last; leaves it alone if the program had initialised it. Throws Error if
-/// MPI knows no threads.
+/// Initialises and finalises MPI, unless the program has initialised it. Throws Error if MPI does
+/// not support threads.
 class Session {
  public:
   Session(int& argc, char**& argv);
@@ -25,17 +24,17 @@ class Session {
   Session& operator=(const Session&) = delete;
   ~Session();
 
-  /// Of all processes of the job, and of this machine alone.
+  /// The communicator of all processes of the job, and of those on this host.
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] std::int32_t n_processes() const;
   [[nodiscard]] std::int32_t process() const;
 
-  /// True, on all processes alike, if all gave the same number.
+  /// True on all processes if all passed the same number; otherwise false on all.
   [[nodiscard]] bool agree(std::uint64_t mine) const;
-  /// The least of what the processes give.
+  /// The smallest number that any process passed.
   [[nodiscard]] std::int32_t least(std::int32_t mine) const;
 
-  /// The processes of this host that share exactly our cores, and our place among them.
+  /// The processes of this host that share exactly this process's cores, and its rank among them.
   struct Sharing {
     std::int32_t n_processes = 1;
     std::int32_t place = 0;
@@ -48,4 +47,4 @@ class Session {
   bool ours_ = false;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -5,16 +5,17 @@
 #include <mutex>
 #include <thread>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// Testing many requests is slow, and MPI gains nothing from more.
+/// Testing many requests is slow, and more of them give MPI no advantage.
 constexpr std::size_t most_sends = 128;
 
-/// What the runtime flushes fits in one piece: 32 KiB and the message that went over.
+/// A buffer that the runtime flushes fits into one message: 32 KiB and the message that exceeded
+/// it.
 constexpr std::size_t usual_bytes = std::size_t{36} << 10U;
 
-/// An announcement with the sizes of many parts.
+/// Room for an announcement with the sizes of many parts.
 constexpr std::size_t least_slot_bytes = 1024;
 
 }  // namespace
@@ -49,7 +50,7 @@ void Transport::send(ProcessId to, Buffer& bytes) {
   MPI_Request request = MPI_REQUEST_NULL;
   const std::unique_lock held(lock, std::try_to_lock);
   const bool starts = held && bytes.size() <= whole_bytes_ && sends_.size() < most_sends;
-  // Most small sends are complete at once.
+  // Most small sends complete immediately.
   if (starts && send_now(to.value, bytes, request)) {
     bytes.clear();
     return;
@@ -80,7 +81,7 @@ void Transport::send(ProcessId to, Parcel&& parcel) {
     outbox_.push(out.release());
 }
 
-/// Leaves in rest.head what does not fit behind the announcement.
+/// Keeps in rest.head the bytes that do not fit behind the announcement.
 void Transport::announce(Outgoing& out, Buffer bytes) {
   out.announces = true;
   const Announcement begins{bytes.size(), 0, static_cast<std::uint32_t>(out.rest.parts.size())};
@@ -96,7 +97,7 @@ void Transport::announce(Outgoing& out, Buffer bytes) {
     out.rest.head = std::move(bytes);
 }
 
-/// Under the lock: starts it now, or after those that came before it.
+/// Called under the lock: starts the transfer now, or after those that were handed in before it.
 void Transport::hand_in(std::unique_ptr<Outgoing> out) {
   if (waiting_.empty() && sends_.size() < most_sends)
     start(std::move(out));
@@ -104,7 +105,7 @@ void Transport::hand_in(std::unique_ptr<Outgoing> out) {
     waiting_.push_back(std::move(out));
 }
 
-/// True if MPI is done with the bytes already; else the request says when.
+/// True if MPI no longer needs the bytes; otherwise the request reports completion.
 bool Transport::send_now(int to, const Buffer& bytes, MPI_Request& request) {
   ++n_sent_[static_cast<std::size_t>(to)];
   must(
@@ -143,9 +144,9 @@ void Transport::start(std::unique_ptr<Outgoing> out) {
 }
 
 void Transport::start_large(std::unique_ptr<Outgoing> owned) {
-  Outgoing* const out = owned.release();  // its requests have it
+  Outgoing* const out = owned.release();  // its requests own it
   ++n_sent_[static_cast<std::size_t>(out->to)];
-  // In order, so that no two under way have the same; 0 is never used.
+  // In order, so that no two transfers under way have the same tag; 0 is never used.
   last_tag_ = last_tag_ == tag_bound_ ? 1 : last_tag_ + 1;
   out->tag = last_tag_;
   std::memcpy(out->first.data() + offsetof(Announcement, tag), &out->tag, sizeof out->tag);
@@ -172,9 +173,9 @@ void Transport::take_in(Mail& mail) {
     if (!done->places.empty() || done->sizes.empty()) ++n_received_;
     mail.large.emplace_back(done);
   });
-  // The test that finds nothing costs as much as one that finds something: a message by itself is
-  // handed over without it. In a flood all that has come is taken, so that its answers leave
-  // together.
+  // A test that finds nothing costs as much as one that finds something, so a single message is
+  // handed over without another test. In a flood everything that has arrived is taken, so that the
+  // answers leave together.
   const std::size_t most = n_finds_ < 2 ? 1 : Mail::most_items;
   while (mail.size() < most) {
     Slot& slot = slots_[oldest_];
@@ -238,7 +239,7 @@ void Transport::receive_parts(Incoming* in) {
   for (const auto place : in->places) receive(place, in);
 }
 
-/// In chunks; each meets the one sent for it, for MPI keeps their order.
+/// Receives in chunks. Each chunk meets the one that was sent for it, since MPI keeps their order.
 void Transport::receive(std::span<std::byte> memory, Incoming* in) {
   for (std::size_t at = 0; at < memory.size(); at += chunk_bytes_) {
     MPI_Request request = MPI_REQUEST_NULL;
@@ -287,4 +288,4 @@ void Transport::drain(const std::function<void(Link*)>& drop) {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

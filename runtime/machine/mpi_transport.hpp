@@ -1,13 +1,14 @@
-// Buffers between processes, over MPI. Any PE sends, at once if it gets the lock, else by way of
-// the outbox; whoever holds the lock starts what waits there, and receives.
+// Transfers buffers between processes by MPI. Any PE sends: immediately if it gets the lock,
+// otherwise through the outbox. The PE that holds the lock starts the transfers that wait in the
+// outbox, and receives.
 //
 //     send() ─► (outbox ─► waiting) ─► MPI_Isend        MPI_Irecv, posted ahead ─► MPI_Test ─► Mail
 //
-// A few receives of the usual size are always posted, in a ring: MPI fills them in the order in
-// which they were posted, so one test, of the oldest, finds whatever has come, and a small message
-// goes from the sender's memory to its place without a probe. A larger buffer, or a parcel, is
+// A few receives of the usual size are always posted, in a ring. MPI fills them in the order in
+// which they were posted, so one test of the oldest finds whatever has arrived, and a small message
+// travels from the sender's memory to its place without a probe. A larger buffer or a parcel is
 // announced: by its tag, the sizes of its parts and, if they fit, its bytes. The rest follows in
-// chunks through a communicator of their own, from where it stands to where it belongs.
+// chunks through a separate communicator, from its memory at the sender to its destination.
 //
 //     announcement ─► take_in ─► Mail ─► Program::place ─► expect ─► MPI_Irecv … ─► Mail ─► placed
 #pragma once
@@ -25,35 +26,37 @@
 #include <memory>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// All but send() and new_mail() is called under the lock, or by one thread.
+/// All functions except send(), expect() and new_mail() are called under the lock, or by one
+/// thread.
 class Transport {
  public:
-  /// `chunk_bytes`: the most that one MPI message carries; the same on all processes. All make
-  /// their transports together.
+  /// `chunk_bytes` is the largest size of one MPI message; it is the same on all processes. All
+  /// processes construct their transports together.
   Transport(MPI_Comm comm, std::int32_t n_processes, std::size_t chunk_bytes);
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
   ~Transport();
 
-  /// Any thread; does not block. Leaves `bytes` empty; it keeps its memory if MPI needs it no more.
+  /// Any thread; does not block. Leaves `bytes` empty; it keeps its memory if MPI no longer needs
+  /// it.
   void send(ProcessId to, Buffer& bytes);
   void send(ProcessId to, Parcel&& parcel);
 
-  /// Any thread: the program has said where the parts belong.
+  /// Any thread. The program has named the destinations of the parts.
   void expect(std::unique_ptr<Incoming> in);
 
-  /// Starts the sends and receives that wait, as many as may be under way; those that are done are
-  /// the mail's to free.
+  /// Starts the sends and receives that wait, up to the allowed number under way; the mail frees
+  /// those that are done.
   void push_out(Mail& mail);
 
-  /// Receives what has come, until the mail is full.
+  /// Receives what has arrived, until the mail is full.
   void take_in(Mail& mail);
 
-  /// After the last send(): receives and drops until everything that any process sent has been
-  /// received. Counts, since a small send completes long before it is received. `drop` frees the
-  /// message of a parcel whose parts came too late.
+  /// Called after the last send(): receives and drops until everything that any process sent has
+  /// been received. It counts, since a small send completes long before it is received. `drop`
+  /// frees the message of a parcel whose parts arrived too late.
   void drain(const std::function<void(Link*)>& drop);
 
   /// Any thread.
@@ -64,7 +67,7 @@ class Transport {
  private:
   enum Tag : int { whole, announcement };
 
-  /// What an announcement begins with; the sizes of the parts follow, and the bytes if they fit.
+  /// The beginning of an announcement; the sizes of the parts follow, then the bytes if they fit.
   struct Announcement {
     std::uint64_t n_bytes = 0;
     std::int32_t tag = 0;
@@ -91,11 +94,11 @@ class Transport {
   MPI_Comm comm_;
   MPI_Comm chunk_comm_ = MPI_COMM_NULL;
   const std::size_t chunk_bytes_;
-  const std::size_t whole_bytes_;  // the most that travels in one piece, unannounced
+  const std::size_t whole_bytes_;  // the largest size that is sent without announcement
   const std::size_t slot_bytes_;
   std::array<Slot, 8> slots_;
-  std::size_t oldest_ = 0;  // of the slots: the next to be filled
-  unsigned n_finds_ = 0;    // calls of take_in() that found something, one after the other
+  std::size_t oldest_ = 0;  // the slot that is filled next
+  unsigned n_finds_ = 0;    // consecutive calls of take_in() that found something
   std::int32_t tag_bound_ = 32767;
   std::int32_t last_tag_ = 0;
   MpscQueue outbox_;                               // any PE pushes
@@ -103,9 +106,9 @@ class Transport {
   std::deque<std::unique_ptr<Outgoing>> waiting_;  // taken from the outbox, not yet started
   Requests<Outgoing> sends_;
   Requests<Incoming> chunks_;
-  std::vector<std::unique_ptr<Outgoing>> sent_;  // for the next mail
-  std::vector<std::int64_t> n_sent_;             // buffers and parcels, to each process
+  std::vector<std::unique_ptr<Outgoing>> sent_;  // completed sends, for the next mail
+  std::vector<std::int64_t> n_sent_;             // number of buffers and parcels per process
   std::int64_t n_received_ = 0;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

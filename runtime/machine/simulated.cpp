@@ -11,10 +11,10 @@
 #include <ctime>
 #include <queue>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// What the work of a PE costs: nanoseconds of CPU time, so that other programs do not count.
+/// The CPU time of this thread in nanoseconds, so that other programs do not count as work.
 std::int64_t thread_cpu_time() {
   timespec at{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
@@ -23,10 +23,10 @@ std::int64_t thread_cpu_time() {
 
 struct Event {
   std::int64_t time;
-  std::uint64_t order;  // ties: first posted first, or drawn
+  std::uint64_t order;  // order of events at equal times: the order of posting, or random
   std::int32_t pe;
-  Link* message;   // null: the PE looks at its queue
-  Parcel* parcel;  // or takes what another process sent; without parts: a buffer
+  Link* message;   // null: the PE checks its queue
+  Parcel* parcel;  // or takes a transfer of another process; a buffer if it has no parts
   friend bool operator<(const Event& a, const Event& b) {
     return a.time != b.time ? a.time > b.time : a.order > b.order;
   }
@@ -99,7 +99,7 @@ class SimulatedMachine final : public Machine {
  private:
   struct Clock {
     std::int64_t now = 0;
-    bool looks = false;  // an event to look at the queue is under way
+    bool looks = false;  // an event to check the queue is under way
   };
 
   void push(std::int64_t time, std::int32_t pe, Link* message, Parcel* parcel) {
@@ -148,7 +148,8 @@ void SimulatedMachine::run(Program& program) {
   std::uint64_t n_events = 0;
   while (!stopped_ && !events_.empty()) {
     if (options_.most_events != 0 && ++n_events > options_.most_events) {
-      std::fprintf(stderr, "tessera: the simulated run needs more than %llu events: a livelock?\n",
+      std::fprintf(stderr,
+                   "tessera: the simulated run needs more than %llu events: is it a livelock?\n",
                    static_cast<unsigned long long>(options_.most_events));
       break;
     }
@@ -170,7 +171,8 @@ void SimulatedMachine::run(Program& program) {
       running_ = event.pe;
       if (!options_.cost) step_began_ = thread_cpu_time();
       const std::size_t ran = program.step(pe, 1);
-      const std::int64_t cost = options_.cost ? 0 : elapsed();  // the program charges a fixed cost
+      const std::int64_t cost =
+          options_.cost ? 0 : elapsed();  // the program charges a fixed cost per message
       running_ = -1;
       if (ran != 0) {
         clock.now += cost;
@@ -180,7 +182,7 @@ void SimulatedMachine::run(Program& program) {
       }
     }
   }
-  // What is still under way belongs to the program: it frees it.
+  // Messages still under way belong to the program, which frees them.
   for (; !events_.empty(); events_.pop()) {
     const Event& event = events_.top();
     delete event.parcel;
@@ -207,7 +209,7 @@ double number_of(const std::string& value, const std::string& part, std::string*
   double number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (error != std::errc())
-    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value, " is no number");
+    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value, " is not a number");
   *unit = std::string(end, value.data() + value.size());
   return number;
 }
@@ -221,7 +223,8 @@ Time time_of(const std::string& value, const std::string& part) {
                         : unit == "s"                ? 1e9
                                                      : -1;
   if (factor < 0 || number < 0)
-    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value, " is no time (ns, us, ms, s)");
+    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value,
+         " is not a time (a number with ns, us, ms or s)");
   return Time(static_cast<std::int64_t>(number * factor));
 }
 
@@ -260,12 +263,13 @@ SimulatedOptions parse_simulated(const std::string& given) {
     } else if (key == "migrate") {
       options.migration_chance = number_of(value, key, &unit);
       if (!unit.empty() || *options.migration_chance < 0 || *options.migration_chance > 1)
-        fail(ErrorCode::bad_argument, "--sim migrate: ", value, " is no probability of 0 … 1");
+        fail(ErrorCode::bad_argument, "--sim migrate: ", value, " is not a probability of 0 … 1");
     } else if (key == "bandwidth") {
       const double number = number_of(value, key, &unit);
       const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : unit.empty() ? 1 : -1;
       if (factor < 0 || number <= 0)
-        fail(ErrorCode::bad_argument, "--sim bandwidth: ", value, " is no rate (MB/s, GB/s)");
+        fail(ErrorCode::bad_argument, "--sim bandwidth: ", value,
+             " is not a rate (a number with MB/s or GB/s)");
       options.bandwidth = number * factor;
     } else {
       fail(ErrorCode::bad_argument, "--sim: unknown key ", key,
@@ -289,4 +293,4 @@ std::unique_ptr<Machine> make_simulated_machine(const SimulatedOptions& options)
   return std::make_unique<SimulatedMachine>(options);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

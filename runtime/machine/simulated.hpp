@@ -1,10 +1,11 @@
-// A machine of any number of PEs, simulated in one thread: a sequential discrete-event simulation.
-// Each PE has a virtual clock, which running a message advances by its measured time or by a fixed
-// cost (then a run repeats bit for bit); a message arrives after latency + bytes / bandwidth.
+// A machine with any number of PEs, simulated in one thread as a sequential discrete-event
+// simulation. Each PE has a virtual clock. Running a message advances it by the measured time or by
+// a fixed cost (with which a run repeats bit for bit); a message arrives after latency + bytes /
+// bandwidth.
 //
-// With a seed it is an adversary: messages arrive in any order, kinds of traffic are slow as a
-// whole, a PE is asked to tell its counters in the middle of its work. Every choice is drawn from
-// the seed, so a failure repeats.
+// With a seed the machine is adversarial: messages arrive in any order, some kinds of traffic are
+// slow throughout, and a PE is asked to report its counters in the middle of its work. Every choice
+// is drawn from the seed, so a failure repeats.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
@@ -14,17 +15,17 @@
 #include <optional>
 #include <string>
 
-namespace tess {
+namespace tess::detail {
 
 struct SimulatedOptions {
   std::int32_t n_pes = 4;
-  std::int32_t pes_per_process = 0;  ///< 0: one process of all; with a seed: drawn from it
+  std::int32_t pes_per_process = 0;  ///< 0: one process, or drawn from the seed if there is one
   Time latency{1000};
-  double bandwidth = 10e9;            ///< bytes a second
-  std::optional<Time> cost;           ///< of one message; absent: measured
-  std::optional<std::uint64_t> seed;  ///< present: adversarial order
-  std::optional<double>
-      migration_chance;           ///< after each message; absent: 0, or drawn from the seed
+  double bandwidth = 10e9;            ///< bytes per second
+  std::optional<Time> cost;           ///< cost of one message; absent: measured
+  std::optional<std::uint64_t> seed;  ///< if present: adversarial order
+  /// After each message; absent: 0, or drawn from the seed.
+  std::optional<double> migration_chance;
   std::uint64_t most_events = 0;  ///< 0: no bound; a run that needs more is stopped as a livelock
 };
 
@@ -32,9 +33,17 @@ struct SimulatedOptions {
 /// that names the part.
 [[nodiscard]] SimulatedOptions parse_simulated(const std::string& text);
 
-/// The migration chance of these options: given, or drawn from the seed.
+/// The probability of a forced migration after a message: as given, or drawn from the seed.
 [[nodiscard]] double migration_chance(const SimulatedOptions& options);
 
 [[nodiscard]] std::unique_ptr<Machine> make_simulated_machine(const SimulatedOptions& options);
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::make_simulated_machine;
+using detail::parse_simulated;
+using detail::SimulatedOptions;
 
 }  // namespace tess

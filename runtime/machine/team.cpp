@@ -3,32 +3,33 @@
 #include <algorithm>
 #include <thread>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// Messages a step may run before the inbox and the network are looked at again.
+/// The most messages that a step runs before the PE checks its inbox and the network again.
 constexpr std::size_t step_most = 64;
 
-/// A busy PE looks at the network this often; its steps are cut so that they do not last longer.
+/// A busy PE polls the network with this period; its steps are kept shorter than that.
 constexpr auto network_period = 30us;
 
-/// A network has to be polled, so sleep is short there; an inbox wakes its PE by itself. A woken
-/// thread costs some 5 us, a yield among yielders 0.5 us, so yielding comes first and for longer.
+/// A network has to be polled, so sleeps are short there; an inbox wakes its PE by itself. Waking a
+/// thread costs about 5 us and a yield among yielding threads 0.5 us, so yielding comes first and
+/// lasts longer.
 Patience patience(bool oversubscribed, bool network) {
   const auto sleep = network ? std::chrono::nanoseconds(50us) : Parker::forever;
   if (oversubscribed) return {.spin = 0ns, .yield = network ? 200us : 20us, .sleep = sleep};
   return {.spin = network ? 200us : 50us, .yield = network ? 1ms : 200us, .sleep = sleep};
 }
 
-/// The number of messages in the next step, from how long the last one took.
+/// The number of messages in the next step, derived from the duration of the last one.
 class Stride {
  public:
   [[nodiscard]] std::size_t most() const noexcept { return most_; }
 
-  /// True if it is time to look at the network.
+  /// True if it is time to poll the network.
   bool due() noexcept {
     const auto now = Clock::now();
     const auto took = now - since_;
@@ -76,12 +77,13 @@ void Team::stop() noexcept {
   for (Seat& seat : seats_) seat.parker.wake();
 }
 
-// noexcept: an exception in an entry method is the program's affair; one that comes here is a bug.
+// noexcept: the program handles exceptions of entry methods; an exception that arrives here is a
+// bug.
 void Team::drive(Program& program, PeId pe, Seat& seat) noexcept {
   program.start(pe);
   Backoff rest(patience_);
   Stride stride;
-  // relaxed: nothing is handed over through the flag; the barrier below orders what matters.
+  // relaxed: the flag transfers no data; the barrier below provides the order that is needed.
   while (!stopping_.load(std::memory_order_relaxed)) {
     bool worked = take_in(program, pe, seat);
     if (program.step(pe, stride.most()) > 0) worked = true;
@@ -121,4 +123,4 @@ void Team::wait_for_all() noexcept {
   for (std::int32_t n = n_running_.load(); n != 0; n = n_running_.load()) n_running_.wait(n);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

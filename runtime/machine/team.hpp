@@ -1,11 +1,11 @@
-// The PEs of one process, each a thread: their inboxes, the loop that drives them, how they rest,
-// and how they end together. The threads machine is a team; the mpi machine is a team and a
-// network.
+// The PEs of one process, one thread each: their inboxes, the loop that drives them, how they wait
+// for work, and how they end together. The threads machine is a team; the mpi machine is a team and
+// a network.
 //
 //     take_in → accept → step → network (when idle, or when due) → idle → rest
 //
-// Invariant: between the first PE's return from its loop and the last one's no inbox is read, and
-// after the last one's no PE posts; so each PE can take what remains and finish alone.
+// Invariant: no inbox is read between the first PE's return from its loop and the last PE's, and no
+// PE posts after the last one's. So each PE can take what remains and finish alone.
 #pragma once
 
 #include "runtime/base/backoff.hpp"
@@ -17,12 +17,12 @@
 #include <atomic>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// Whether PEs are tied to cores. `automatic` ties them if there is a core for each.
+/// Whether PEs are pinned to cores. `automatic` pins them if there is a core for each.
 enum class Pinning { automatic, none };
 
-/// What a PE polls besides its inbox.
+/// What a PE polls in addition to its inbox.
 class Network {
  public:
   Network() = default;
@@ -30,8 +30,8 @@ class Network {
   Network& operator=(const Network&) = delete;
   virtual ~Network() = default;
 
-  /// Moves what can be moved without waiting; hands received buffers to the program on this PE.
-  /// True if any came. Returns at once if another PE is at it.
+  /// Makes progress without waiting and passes received buffers to the program on this PE. Returns
+  /// true if any arrived. Returns immediately if another PE makes progress.
   virtual bool progress(Program& program, PeId pe) = 0;
 };
 
@@ -49,7 +49,8 @@ class Team {
     if (seat.bundles.push(bundle)) seat.parker.wake();
   }
 
-  /// Drives all PEs until stop(): the first on this thread, each other one on a thread of its own.
+  /// Drives all PEs until stop(): the first on the calling thread, the others on threads of their
+  /// own.
   void run(Program& program, const Topology& topology);
 
   /// Any thread, any number of times.
@@ -57,15 +58,15 @@ class Team {
 
  private:
   struct alignas(64) Seat {
-    MpscQueue inbox;  // single messages; in one line with the bundles, for both are looked at
+    MpscQueue inbox;  // single messages; in one cache line with the bundles, since both are checked
     MpscQueue bundles;
-    alignas(64) Parker parker;  // apart from the queues: each producer reads it, few write it
+    alignas(64) Parker parker;  // in a separate line: each producer reads it, few write it
 
     [[nodiscard]] bool empty() const noexcept { return inbox.empty() && bundles.empty(); }
   };
 
   void drive(Program& program, PeId pe, Seat& seat) noexcept;
-  /// Hands all that was posted to the program. False if there was nothing.
+  /// Passes all posted messages to the program. Returns false if there were none.
   static bool take_in(Program& program, PeId pe, Seat& seat) noexcept;
   void wait_for_all() noexcept;
 
@@ -78,4 +79,4 @@ class Team {
   std::atomic<std::int32_t> n_running_{0};
 };
 
-}  // namespace tess
+}  // namespace tess::detail

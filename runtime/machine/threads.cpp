@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 class ThreadsMachine final : public Machine {
@@ -58,4 +58,4 @@ std::unique_ptr<Machine> make_threads_machine(std::int32_t n_pes, Pinning pinnin
   return std::make_unique<ThreadsMachine>(n_pes, pinning);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

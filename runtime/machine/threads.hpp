@@ -1,15 +1,21 @@
-// One process, each PE a thread of it, PE 0 on the thread that calls run(). The default machine.
-// Messages travel as pointers through the inbox of the PE; there is nobody to send bytes to.
+// One process in which each PE is a thread; PE 0 runs on the thread that calls run(). This is the
+// default machine. Messages travel as pointers through the inbox of the PE.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/team.hpp"
 
-namespace tess {
+namespace tess::detail {
 
-/// `n_pes` threads, or, for 0, one for each core of the process's cpuset. PEs are tied to cores if
-/// there is one for each. Throws Error for a negative number.
+/// Makes a machine with `n_pes` threads, or for 0 with one per core of the process's cpuset. PEs
+/// are pinned if there is a core for each. Throws Error for a negative number.
 [[nodiscard]] std::unique_ptr<Machine> make_threads_machine(std::int32_t n_pes,
                                                             Pinning pinning = Pinning::automatic);
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::make_threads_machine;
 
 }  // namespace tess

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 struct Topology::Handle {
   hwloc_topology_t topology = nullptr;
@@ -26,7 +26,7 @@ struct Topology::Handle {
 
 Topology::Topology() : handle_(std::make_unique<Handle>()) {
   Handle& h = *handle_;
-  // Cores alone: caches, memory and devices would cost milliseconds at every start.
+  // Only cores: caches, memory and devices would cost milliseconds at every start.
   if (hwloc_topology_init(&h.topology) != 0 ||
       hwloc_topology_set_all_types_filter(h.topology, HWLOC_TYPE_FILTER_KEEP_NONE) != 0 ||
       hwloc_topology_set_type_filter(h.topology, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL) != 0 ||
@@ -48,7 +48,7 @@ Topology::Topology() : handle_(std::make_unique<Handle>()) {
     }
   };
   add_all(HWLOC_OBJ_CORE);
-  if (h.cores.empty()) add_all(HWLOC_OBJ_PU);  // some virtual machines name no cores
+  if (h.cores.empty()) add_all(HWLOC_OBJ_PU);  // some virtual machines report no cores
   if (h.cores.empty()) fail(ErrorCode::environment, "hwloc finds no core in the set ", cpuset());
   n_cores_ = static_cast<std::int32_t>(h.cores.size());
 }
@@ -80,4 +80,4 @@ std::string Placement::describe(const Topology& topology) const {
                                : "), not pinned");
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,13 +1,13 @@
-// The cores this process may use, and how a thread is tied to one of them. hwloc stands behind it
-// and nowhere else. "May use" is the affinity of the thread that makes the Topology: what mpirun, a
-// batch system or taskset gave to the process. Nothing outside that set is ever used.
+// The cores that this process may use, and the pinning of threads to them. It is the only user of
+// hwloc. The usable cores are the affinity of the thread that constructs the Topology: those that
+// mpirun, a batch system or taskset gave to the process. No core outside this set is ever used.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
 
-namespace tess {
+namespace tess::detail {
 
 class Topology {
  public:
@@ -16,16 +16,18 @@ class Topology {
   Topology(const Topology&) = delete;
   Topology& operator=(const Topology&) = delete;
 
-  /// Cores, not hyperthreads, with at least one thread in the process's set; at least 1.
+  /// The number of cores (not hyperthreads) with at least one thread in the process's set; at least
+  /// 1.
   [[nodiscard]] std::int32_t n_cores() const { return n_cores_; }
 
-  /// Ties the calling thread to the `core`-th core of the set. False if the system refuses.
+  /// Pins the calling thread to the `core`-th core of the set. Returns false if the system refuses.
   bool pin(std::int32_t core) const;
 
-  /// Gives the calling thread the whole set again.
+  /// Lets the calling thread run on the whole set again.
   void unpin() const;
 
-  /// The set as text, equal for two processes of a host exactly if they share the same cores.
+  /// The set as text. Two processes of a host have equal texts if and only if they share the same
+  /// cores.
   [[nodiscard]] std::string cpuset() const;
 
  private:
@@ -37,11 +39,11 @@ class Topology {
 /// Where the PEs of a process run.
 struct Placement {
   bool pinned = false;
-  std::int32_t first_core = 0;  // of the process's set, for the first PE
-  bool oversubscribed = false;  // more PEs than cores, counting all processes that share them
+  std::int32_t first_core = 0;  // index in the process's set of the first PE's core
+  bool oversubscribed = false;  // more PEs than cores, over all processes that share the cores
 
   /// " on 2 cores (0-1), pinned".
   [[nodiscard]] std::string describe(const Topology& topology) const;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,15 +1,16 @@
-// What an entry method takes: the class, the arguments as values, whether it is a coroutine; and
-// the sentences that the compiler prints when a member function cannot be one.
+// The properties of an entry method: its class, its arguments as values, and whether it is a
+// coroutine. Also the messages that the compiler prints if a member function cannot be one.
 #pragma once
 
 #include <tuple>
 #include <type_traits>
 
 namespace tess {
-
 class Task;
+}  // namespace tess
 
-namespace detail {
+namespace tess::detail {
+
 template <class F>
 struct MemberTraits {
   static constexpr bool is_member = false;
@@ -31,10 +32,9 @@ template <class R, class C, class... P>
 struct MemberTraits<R (C::*)(P...) noexcept> : MemberTraits<R (C::*)(P...)> {};
 template <class R, class C, class... P>
 struct MemberTraits<R (C::*)(P...) const noexcept> : MemberTraits<R (C::*)(P...)> {};
-}  // namespace detail
 
 template <auto F>
-using EntryTraits = detail::MemberTraits<decltype(F)>;
+using EntryTraits = MemberTraits<decltype(F)>;
 
 /// Checks that F is an entry method of C that can be called with these arguments.
 template <class C, auto F, class... Args>
@@ -62,4 +62,4 @@ consteval bool check_entry() {
   return true;
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,10 +1,10 @@
-// A message: what to do (the action), on whose account (the epoch), from where, and the arguments
-// behind it as the values they are. Within a process the pointer travels; between processes the
-// action packs the arguments.
+// A message: its action, its epoch, its source, and behind them the typed arguments. Within a
+// process the pointer travels; between processes the action packs the arguments.
 //
 //     | Link | action | epoch | source target | typed arguments … |
 //
-// An envelope belongs to one queue or one function at a time. Whoever ends it calls discard().
+// An envelope belongs to one queue or one function at a time. The function that ends its life calls
+// discard().
 #pragma once
 
 #include "runtime/base/link.hpp"
@@ -18,7 +18,7 @@
 #include <new>
 #include <utility>
 
-namespace tess {
+namespace tess::detail {
 
 class Element;
 class Pe;
@@ -26,14 +26,14 @@ struct Action;
 
 struct Envelope : Link {
   const Action* action = nullptr;
-  Element* receiver = nullptr;  ///< a hint, to fetch it into the cache; null where it is not known
+  Element* receiver = nullptr;  ///< a hint for prefetching; null if unknown
   EpochId epoch{};
   PeId source{};
   PeId target{};
-  bool counted = true;      ///< a hop of epoch 0; false for what measures or ends the run
-  std::uint32_t trace = 0;  ///< the number of its send on the source, while a trace is kept
-  /// Credit that the PE which runs it owes to `sender`, which packed it for this hop (outbox.hpp);
-  /// 0 within a process.
+  bool counted = true;      ///< in epoch 0; false for messages that measure or end the run
+  std::uint32_t trace = 0;  ///< the number of its send on the source PE, if a trace is kept
+  /// Credit that the PE that runs it owes to `sender`, which packed it for this hop (outbox.hpp); 0
+  /// within a process.
   std::uint32_t charge = 0;
   PeId sender{};
 };
@@ -79,4 +79,4 @@ inline void discard(Envelope* message) {
   message->action->destroy(message);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

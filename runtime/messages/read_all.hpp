@@ -1,5 +1,5 @@
-// Bytes that one value fills: what reads fewer or more of them than were written is found where it
-// is read, by name, and not by what is read next.
+// Reads a value that fills all of its bytes. A type that reads fewer or more bytes than it wrote is
+// reported here, by name, instead of by the value that is read next.
 #pragma once
 
 #include "runtime/core/check.hpp"
@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <string_view>
 
-namespace tess {
+namespace tess::detail {
 
-/// Calls read(body), which is to read all of it. `what`: gives the name of what is read.
+/// Calls read(body), which must read all of it. `what` returns the name for the report.
 template <class What, class Read>
 auto read_all(Reader& body, const What& what, const Read& read) {
   const std::size_t n_bytes = body.remaining();
@@ -41,4 +41,4 @@ auto unpack_framed(Reader& ar, std::string_view type, const Read& read) {
       body, [type] { return plain_name(type); }, read);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

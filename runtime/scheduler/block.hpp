@@ -1,11 +1,11 @@
-// Where messages get their memory: from the pool of the PE that makes them; whoever ends one gives
-// it back through the pool of the PE that runs.
+// Allocation of messages: memory comes from the pool of the PE that creates a message, and is
+// released through the pool of the PE that ends it.
 #pragma once
 
 #include "runtime/base/pool.hpp"
 #include "runtime/scheduler/pe.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 [[nodiscard]] inline void* allocate_block(Pe& pe, std::size_t n_bytes) {
   return pe.pool().allocate(n_bytes);
@@ -15,7 +15,7 @@ inline void release_block(void* block, std::size_t /*n_bytes*/) {
   Pool::release(block, pe != nullptr ? &pe->pool() : nullptr);
 }
 
-/// Nodes of containers that live in chares: from the pool of the PE that runs.
+/// An allocator for nodes of containers in chares: takes memory from the pool of the running PE.
 template <class T>
 struct PoolAllocator {
   using value_type = T;
@@ -32,4 +32,4 @@ struct PoolAllocator {
   friend bool operator==(const PoolAllocator&, const PoolAllocator&) { return true; }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

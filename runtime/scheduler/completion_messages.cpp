@@ -3,7 +3,7 @@
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 void report_arrives(Pe& pe, completion::Report&& m) {
@@ -52,4 +52,4 @@ void CompletionMessagesOfPe::quiescent() {
   pe_.runtime().quiescent(pe_);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

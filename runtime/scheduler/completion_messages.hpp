@@ -1,9 +1,9 @@
-// The messages of a PE's Completion as messages of PEs.
+// Sends the messages of a PE's Completion to other PEs.
 #pragma once
 
 #include "runtime/completion/completion.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 class Pe;
 
@@ -22,4 +22,4 @@ class CompletionMessagesOfPe final : public CompletionMessages {
   Pe& pe_;
 };
 
-}  // namespace tess
+}  // namespace tess::detail

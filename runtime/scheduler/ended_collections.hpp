@@ -1,22 +1,23 @@
-// Ids of collections, and which have ended on a PE. An id is never used again, and a message to an
-// ended collection may come at any time later, so a PE never forgets: ids are kept as intervals of
-// each creator's numbers, as many as there are collections that live between those that ended.
+// Ids of collections, and the collections that have ended on a PE. An id is never reused, and a
+// message to an ended collection may arrive at any later time, so a PE never forgets one. The ended
+// numbers of each creator are stored as intervals: there are as many as there are live collections
+// between ended ones.
 #pragma once
 
 #include "runtime/base/interval_set.hpp"
 #include "runtime/core/ids.hpp"
 
-namespace tess {
+namespace tess::detail {
 
-/// What becomes of a message to a collection that has ended: it is dropped, and
+/// What happens to a message to a collection that has ended: it is dropped, and
 enum class LateMessages : std::uint8_t {
-  counted,  ///< counts as a dead letter
-  ignored,  ///< nothing is said of it: a library's own collection
+  counted,  ///< counted as a dead letter (a message that was never delivered)
+  ignored,  ///< not reported: the collection belongs to a library
 };
 
-/// The numbers that a PE gives to the collections it creates: a row of each kind.
+/// The numbers of the collections that a PE creates: one sequence of each kind.
 ///
-///     | 1 bit: ignored | 39 bits: how many of the kind before | 24 bits: the creator |
+///     | 1 bit: ignored | 39 bits: how many of this kind before | 24 bits: the creator |
 class CollectionNumbers {
  public:
   [[nodiscard]] CollectionId next(PeId creator, LateMessages late) {
@@ -39,12 +40,18 @@ class EndedCollections {
   [[nodiscard]] bool contains(CollectionId id) const { return ended_.contains(key(id)); }
 
  private:
-  /// The numbers of one creator and kind stand in a row.
+  /// The numbers of one creator and kind are consecutive.
   [[nodiscard]] static std::uint64_t key(CollectionId id) {
     return id.value << 40U | id.value >> 24U;
   }
 
   IntervalSet ended_;
 };
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::LateMessages;
 
 }  // namespace tess

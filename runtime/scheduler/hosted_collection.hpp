@@ -1,5 +1,5 @@
-// What a PE asks of a collection of elements that it hosts: a name for reports, and what waits there.
-// Collection (collections/collection.hpp) implements it.
+// The interface of a collection of elements that a PE hosts: its name for reports and what waits in
+// it. Collection (collections/collection.hpp) implements it.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Element;
 
@@ -21,13 +21,14 @@ class HostedCollection {
 
   [[nodiscard]] CollectionId id() const { return id_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Elements on this PE.
+  /// The number of elements on this PE.
   [[nodiscard]] std::size_t n_local() const { return n_local_; }
-  /// A broadcast has reached it: a reduction of its elements may be awaited.
+  /// True if a broadcast has reached the collection: then a reduction of its elements may be
+  /// awaited.
   [[nodiscard]] virtual bool was_called() const = 0;
-  /// "Block[3,4]" of the index that Pe::constructed_index() points to.
+  /// "Block[3,4]": the text for the index that Pe::constructed_index() points to.
   [[nodiscard]] virtual std::string constructed_text(const void* index) const = 0;
-  /// Appends a line for each thing here that waits for something that never came.
+  /// Appends one line for each object here that waits for something that never arrived.
   virtual void describe_waiting(std::vector<std::string>& lines) const = 0;
 
  protected:
@@ -40,7 +41,7 @@ class HostedCollection {
   const std::string name_;
 };
 
-/// "Block[3,4]" of an element; the layer that has elements gives it to the runtime.
+/// "Block[3,4]": the text for an element. The layer that defines elements provides this function.
 using ElementText = std::string (*)(const Element& element);
 
-}  // namespace tess
+}  // namespace tess::detail

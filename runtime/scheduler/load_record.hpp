@@ -1,5 +1,6 @@
-// What one element cost since its loads were last collected: the time of its code by entry method,
-// and what it sent to whom. Kept while a balancer watches the element, and travels with it.
+// The cost of one element since its loads were last collected: the time of its code by entry
+// method, and the bytes that it sent to each other element. The record exists while a balancer
+// watches the element, and migrates with it.
 #pragma once
 
 #include "runtime/core/element_key.hpp"
@@ -9,11 +10,11 @@
 #include <cstdint>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 struct Action;
 
-/// Payload that was sent; headers do not count.
+/// Payload bytes that were sent; headers do not count.
 struct SentTo {
   std::uint64_t bytes = 0;
   std::uint64_t messages = 0;
@@ -26,21 +27,21 @@ struct LoadRecord {
     std::uint64_t calls = 0;
   };
 
-  /// Since when the element is measured.
+  /// The start of the measurement.
   enum class Since : std::uint8_t {
-    somewhere,  ///< after it had run already: what it costs in a phase is not known
+    somewhere,  ///< after the element had run: its cost in a phase is not known
     construction,
-    phase,  ///< from the beginning of the phase
+    phase,  ///< since the beginning of the phase
   };
 
-  std::uint64_t ticks = 0;     ///< of the PE's meter
-  std::vector<Entry> entries;  ///< by entry method: few
+  std::uint64_t ticks = 0;     ///< ticks of the PE's meter
+  std::vector<Entry> entries;  ///< by entry method
   boost::unordered_flat_map<ElementKey, SentTo, ElementKeyHash> sent;
-  std::uint64_t* of_pe = nullptr;  ///< where the PE adds up the ticks of all such elements
+  std::uint64_t* of_pe = nullptr;  ///< the PE's sum of the ticks of all such elements
   Since since = Since::somewhere;
 
-  /// Whether `ticks` are all that the element cost in this phase. Of a newborn that has not run yet
-  /// they say nothing.
+  /// True if `ticks` is the whole cost of the element in this phase. A new element that has not run
+  /// yet has no known cost.
   [[nodiscard]] bool known() const {
     return since == Since::phase || (since == Since::construction && !entries.empty());
   }
@@ -56,7 +57,7 @@ struct LoadRecord {
     }
     entries.push_back({action, spent, 1});
   }
-  /// A phase begins.
+  /// Begins a phase.
   void clear() {
     since = Since::phase;
     ticks = 0;
@@ -65,4 +66,4 @@ struct LoadRecord {
   }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,10 +1,10 @@
-// An envelope with one payload behind it: how it is made, packed, and ended.
+// An envelope with one payload: its construction, packing and release.
 #pragma once
 
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/block.hpp"
 
-namespace tess {
+namespace tess::detail {
 
 template <class Payload>
 struct Message final : Envelope {
@@ -24,11 +24,11 @@ struct Message final : Envelope {
   }
   static void pack(Envelope& envelope, Writer& ar) { ar(static_cast<Message&>(envelope).payload); }
   static Envelope* unpack(Pe& pe, Reader& ar) {
-    // In place: the bytes of a large vector come later, to where it stands now.
+    // Constructed in place: the bytes of a large vector arrive later, at its present address.
     auto* message = new (allocate_block(pe, sizeof(Message))) Message(Payload{});
     ar(message->payload);
     return message;
   }
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <ctime>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 constexpr double quantum_seconds = 1e-3;
-constexpr double gap_seconds = 30e-6;    // without a step or a look at the queue: the thread slept
-constexpr double noise_seconds = 20e-6;  // below it the two clocks differ by themselves
+constexpr double gap_seconds =
+    30e-6;  // no step and no check of the queue for so long: the thread slept
+constexpr double noise_seconds = 20e-6;  // the two clocks differ by as much without a reason
 
 double thread_cpu_seconds() {
   timespec at{};
@@ -22,7 +23,7 @@ Meter::Meter(Machine& machine, PeId pe)
     : machine_(machine),
       pe_(pe),
       virtual_(machine.virtual_time()),
-      seconds_per_tick_(virtual_ ? 1e-9 : tess::seconds_per_tick()),
+      seconds_per_tick_(virtual_ ? 1e-9 : detail::seconds_per_tick()),
       made_(now()),
       since_(made_),
       step_began_(made_),
@@ -101,4 +102,4 @@ void Meter::ring(std::uint64_t at) {
   }
 }
 
-}  // namespace tess
+}  // namespace tess::detail

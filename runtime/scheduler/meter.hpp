@@ -1,11 +1,13 @@
-// What the code of a PE costs, and whose code it is. A PE has a meter while a balancer, a trace or
-// statistics ask for one; without it a call of an entry method costs one test of a null pointer.
+// Measures what the code of a PE costs, by element and entry method. A PE has a meter only if a
+// balancer, a trace or statistics request it; without one, a call of an entry method costs one test
+// of a null pointer.
 //
-// Scopes nest (a constructor inside a handler); time is the innermost scope's. It is read from the
-// cycle counter, which goes on while the kernel runs somebody else. So once a quantum of about a
-// millisecond the PE's thread asks for its CPU time: what the counter has more was stolen, and is
-// taken back from the longest call of the quantum, for a call that was preempted is long. On the
-// simulated machine the meter reads the virtual clock, which nobody steals from.
+// Scopes nest (a constructor inside a handler); time counts for the innermost scope. It is read
+// from the cycle counter, which continues while the kernel runs another thread. So about once per
+// millisecond (a quantum) the PE's thread reads its CPU time. The excess of the counter was stolen
+// by other threads and is subtracted from the longest call of the quantum, since a preempted call
+// is long. On the simulated machine the meter reads the virtual clock, from which no time is
+// stolen.
 //
 //   step_begins  [ enter … [ enter … leave ] … leave ]*  step_ends   idle …
 #pragma once
@@ -19,13 +21,13 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Meter {
  public:
   Meter(Machine& machine, PeId pe);
 
-  /// The scope that runs: whose time it is (null: nobody's record), and in which entry method.
+  /// The running scope: the record that gets its time (null: none) and its entry method.
   struct Scope {
     LoadRecord* record = nullptr;
     const Action* action = nullptr;
@@ -41,13 +43,13 @@ class Meter {
     return static_cast<std::uint64_t>(seconds / seconds_per_tick_);
   }
 
-  /// A scope begins; returns the one that it interrupts, for leave().
+  /// Begins a scope; returns the one that it interrupts, for leave().
   [[nodiscard]] Scope enter(Scope scope) {
     pass();
     if (entered_ == nullptr) entered_ = scope.action;
     return std::exchange(scope_, scope);
   }
-  /// The entry method of the first scope since forget_entered(); null where there was none.
+  /// The entry method of the first scope since forget_entered(); null if there was none.
   [[nodiscard]] const Action* entered() const { return entered_; }
   void forget_entered() { entered_ = nullptr; }
   void leave(Scope outer) {
@@ -56,39 +58,40 @@ class Meter {
     if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
       ring(at);
   }
-  /// Whether what is sent is to be weighed: packing is how, and a record takes it down.
+  /// True if the sizes of sent messages are to be measured, by packing them, for the running
+  /// record.
   [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
-  /// The element that runs sends a payload to another element.
+  /// The running element sends a payload to another element.
   void sent(const ElementKey& to, std::uint64_t bytes) {
     SentTo& sum = scope_.record->sent[to];
     sum.bytes += bytes;
     ++sum.messages;
   }
-  /// The record ends, or leaves this PE.
+  /// The record is destroyed or leaves this PE.
   void forget(const LoadRecord* record) {
     if (scope_.record == record) scope_.record = nullptr;
     if (longest_.record == record) longest_ = {};
   }
 
-  // Called by the PE.
+  // The PE calls these.
   void step_begins();
   void step_ends();
   void idle();
 
-  /// Ticks in steps that ran something, less what was stolen.
+  /// Ticks in steps that ran a message, without stolen time.
   [[nodiscard]] std::uint64_t busy() const { return busy_; }
   /// Seconds since the meter was made.
   [[nodiscard]] double age() const { return seconds(now() - made_); }
   [[nodiscard]] std::uint64_t made() const { return made_; }
 
-  /// From now on `ring` is called after a scope with a record that ends `period` ticks or more
-  /// after its last call. (What a ring causes has no record: it does not ring again.)
-  /// The owner removes it before it ends.
+  /// From now on `ring` is called after a scope with a record that ends at least `period` ticks
+  /// after the last call. (The consequences of a call have no record, so they do not trigger
+  /// another.) The owner removes the alarm before its own end.
   void add_alarm(std::uint64_t period, const void* owner, std::function<void()> ring);
   void remove_alarms(const void* owner);
 
  private:
-  /// Time since the last change of scope goes to the scope that runs; returns now.
+  /// Adds the time since the last change of scope to the running scope; returns the present time.
   std::uint64_t pass();
   void ring(std::uint64_t at);
   void begin_quantum(std::uint64_t at);
@@ -105,7 +108,7 @@ class Meter {
   std::uint64_t step_began_ = 0;
   std::uint64_t busy_ = 0;
 
-  // The quantum: from when, at which CPU time, and its longest call.
+  // The quantum: its start, the CPU time at its start, and its longest call.
   const std::uint64_t quantum_ticks_, gap_ticks_;
   std::uint64_t quantum_began_ = 0;
   double cpu_at_begin_ = 0;
@@ -120,7 +123,7 @@ class Meter {
     std::function<void()> ring;
   };
   std::vector<Alarm> alarms_;
-  std::uint64_t alarm_at_ = ~std::uint64_t{0};  // the earliest
+  std::uint64_t alarm_at_ = ~std::uint64_t{0};  // the earliest alarm
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -4,16 +4,17 @@
 #include <memory>
 #include <utility>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// A lane's buffer leaves when it holds so much.
+/// A lane's buffer is sent when it holds so many bytes.
 constexpr std::size_t flush_bytes = 32U << 10U;
-/// Its size at first, and at most: with one message more than that it still travels unannounced.
+/// The buffer's initial and its largest size: with one more message it is still sent without
+/// announcement.
 constexpr std::size_t first_bytes = 4U << 10U;
 constexpr std::size_t most_bytes = 36U << 10U;
 
-/// Ends a message whose parts have left, on whatever thread notices.
+/// Releases a message whose parts have been sent, on the thread that notices it.
 struct Sent {
   Envelope* message;
   std::vector<std::shared_ptr<const void>> keepers;
@@ -89,8 +90,8 @@ void Outbox::begin(Lane& lane) const {
   lane.packed.append(std::as_bytes(std::span(&from, 1)));
 }
 
-/// Writes the message behind what the lane holds; returns the bytes that it takes. If there is no
-/// room for them nothing has happened.
+/// Appends the message to the lane's buffer; returns its size in bytes. If it does not fit, nothing
+/// is changed.
 std::size_t Outbox::write(Lane& lane, Envelope* message, bool charged) {
   attached_.clear();
   const std::span<std::byte> room = lane.packed.room();
@@ -113,7 +114,7 @@ std::size_t Outbox::write(Lane& lane, Envelope* message, bool charged) {
   return n_bytes;
 }
 
-/// A message that is too large for the usual buffer gets one of its own size.
+/// A message that is too large for the usual buffer gets a buffer of its own size.
 void Outbox::make_room(Lane& lane, ProcessId process, std::size_t n_bytes) {
   if (lane.packed.size() + n_bytes > most_bytes && lane.packed.size() > sizeof(PackedFrom)) {
     send_packed(lane, process);
@@ -145,7 +146,7 @@ void Outbox::pack(Lane& lane, ProcessId process, Envelope* message, bool charged
   if (lane.packed.size() >= flush_bytes || one_by_one_) send_packed(lane, process);
 }
 
-/// The message stands in the room behind what the lane holds, which stays.
+/// The message is in the buffer's free space behind the lane's contents, which stay.
 void Outbox::send_parcel(Lane& lane, ProcessId process, Envelope* message, std::size_t n_bytes) {
   Parcel parcel;
   parcel.head.reserve(sizeof(PackedFrom) + n_bytes);
@@ -172,4 +173,4 @@ bool Outbox::flush() {
   return true;
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,24 +1,26 @@
-// What a PE sends to other processes: a lane for each process, in which small messages are packed
-// together until they leave: by size, after a few microseconds, when the PE idles, and before it
-// starts local work on which others wait. A large message leaves by itself; its large vectors are
-// not copied, they are sent from where they stand, and the message is kept until they have left.
+// The messages that a PE sends to other processes. There is a lane for each process, in which small
+// messages are packed together until they are sent: when the buffer is full, after a few
+// microseconds, when the PE idles, and before it starts local work while others wait for its
+// messages. A large message is sent alone; its large vectors are not copied but sent from their own
+// memory, and the message is kept until they have been sent.
 //
 //     put(message) ─► lane: | sender | header, bytes | header, bytes | … ─► Machine::send(Buffer)
 //                  └► large: | sender | header, bytes |  + parts        ─► Machine::send(Parcel)
 //
-// Memory is bounded by credit. What users send is charged to its lane, by its bytes, until the
-// receiver has run it: a lane packs while what is under way is below half of its budget, so that
-// with the next message it is within the budget, or half of it and that message. What comes later
-// waits here, unpacked. The receiver repays in portions, by messages that need no credit:
+// Credit bounds the memory. A user's message is charged to its lane, by its bytes, until the
+// receiver has run it. A lane packs messages while the bytes under way are below half of its
+// budget; with the next message they are within the budget, or are half of it and that message.
+// Later messages wait here, unpacked. The receiver repays in portions, by messages that need no
+// credit:
 //
 //     portion = limit / (2 × PEs of the receiving process):  its PEs together keep back less than
-//     half of the limit, so some of what is under way is always about to be repaid
+//     half of the limit, so some of the bytes under way are always about to be repaid
 //
 // A message that has run is repaid wherever it goes then, and messages of the runtime itself are
-// not charged. So nothing that holds credit waits for credit, and no deadlock is possible. What
-// waits here is sent and not processed: its epochs wait with it.
+// not charged. So nothing that holds credit waits for credit, and no deadlock is possible. A
+// message that waits here counts as sent and not processed, so its epochs wait for it.
 //
-// The other end is Pe::receive and Pe::place. One PE's.
+// The other end is Pe::receive and Pe::place. An outbox belongs to one PE.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -33,17 +35,17 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
-/// What a buffer of packed messages, and the head of a parcel, begin with.
+/// The beginning of a buffer of packed messages and of the head of a parcel.
 struct PackedFrom {
   PeId sender;
   std::uint32_t unused = 0;
 };
 
-/// What stands before each packed message.
+/// The header of each packed message.
 struct PackedHeader {
-  std::uint64_t n_bytes = 0;  ///< behind this header; without attached parts
+  std::uint64_t n_bytes = 0;  ///< bytes behind this header, without attached parts
   EpochId epoch{};
   std::uint32_t action = 0;
   PeId source{};
@@ -56,20 +58,22 @@ struct PackedHeader {
 };
 static_assert(Bitwise<PackedFrom> && Bitwise<PackedHeader>);
 
-/// The credit that a message of so many bytes takes.
+/// The credit that a message of this size takes.
 [[nodiscard]] constexpr std::uint32_t credit_of(std::uint64_t n_bytes) {
   return static_cast<std::uint32_t>(n_bytes / 16 + 1);
 }
 
-/// How messages travel between processes.
+/// Options of messages between processes.
 struct MessageOptions {
-  std::size_t attach_bytes = std::size_t{16} << 10;  ///< a vector of so many is a part of its own
-  std::size_t memory_bytes = std::size_t{32} << 20;  ///< under way from one process to another
+  std::size_t attach_bytes = std::size_t{16}
+                             << 10;  ///< a vector of this size or more is attached as a part
+  std::size_t memory_bytes = std::size_t{32}
+                             << 20;  ///< most bytes under way from one process to another
 };
 
 class Outbox {
  public:
-  /// Counts in `bytes_sent` what it packs.
+  /// Counts the packed bytes in `bytes_sent`.
   Outbox(PeId self, Machine& machine, const MessageOptions& options, std::uint64_t& bytes_sent);
   Outbox(const Outbox&) = delete;
   Outbox& operator=(const Outbox&) = delete;
@@ -77,36 +81,36 @@ class Outbox {
 
   /// Sends to a PE of another process; takes ownership.
   void put(Envelope* message);
-  /// Sends all that was held back to be packed together. True if there was any.
+  /// Sends all messages that are held back to be packed together. Returns true if there were any.
   bool flush();
-  /// Something is held back; the PE calls flush() in time.
+  /// True if messages are held back; the PE calls flush() in time.
   [[nodiscard]] bool holds() const { return holds_packed_; }
 
-  /// A message of that sender has run here: what is to be repaid now, mostly 0.
+  /// A message of this sender has run here. Returns the credit to be repaid now, mostly 0.
   [[nodiscard]] std::uint64_t owe(PeId sender, std::uint32_t credit);
-  /// A PE of that process has repaid: what waited is sent as far as it may.
+  /// A PE of this process has repaid credit: messages that waited are sent as far as it allows.
   void repaid(ProcessId process, std::uint64_t credit);
 
-  /// A message to that process would not wait.
+  /// True if a message to this process would not wait.
   [[nodiscard]] bool has_room(ProcessId process) const { return lane(process).under_way < limit_; }
-  /// Calls `go_on` once there is room, of several one after the other (go_on_one).
+  /// Calls `go_on` once there is room. Several producers continue one after the other (go_on_one).
   void wait_for_room(ProcessId process, std::function<void()> go_on) {
     lane(process).producers.push_back(std::move(go_on));
   }
-  /// Lets the first that waits for room go on, if there is any. True if others wait.
+  /// Lets the first waiting producer continue, if there is one. Returns true if others wait.
   bool go_on_one(ProcessId process);
   [[nodiscard]] bool awaited(ProcessId process) const { return !lane(process).producers.empty(); }
 
-  /// Frees what waits.
+  /// Frees the messages that wait.
   void drop_all();
 
  private:
-  /// To one process.
+  /// The messages to one process.
   struct Lane {
     Buffer packed;
-    std::uint64_t under_way = 0;                  // credit
-    ReadyQueue waiting;                           // for credit; empty while under_way < limit_
-    std::deque<std::function<void()>> producers;  // wait for room
+    std::uint64_t under_way = 0;  // credit
+    ReadyQueue waiting;           // waiting for credit; empty while under_way < limit_
+    std::deque<std::function<void()>> producers;  // waiting for room
   };
 
   [[nodiscard]] Lane& lane(ProcessId process) {
@@ -125,13 +129,19 @@ class Outbox {
   const PeId self_;
   Machine& machine_;
   const bool one_by_one_;
-  const std::uint64_t limit_;    // of a lane, in credit
-  const std::uint64_t portion_;  // that is repaid
+  const std::uint64_t limit_;    // credit of a lane
+  const std::uint64_t portion_;  // credit that is repaid at once
   std::uint64_t& bytes_sent_;
   bool holds_packed_ = false;
   Attached attached_;
   std::vector<Lane> lanes_;
-  std::vector<std::uint64_t> owed_;  // to each PE, once there is anything
+  std::vector<std::uint64_t> owed_;  // credit owed to each PE; empty until there is any
 };
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::MessageOptions;
 
 }  // namespace tess

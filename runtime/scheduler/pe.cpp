@@ -9,26 +9,26 @@
 #include <new>
 #include <utility>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// The longest that a message waits for others to the same PE of this process, or to another
+/// The longest time that a message waits for others to the same PE of this process, or to another
 /// process.
 constexpr double bundle_seconds = 1e-6;
 constexpr double packed_seconds = 4e-6;
-/// Messages between two looks at the clock, while something is held back and messages are short.
+/// The most messages between two readings of the clock, if messages are held back and short.
 constexpr std::uint32_t most_between_looks = 8;
-/// After a step of so few messages no others are likely to follow soon: what was packed leaves.
+/// After a step of so few messages more are unlikely to follow soon: packed messages are sent.
 constexpr std::size_t few_messages = 2;
-/// A PE that never runs dry reports its epochs after so many messages.
+/// A PE that is never idle reports its epochs after so many messages.
 constexpr std::size_t messages_between_reports = 1024;
 
 }  // namespace
 
 Pe& current_pe() {
-  TESS_CHECK(detail::the_current_pe != nullptr,
+  TESS_CHECK(the_current_pe != nullptr,
              "this call belongs on a PE: into an entry method or the function given to run()");
-  return *detail::the_current_pe;
+  return *the_current_pe;
 }
 
 Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
@@ -82,7 +82,7 @@ void Pe::pass(PeId to, Envelope* message, std::size_t n_bytes) {
 }
 
 void Pe::post(Bundle*& bundle, PeId to) {
-  if (bundle->n == 1) {  // by itself; the bundle stays for the next
+  if (bundle->n == 1) {  // posted alone; the bundle is kept for later messages
     auto* const message = static_cast<Envelope*>(bundle->messages[0]);
     bundle->n = 0;
     machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
@@ -96,7 +96,7 @@ void Pe::accept(Bundle* bundle) {
   Pool::release(bundle, &pool_);
 }
 
-/// Runs a message that may take long: what was sent before it leaves first.
+/// Runs a message that may take long: messages sent before it leave first.
 void Pe::run_slow(Envelope* message, const Action& action) {
   flush();
   const std::uint64_t begin = read_ticks();
@@ -105,7 +105,7 @@ void Pe::run_slow(Envelope* message, const Action& action) {
   action.set_pace(quick ? Action::Pace::quick : Action::Pace::slow);
 }
 
-/// After a message of this action, while something is held back.
+/// Called after a message of this action, if messages are held back.
 void Pe::look_at_clock(const Action& action) {
   const std::uint64_t now = read_ticks();
   if (now - last_look_ > bundle_ticks_) {
@@ -148,8 +148,8 @@ void Pe::run(Envelope* message) {
   }
   const std::uint32_t charge = message->charge;
   const PeId sender = message->sender;
-  message->charge = 0;  // wherever it goes from here
-  // Member by member: a copy of a context that was just written would stall.
+  message->charge = 0;  // it is paid, wherever it goes next
+  // Assigned member by member: a copy of a context that was just written would stall.
   of_message_.action = message->action;
   of_message_.epoch = message->epoch;
   try {
@@ -163,14 +163,15 @@ void Pe::run(Envelope* message) {
   } catch (const std::exception& error) {
     exception(error.what(), 1);
   } catch (...) {
-    exception("an exception that is no std::exception", 1);
+    exception("an exception that is not a std::exception", 1);
   }
   of_message_.element = nullptr;
   of_message_.action = nullptr;
   of_message_.epoch = EpochId{};
   of_message_.led_by = 0;
   if (charge != 0) [[unlikely]]
-    repay(sender, charge);  // before it is processed: the run is not over while credit is due
+    repay(sender,
+          charge);  // before it counts as processed: the run is not over while credit is due
   if (counted) completion_.hop_processed();
 }
 
@@ -204,8 +205,8 @@ void Pe::note_constructor(const std::string& name) {
 void Pe::exception(const char* what, int exit_code) {
   note_place();
   const std::string place = std::exchange(place_, {});
-  // Bad input is the user's to mend: one line, no trace. Everything else is a bug and says where it
-  // was.
+  // Bad input is the user's to correct: one line without a trace. Everything else is a bug, so its
+  // place is reported.
   if (exit_code == 2) {
     runtime_.error_line(text("error: ", one_line(what)));
   } else {
@@ -242,7 +243,7 @@ std::size_t Pe::step(std::size_t most) {
   if (n <= few_messages) flush();
   if (meter_) [[unlikely]]
     meter_->step_ends();
-  // A simulated cost of messages is nobody's load: a balancer does not see it as background.
+  // The simulated cost of messages is not load: a balancer must not see it as background.
   if (message_cost_.count() != 0) machine_.charge(id_, message_cost_ * n);
   return n;
 }
@@ -253,10 +254,10 @@ bool Pe::idle() {
     meter_->idle();
   messages_since_report_ = 0;
   bool busy = completion_.report_epochs();
-  // Of the run only when all is said of the epochs: their reports are sent by no message, so the
-  // run is over only if none is due. And not at the first gap: a PE that is idle between two
-  // messages of a ping-pong would report each time. Until then it claims to be busy, for the
-  // machine may let an idle PE sleep for good.
+  // Epoch 0 is reported only after all scoped epochs, whose reports belong to no message: the run
+  // is over only if none is due. Also not at the first gap: a PE that is idle between two messages
+  // of a ping-pong would report each time. Until then it claims to be busy, since the machine may
+  // let an idle PE sleep without limit.
   if (busy) {
     ++idle_calls_;
   } else if (completion_.run_changed()) {
@@ -368,4 +369,4 @@ std::vector<std::string> Pe::census() const {
   return lines;
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,6 +1,6 @@
-// A processing element: its queue, its collections, its part in completion, and what it is doing
-// right now. The machine drives it (accept, step, idle); everything that runs on the PE reaches the
-// world through it. Nothing here is shared: a PE is touched by the one thread that runs it.
+// A processing element: its queue, its collections, its part in completion, and its present
+// context. The machine drives it (accept, step, idle); all code that runs on the PE communicates
+// through it. Nothing here is shared: only the thread that runs the PE uses it.
 #pragma once
 
 #include "runtime/base/pool.hpp"
@@ -28,13 +28,13 @@
 #include <utility>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 class Element;
 class Runtime;
 
-/// What a PE is doing: whose code runs, on which epoch's account, and which broadcast of the
-/// element's collection led to it (0: none).
+/// The context of running code: its element, its epoch, and the broadcast of the element's
+/// collection that led to it (0: none).
 struct Context {
   Element* element = nullptr;
   const Action* action = nullptr;
@@ -42,20 +42,20 @@ struct Context {
   std::uint32_t led_by = 0;
 };
 
-/// What happened on a PE since the start; printed by --stats.
+/// Counters of a PE since the start; printed by --stats.
 struct PeStatistics {
-  std::uint64_t messages = 0;      ///< run on this PE
-  std::uint64_t sent_remote = 0;   ///< to another PE
-  std::uint64_t bytes_sent = 0;    ///< packed for another process
+  std::uint64_t messages = 0;      ///< messages run on this PE
+  std::uint64_t sent_remote = 0;   ///< messages sent to another PE
+  std::uint64_t bytes_sent = 0;    ///< bytes packed for another process
   std::uint64_t forwards = 0;      ///< messages that met an element's former PE
   std::uint64_t migrations = 0;    ///< elements that left
-  std::uint64_t dead_letters = 0;  ///< messages to elements that are no more
+  std::uint64_t dead_letters = 0;  ///< undeliverable messages to destroyed elements
   Time busy{0};
 };
 
 class Pe {
  public:
-  /// The pool outlives all PEs of the process: messages of one are freed by another.
+  /// The pool outlives all PEs of the process, since one PE frees messages of another.
   Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
      const MessageOptions& messages);
   Pe(const Pe&) = delete;
@@ -69,22 +69,22 @@ class Pe {
   [[nodiscard]] Pool& pool() { return pool_; }
   [[nodiscard]] Completion& completion() { return completion_; }
   [[nodiscard]] Context& context() { return *context_; }
-  /// Another context is in force from now on; returns the one before. It outlives its time in
-  /// force.
+  /// Replaces the current context and returns the former one. The new one must live until it is
+  /// replaced.
   Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
   [[nodiscard]] Time now() const { return machine_.now(id_); }
-  /// What measures this PE's code; null while nobody asks for it.
+  /// Measures this PE's code; null if nothing requests it.
   [[nodiscard]] Meter* meter() { return meter_.get(); }
-  /// Measures from now on.
+  /// Starts measuring.
   Meter& start_meter() {
     if (!meter_) meter_ = std::make_unique<Meter>(machine_, id_);
     return *meter_;
   }
 
-  /// Marks a new message as sent by this PE, on account of the epoch that runs.
+  /// Marks a new message as sent by this PE in the current epoch.
   template <class M>
   M* stamp(M* message) {
     message->source = id_;
@@ -94,21 +94,21 @@ class Pe {
     return message;
   }
 
-  /// Keeps a trace from now on.
+  /// Starts recording a trace.
   void start_trace(std::size_t most_records) {
     start_meter();
     trace_ = std::make_unique<Trace>(most_records);
   }
   [[nodiscard]] const Trace* trace() const { return trace_.get(); }
 
-  // Sending and forwarding of stamped messages. All take ownership.
+  // Sending and forwarding of stamped messages. All functions take ownership.
 
-  /// To any PE, also this one.
+  /// Sends to any PE, including this one.
   void send(PeId to, Envelope* message) {
     completion_.hop_sent();
     route(to, message);
   }
-  /// To this PE; the fast path of messages to local elements.
+  /// Sends to this PE; the fast path of messages to local elements.
   void send_here(Envelope* message) {
     completion_.hop_sent();
     message->target = id_;
@@ -118,7 +118,7 @@ class Pe {
       ready_.push(message);
     }
   }
-  /// Outside of epoch 0.
+  /// Sends a message that epoch 0 does not count.
   void send_uncounted(PeId to, Envelope* message) {
     message->counted = false;
     route(to, message);
@@ -130,19 +130,20 @@ class Pe {
     if (last_id_ == id) return last_;
     return find_slow(id);
   }
-  /// Enters a collection; messages that came before it are sent on.
+  /// Adds a collection; messages that arrived before it are sent on.
   void add(std::unique_ptr<HostedCollection> collection);
-  /// Keeps a message whose collection is not known here yet. One whose collection has ended here is
-  /// dropped: `drop` settles its accounts and returns how many user messages are lost with it.
+  /// Keeps a message whose collection is not known here yet. If the collection has ended here, the
+  /// message is dropped: `drop` settles its epochs and returns the number of user messages that are
+  /// lost with it.
   void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
   [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
-  /// Takes a collection out of the table: it ends here, and messages to it are dropped from now on.
+  /// Removes a collection from the table: it ends here, and later messages to it are dropped.
   [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);
-  /// Keeps a collection that was taken out until the coroutines of its elements are done.
+  /// Keeps a removed collection until the coroutines of its elements are done.
   void keep_ending(std::unique_ptr<HostedCollection> collection, EpochId epoch);
   struct Ending {
     std::unique_ptr<HostedCollection> collection;
-    EpochId epoch{};  ///< waits for it
+    EpochId epoch{};  ///< the epoch that waits for the end
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted) {
@@ -150,7 +151,7 @@ class Pe {
   }
   [[nodiscard]] std::vector<HostedCollection*> collections() const;
 
-  // Called by the machine through the runtime.
+  // The machine calls these through the runtime.
 
   void accept(Link* first) {
     for (Link* next = nullptr; first != nullptr; first = next) {
@@ -166,30 +167,32 @@ class Pe {
                                 std::span<const std::uint64_t> sizes,
                                 std::vector<std::span<std::byte>>& taken);
   [[nodiscard]] Outbox& outbox() { return outbox_; }
-  /// A PE of another process has run what this PE had sent there.
+  /// A PE of another process has run messages that this PE sent to it.
   void on_repaid(PeId from, std::uint64_t amount);
-  /// Hands a message that came from another process to its PE.
+  /// Passes a message that arrived from another process to its PE.
   void hand_over(Envelope* message, std::size_t n_bytes);
-  /// Sends all that was held back to be packed together. True if there was any. Called after a few
-  /// microseconds, when the PE idles, and before it starts local work on which other PEs wait.
+  /// Sends all messages that are held back to be packed together. Returns true if there were any.
+  /// Called after a few microseconds, when the PE idles, and before it starts local work while
+  /// other PEs wait.
   bool flush();
   void drop_all();
 
-  /// No user code runs from here on; what comes in is dropped, but for messages outside of epoch 0.
+  /// No user code runs after this call. Messages that arrive are dropped, except those that epoch 0
+  /// does not count.
   void stop_user_code() { stopped_ = true; }
   [[nodiscard]] bool stopped() const { return stopped_; }
-  /// The run is over, and what waited is freed.
+  /// True if the run is over and suspended coroutines are being freed.
   [[nodiscard]] bool dropping() const { return dropping_; }
 
-  /// What waits on this PE for something that must come from elsewhere, a line each.
+  /// One line for each object on this PE that waits for something from elsewhere.
   [[nodiscard]] std::vector<std::string> census() const;
 
-  /// With a simulated machine that forces migrations: the PE an element has to go to now, or this
-  /// one.
+  /// On a simulated machine that forces migrations: the PE that an element must move to now, or
+  /// this PE.
   [[nodiscard]] PeId forced_migration();
   void set_migration_chance(double chance) { migration_chance_ = chance; }
 
-  /// Futures that were made on this PE, by number; a result for one that is gone is an error.
+  /// The futures that were made on this PE, by number. A result for a destroyed future is an error.
   std::uint64_t enter_future(void* future) {
     futures_.emplace(++n_futures_, future);
     return n_futures_;
@@ -200,23 +203,23 @@ class Pe {
     return at == futures_.end() ? nullptr : at->second;
   }
 
-  /// An exception that a coroutine threw after it had waited; thrown again once its message is at
-  /// its end.
+  /// Keeps an exception that a coroutine threw after it had waited; it is rethrown at the end of
+  /// the message.
   void keep_exception(std::exception_ptr error) {
     note_place();
     if (!kept_exception_) kept_exception_ = std::move(error);
   }
-  /// An exception leaves the code of an element: the report is to say where that was.
+  /// An exception leaves the code of an element: records the place for the report.
   void note_place();
-  /// The same for a constructor, by its name.
+  /// An exception leaves a constructor: records the constructor's name for the report.
   void note_constructor(const std::string& name);
 
-  /// The index (and array) of the element that is constructed right now; null between.
+  /// The index (and array) of the element under construction; null if there is none.
   [[nodiscard]] const void* constructed_index() const { return constructed_index_; }
   [[nodiscard]] HostedCollection* constructing_collection() const {
     return constructing_collection_;
   }
-  /// Marks a constructor's run; they nest where a constructor creates a collection.
+  /// Marks the run of a constructor. Marks nest if a constructor creates a collection.
   class Construction {
    public:
     Construction(Pe& pe, const void* index, HostedCollection* collection)
@@ -237,16 +240,16 @@ class Pe {
     HostedCollection* collection_;
   };
 
-  /// Calls that the schedule makes wait until the end of the current message (element surgery).
+  /// True if the schedule may migrate an element after each message (forced migrations).
   [[nodiscard]] bool intercepts() const { return intercepts_; }
 
  private:
   void route(PeId to, Envelope* message);
-  /// To a PE of this process, not this one.
+  /// Passes a message to another PE of this process.
   void pass(PeId to, Envelope* message, std::size_t n_bytes);
   void post(Bundle*& bundle, PeId to);
   void flush_bundles();
-  /// Something is held back from now on, if nothing was.
+  /// Records that a message is held back, if none was.
   void hold() {
     if (holds_) return;
     holds_ = true;
@@ -270,18 +273,18 @@ class Pe {
   const bool intercepts_;
   const unsigned patience_;
   const Time message_cost_;
-  const std::int32_t first_here_, n_here_;  // the PEs of this process
+  const std::int32_t first_here_, n_here_;  // the range of this process's PEs
   const std::uint64_t bundle_ticks_, packed_ticks_;
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
   std::uint64_t n_futures_ = 0;
   boost::unordered_flat_map<std::uint64_t, void*> futures_;
-  std::string place_;  // where the exception on its way was thrown
+  std::string place_;  // where the pending exception was thrown
   const void* constructed_index_ = nullptr;
   HostedCollection* constructing_collection_ = nullptr;
   ReadyQueue ready_;
-  Context of_message_;  // of the message that runs
+  Context of_message_;  // context of the running message
   Context* context_ = &of_message_;
   CompletionMessagesOfPe completion_messages_;
   Completion completion_;
@@ -294,14 +297,15 @@ class Pe {
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
 
-  Outbox outbox_;  // to other processes
+  Outbox outbox_;  // messages to other processes
 
-  // What is held back to leave together: in the outbox, and pointers by PE of this process.
+  // Messages that are held back to leave together: in the outbox, and pointers by PE of this
+  // process.
   bool holds_ = false;
-  std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two looks at the clock
-  std::uint64_t held_since_ = 0, last_look_ = 0;   // in ticks
-  std::vector<Bundle*> bundles_;                   // empty where the machine takes none
-  std::vector<std::int32_t> opened_;               // those of bundles_ that hold something
+  std::uint32_t until_look_ = 1, look_every_ = 1;  // messages between two readings of the clock
+  std::uint64_t held_since_ = 0, last_look_ = 0;   // ticks
+  std::vector<Bundle*> bundles_;                   // empty if the machine takes no bundles
+  std::vector<std::int32_t> opened_;               // the non-empty entries of bundles_
   CollectionId last_id_{~std::uint64_t{0}};
   HostedCollection* last_ = nullptr;
   CollectionNumbers collection_numbers_;
@@ -313,34 +317,40 @@ class Pe {
   std::vector<Ending> ending_;
 };
 
-namespace detail {
 inline thread_local Pe* the_current_pe = nullptr;
-}
 
 /// The PE that this thread runs right now; null on a thread that runs none.
 [[nodiscard]] inline Pe* current_pe_or_null() {
-  return detail::the_current_pe;
+  return the_current_pe;
 }
 
 /// The PE that this thread runs right now. Misuse outside of a PE ends the job.
 [[nodiscard]] Pe& current_pe();
 
-/// There must be a PE of that number in the run.
+/// Checks that the run has a PE of this number.
 inline void check_exists(const Pe& pe, PeId id) {
   TESS_CHECK(id.value >= 0 && id.value < pe.n_pes(), "there is no ", id, ": the run has ",
              pe.n_pes(), pe.n_pes() == 1 ? " PE" : " PEs");
 }
 
-/// Makes a PE current for a scope.
+/// Makes a PE the current one during a scope.
 class RunsOn {
  public:
-  explicit RunsOn(Pe& pe) : before_(detail::the_current_pe) { detail::the_current_pe = &pe; }
+  explicit RunsOn(Pe& pe) : before_(the_current_pe) { the_current_pe = &pe; }
   RunsOn(const RunsOn&) = delete;
   RunsOn& operator=(const RunsOn&) = delete;
-  ~RunsOn() { detail::the_current_pe = before_; }
+  ~RunsOn() { the_current_pe = before_; }
 
  private:
   Pe* before_;
 };
+
+}  // namespace tess::detail
+
+namespace tess {
+
+// The names of this header that programs use. Other headers of the runtime end in the same way.
+using detail::current_pe;
+using detail::Pe;
 
 }  // namespace tess

@@ -1,25 +1,23 @@
-// Messages from PE to PE that no chare sees: a function of (Pe&, Payload&&) by name, and its
-// payload.
+// Messages between PEs that do not involve chares: a handler function of (Pe&, Payload&&), known by
+// its name, and its payload.
 #pragma once
 
 #include "runtime/scheduler/message.hpp"
 #include "runtime/scheduler/pe.hpp"
 
-namespace tess {
+namespace tess::detail {
 
-namespace detail {
 template <class F>
 struct PeHandler;
 template <class P>
 struct PeHandler<void (*)(Pe&, P&&)> {
   using Payload = P;
 };
-}  // namespace detail
 
-/// The action that hands its payload to `Handler`.
+/// The action that passes its payload to `Handler`.
 template <auto Handler>
 struct PeAction {
-  using Payload = typename detail::PeHandler<decltype(Handler)>::Payload;
+  using Payload = typename PeHandler<decltype(Handler)>::Payload;
   using Held = Message<Payload>;
 
   static void run(Pe& pe, Envelope* envelope) {
@@ -32,18 +30,18 @@ struct PeAction {
       naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Traffic::control};
 };
 
-/// Sends a payload to a handler on a PE; a hop of epoch 0, on no other epoch's account.
+/// Sends a payload to a handler on a PE. It counts as a hop of epoch 0 and for no other epoch.
 template <auto Handler>
 void send_system(Pe& pe, PeId to, typename PeAction<Handler>::Payload payload) {
   using Held = Message<typename PeAction<Handler>::Payload>;
   pe.send(to, pe.stamp(Held::make(pe, PeAction<Handler>::action, std::move(payload))));
 }
 
-/// The same, outside of epoch 0, too: for what measures epoch 0, and for the end of the run.
+/// The same, but not counted in epoch 0 either: for messages that measure epoch 0 or end the run.
 template <auto Handler>
 void send_uncounted(Pe& pe, PeId to, typename PeAction<Handler>::Payload payload) {
   using Held = Message<typename PeAction<Handler>::Payload>;
   pe.send_uncounted(to, pe.stamp(Held::make(pe, PeAction<Handler>::action, std::move(payload))));
 }
 
-}  // namespace tess
+}  // namespace tess::detail

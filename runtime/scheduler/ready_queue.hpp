@@ -1,6 +1,5 @@
-// The messages that a PE may run, first in first out: a ring of pointers that grows. The messages
-// themselves are touched only when their turn is near; then they are fetched into the cache ahead
-// of it. One thread only.
+// The messages that a PE may run, first in first out, in a growing ring of pointers. A message is
+// touched only when its turn is near; it is then prefetched. Used by one thread.
 #pragma once
 
 #include "runtime/base/link.hpp"
@@ -9,7 +8,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace tess {
+namespace tess::detail {
 
 class ReadyQueue {
  public:
@@ -26,13 +25,13 @@ class ReadyQueue {
     ring_[tail_++ & mask_] = link;
   }
 
-  /// The one whose turn comes after n others, already on its way into the cache; null if there is
-  /// none. n is less than the distance of the prefetch.
+  /// The message whose turn comes after n others, already prefetched; null if there is none. n is
+  /// less than the prefetch distance.
   [[nodiscard]] Link* ahead(std::size_t n) const {
     return head_ + n < tail_ ? ring_[(head_ + n) & mask_] : nullptr;
   }
 
-  /// The oldest; the queue must not be empty.
+  /// Removes the oldest message; the queue must not be empty.
   Link* pop() {
     if (head_ + distance < tail_) {
       const char* soon = reinterpret_cast<const char*>(ring_[(head_ + distance) & mask_]);
@@ -44,7 +43,7 @@ class ReadyQueue {
 
  private:
   static constexpr std::size_t first_capacity = 256;
-  static constexpr std::size_t distance = 6;  // of the prefetch
+  static constexpr std::size_t distance = 6;  // prefetch distance
 
   void grow() {
     const std::size_t n = tail_ - head_;
@@ -58,7 +57,8 @@ class ReadyQueue {
 
   std::unique_ptr<Link*[]> ring_;
   std::size_t mask_ = first_capacity - 1;
-  std::size_t head_ = 0, tail_ = 0;  // of all time; the place is the number modulo the capacity
+  std::size_t head_ = 0,
+              tail_ = 0;  // counted from the start; the slot is the count modulo the capacity
 };
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// Messages that come from other processes: unpacked where they arrive, handed to their PE, and
-// repaid once they have run.
+// Messages that arrive from other processes: they are unpacked where they arrive, passed to their
+// PE, and repaid once they have run.
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/pe.hpp"
@@ -7,10 +7,10 @@
 
 #include <numeric>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
-/// Credit that a PE gets back from another.
+/// Credit that another PE repays.
 struct Credit {
   PeId from;
   std::uint64_t amount = 0;
@@ -19,7 +19,7 @@ void credit_arrives(Pe& pe, Credit&& credit) {
   pe.on_repaid(credit.from, credit.amount);
 }
 
-/// A producer on this PE may go on.
+/// Lets a producer on this PE continue.
 struct Room {
   ProcessId process;
 };
@@ -27,7 +27,7 @@ void room_arrives(Pe& pe, Room&& room) {
   if (pe.outbox().go_on_one(room.process)) send_system<&room_arrives>(pe, pe.id(), room);
 }
 
-/// `n_bytes`: with the attached parts.
+/// `n_bytes` includes the attached parts.
 Envelope* unpack(Pe& pe, PeId sender, const PackedHeader& header, Reader& body,
                  std::uint64_t n_bytes) {
   const auto& action = static_cast<const Action&>(Registry::at(header.action));
@@ -98,4 +98,4 @@ void Pe::on_repaid(PeId from, std::uint64_t amount) {
   if (outbox_.awaited(process)) send_system<&room_arrives>(*this, id_, Room{process});
 }
 
-}  // namespace tess
+}  // namespace tess::detail

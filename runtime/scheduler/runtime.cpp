@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <fmt/core.h>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 struct Code {
@@ -39,7 +39,7 @@ void census_arrives(Pe& pe, Runtime::Census&& census) {
   pe.runtime().on_census(pe, std::move(census));
 }
 
-constexpr std::size_t most_trace_records = 1'000'000;  // of each kind a PE: some 60 MB
+constexpr std::size_t most_trace_records = 1'000'000;  // of each kind per PE: about 60 MB
 constexpr std::size_t reserve_bytes = 1U << 20U;
 
 template <auto Handler, class Payload>
@@ -84,14 +84,15 @@ int Runtime::run() {
       error_line(
           "error: the processes of this job run different programs: start the same build "
           "everywhere");
-    (void)machine_.agree(0);  // a process that leaves ends the others: not before the line is out
+    (void)machine_.agree(
+        0);  // a process that leaves ends the others: wait until the line is printed
     return 2;
   }
   if (!options_.trace.empty()) require_writable_trace(trace_path());
   machine_.run(*this);
   write_traces();
   if (left_) return exit_code_;
-  // Only a simulated machine can notice that nothing at all is under way any more.
+  // Only a simulated machine can notice that no message is under way any more.
   std::string report =
       "tessera: the run stands still, and the runtime had not noticed: a bug of the runtime";
   for (const std::string& line : still_) report += "\n  " + line;
@@ -216,7 +217,7 @@ void Runtime::on_stopped(Pe& pe, int code) {
 }
 
 void Runtime::on_leave(Pe& pe, int code) {
-  pe.flush();  // PE 0 holds packed what tells other processes to leave
+  pe.flush();  // PE 0 still holds the packed messages that make other processes leave
   exit_code_ = code;
   left_ = true;
   machine_.stop();
@@ -241,7 +242,7 @@ void Runtime::on_census_asked(Pe& pe) {
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
-  if (stopping_) return;  // exit() came meanwhile; it counts answers of its own
+  if (stopping_) return;  // exit() was called meanwhile; it counts its own answers
   census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
   census_.dead_letters += census.dead_letters;
   for (EmptyArray& array : census.empty)
@@ -260,7 +261,7 @@ void Runtime::on_census(Pe& pe, Census&& census) {
       report += "\n  " + census_.lines[i];
     if (census_.lines.size() > most)
       report += text("\n  … and ", census_.lines.size() - most, " more");
-    // Whoever waits for such a result cannot say of which array.
+    // A waiter for such a result does not know the array that it comes from.
     for (const EmptyArray& array : census_.empty)
       report += text("\n  note: ", array.name, " has no elements: its reductions have no result");
     error_line(report);
@@ -270,4 +271,4 @@ void Runtime::on_census(Pe& pe, Census&& census) {
   end_with(pe, 0);
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,10 +1,15 @@
-// A run on one process: its PEs on a machine, and how the run ends. It ends in one of four ways, on
-// all processes with one exit code: quiescence with nothing waiting (0); quiescence with something
-// waiting, a deadlock, reported as who waits for what (1); exit(code) of the program; an exception
-// (1, or 2 for bad input and where memory ends).
+// A run on one process: its PEs on a machine, and the end of the run. It ends in one of four ways,
+// on all processes with the same exit code:
+//
+//   0       quiescence, and nothing waits
+//   1       quiescence while something waits: a deadlock; what waits for what is reported
+//   code    the program called exit(code)
+//   1 or 2  an exception; 2 for bad input and for exhausted memory
+//
+// The end by exit():
 //
 //     exit asked -> PE 0: Stop to all PEs -> each stops user code, answers with the greatest code
-//     it was given
+//                                            that it was given
 //                -> PE 0: Leave(code) to all PEs -> each stops its machine
 #pragma once
 
@@ -20,16 +25,16 @@
 #include <mutex>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 struct RuntimeOptions {
   std::uint64_t seed = 0;
-  double migration_chance =
-      0;                    ///< after each message an element may be sent away: schedule fuzzing
-  bool statistics = false;  ///< print what each PE did
+  double migration_chance = 0;  ///< probability of a forced migration after a message, for testing
+  bool statistics = false;      ///< print the counters of each PE
   MessageOptions messages;
-  std::string trace;  ///< the file that a trace is written to; empty: none is kept
-  /// Who is given the lines of reports (deadlock, exception, statistics); absent: standard error.
+  std::string trace;  ///< the file of the trace; empty: no trace
+  /// Receives the lines of reports (deadlock, exception, statistics); if empty, they go to standard
+  /// error.
   std::function<void(const std::string&)> report;
 };
 
@@ -47,18 +52,19 @@ class Runtime final : public Program {
   [[nodiscard]] Machine& machine() { return machine_; }
   [[nodiscard]] Pe& pe(PeId id) { return *pes_[static_cast<std::size_t>(id.value - first_.value)]; }
 
-  /// The program asks for the end; the greatest code wins.
+  /// The program requests the end of the run; the greatest exit code wins.
   void exit(Pe& pe, int code);
-  /// Epoch 0 is done: on PE 0.
+  /// Epoch 0 is done. Called on PE 0.
   void quiescent(Pe& pe);
-  /// Memory is at its end: one line a process, however many PEs meet it, and exit code 2.
+  /// Memory is exhausted: prints one line per process, however many PEs notice it; the exit code is
+  /// 2.
   void out_of_memory(Pe& pe, const std::string& place);
   [[nodiscard]] std::string element_text(const Element& element) const {
     return element_text_(element);
   }
-  /// "Block[3], Block::step on PE 2".
+  /// Describes what a PE runs: "Block[3], Block::step on PE 2".
   [[nodiscard]] std::string describe(Pe& pe) const;
-  /// Prints whole lines to standard error, never mixed with those of another thread.
+  /// Prints whole lines to standard error, never mixed with lines of another thread.
   void error_line(const std::string& line);
 
   // Program.
@@ -84,8 +90,8 @@ class Runtime final : public Program {
   struct Census {
     std::vector<std::string> lines;
     std::uint64_t dead_letters = 0;
-    std::vector<EmptyArray> empty;  // on this PE, though they were broadcast to
-    bool exits = false;  // exit() was called: that message is on its way, outside of epoch 0
+    std::vector<EmptyArray> empty;  // arrays without elements on this PE that got a broadcast
+    bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
   };
   void run_main(Pe& pe);
   void on_exit_asked(Pe& pe, int code);
@@ -106,22 +112,28 @@ class Runtime final : public Program {
   const ElementText element_text_;
   const std::function<void()> main_;
   const PeId first_;
-  std::unique_ptr<std::byte[]> reserve_;  // given up when memory ends, for the messages of the end
-  std::deque<Pool> pools_;                // before the PEs: one may free what another allocated
+  std::unique_ptr<std::byte[]> reserve_;  // released when memory is exhausted
+  std::deque<Pool> pools_;  // before the PEs: one PE may free memory of another's pool
   std::vector<std::unique_ptr<Pe>> pes_;
   std::mutex output_;
   std::atomic<int> exit_code_{0};
   std::atomic<bool> left_{false};
   std::atomic<bool> out_of_memory_{false};
-  std::vector<std::string> still_;  // simulated machine: what waits if the run stands still
+  std::vector<std::string> still_;  // simulated machine: what waits if nothing can run
 
-  // On PE 0 alone.
+  // Only on PE 0.
   bool stopping_ = false;
   std::int32_t n_answers_ = 0;
   Census census_;
-  std::map<CollectionId, std::int32_t> empty_on_;  // how many PEs
-  // On each PE: the greatest code asked for here.
+  std::map<CollectionId, std::int32_t> empty_on_;  // number of PEs per collection
+  // On each PE: the greatest exit code requested here.
   std::vector<int> asked_;
 };
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::RuntimeOptions;
 
 }  // namespace tess

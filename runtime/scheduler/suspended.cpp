@@ -3,10 +3,10 @@
 #include <coroutine>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 
 void end_all(SuspendedList& list) {
-  // Those that no Task holds: with a frame end the tasks that it holds.
+  // Only the frames that no Task holds: destroying a frame also destroys the tasks that it holds.
   std::vector<void*> roots;
   for (const Suspended* one = list.first(); one != nullptr; one = one->after)
     if (*one->detached) roots.push_back(one->frame);
@@ -14,4 +14,4 @@ void end_all(SuspendedList& list) {
   for (void* frame : roots) std::coroutine_handle<>::from_address(frame).destroy();
 }
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,5 +1,5 @@
-// The coroutines of one PE that wait for something. Kept so that a run that stands still can report
-// who waits for what. The entries are parts of the coroutines' frames, so that waiting allocates
+// The suspended coroutines of one PE. They are listed so that a run that cannot continue can report
+// what each waits for. The entries are parts of the coroutines' frames, so waiting allocates
 // nothing.
 #pragma once
 
@@ -8,24 +8,24 @@
 #include <functional>
 #include <string>
 
-namespace tess {
+namespace tess::detail {
 
 class Element;
 struct Action;
 
-/// One coroutine that waits.
+/// One suspended coroutine.
 struct Suspended {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
   std::function<std::string()> waits_for;
   void* frame = nullptr;
-  const bool* detached = nullptr;  ///< in the frame: no Task holds the coroutine
+  const bool* detached = nullptr;  ///< points into the frame: true if no Task holds the coroutine
   Suspended* before = nullptr;
   Suspended* after = nullptr;
 };
 
-/// Entries stay where they are until they are taken out.
+/// Entries must not move while they are listed.
 class SuspendedList {
  public:
   SuspendedList() = default;
@@ -43,7 +43,7 @@ class SuspendedList {
     (one.before != nullptr ? one.before->after : first_) = one.after;
     (one.after != nullptr ? one.after->before : last_) = one.before;
   }
-  /// The one that has waited longest; null if none waits.
+  /// The coroutine that has waited longest; null if there is none.
   [[nodiscard]] const Suspended* first() const { return first_; }
   void clear() { first_ = last_ = nullptr; }
 
@@ -52,7 +52,7 @@ class SuspendedList {
   Suspended* last_ = nullptr;
 };
 
-/// Frees them all: the run ends before they do.
+/// Destroys all suspended coroutines, at the end of the run.
 void end_all(SuspendedList& list);
 
-}  // namespace tess
+}  // namespace tess::detail

@@ -7,12 +7,12 @@
 #include <fmt/core.h>
 #include <memory>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 constexpr std::uint32_t most_numbers = 0x7fffffff;  // 31 bits travel between processes
 
-/// The name of a message for people, as a JSON string's content.
+/// The readable name of a message as the content of a JSON string.
 std::string escaped(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -22,7 +22,7 @@ std::string escaped(const std::string& name) {
   return out;
 }
 
-/// The number of an arrow: unique over the job.
+/// The number of an arrow, unique in the job.
 std::uint64_t arrow(PeId source, std::uint32_t number) {
   return static_cast<std::uint64_t>(source.value) << 32U | number;
 }
@@ -119,4 +119,4 @@ void write_trace(const std::string& path, ProcessId process, const std::vector<T
   write.end();
 }
 
-}  // namespace tess
+}  // namespace tess::detail

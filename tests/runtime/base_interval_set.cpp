@@ -9,7 +9,7 @@ namespace {
 TEST_CASE("an interval set holds what was inserted, in whatever order", "[runtime][base]") {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     tess::Random random(seed);
-    tess::IntervalSet intervals;
+    tess::detail::IntervalSet intervals;
     std::set<std::uint64_t> oracle;
     const std::uint64_t range = 1 + random.below(60);
     for (std::uint64_t n = random.below(2 * range); n > 0; --n) {
@@ -28,7 +28,7 @@ TEST_CASE("an interval set holds what was inserted, in whatever order", "[runtim
 }
 
 TEST_CASE("numbers in a row are one interval", "[runtime][base]") {
-  tess::IntervalSet intervals;
+  tess::detail::IntervalSet intervals;
   for (std::uint64_t number = 1'000'000; number > 0; --number) intervals.insert(number);
   CHECK(intervals.n_intervals() == 1);
   CHECK(intervals.contains(1));

@@ -1,5 +1,5 @@
-// What a PE believes of where elements are: only newer news apply, and a message follows newer
-// knowledge at each hop.
+// A PE's knowledge of locations: only newer updates apply, and a message follows newer knowledge at
+// each hop.
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
@@ -9,7 +9,7 @@
 namespace {
 
 int run_on_three(std::function<void()> main) {
-  // One process per PE and a slow network: an element is a millisecond on its way, a message two
+  // One process per PE and a slow network: an element needs a millisecond to migrate, a message two
   // microseconds.
   tess::SimulatedOptions options;
   options.n_pes = 3;
@@ -75,13 +75,13 @@ TEST_CASE("old news of where an element is does not displace newer news", "[runt
     const auto array = tess::create<Heavy>(tess::sparse);
     tess::Index1 index{0};
     while (array.here().home(index) == tess::current_pe().id()) ++index.x;
-    using Elements = tess::ArrayOf<tess::Index1>;
-    const auto news = [&](std::int32_t pe, tess::Version version) {
+    using Elements = tess::detail::ArrayOf<tess::Index1>;
+    const auto news = [&](std::int32_t pe, tess::detail::Version version) {
       Elements::hint_arrives(array.here(), {index, {tess::PeId{pe}, version}});
       return array.here().next_pe(index).value;
     };
     CHECK(news(1, {1, 3}) == 1);
-    CHECK(news(2, {1, 2}) == 1);  // came late
+    CHECK(news(2, {1, 2}) == 1);  // arrived late
     CHECK(news(2, {1, 4}) == 2);
     CHECK(news(1, {1, 4}) == 2);
     CHECK(news(1, {2, 1}) == 1);  // a later life
@@ -94,7 +94,7 @@ TEST_CASE("a message to an element that moves back and forth goes to no PE twice
   std::int64_t n_forwards = 0, n_touches = 0;
   CHECK(run_on_three([&] { return chase(n_forwards, n_touches); }) == 0);
   CHECK(n_touches == 1);
-  // From PE 1 after the element to PE 2, from there after it to PE 1; there it is not yet, and the
-  // home keeps the message until it has landed.
+  // From PE 1 the message follows the element to PE 2, and from there to PE 1. The element is not
+  // there yet, and the home keeps the message until the element has arrived.
   CHECK(n_forwards <= 2);
 }

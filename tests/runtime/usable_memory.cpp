@@ -23,7 +23,7 @@ struct Mount {
   }
   [[nodiscard]] double limit(const std::string& groups) const {
     std::istringstream in(groups);
-    return tess::control_group_limit(in, path);
+    return tess::detail::control_group_limit(in, path);
   }
 
   fs::path path = fs::temp_directory_path() / ("tess_groups_" + std::to_string(getpid()));
@@ -49,8 +49,8 @@ TEST_CASE("memory is limited by the least of a process's control groups and thos
 }
 
 TEST_CASE("some memory can be used", "[runtime]") {
-  CHECK(tess::usable_memory() > 1e7);
-  CHECK(tess::usable_memory() < 1e16);
+  CHECK(tess::detail::usable_memory() > 1e7);
+  CHECK(tess::detail::usable_memory() < 1e16);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST_CASE("an index prints as a user writes it", "[runtime]") {
 }
 
 TEST_CASE("names are those of the source", "[runtime]") {
-  CHECK(tess::plain_name("tess::Call<Block, &Block::step>") == "Block::step");
+  CHECK(tess::plain_name("tess::detail::Call<Block, &Block::step>") == "Block::step");
   CHECK(tess::plain_name("tess::fuzz::Block") == "fuzz::Block");
 }
 
@@ -131,8 +131,8 @@ TEST_CASE("reduction operations combine numbers, and lists element by element", 
 }
 
 TEST_CASE("the ready queue gives messages in their order", "[runtime]") {
-  tess::ReadyQueue queue;
-  std::array<tess::Link, 4> links;
+  tess::detail::ReadyQueue queue;
+  std::array<tess::detail::Link, 4> links;
   CHECK(queue.empty());
   queue.push(&links[0]);
   // Over several turns of the ring and growths of it, in order.
@@ -154,7 +154,7 @@ struct Forgets {
   template <class Ar>
   void serialize(Ar& ar) {
     double other = Ar::is_reading ? 0 : lost;
-    ar(kept, other);  // reads into nowhere
+    ar(kept, other);  // the value is read into a temporary and lost
   }
 };
 
@@ -196,7 +196,7 @@ TEST_CASE("a copy is compared with the bytes it was read from", "[runtime][seria
 
 namespace {
 
-/// Gives the archive what is gone when it returns.
+/// Passes a temporary to the archive, which is destroyed when serialize() returns.
 struct Doubles {
   std::vector<double> values;
   template <class Ar>
@@ -232,7 +232,7 @@ Load load_of(std::size_t n) {
 /// A message of bytes and parts.
 struct Packed {
   std::vector<std::byte> bytes;
-  tess::Attached attached;
+  tess::detail::Attached attached;
   std::vector<std::uint64_t> sizes;
 
   explicit Packed(const Load& load) : bytes(10'000) {
@@ -257,7 +257,7 @@ TEST_CASE("large vectors are attached from where they stand and read in place",
   CHECK(packed.attached.n_bytes == 4 * 800);
 
   std::vector<std::span<std::byte>> taken;
-  tess::Places places{packed.sizes, taken};
+  tess::detail::Places places{packed.sizes, taken};
   tess::Reader read(packed.bytes, &places);
   Load back;
   read(back);
@@ -274,7 +274,7 @@ TEST_CASE("an attached part that was not announced is refused before memory is a
   const Packed packed(load_of(100));
   const auto refused = [&](std::vector<std::uint64_t> sizes) {
     std::vector<std::span<std::byte>> taken;
-    tess::Places places{sizes, taken};
+    tess::detail::Places places{sizes, taken};
     tess::Reader read(packed.bytes, &places);
     Load back;
     CHECK_THROWS_AS(read(back), tess::Error);

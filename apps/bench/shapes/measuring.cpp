@@ -1,5 +1,5 @@
-// What measuring elements adds to messages of 5 us. Once a balancer measures, its PEs do until the
-// run ends: so each turn is two runs, one without a balancer and one with.
+// The cost of measuring elements, added to messages of 5 us. Once a balancer measures, its PEs
+// measure until the run ends, so each turn is two runs, one without and one with a balancer.
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/base/ticks.hpp"
@@ -8,16 +8,16 @@
 namespace bench {
 namespace {
 
-/// Works for a while, and has a neighbour work.
+/// Works for a while, and then lets a neighbour work.
 class Worker : public tess::Chare<Worker, tess::Index1> {
  public:
   void work(std::int32_t left) {
     ++n_worked_;
     const std::chrono::nanoseconds grain(5000);
     if (!tess::charge(grain)) {
-      const auto ticks = static_cast<std::uint64_t>(5e-6 / tess::seconds_per_tick());
-      const std::uint64_t until = tess::read_ticks() + ticks;
-      while (tess::read_ticks() < until) {
+      const auto ticks = static_cast<std::uint64_t>(5e-6 / tess::detail::seconds_per_tick());
+      const std::uint64_t until = tess::detail::read_ticks() + ticks;
+      while (tess::detail::read_ticks() < until) {
       }
     }
     if (left > 0)

@@ -89,7 +89,7 @@ void Station::worked(double measured_seconds, double nominal_seconds) {
 
 void Station::first_begins() {
   began_ = clock();
-  tess::Meter& meter = tess::current_pe().start_meter();
+  tess::detail::Meter& meter = tess::current_pe().start_meter();
   busy_at_begin_ = meter.seconds(meter.busy());
   cpu_at_begin_ = cpu();
 }

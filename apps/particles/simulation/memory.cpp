@@ -13,7 +13,7 @@ namespace particles {
 void check_memory(const Scene& scene, int n_processes) {
   constexpr double bytes_per_sample = 6 * sizeof(double) + sizeof(std::uint64_t),
                    bytes_per_particle = bytes_per_sample + sizeof(Mark);
-  const double usable = tess::usable_memory();
+  const double usable = tess::detail::usable_memory();
   double needed = 0;
   /// `place` and `value`: the key that asks for the memory.
   const auto add = [&](double bytes, const std::string& place, std::uint64_t value,

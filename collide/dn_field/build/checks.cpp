@@ -13,7 +13,7 @@ void require_buildable(const Grid& grid, double bytes_per_voxel) {
   if (!(grid.cell > 0) || !std::isfinite(grid.cell) || !is_finite(grid.origin))
     fail(ErrorCode::bad_argument, "grid with cells of ", grid.cell, " from (", grid.origin.x, ", ",
          grid.origin.y, ", ", grid.origin.z, "); cells must be positive and all of it finite");
-  const double wanted = bytes_per_voxel * nx * ny * nz, there = usable_memory();
+  const double wanted = bytes_per_voxel * nx * ny * nz, there = tess::detail::usable_memory();
   if (wanted > there)
     fail(ErrorCode::environment, grid_text, " takes ", wanted / 1e9,
          " GB to build, this process may have ", there / 1e9, "; lower the resolution");

@@ -110,7 +110,7 @@ class FileReader {
     if (body != head.body_bytes)
       refuse(text(body < head.body_bytes ? "truncated" : "longer than it says", ": ", body,
                   " bytes behind its head, not ", head.body_bytes));
-    if (const double there = usable_memory(); static_cast<double>(body) > there)
+    if (const double there = tess::detail::usable_memory(); static_cast<double>(body) > there)
       fail(ErrorCode::environment, path_, ": holds ", static_cast<double>(body) / 1e9,
            " GB, and this process may have ", there / 1e9, " GB");
     left_ = head.body_bytes;
@@ -191,7 +191,7 @@ Field read_field(std::istream& file, const std::string& name) {
 }
 
 Field load_field(const std::string& path) {
-  std::ifstream file = open_file(path, "a field file");
+  std::ifstream file = tess::detail::open_file(path, "a field file");
   return read_field(file, path);
 }
 

@@ -126,7 +126,7 @@ Surface welded(const Surface& surface) {
 }
 
 Surface read_obj(const std::string& path) {
-  std::ifstream file = open_file(path, "an OBJ file");
+  std::ifstream file = tess::detail::open_file(path, "an OBJ file");
   Surface surface;
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {

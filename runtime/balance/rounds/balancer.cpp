@@ -7,14 +7,14 @@
 namespace tess::balance {
 namespace {
 
-/// Waits on each PE until the exchange, if there is one, and the array are known there. On the
-/// account of the epoch that start_balancing() runs in: when it ends, all elements are measured.
+/// Waits on each PE until the array and the exchange (if there is one) are known there. It belongs
+/// to the epoch in which start_balancing() runs: when the epoch ends, all elements are measured.
 struct Attach {
   CollectionId balancer{};
   CollectionId array{};
   EpochId epoch{};
 
-  /// The array has ended, or the exchange has: then the balancer ends, too.
+  /// The array or the exchange has ended: then the balancer ends, too.
   [[nodiscard]] std::uint64_t drop(Pe& pe) const {
     if (Balancer* member = GroupProxy<Balancer>(balancer).local_or_null(); member != nullptr)
       member->cannot_attach();
@@ -23,7 +23,7 @@ struct Attach {
   }
 };
 void attach_arrives(Collection& array, Attach&& m) {
-  // The balancer may have ended: the array's end is on its way to this PE then.
+  // The balancer may have ended: then the array's end is under way to this PE.
   if (Balancer* member = GroupProxy<Balancer>(m.balancer).local_or_null(); member != nullptr)
     member->attach(array);
   array.pe().completion().processed(m.epoch);
@@ -48,7 +48,7 @@ Balancer::Balancer(const Plan& plan)
                group()[plan.coordinator].target<&Balancer::reached>()),
       measured_(current_pe()) {
   Pe& pe = current_pe();
-  // At once where the array is known: what was sent after start_balancing() comes later.
+  // Immediately if the array is known: messages sent after start_balancing() arrive later.
   if (Collection* array = find_collection(pe, plan_.array); array != nullptr) watch(*array);
   const Attach attach{group().id(), plan_.array, plan_.epoch};
   pe.completion().sent(plan_.epoch);
@@ -91,7 +91,8 @@ void Balancer::array_ends() {
 }
 
 void Balancer::cannot_attach() {
-  // The coordinator may wait until all have attached; here the exchange is known, or over, by now.
+  // The coordinator may wait until all have attached; by now the exchange is known or has ended
+  // here.
   contribute(sum, std::int64_t{0},
              group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
   array_ends();
@@ -205,7 +206,7 @@ Task Balancer::begin_phase() {
 }
 
 Task Balancer::phase_ends() {
-  TESS_CHECK(coordinator_ != nullptr, "rounds are asked for on ", plan_.coordinator, " alone");
+  TESS_CHECK(coordinator_ != nullptr, "rounds are requested on ", plan_.coordinator, " only");
   TESS_CHECK(!array_ended_, "a round of an array that was destroyed");
   TESS_CHECK(!running_, "a round while another runs: await that one first");
   running_ = true;
@@ -230,7 +231,7 @@ Task Balancer::phase_ends() {
 }
 
 Task Balancer::due(std::uint64_t seen) {
-  // Several PEs ring, each in its own time; one round answers them all.
+  // Several PEs may request a round, each by its own clock; one round answers them all.
   const Time period(plan_.period_ns);
   if (!ready_ || running_ || array_ended_ || seen < n_rounds_ ||
       current_pe().now() - phase_began_ < period * 9 / 10)

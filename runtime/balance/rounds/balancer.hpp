@@ -1,17 +1,17 @@
-// The balancer of one array: a group, one member a PE. Each member watches the array's elements on
-// its PE; the coordinator (where balancing was started) decides.
+// The balancer of one array: a group with one member per PE. Each member watches the array's
+// elements on its PE; the coordinator (on the PE that started balancing) decides.
 //
 //     at_sync of all -> barrier -> coordinator: reached
 //         collect  ->  all PEs report their loads        (reduction, in PE order)
 //         decide       the strategy, on the coordinator
 //         move     ->  elements migrate                  (an epoch: it ends when all have arrived)
-//         resume   ->  every element goes on
+//         resume   ->  every element continues
 //
-// The balancer ends with its array: as soon as the array has ended on the coordinator, after the
-// round that runs then, if any.
+// The balancer ends with its array: as soon as the array has ended on the coordinator, or after the
+// round that runs then.
 //
-// A distributed strategy (diffusion, gossip) has neither collect nor decide: the PEs exchange items
-// among themselves (Exchange), then each fetches what it was given.
+// A distributed strategy (diffusion, gossip) needs neither collect nor decide: the PEs exchange
+// items among themselves (Exchange), then each PE fetches the elements that it was given.
 #pragma once
 
 #include "runtime/balance/rounds/barrier.hpp"
@@ -29,20 +29,20 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
  public:
   static constexpr LateMessages late_messages = LateMessages::ignored;
 
-  /// What every member needs of the options.
+  /// The options that every member needs.
   struct Plan {
     CollectionId array{};
     PeId coordinator{};
-    EpochId epoch{};  ///< that balancing starts in
+    EpochId epoch{};  ///< the epoch in which balancing starts
     BalanceWhen when = BalanceWhen::at_sync;
     std::int64_t period_ns = 0;
-    bool passes = false;         ///< strategy none: at_sync() goes on at once
-    std::vector<double> speeds;  ///< of each PE, or empty
+    bool passes = false;         ///< strategy none: at_sync() continues immediately
+    std::vector<double> speeds;  ///< speed of each PE, or empty
     std::vector<std::uint64_t> memory_limit_bytes;
     DistributedStrategy distributed = DistributedStrategy::none;
-    GroupProxy<Exchange> exchange;  ///< where a strategy is distributed
+    GroupProxy<Exchange> exchange;  ///< for a distributed strategy
   };
-  /// A distributed round, summed over PEs.
+  /// The result of a distributed round, summed over PEs.
   struct Outcome {
     PhaseSums phase;
     std::uint64_t n_elements = 0;
@@ -51,22 +51,22 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   };
   explicit Balancer(const Plan& plan);
 
-  /// The array is known here: its elements are waited for from now on.
+  /// The array is known here: from now on the barrier waits for its elements.
   void attach(Collection& array);
-  /// On the coordinator: what decides.
+  /// On the coordinator: sets the object that decides.
   void coordinate(std::unique_ptr<Coordinator> coordinator) {
     coordinator_ = std::move(coordinator);
   }
   [[nodiscard]] const std::vector<Round>& history() const;
-  /// The group ends; the array may not have ended here yet.
+  /// The group ends; the array may still exist here.
   void group_ends();
-  /// The array has ended on this PE, maybe before attach().
+  /// The array has ended on this PE, possibly before attach().
   void array_ends();
   /// The array, or the exchange, ended before attach().
   void cannot_attach();
-  /// On the coordinator: a phase begins, what was measured before is forgotten.
+  /// On the coordinator: begins a phase; earlier measurements are discarded.
   Task begin_phase();
-  /// On the coordinator: a phase is over, without a barrier of the elements.
+  /// On the coordinator: ends a phase without a barrier of the elements.
   Task phase_ends();
 
   // Entry methods.
@@ -107,26 +107,26 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   const Plan plan_;
   Barrier barrier_;
   Measured measured_;
-  Collection* array_ = nullptr;   // from when on its elements are measured
-  bool barrier_is_open_ = false;  // here; before, elements are measured only
+  Collection* array_ = nullptr;   // set once its elements are measured
+  bool barrier_is_open_ = false;  // on this PE; before, elements are only measured
   std::uint64_t n_collected_ = 0;
-  std::uint64_t n_rounds_seen_ = 0;  // periodic: that this member knows of
-  Outcome outcome_;                  // of this PE, in a distributed round
+  std::uint64_t n_rounds_seen_ = 0;  // periodic: rounds that this member knows of
+  Outcome outcome_;                  // result of this PE in a distributed round
 
-  // On the coordinator.
+  // Only on the coordinator.
   std::unique_ptr<Coordinator> coordinator_;
   std::uint32_t barriers_ = 0;
   std::uint64_t n_rounds_ = 0;
-  std::int64_t n_under_way_ = 0;  // elements that left before balancing started where they were
-  bool attached_ = false;         // everywhere
-  Callback<std::uint64_t> when_attached_;  // a round that waits for it
-  bool ready_ = false;                     // all members of round 0 are found
+  std::int64_t n_under_way_ = 0;           // elements that left a PE before balancing started there
+  bool attached_ = false;                  // all PEs are attached
+  Callback<std::uint64_t> when_attached_;  // target for a round that waits for it
+  bool ready_ = false;                     // all members of round 0 are known
   bool running_ = false;
-  bool array_ended_ = false;  // on this PE: the balancer ends after the round that runs
+  bool array_ended_ = false;  // on this PE: the balancer ends after the current round
   Time phase_began_{0};
 };
 
-/// Makes the balancer of an array, coordinated by this PE. For start_balancing().
+/// Creates the balancer of an array, coordinated by this PE. For start_balancing().
 [[nodiscard]] GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options,
                                          Strategy users);
 

@@ -55,7 +55,7 @@ bool Barrier::entered(Element& element) {
   if (sync.member) tree_.enter(sync.next);
   if (sync.phase == SyncPhase::waits) {
     if (sync.next == 0) {
-      at_sync(element);  // it began to wait where balancing had not started
+      at_sync(element);  // it began to wait on a PE where balancing had not started
     } else if (sync.waits_for < n_resumed_) {
       wake(element);
     }
@@ -96,8 +96,8 @@ void Barrier::at_sync(Element& element) {
 
 void Barrier::contribute(SyncState& sync) {
   sync.waits_for = sync.next;
-  // The wait itself is on the account of the element's epoch; what a round sends is on none: every
-  // PE would tell that epoch's coordinator of each of its messages.
+  // The wait itself belongs to the element's epoch. Messages of a round belong to no epoch:
+  // otherwise every PE would report each of them to that epoch's coordinator.
   const EpochId before = std::exchange(pe_.context().epoch, EpochId{});
   tree_.contribute(sync.next++, std::make_unique<MergedPartial<std::uint64_t, Sum>>(1, reached_));
   pe_.context().epoch = before;

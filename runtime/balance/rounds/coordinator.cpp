@@ -2,8 +2,8 @@
 
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/metrics.hpp"
+#include "runtime/balance/rounds/internals.hpp"
 #include "runtime/balance/unknown_loads.hpp"
-#include "runtime/core/registry.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -11,8 +11,8 @@
 namespace tess::balance {
 namespace {
 
-constexpr double counts_in_vain = 0.1;  // of imbalance that the last round could not remove
-constexpr double noise = 0.01;          // of the average: loads that differ by less are alike
+constexpr double counts_in_vain = 0.1;  // share of the imbalance that a round left
+constexpr double noise = 0.01;  // share of the average: smaller differences of loads are ignored
 
 double slowest(const Snapshot& s, const Assignment& placement) {
   return measure(s, placement).max_over_average * average_time(s);

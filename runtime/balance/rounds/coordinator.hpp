@@ -1,12 +1,12 @@
-// What the coordinator of an array's rounds decides, without a message: from the reports of the PEs
-// the moves of a round, and whether a round is worth it. It keeps the history.
+// The decisions of the coordinator, without messages: the moves of a round from the reports of the
+// PEs, and whether a round pays off. It keeps the history.
 //
-// automatic is ski rental: the time lost to imbalance since the last round is added up, and once it
-// exceeds what a round cost when last measured, one runs. So at most twice the time of the best
-// hindsight is lost, without knowing how long the run lasts. Imbalance that the last round could
-// not remove counts a tenth, or a single heavy element would have rounds run in vain for ever.
-// After a round comes one more collection: the next phase's loads under the placement before the
-// round tell what the round gained, and if that was less than nothing the moves are undone.
+// `automatic` is the ski rental algorithm: the time lost to imbalance since the last round is added
+// up, and a round runs once it exceeds the last measured cost of a round. So at most twice the loss
+// of the best decision in hindsight is lost, without knowing how long the run lasts. Imbalance that
+// the last round could not remove counts a tenth; otherwise a single heavy element would cause
+// useless rounds for ever. After a round loads are collected once more: the loads of the next phase
+// under the placement before the round show the gain, and a negative gain undoes the moves.
 #pragma once
 
 #include "runtime/balance/prediction.hpp"
@@ -28,21 +28,22 @@ struct Move {
 
 class Coordinator {
  public:
-  /// `users`: the user's own strategy, or empty for the one that the options name.
+  /// `users` is the user's own strategy, or empty for the one that the options name.
   Coordinator(BalanceOptions options, Strategy users);
 
   [[nodiscard]] const BalanceOptions& options() const { return options_; }
 
-  /// automatic: whether to collect loads and decide() at this barrier. Not while no load is known.
+  /// For `automatic`: true if loads should be collected for decide() at this barrier. False while
+  /// no load is known.
   [[nodiscard]] bool worth(const PhaseSums& phase);
 
-  /// The moves of a round, for each PE; none while no load is known.
+  /// The moves of a round, per PE; none while no load is known.
   [[nodiscard]] std::vector<std::vector<Move>> decide(const std::vector<PeReport>& reports);
 
-  /// A distributed strategy ran: what it says of itself.
+  /// Records the result of a distributed strategy.
   void record_distributed(Round round);
 
-  /// The last round is over; returns it. `seconds`: of the round, and of the phase before it.
+  /// Ends the last round and returns it, with the seconds of the round and of the phase before it.
   const Round& finish(double round_seconds, double phase_seconds);
 
   [[nodiscard]] const std::vector<Round>& history() const { return history_; }
@@ -56,13 +57,13 @@ class Coordinator {
 
   const BalanceOptions options_;
   Strategy strategy_;
-  std::optional<Predictor> predictor_;  // none: the last phase is what it is expected to be
+  std::optional<Predictor> predictor_;  // none: the next phase is expected to be like the last
   std::vector<Round> history_;
-  Placement moved_from_;  // by the last round
-  double cost_ = 0;       // seconds of the last round that asked the strategy
-  double lost_ = 0;       // to imbalance, since the last round
-  double floor_ = 1;      // max/average that the last round left
-  bool judges_ = false;   // automatic: the last round moved, and its gain is not known yet
+  Placement moved_from_;  // placement before the last round
+  double cost_ = 0;       // seconds of the last round with a strategy
+  double lost_ = 0;       // seconds lost to imbalance since the last round
+  double floor_ = 1;      // max/average after the last round
+  bool judges_ = false;   // automatic: the last round moved elements, and its gain is not known yet
 };
 
 }  // namespace tess::balance

@@ -13,7 +13,7 @@ constexpr std::uint64_t most_sweeps = 8;
 constexpr int most_iterations = 8;
 constexpr std::size_t fanout = 4;
 
-/// Greetings and offers of one stage are told apart, for they may overtake one another.
+/// Greetings and offers of one stage have different keys, since they may overtake one another.
 constexpr std::uint64_t greeting_key(std::uint64_t stage) {
   return 2 * stage;
 }
@@ -185,7 +185,7 @@ void Exchange::spread(Callback<std::uint64_t> done) {
 }
 
 void Exchange::rumour(const std::vector<Rumour>& rumours) {
-  if (gossip_) gossip_->hear(rumours);  // else: word of a round that is over
+  if (gossip_) gossip_->hear(rumours);  // otherwise they belong to a round that is over
 }
 
 Task Exchange::offer_all(Callback<std::uint64_t> n_trades) {

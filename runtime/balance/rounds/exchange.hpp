@@ -1,12 +1,12 @@
-// The distributed strategies among the PEs of a run: what diffusion and gossip compute over a
-// snapshot (strategies/), carried out by messages. A group, one member a PE; each knows its own
-// elements and what others have told it, nothing lists all. Elements change hands as items, four
-// numbers each; only when the strategy is through do they migrate.
+// The distributed strategies among the PEs of a run: the computations of diffusion and gossip over
+// a snapshot (strategies/), carried out by messages. It is a group with one member per PE; each has
+// its own elements and what others have sent, and none has a list of all. Elements are exchanged as
+// items of four numbers; they migrate only when the strategy is finished.
 //
 //   diffusion   in each stage two PEs talk:  greet <-> greet,  offer -> answer, offer -> answer …
-//               (the later of the two offers); a reduction a sweep tells whether to go on
-//   gossip      spread word, then  offer -> answer  until nobody offers; a reduction after each
-//               step, which does not wait for word under way: late word is word all the same
+//               (the later of the two offers); a reduction per sweep decides whether to continue
+//   gossip      spread rumours, then  offer -> answer  until no PE makes an offer; a reduction after
+//               each step, which does not wait for rumours under way: late ones are still used
 #pragma once
 
 #include "runtime/balance/rounds/pe_report.hpp"
@@ -22,10 +22,10 @@ namespace tess::balance {
 
 enum class DistributedStrategy : std::uint8_t { none, diffusion, gossip };
 
-/// Which of them a name names; none for all other strategies.
+/// The distributed strategy of this name; none for all other strategies.
 [[nodiscard]] DistributedStrategy distributed_strategy(std::string_view name);
 
-/// An item's origin: the PE that reported it, and its position there.
+/// The name of an item: the PE that reported it, and its position there.
 [[nodiscard]] constexpr std::size_t item_name(PeId origin, std::size_t position) {
   return static_cast<std::size_t>(origin.value) << 40U | position;
 }
@@ -40,18 +40,18 @@ class Exchange final : public Group<Exchange> {
  public:
   static constexpr LateMessages late_messages = LateMessages::ignored;
 
-  /// This PE's elements, as it has reported them; before run().
+  /// Sets this PE's elements as reported; called before run().
   void hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes);
 
   struct Order {
     DistributedStrategy strategy = DistributedStrategy::none;
     double average_time = 0;  ///< of all PEs, in seconds
-    double mean_load = 0;     ///< what an element weighs whose load is not known, at speed 1
+    double mean_load = 0;     ///< weight of an element with unknown load, at speed 1
   };
-  /// On one member: has all carry out the strategy; `done` is given the number of trades.
+  /// On one member: makes all members carry out the strategy; `done` receives the number of trades.
   Task run(Order order, Callback<std::uint64_t> done);
 
-  /// After run(): items here that another PE reported.
+  /// After run(): the items here that another PE reported.
   [[nodiscard]] std::vector<Item> arrived() const;
   [[nodiscard]] const PeSummary& summary() const { return local().summary(); }
 
@@ -61,7 +61,7 @@ class Exchange final : public Group<Exchange> {
     Item item;
     double wanted = 0;
     std::vector<Item> change;
-    std::uint8_t ends = 0;  ///< the giver has no more to offer; the taker refuses
+    std::uint8_t ends = 0;  ///< the giver has nothing more to offer, or the taker refuses
   };
   struct Proposal {
     PeId from{};
@@ -98,13 +98,13 @@ class Exchange final : public Group<Exchange> {
   [[nodiscard]] const LocalPe& local() const { return gossip_ ? gossip_->local() : *local_; }
 
   std::unique_ptr<LocalPe> local_;
-  std::uint64_t n_unknown_ = 0;       // elements here whose load is not known: pinned
-  std::unique_ptr<GossipPe> gossip_;  // holds a copy of it from begin_gossip() on
+  std::uint64_t n_unknown_ = 0;       // local elements with unknown load, which are pinned
+  std::unique_ptr<GossipPe> gossip_;  // holds a copy of the local PE from begin_gossip() on
   Mailbox<&Talk::key> talks_;
   Mailbox<&Reply::key> replies_;
-  std::uint64_t n_trades_ = 0;  // in this sweep or iteration, given by this PE
+  std::uint64_t n_trades_ = 0;  // trades of this PE in this sweep or iteration
   std::uint64_t n_offers_ = 0;
-  std::uint64_t n_all_ = 0;  // on the member that runs
+  std::uint64_t n_all_ = 0;  // on the member that called run()
 };
 
 }  // namespace tess::balance

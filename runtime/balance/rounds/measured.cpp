@@ -5,8 +5,8 @@
 namespace tess::balance {
 namespace {
 
-// Packing an element only to learn its size costs as much as a migration: each is looked at when
-// it is new, and again every so many rounds.
+// Packing an element only to measure its size costs as much as a migration, so each is measured
+// when it is new and then once per several rounds.
 constexpr std::uint64_t rounds_between_weighings = 16;
 
 }  // namespace

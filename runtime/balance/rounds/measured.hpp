@@ -1,11 +1,11 @@
-// The measured loads of an array's elements on one PE: reported to the coordinator, and then the
-// elements it names are moved. An element that leaves or ends between the two is struck off. The
-// load of an element is known from its birth on, or from the beginning of a phase: what ran before
-// it was measured makes it unknown until then.
+// The measured loads of an array's elements on one PE. They are reported to the coordinator, and
+// then the elements that it names are moved. An element that leaves or ends in between is removed
+// from the report. The load of an element is known from its construction on, or from the beginning
+// of a phase; if it ran before it was measured, its load is unknown until then.
 #pragma once
 
 #include "runtime/balance/rounds/coordinator.hpp"
-#include "runtime/collections/collection.hpp"
+#include "runtime/balance/rounds/internals.hpp"
 
 namespace tess::balance {
 
@@ -14,24 +14,24 @@ class Measured {
   explicit Measured(Pe& pe) : pe_(pe), meter_(pe.start_meter()), busy_before_(meter_.busy()) {}
 
   void attach(Collection& array);
-  /// Lets go of the array and its elements; what is reported from now on is the PE without them.
+  /// Detaches from the array; later reports cover the PE without its elements.
   void detach();
 
   void entered(Element& element);
   void left(Element& element);
 
-  /// The loads since the last phase began; a new phase begins.
+  /// The loads since the last phase began; begins a new phase.
   [[nodiscard]] PeReport report(std::uint64_t round);
-  /// Whom the last report listed; null where it has left or ended.
+  /// The element at this position of the last report; null if it has left or ended.
   [[nodiscard]] Element* reported(std::size_t position) const { return reported_[position]; }
   [[nodiscard]] std::size_t n_reported() const { return reported_.size(); }
 
-  /// This PE in the phase so far, at a speed.
+  /// The sums of this PE in the phase so far, at a speed.
   [[nodiscard]] PhaseSums sums(double speed) const;
-  /// A new phase begins: what was measured is forgotten.
+  /// Begins a new phase and discards earlier measurements.
   void clear();
 
-  /// Elements of the last report leave for other PEs; returns their packed size.
+  /// Sends elements of the last report to other PEs; returns their packed size.
   std::uint64_t move(const std::vector<Move>& moves);
 
  private:
@@ -43,8 +43,8 @@ class Measured {
   Meter& meter_;
   Collection* array_ = nullptr;
   std::vector<Element*> reported_;
-  std::uint64_t busy_before_;      // of the meter, when the phase began
-  std::uint64_t in_elements_ = 0;  // ticks of the array's elements on this PE since then
+  std::uint64_t busy_before_;      // the meter's busy ticks when the phase began
+  std::uint64_t in_elements_ = 0;  // ticks of the array's elements on this PE since the phase began
 };
 
 }  // namespace tess::balance

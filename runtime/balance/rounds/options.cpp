@@ -13,7 +13,7 @@ double number(std::string_view key, std::string_view value, std::string_view* re
   double result = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
   if (error != std::errc() || !(result >= 0))
-    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is no number of at least 0");
+    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is not a number of at least 0");
   *rest = std::string_view(end, static_cast<std::size_t>(value.data() + value.size() - end));
   return result;
 }
@@ -22,7 +22,7 @@ std::uint64_t whole(std::string_view key, std::string_view value) {
   std::uint64_t result = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
   if (error != std::errc() || end != value.data() + value.size())
-    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is no whole number");
+    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is not a whole number");
   return result;
 }
 
@@ -31,7 +31,8 @@ std::chrono::nanoseconds time(std::string_view key, std::string_view value) {
   const double count = number(key, value, &unit);
   const double factor = unit == "us" ? 1e3 : unit == "ms" ? 1e6 : unit == "s" ? 1e9 : 0;
   if (factor == 0)
-    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is no time (us, ms, s)");
+    fail(ErrorCode::bad_argument, "--balance ", key, ": ", value,
+         " is not a time (a number with us, ms or s)");
   return std::chrono::nanoseconds(static_cast<std::int64_t>(count * factor));
 }
 
@@ -40,7 +41,7 @@ BalanceWhen parse_when(std::string_view value) {
   if (value == "periodic") return BalanceWhen::periodic;
   if (value == "automatic") return BalanceWhen::automatic;
   fail(ErrorCode::bad_argument, "--balance when: ", value,
-       " is none of at_sync, periodic, automatic");
+       " is not one of at_sync, periodic, automatic");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How an array is balanced: by which strategy, when, on which prediction of loads.
+// How an array is balanced: the strategy, when rounds run, and the prediction of loads.
 #pragma once
 
 #include <chrono>
@@ -13,17 +13,17 @@ enum class RoundLines : std::uint8_t { none, print };
 enum class BalanceWhen : std::uint8_t { at_sync, periodic, automatic };
 
 struct BalanceOptions {
-  /// A name of balance::strategy_names(). With `none` at_sync() is no barrier: elements go on at
-  /// once.
+  /// A name of balance::strategy_names(). With `none`, at_sync() is no barrier: elements continue
+  /// immediately.
   std::string strategy = "greedy_refine";
   BalanceWhen when = BalanceWhen::at_sync;
-  std::chrono::nanoseconds period{0};               ///< of periodic rounds; above 0 there
-  std::string prediction = "last";                  ///< last, moving_average, linear_trend
-  std::uint64_t window = 5;                         ///< phases that a prediction looks back
-  std::uint64_t seed = 1;                           ///< of strategies that draw
-  std::vector<double> speeds{};                     ///< of each PE, relative; empty: all alike
+  std::chrono::nanoseconds period{0};  ///< period of periodic rounds, for which it is above 0
+  std::string prediction = "last";     ///< last, moving_average, linear_trend
+  std::uint64_t window = 5;            ///< number of phases that a prediction uses
+  std::uint64_t seed = 1;              ///< seed of strategies that use random numbers
+  std::vector<double> speeds{};        ///< relative speed of each PE; empty: all equal
   std::vector<std::uint64_t> memory_limit_bytes{};  ///< of each PE; 0 or empty: none
-  RoundLines lines = RoundLines::none;              ///< or one a round to standard error
+  RoundLines lines = RoundLines::none;              ///< or one line per round to standard error
 };
 
 /// "strategy=greedy,when=periodic,period=50ms,prediction=linear_trend,window=5,seed=7,report".

@@ -35,7 +35,7 @@ Snapshot snapshot_of(const std::vector<PeReport>& reports, const BalanceOptions&
   s.elements.memory_bytes = s.elements.size_bytes;
   if (n_known_loads(s) == s.elements.size()) s.elements.measured.clear();
   assume_mean_loads(s);
-  // Elements that give no position leave those that do without: a strategy needs all.
+  // If one element gives no position, no position is used: a strategy needs all.
   if (s.elements.position.size() != s.elements.size()) s.elements.position.clear();
   if (!any_parcels) return s;
   boost::unordered_flat_map<ElementKey, std::size_t, ElementKeyHash> at;

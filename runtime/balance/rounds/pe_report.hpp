@@ -1,5 +1,6 @@
-// What one PE tells the coordinator of a round: its elements with their measured loads, and what
-// they sent. From the reports of all PEs, in PE order, the snapshot that a strategy sees.
+// The report of one PE to the coordinator of a round: its elements with their measured loads, and
+// the messages that they sent. The reports of all PEs, in PE order, give the snapshot for a
+// strategy.
 #pragma once
 
 #include "runtime/balance/rounds/options.hpp"
@@ -12,7 +13,7 @@
 
 namespace tess::balance {
 
-/// What an element sent to another since the last collection.
+/// The messages from one element to another since the last collection.
 struct Parcel {
   std::uint64_t from = 0;  ///< position among the PE's elements
   ElementKey to;
@@ -20,11 +21,11 @@ struct Parcel {
   std::uint64_t messages = 0;
 };
 
-/// Arrays have one entry an element of the PE; positions may be empty instead.
+/// Arrays have one entry per element of the PE; positions may be empty instead.
 struct PeReport {
   std::vector<ElementKey> keys;
-  std::vector<double> seconds;         ///< measured here, at this PE's speed
-  std::vector<std::uint8_t> measured;  ///< 0: not for a whole phase, `seconds` says nothing
+  std::vector<double> seconds;         ///< measured on this PE, at its speed
+  std::vector<std::uint8_t> measured;  ///< 0: `seconds` is not of a whole phase
   std::vector<std::uint8_t> migratable;
   std::vector<std::uint64_t> size_bytes;
   std::vector<std::array<double, 3>> positions;
@@ -33,25 +34,25 @@ struct PeReport {
   double background = 0;  ///< seconds busy outside of these elements
 };
 
-/// Reports in PE order. Parcels to elements without a report are left out; loads that are not
-/// known are taken to be the mean of the others.
+/// Combines the reports, in PE order. Parcels to elements without a report are left out; unknown
+/// loads count as the mean of the others.
 [[nodiscard]] Snapshot snapshot_of(const std::vector<PeReport>& reports,
                                    const BalanceOptions& options);
 
-/// A phase without its elements: enough to see whether a round is worth it.
+/// The sums of a phase without its elements: enough to decide whether a round pays off.
 struct PhaseSums {
   double slowest = 0;  ///< seconds of the PE that took longest
-  double work = 0;     ///< seconds at speed 1, of all
-  double speed = 0;    ///< of all
-  double load = 0;     ///< the part of `work` that elements of known load did
+  double work = 0;     ///< seconds at speed 1, sum of all PEs
+  double speed = 0;    ///< sum of all PEs
+  double load = 0;     ///< the part of `work` of elements with known load
   std::uint64_t n_measured = 0;
-  std::uint64_t n_unknown = 0;  ///< elements whose load is not known; no time here counts them
+  std::uint64_t n_unknown = 0;  ///< elements with unknown load; no time here includes them
 
-  /// What is taken for a load that is not known.
+  /// The load that is assumed for an unknown one.
   [[nodiscard]] double mean_load() const {
     return n_measured == 0 ? 0 : load / static_cast<double>(n_measured);
   }
-  /// Seconds that every PE would need if work were a fluid.
+  /// The seconds that every PE would need if work could be divided freely.
   [[nodiscard]] double average_time() const {
     return (work + mean_load() * static_cast<double>(n_unknown)) / speed;
   }

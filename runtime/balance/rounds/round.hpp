@@ -1,4 +1,4 @@
-// What one balance round did: predicted before, measured after.
+// The results of one balance round: predicted before, measured after.
 #pragma once
 
 #include <cstddef>
@@ -9,26 +9,26 @@
 
 namespace tess::balance {
 
-/// max/average: the time of the slowest PE over the time if work were a fluid.
+/// max/average is the time of the slowest PE over the time if work could be divided freely.
 struct Round {
   std::uint64_t number = 0;
   std::string strategy;
   std::size_t n_elements = 0;
-  std::size_t n_unknown = 0;  ///< of these, elements whose load is not known yet: they stay
+  std::size_t n_unknown = 0;  ///< elements of these with unknown load, which stay
   std::size_t n_moved = 0;
-  std::uint64_t moved_bytes = 0;  ///< packed; what a process boundary would see
+  std::uint64_t moved_bytes = 0;  ///< packed size of the moved elements
   double before = 1;              ///< max/average as measured in the phase that ended
-  double predicted = 1;           ///< the strategy's, after its moves
-  double measured = 0;            ///< in the next phase; 0 until that ended
-  /// The share of the slowest PE's time that the round saved in the next phase, against the same
-  /// phase without its moves; 0 until that ended.
+  double predicted = 1;           ///< the strategy's prediction, after its moves
+  double measured = 0;            ///< measured in the next phase; 0 until its end
+  /// The share of the slowest PE's time that the round saved in the next phase, compared with the
+  /// same phase without its moves; 0 until its end.
   double gain = 0;
-  double strategy_seconds = 0;  ///< the strategy alone; a distributed one: 0, it is the round
+  double strategy_seconds = 0;  ///< seconds of the strategy; 0 for a distributed one
   double round_seconds = 0;     ///< from the barrier (or the trigger) to the resume
   double phase_seconds = 0;     ///< from the last resume to the barrier
   bool skipped = false;         ///< nothing to gain, or no load is known yet
   bool rolled_back = false;     ///< automatic: the moves of the round before were undone
-  std::map<std::string, double> seconds_by_entry;  ///< of all elements in the phase
+  std::map<std::string, double> seconds_by_entry;  ///< of all elements, in the phase
 };
 
 /// "balance round 3 greedy: moved 12 of 64 (12 KiB), max/avg 1.49 -> 1.003 (predicted), 0.18 ms

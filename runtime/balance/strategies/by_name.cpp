@@ -24,7 +24,7 @@ struct Entry {
   Assignment (*run)(const Snapshot&, std::uint64_t seed);
 };
 
-/// Named once; what is not told a seed does not look at it.
+/// The table of strategies; an entry without a seed ignores it.
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = {
       {"none", [](const Snapshot& s, std::uint64_t) { return none(s); }},

@@ -5,10 +5,10 @@
 namespace tess::balance {
 namespace {
 
-/// A difference below this share of a PE's time is left alone.
+/// Smaller differences, as a share of a PE's time, are ignored.
 constexpr double worth_moving = 0.01;
 
-/// Returns whether anything moved.
+/// Returns true if anything moved.
 bool even_out(LocalPe& one, LocalPe& other) {
   bool moved = false;
   LocalPe& giver = one.summary().time() < other.summary().time() ? other : one;

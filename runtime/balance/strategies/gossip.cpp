@@ -8,11 +8,11 @@
 namespace tess::balance {
 namespace {
 
-constexpr double overloaded_above = 1.02;  // times the average a PE is overloaded
+constexpr double overloaded_above = 1.02;  // times the average load
 constexpr std::size_t fanout = 4;
 constexpr std::size_t n_iterations = 8;
 
-/// Word spreads by `fanout` a round until it can have reached every PE.
+/// Spreads rumours, `fanout` per round, until they can have reached every PE.
 void spread_word(std::vector<GossipPe>& pes) {
   const auto n_rounds = static_cast<std::size_t>(std::bit_width(pes.size()) + 1) / 2;
   for (GossipPe& pe : pes) pe.begin_iteration();
@@ -25,7 +25,7 @@ void spread_word(std::vector<GossipPe>& pes) {
   }
 }
 
-/// One offer of every PE after the other, until no PE makes any. Returns whether any was taken.
+/// One offer per PE in turn, until no PE makes any. Returns true if any was accepted.
 bool transfer(std::vector<GossipPe>& pes) {
   bool any_taken = false;
   for (bool offered = true; offered;) {

@@ -38,8 +38,8 @@ using Graph = Scoped<SCOTCH_Graph, SCOTCH_graphExit>;
 using Arch = Scoped<SCOTCH_Arch, SCOTCH_archExit>;
 using Strat = Scoped<SCOTCH_Strat, SCOTCH_stratExit>;
 
-/// Positive integers in proportion, whose sum is at most `sum` plus one each: Scotch counts in
-/// ints.
+/// Positive integers in these proportions, whose sum is at most `sum` plus one each, since Scotch
+/// uses ints.
 std::vector<SCOTCH_Num> in_proportion(const std::vector<double>& values, double sum) {
   const double total = std::accumulate(values.begin(), values.end(), 0.0);
   const double scale = total > 0 ? sum / total : 0;
@@ -49,7 +49,7 @@ std::vector<SCOTCH_Num> in_proportion(const std::vector<double>& values, double 
   return result;
 }
 
-/// Both directions of every pair that talks, in compressed rows.
+/// Both directions of every communicating pair, in compressed rows.
 struct Adjacency {
   std::vector<SCOTCH_Num> begin, to, weight;
 
@@ -78,7 +78,7 @@ struct Adjacency {
   }
 };
 
-/// What each PE can do, its pinned elements included.
+/// The capacity of each PE, including its pinned elements.
 std::vector<double> widths(const Snapshot& s, const std::vector<double>& weight) {
   std::vector<double> result = capacities(s);
   for (std::size_t i = 0; i < s.elements.size(); ++i)

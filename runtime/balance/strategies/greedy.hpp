@@ -1,15 +1,16 @@
-// Greedy: the best balance for its cost, at the price of moving nearly everything.
+// Greedy: the best balance for its cost, but it moves nearly every element.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
 
 namespace tess::balance {
 
-/// Heaviest element first, each to the PE that is done soonest with it (Graham 1969, "LPT"; within
-/// 4/3 of the best where speeds are equal). O(n log n + n log n_pes) with few distinct speeds.
+/// Places the heaviest element first, each on the PE that finishes first with it (Graham 1969,
+/// "LPT"; within 4/3 of the optimum for equal speeds). O(n log n + n log n_pes) with few distinct
+/// speeds.
 [[nodiscard]] Assignment greedy(const Snapshot& snapshot);
 
-/// These elements, in this order, each to the PE that is done soonest with it and has room; all
+/// Places these elements in this order, each on the PE with room that finishes first with it; all
 /// others stay.
 [[nodiscard]] Assignment place_soonest(const Snapshot& snapshot,
                                        const std::vector<std::size_t>& elements);

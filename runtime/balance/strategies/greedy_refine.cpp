@@ -10,8 +10,8 @@
 namespace tess::balance {
 namespace {
 
-/// Elements that leave their PEs, heaviest first: of each PE the largest that its excess contains,
-/// again and again, and at last the smallest that exceeds what is left of the excess.
+/// Elements that leave their PEs, heaviest first: from each PE repeatedly the largest that fits
+/// into its excess, and finally the smallest that exceeds the rest of the excess.
 std::vector<std::size_t> shed(const Snapshot& s, double limit) {
   const Loads now = Loads::present(s);
   std::vector<double> excess;

@@ -10,7 +10,7 @@
 namespace tess::balance {
 namespace {
 
-/// Groups as if each were one PE, as fast as its PEs together.
+/// A snapshot in which each group is one PE, as fast as its PEs together.
 Snapshot of_groups(const Snapshot& s, std::size_t group_size) {
   Snapshot groups;
   groups.elements = s.elements;
@@ -27,7 +27,7 @@ Snapshot of_groups(const Snapshot& s, std::size_t group_size) {
   return groups;
 }
 
-/// Every element whose group changes, on the PE of its new group that is done soonest.
+/// Places every element whose group changes on the PE of its new group that finishes first.
 Assignment enter(const Snapshot& s, const Assignment& group, std::size_t group_size) {
   Assignment result = s.elements.pe;
   Loads loads = Loads::present(s);
@@ -44,7 +44,7 @@ Assignment enter(const Snapshot& s, const Assignment& group, std::size_t group_s
   return result;
 }
 
-/// What one group knows: its PEs, and the elements on them. PEs are numbered from 0.
+/// The snapshot of one group: its PEs, numbered from 0, and the elements on them.
 Snapshot inside(const Snapshot& s, const Assignment& placed,
                 const std::vector<std::size_t>& elements, std::size_t begin, std::size_t end) {
   Snapshot group;

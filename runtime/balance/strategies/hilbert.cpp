@@ -12,8 +12,8 @@ namespace {
 
 constexpr unsigned bits = 20;
 
-/// Cells of a cube as wide as the longest extent; axes without extent left out, since the curve in
-/// three dimensions is not connected within a plane.
+/// Cells of a cube as wide as the longest extent. Axes without extent are left out, since the curve
+/// in three dimensions is not connected within a plane.
 struct Grid {
   std::vector<std::size_t> axes;
   std::array<double, 3> low{};
@@ -78,7 +78,7 @@ Assignment hilbert(const Snapshot& s) {
   const std::vector<double> capacity = capacities(s);
   Assignment wanted = s.elements.pe;
   std::size_t pe = 0;
-  double end = capacity[0];  // of this PE's piece, measured along the curve by weight
+  double end = capacity[0];  // end of this PE's piece, measured along the curve by weight
   double done = 0;
   for (const auto& [key, i] : curve) {
     while (done + weight[i] / 2 > end && pe + 1 < capacity.size()) end += capacity[++pe];

@@ -57,7 +57,7 @@ class Bisection {
     return longest;
   }
 
-  /// The part of what [begin, end) can do that [begin, middle) does.
+  /// The share of [begin, middle) in the capacity of [begin, end).
   [[nodiscard]] double share(std::size_t begin, std::size_t middle, std::size_t end) const {
     const auto at = [&](std::size_t p) {
       return capacities_.begin() + static_cast<std::ptrdiff_t>(p);
@@ -67,7 +67,7 @@ class Bisection {
     return left + right > 0 ? left / (left + right) : 0.5;
   }
 
-  /// How many of the elements make up the share, as nearly as whole elements can.
+  /// The number of elements that make up the share, as closely as whole elements can.
   [[nodiscard]] std::size_t cut_at(std::span<const std::size_t> elements, double share) const {
     double rest = 0;
     for (const std::size_t i : elements) rest += weights_[i];

@@ -6,9 +6,9 @@
 
 namespace tess::balance {
 
-/// Cuts the PEs in two halves, the elements along their longest extent in proportion to what the
-/// halves can do, and so on. Throws Error where the snapshot has no positions.
-/// O(n log n log n_pes).
+/// Divides the PEs into two halves, and the elements along their longest extent in proportion to
+/// the capacities of the halves, and so on recursively. Throws Error if the snapshot has no
+/// positions. O(n log n log n_pes).
 [[nodiscard]] Assignment rcb(const Snapshot& snapshot);
 
 }  // namespace tess::balance

@@ -34,7 +34,7 @@ class Refinement {
   }
 
  private:
-  /// One move from the slowest PE to the first of the others, quickest first, that helps.
+  /// Makes one move from the slowest PE to the first of the other PEs, fastest first, that helps.
   bool relieve(std::size_t from) {
     for (const auto& [time, to] : by_time_) {
       if (to == from) continue;
@@ -46,8 +46,8 @@ class Refinement {
     return false;
   }
 
-  /// The later of the two PEs falls with the load until both are equal, then rises: the best
-  /// element is beside that point.
+  /// The later time of the two PEs falls with the load until both are equal, then rises: the best
+  /// element is next to that point.
   [[nodiscard]] std::optional<std::size_t> best_element(std::size_t from, std::size_t to) const {
     const double now = loads_.time(from);
     const double even = (now - loads_.time(to)) / (1 / s_.pes.speed[from] + 1 / s_.pes.speed[to]);
@@ -56,7 +56,7 @@ class Refinement {
     };
     std::optional<std::size_t> best;
     double best_time = now;
-    const auto consider = [&](const Key& key) {  // true: no need to look on
+    const auto consider = [&](const Key& key) {  // true: the search may stop
       if (later(key.first) >= best_time) return true;
       if (!loads_.fits(key.second, from, to)) return false;
       best = key.second;

@@ -1,4 +1,4 @@
-// Strategies that look at no load: for comparison, and to shake applications.
+// Strategies that ignore loads, for comparison and for testing applications.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -7,9 +7,9 @@ namespace tess::balance {
 
 /// Every element stays.
 [[nodiscard]] Assignment none(const Snapshot& snapshot);
-/// Every element to the next PE, where it fits.
+/// Moves every element to the next PE, if it fits there.
 [[nodiscard]] Assignment rotate(const Snapshot& snapshot);
-/// Every element to a random PE, where it fits.
+/// Moves every element to a random PE, if it fits there.
 [[nodiscard]] Assignment random(const Snapshot& snapshot, std::uint64_t seed);
 
 }  // namespace tess::balance

@@ -354,7 +354,8 @@ TEST_CASE("fields, particles and results that no memory can hold are refused",
   };
   Scene scene = parse_scene(scene_with("\"steps\": 10", "\"steps\": 1000000000"), "scene.json");
   CHECK(refused(scene, 1) == "fits");
-  const auto n = static_cast<std::uint64_t>(tess::usable_memory() / 50);  // a particle takes more
+  const auto n =
+      static_cast<std::uint64_t>(tess::detail::usable_memory() / 50);  // a particle takes more
   scene.emitters[0].count = n;
   CHECK(refused(scene, 1).find("scene.json: emitters: " + std::to_string(n) +
                                " particles make the run ") == 0);

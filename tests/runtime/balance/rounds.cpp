@@ -1,4 +1,4 @@
-// What the coordinator of rounds decides, from reports alone: no runtime.
+// The coordinator's decisions, from reports only and without the runtime.
 #include "runtime/balance/rounds/coordinator.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
@@ -152,7 +152,7 @@ TEST_CASE("automatic waits until what imbalance lost is what a round costs", "[b
   Coordinator coordinator(automatic(), {});
   REQUIRE(coordinator.worth(phases.sums()));  // nothing is known of the cost yet
   (void)coordinator.decide(phases.reports);
-  coordinator.finish(10, 6);  // dear: 10 s
+  coordinator.finish(10, 6);  // expensive: 10 s
   // Judging the round takes one collection; after it nothing was lost yet.
   if (coordinator.history().back().n_moved != 0) {
     REQUIRE(coordinator.worth(phases.sums()));
@@ -231,9 +231,9 @@ TEST_CASE("balance options in one line of text", "[balance][rounds]") {
   CHECK(options.seed == 9);
   CHECK(options.lines == RoundLines::print);
   CHECK(message_of("gredy").find("no balance strategy 'gredy'") != std::string::npos);
-  CHECK(message_of("greedy,when=later").find("later is none of at_sync") != std::string::npos);
+  CHECK(message_of("greedy,when=later").find("later is not one of at_sync") != std::string::npos);
   CHECK(message_of("greedy,when=periodic").find("period") != std::string::npos);
-  CHECK(message_of("greedy,period=5").find("5 is no time") != std::string::npos);
+  CHECK(message_of("greedy,period=5").find("5 is not a time") != std::string::npos);
   CHECK(message_of("greedy,window=0").find("window") != std::string::npos);
   CHECK(message_of("greedy,often").find("unknown key often") != std::string::npos);
   BalanceOptions three;

@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 struct Item : Link {
@@ -78,4 +78,4 @@ TEST_CASE("no link is lost or overtaken by one of its own producer", "[runtime][
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail

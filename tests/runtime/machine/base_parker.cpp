@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 TEST_CASE("a parker does not sleep when there is work already", "[runtime][base]") {
@@ -82,4 +82,4 @@ TEST_CASE("a backoff without patience sleeps at once, and again after a reset", 
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail

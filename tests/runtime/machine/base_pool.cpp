@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 TEST_CASE("blocks of all sizes are aligned, apart and writable", "[runtime][base]") {
@@ -92,4 +92,4 @@ TEST_CASE("a flow in one direction does not accumulate memory", "[runtime][base]
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail

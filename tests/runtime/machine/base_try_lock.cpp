@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 TEST_CASE("a try-lock that is held is refused, and given again once it is free",
@@ -42,4 +42,4 @@ TEST_CASE("one thread at a time holds a try-lock", "[runtime][base]") {
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail

@@ -5,7 +5,7 @@
 
 #include <mpi.h>
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 std::unique_ptr<Machine> make(MpiOptions options) {
@@ -202,4 +202,4 @@ TEST_CASE("a chunk that MPI cannot count is refused", "[runtime][machine][mpi]")
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail

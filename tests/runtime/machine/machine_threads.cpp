@@ -3,7 +3,7 @@
 #include "tests/runtime/machine/mock_program.hpp"
 #include "tests/support/catch.hpp"
 
-namespace tess {
+namespace tess::detail {
 namespace {
 
 TEST_CASE("every token makes its tour on threads", "[runtime][machine]") {
@@ -49,4 +49,4 @@ TEST_CASE("a negative number of PEs is refused", "[runtime][machine]") {
 }
 
 }  // namespace
-}  // namespace tess
+}  // namespace tess::detail

@@ -1,6 +1,6 @@
-// A program for a bare machine: tokens that walk over all PEs at random, until each has made its
-// hops. Within a process a token travels as a link, between processes as bytes of a given size.
-// What it checks: every token makes exactly its hops, on the PE it was meant for, with its bytes
+// A program for a machine without the runtime: tokens that walk over all PEs at random until each
+// has made its hops. Within a process a token travels as a link, between processes as bytes of a
+// given size. It checks that every token makes exactly its hops, on the right PE, with its bytes
 // intact.
 #pragma once
 
@@ -13,6 +13,8 @@
 #include <vector>
 
 namespace tess::test {
+
+using namespace detail;
 
 /// What a token carries when it travels as bytes; filling follows.
 struct Stamp {
@@ -42,8 +44,8 @@ class Tour final : public Program {
   struct Plan {
     std::int32_t n_tokens = 10;
     std::int64_t n_hops = 100;
-    std::vector<std::size_t> filling_bytes = {
-        0};                   // of a token between processes, one after the other
+    /// Sizes of a token between processes, used one after the other.
+    std::vector<std::size_t> filling_bytes = {0};
     bool stop_early = false;  // after a tenth of the hops
   };
 

@@ -1,0 +1,31 @@
+// What the balancer uses of the runtime's internals, by its short name in this namespace.
+#pragma once
+
+#include "runtime/collections/balance_record.hpp"
+#include "runtime/collections/collection.hpp"
+#include "runtime/collections/collection_action.hpp"
+#include "runtime/collections/element.hpp"
+#include "runtime/collections/reduction_tree.hpp"
+#include "runtime/collections/typed_partial.hpp"
+#include "runtime/core/registry.hpp"
+#include "runtime/scheduler/meter.hpp"
+
+namespace tess::balance {
+
+using detail::BalanceRecord;
+using detail::Collection;
+using detail::Element;
+using detail::element_text;
+using detail::ElementWatcher;
+using detail::find_collection;
+using detail::LoadRecord;
+using detail::MergedPartial;
+using detail::Meter;
+using detail::ReductionTree;
+using detail::Registry;
+using detail::send_to_collection;
+using detail::SyncPhase;
+using detail::SyncState;
+using detail::Track;
+
+}  // namespace tess::balance
