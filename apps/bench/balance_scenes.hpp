@@ -23,7 +23,7 @@ enum class Start { blocks, all_on_first };
 /// so that the present placement is bad; a ring of messages; positions on a line.
 [[nodiscard]] Snapshot heavy_tailed(std::size_t n_elements, std::size_t n_pes, std::uint64_t seed);
 
-/// Anything that may be: pinned elements, speeds, background, limits (some broken already), no
+/// Any valid snapshot: pinned elements, speeds, background, limits (some broken already), no
 /// elements, no loads.
 [[nodiscard]] Snapshot anything(std::uint64_t seed);
 

@@ -1,5 +1,5 @@
-// Prints what every strategy takes and gives on the scenes. Fails where an assignment is
-// not honoured or takes more than a second.
+// Prints the time and the result of every strategy on a set of scenes. Fails if an assignment
+// breaks the rules or takes more than a second.
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/metrics.hpp"

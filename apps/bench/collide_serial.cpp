@@ -1,5 +1,6 @@
-// Serial collision of the specification's scenes: nanoseconds an object, median of several runs.
+// Serial collision of the specification's scenes: nanoseconds per object, median of several runs.
 // Each count of pairs is checked against another method on another grid before it is printed.
+//
 //     bench_collide_serial [RUNS]
 #include "collide/collide_serial.hpp"
 

@@ -16,8 +16,8 @@ class CorePing {
   /// With `n_bytes` above 8 each turn copies so many from the buffer that the other side wrote.
   explicit CorePing(std::size_t n_bytes);
 
-  /// True once side 1 plays. Side 0 waits for that before it plays, and does not block meanwhile:
-  /// the message that calls the other side may still stand in a buffer of its own PE.
+  /// True once side 1 plays. Side 0 waits for that before it plays, without blocking: the message
+  /// that calls the other side may still be in a buffer of its own PE.
   [[nodiscard]] bool other_plays() const { return other_plays_.load(std::memory_order_acquire); }
 
   /// Nanoseconds one way, over so many round trips. Both sides (0 and 1) call it once,

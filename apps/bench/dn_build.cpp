@@ -1,9 +1,9 @@
-// How fast distance/normal fields are built and looked up, and how much memory they take, flat and
-// compressed: CSV on standard output. Times are CPU times of the one thread that builds, which on
-// an idle machine are those of the clock, and hardly change where others work beside it. The object
+// The speed of building distance/normal fields and of lookups, and their memory, flat and
+// compressed: CSV on standard output. Times are CPU times of the one thread that builds; on an idle
+// machine they equal wall-clock times, and they hardly change when other programs run. The object
 // is a torus of 70 688 triangles, whose distance is known: every figure is printed after its field
-// was checked. References are OpenVDB's times on this kind of machine, and a fifth of the flat
-// memory; where the library was found its own rows stand beside ours.
+// was checked. The references are OpenVDB's times on this kind of machine, and a fifth of the flat
+// memory; if the library was found its own rows are printed beside ours.
 //
 //     bench_dn_build --repeat 5
 #include "apps/bench/openvdb_field.hpp"
@@ -30,7 +30,7 @@ using namespace tess::dn;
 constexpr double major_radius = 1, minor_radius = 0.4, margin = 0.15;
 constexpr double band = 3;  // cells; OpenVDB's default
 
-/// What one run is asked for, and where it prints.
+/// The options of one run, and its report.
 struct Bench {
   const Report& report;
   int repeat;
@@ -43,8 +43,8 @@ double torus_distance(Vec3 p) {
   return std::hypot(std::hypot(p.x, p.y) - major_radius, p.z) - minor_radius;
 }
 
-/// Within the band every distance is the torus's, beyond it the sign is, but for what its
-/// triangles cut off.
+/// Checks that every distance within the band is the torus's, and that signs are right beyond it,
+/// up to what the triangles cut off.
 void check_exact(const Field& field) {
   constexpr double cut_off = 5e-4;  // 2 R (1 − cos(π / 188)) at the outer rim
   const Grid& g = field.grid;
@@ -96,7 +96,7 @@ void exact_rows(const Bench& bench) {
         "# OpenVDB's own rows are left out: libopenvdb-dev was not found when this was built\n");
 }
 
-/// A row of a mesh whose inside its winding number tells alone; some signs are checked.
+/// A row of a mesh whose inside only the winding number determines; some signs are checked.
 void damaged_row(const Bench& bench, const std::string& what, const Surface& surface) {
   const Grid grid = bench.grid(60);
   const ExactOptions options{Sides::one, Content::distance, band * grid.cell, {}};
@@ -134,7 +134,7 @@ void other_rows(const Bench& bench) {
     }));
 }
 
-/// Points about the object, in the order of chance.
+/// Points around the object, in random order.
 struct Cloud {
   std::vector<float> x, y, z;
   explicit Cloud(std::size_t n) : x(n), y(n), z(n) {

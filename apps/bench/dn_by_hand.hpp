@@ -1,6 +1,6 @@
-// Single rules as one would write them by hand, without a stepper: what the composed loop is held
-// against. A vector of particles at a time, in blocks that stay in the first cache, with nothing
-// but the rule. All take n_steps steps.
+// Single rules written by hand without a stepper, for comparison with the composed loop. A loop
+// takes a vector of particles at a time, in blocks that stay in the first-level cache, with only
+// the rule. All take n_steps steps.
 #pragma once
 
 #include "apps/bench/dn_scene.hpp"
@@ -8,10 +8,10 @@
 
 namespace bench {
 
-/// Gravity alone: the parabola.
+/// Only gravity: the parabola.
 void gravity_by_hand(const tess::dn::ParticleSpan& all, tess::dn::Vec3 g);
 
-/// Linear air drag alone.
+/// Only linear air drag.
 void air_drag_by_hand(const tess::dn::ParticleSpan& all, double rate);
 
 /// Nearest look-up of the distance and linear drag closer than `reach`.
@@ -28,8 +28,8 @@ void explosion_by_hand(const tess::dn::ParticleSpan& all, const tess::dn::Explos
 void flow_by_hand(const tess::dn::ParticleSpan& all, const tess::dn::Field& field,
                   const tess::dn::SurfaceFlow& flow);
 
-/// Nearest look-up and a spring that a step is short against: the exact motion of who stays in
-/// contact, and no more energy than there was where the field's distances jump.
+/// Nearest lookup and a spring that is soft relative to the step: the exact motion of particles
+/// that stay in contact, without energy gain where the field's distances jump.
 void spring_by_hand(const tess::dn::ParticleSpan& all, const tess::dn::Field& field,
                     const tess::dn::Spring& spring);
 

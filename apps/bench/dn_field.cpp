@@ -1,11 +1,11 @@
-// The step loop of particles against a distance/normal field, per particle and step: CSV rows as of
-// the other benches, in picoseconds of processor time. A row is printed after its result was
+// The step loop of particles against a distance/normal field, per particle and step: CSV rows as in
+// the other benchmarks, in picoseconds of processor time. A row is printed after its result was
 // checked. "spread": particles all over the grid; "near": all within two voxels of the surface, the
 // worst case.
 //
-// Rows in % hold one loop against another: the composed one against the one written by hand, the
-// field of many triangles against that of few. Both are run in turn, and the fastest of each count,
-// so that a busy machine does not tell them apart; 105 is what is allowed.
+// Rows in % compare two loops: the composed one with the one written by hand, the field of many
+// triangles with that of few. Both run in turn and the fastest run of each counts, so that a busy
+// machine affects both alike; 105 is allowed.
 //
 //     bench_dn_field --pes 1 [--particles 1000000] [--repeat 5]
 #include "apps/bench/dn_by_hand.hpp"
@@ -31,13 +31,13 @@ struct Options {
 
 using Run = std::function<void(Particles&)>;
 
-/// What one of several runs took a particle and step, and where it left the particles.
+/// The time of one run per particle and step, and where it left the particles.
 struct Measured {
   Samples samples;
   Particles end;
 };
 
-/// The runs in turn, each `repeat` times on a copy of `from` that stands in the same memory.
+/// Performs the runs in turn, each `repeat` times on a copy of `from` in the same memory.
 std::vector<Measured> measured(int repeat, const Particles& from, const std::vector<Run>& runs) {
   std::vector<Measured> result(runs.size());
   Particles particles;
@@ -155,8 +155,8 @@ class Bench {
       const Rules swept = impact(LookUp::tangent, sweep);
       bounce("dn tangent + swept impact; spread", spread_, swept, 0.1, 0);
       bounce("dn tangent + swept impact; near", near_, swept, 0.1, 0);
-      // Up to 1.6 voxels a step: those that may meet the surface are traced. Across an edge a voxel
-      // may know the other face alone.
+      // Up to 1.6 voxels per step: particles that may meet the surface are traced. Across an edge a
+      // voxel may have only the other face.
       Particles fast = spread_;
       for (auto* v : {&fast.vx, &fast.vy, &fast.vz})
         for (double& component : *v) component *= 100;
@@ -183,7 +183,7 @@ class Bench {
     }
   }
 
-  /// A float's rounding can choose the voxel beside it, so that a few may differ by more.
+  /// A float's rounding can choose the neighbouring voxel, so a few particles may differ by more.
   void hand_and_loop(const std::string& name, const Particles& from, const Run& by_hand,
                      const Rules& rules, double tolerance) {
     if (!wanted(name)) return;

@@ -1,5 +1,5 @@
-// The limit of a message between two processes: MPI_Isend and MPI_Irecv and nothing of ours. The
-// one source of bench that includes mpi.h is its own.
+// The limit of a message between two processes: only MPI_Isend and MPI_Irecv. Its source is the
+// only one of bench that includes mpi.h.
 #pragma once
 
 #include <cstddef>

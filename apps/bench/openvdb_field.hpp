@@ -1,6 +1,5 @@
-// OpenVDB's construction and look-up of the same field, to stand beside ours; nothing where the
-// build did not find the library. Both on the calling thread alone, so that its processor time is
-// all they take.
+// OpenVDB's construction and lookup of the same field, for comparison; empty if the build did not
+// find the library. Both run only on the calling thread, so its processor time is their whole cost.
 #pragma once
 
 #include "collide/dn_field/grid.hpp"

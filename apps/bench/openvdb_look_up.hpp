@@ -1,5 +1,4 @@
-// Our look-ups and OpenVDB's of one field, run in turn; nothing where the build did not find the
-// library.
+// Our lookups and OpenVDB's in one field, run in turn; empty if the build did not find the library.
 #pragma once
 
 #include "apps/bench/report.hpp"
@@ -9,7 +8,7 @@
 namespace bench {
 
 /// Nearest and trilinear distances of points all over `grid`, in bands of `half_width` cells. The
-/// fastest of each is held against the other: 25 % is what is allowed.
+/// fastest of each is compared with the other: 25 % is allowed.
 void look_up_beside_openvdb(const Report& report, const tess::dn::Surface& surface,
                             const tess::dn::Grid& grid, double half_width, int repeat);
 

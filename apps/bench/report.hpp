@@ -1,5 +1,5 @@
-// A figure measured several times, and the CSV row that shows it beside its limit. A row is printed
-// only after its result was checked.
+// A figure that is measured several times, and the CSV row that shows it beside its limit. A row is
+// printed only after its result was checked.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
@@ -26,7 +26,7 @@ class Samples {
   void add(double value) { values_.push_back(value); }
   [[nodiscard]] bool empty() const { return values_.empty(); }
   [[nodiscard]] double median() const;
-  /// What it takes when nothing else runs on the machine.
+  /// The figure when nothing else runs on the machine.
   [[nodiscard]] double least() const;
   /// (largest − smallest) / median, which is taken without its sign
   [[nodiscard]] double spread() const;

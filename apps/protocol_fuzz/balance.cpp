@@ -1,7 +1,7 @@
-// Balance rounds while everything else goes on: elements are born, end, migrate, contribute, and
-// wait at the barrier. The oracles: every wait is resumed exactly once, every phase of every life
-// is run, every contribution arrives; with `rotate` elements are where the rounds have put them;
-// periodic rounds lose no message.
+// Balance rounds while elements are created, end, migrate, contribute, and wait at the barrier. The
+// oracles: every wait is resumed exactly once, every phase of every life is run, and every
+// contribution arrives; with `rotate` elements are where the rounds have put them; periodic rounds
+// lose no message.
 #include "runtime/balance.hpp"
 
 #include "apps/protocol_fuzz/scenarios.hpp"
@@ -32,7 +32,7 @@ struct Lives {
   [[nodiscard]] bool creates(int root, int path, int phase) const {
     return path < 100 && draws(root, path, phase).chance(create_chance);
   }
-  /// What one life and all that it bears run, in phases.
+  /// What one life and all its descendants run, in phases.
   void expect_life(std::map<std::pair<int, int>, int>& expected, int root, int path) const {
     const int n = n_phases(root, path);
     expected[{root, path}] = n;
@@ -107,7 +107,7 @@ std::string drawn_strategy(Random& random) {
   return names[random.below(names.size())];
 }
 
-/// Where each element of `rotate` is to be after so many rounds.
+/// Checks the place of each element under `rotate` after so many rounds.
 class Rotor : public Chare<Rotor, Index1> {
  public:
   static inline Trial* trial = nullptr;
@@ -116,7 +116,7 @@ class Rotor : public Chare<Rotor, Index1> {
 
   void begin() { at_sync(); }
   void resume_from_sync() {
-    // In the first round those stay that ran before they were measured.
+    // In the first round elements stay that ran before they were measured.
     if (round_ == 0) first_ = current_pe().id().value - 1;
     ++round_;
     const int n_pes = current_pe().n_pes();
@@ -166,8 +166,8 @@ class Toiler : public Chare<Toiler, Index1> {
   int phase_ = 0;
 };
 
-/// Holds every load that a strategy is shown as known against the work of the phase, and each move
-/// against whether its load was known.
+/// Compares every known load in a strategy's snapshot with the work of the phase, and checks that
+/// only elements of known load move.
 class LoadsShown {
  public:
   LoadsShown(Trial& trial, std::string strategy, bool exactly)
@@ -275,7 +275,7 @@ void balance_first_round(Trial& trial) {
   const int n = trial.draw(1, 40);
   Toiler::n_parts = trial.draw(1, 3);
   Toiler::n_phases = trial.draw(1, 3);
-  // What is on its way while loads are collected is not shown, and brings two phases to the next.
+  // A message that is under way while loads are collected brings two phases to the next collection.
   const bool moves = trial.draw(0, 1) == 0;
   if (!moves) trial.forbid_forced_migration();
   const bool by_broadcast = trial.draw(0, 1) == 0;

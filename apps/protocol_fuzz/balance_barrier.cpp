@@ -1,4 +1,4 @@
-// The balancer's barrier: elements that wander from PE to PE while balancing starts, and wait.
+// The balancer's barrier, for elements that migrate and wait while balancing starts.
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/balance/strategy.hpp"
@@ -9,8 +9,8 @@
 namespace tess::fuzz {
 namespace {
 
-/// Counts who has reached each barrier. Some wander first, and leave again while they wait for the
-/// first barrier: to PEs where balancing has started, and to others.
+/// Counts the elements that have reached each barrier. Some migrate first, and leave again while
+/// they wait for the first barrier: to PEs where balancing has started, and to others.
 class Marcher : public Chare<Marcher, Index1> {
  public:
   static constexpr int n_phases = 8;

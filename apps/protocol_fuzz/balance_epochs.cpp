@@ -1,6 +1,6 @@
-// A program whose phases are epochs asks for a round between two of them, while elements are
-// created on demand and end in every phase. The oracles: each element lives in the phases that the
-// draws give it, and in no other; with `rotate` it is one PE further each time.
+// A program whose phases are epochs requests a round between two of them, while elements are
+// created on demand and end in every phase. The oracles: each element lives exactly in the phases
+// that the draws give it; with `rotate` it is one PE further each time.
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/balance/strategy.hpp"

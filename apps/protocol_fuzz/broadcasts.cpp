@@ -1,5 +1,5 @@
-// Broadcasts from all PEs to elements that move, come and go. The oracle: all elements meet the
-// broadcasts of their life in one order, each once; an element that lives through all meets all.
+// Broadcasts from all PEs to elements that move, come and go. The oracle: all elements receive the
+// broadcasts of their life in one order, each once; an element that lives throughout receives all.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class Listener : public Chare<Listener, Index1> {
   Listener() = default;
   explicit Listener(bool created) : created_(created) {}
 
-  /// What was created for this message must not end before it: it would be created again.
+  /// An element created for this message must not end before it: it would be created again.
   void create() { created_ = true; }
 
   void hear(int id) {
@@ -60,7 +60,7 @@ class Listener : public Chare<Listener, Index1> {
         static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))};
   }
   void move(Random& random) {
-    if (heard->destroy_chance > 0 || random.chance(0.5)) {  // else it would be a dead letter
+    if (heard->destroy_chance > 0 || random.chance(0.5)) {  // otherwise it would be a dead letter
       migrate_to(draw_pe(random));
     } else {
       array()[index()].migrate_to(draw_pe(random));
@@ -110,7 +110,8 @@ void broadcasts(Trial& trial) {
   heard = &here;
   const bool long_run = trial.seed() % 50 == 0;
   const int n_each = long_run ? 500 / trial.n_pes() : trial.draw(1, 12);
-  // In the long run few are born for each that dies, so that the population stays small.
+  // In a long run few elements are created per element that ends, so that the population stays
+  // small.
   here.create_chance = long_run ? 0.002 : 0.1 * trial.random().unit();
   here.destroy_chance = long_run ? 0.01 : trial.draw(0, 1) * 0.1 * trial.random().unit();
   here.move_chance = trial.random().unit() * 0.6;

@@ -1,6 +1,6 @@
-// Constructors that contribute to a reduction and wait at the balance barrier. The oracle: what the
-// first elements of an array contribute in their constructors is one reduction of them all, and an
-// element that is made again where it migrated does neither again.
+// Constructors that contribute to a reduction and wait at the balance barrier. The oracle: the
+// contributions of the initial elements' constructors form one reduction of them all, and an
+// element that is rebuilt after a migration does neither again.
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/balance.hpp"
 

@@ -1,4 +1,4 @@
-// Demand creation from all PEs at once, and messages that come before their elements.
+// Creation on demand from all PEs at once, and messages that arrive before their elements.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>
@@ -129,7 +129,7 @@ class Crowd : public Group<Crowd<Index>> {
     }
   }
 
-  /// One PE alone brings the elements to life, each in a drawn way, in a chain of messages.
+  /// One PE creates all elements, each in a random way, in a chain of messages.
   void bring(Burst<Index> burst, int next) {
     if (next == burst.n_indices) return;
     Random random(mix(burst.seed ^ static_cast<std::uint64_t>(next)));
@@ -170,7 +170,7 @@ class Crowd : public Group<Crowd<Index>> {
   }
 };
 
-// Apart from the templates: g++ 12 fails on a coroutine with an epoch in one.
+// Outside of the templates: g++ 12 fails on a coroutine with an epoch in one.
 struct Steps {
   virtual ~Steps() = default;
   virtual void begin() = 0;

@@ -1,7 +1,7 @@
-// Arrays that are made, used and destroyed while everything goes on in them: messages, demands,
+// Arrays that are created, used and destroyed while they are in full use: messages, demands,
 // migrations, broadcasts, reductions, coroutines, balance rounds. The oracle: each message is
-// delivered once or counted as a dead letter, none after the end; every element is destroyed; every
-// epoch is done; each PE forgets the array, its balancer included.
+// delivered once or counted as a dead letter, and none is delivered after the end; every element is
+// destroyed; every epoch ends; each PE forgets the array and its balancer.
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/balance.hpp"
 
@@ -52,7 +52,7 @@ Remains* remains = nullptr;
 
 class Clerk;
 
-/// A message that goes on and on.
+/// A message that is sent on again and again.
 struct Errand {
   GroupProxy<Clerk> clerks;
   int token = 0;
@@ -98,7 +98,7 @@ class Mayfly : public Chare<Mayfly, Index1> {
   bool waits_ = false;
 };
 
-/// On each PE: what is done to the arrays from outside.
+/// On each PE: the operations on the arrays from outside.
 class Clerk : public Group<Clerk> {
  public:
   void flood(ArrayProxy<Mayfly> flies, Errand errand);
@@ -285,7 +285,7 @@ Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
   clerks.broadcast<&Clerk::check_end>(flies.id());
   const std::lock_guard lock(remains->mutex);
   remains->over[flies.id()] = true;
-  // What a balancer moves is on no epoch of the user's: it may arrive, and end, later.
+  // A balancer's migrations belong to no epoch of the user: elements may arrive, and end, later.
   remains->trial.expect(is_balanced || remains->alive[flies.id()] == 0, remains->alive[flies.id()],
                         " elements outlive their array, way ", how);
 }

@@ -1,5 +1,5 @@
-// Runs that end badly, and have to say why: deadlocks of each kind, exceptions of each kind,
-// messages to the dead.
+// Runs that end with an error and must report the reason: deadlocks and exceptions of each kind,
+// and messages to destroyed elements.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <stdexcept>

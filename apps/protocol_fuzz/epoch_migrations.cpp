@@ -1,5 +1,6 @@
-// Migrations, insertions and ends asked for inside an epoch: when its await returns every element
-// is where it was sent, and what was to end has ended, also if a coroutine kept it for a while.
+// Migrations, insertions and destructions inside an epoch. The oracle: when the epoch's await
+// returns, every element is where it was sent, and destroyed elements are gone, also if a coroutine
+// delayed them.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <map>

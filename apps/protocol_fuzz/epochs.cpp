@@ -1,7 +1,6 @@
-// Random trees of messages inside epochs, nested and several at once: calls, demand creation,
-// broadcasts, reductions, coroutines that wait for messages and for inner epochs, migrations. The
-// oracle counts what each epoch still has to do; when the epoch's await returns that must be
-// nothing.
+// Random trees of messages inside nested and concurrent epochs: calls, demand creation, broadcasts,
+// reductions, coroutines that wait for messages and for inner epochs, migrations. The oracle counts
+// the remaining work of each epoch; it must be zero when the epoch's await returns.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <array>
@@ -38,7 +37,7 @@ struct Ledger {
 };
 Ledger* ledger = nullptr;
 
-/// A node of the tree: whose epoch it belongs to, and how much may grow from it.
+/// A node of the tree: its epoch, and the number of nodes that may grow from it.
 struct Twig {
   int epoch = 0;
   int energy = 0;
@@ -107,7 +106,7 @@ class Branch : public Chare<Branch, Index1> {
     ar(notes_);
   }
 
-  /// Something of that epoch was begun, or is done. (Not while its children are yet to be counted.)
+  /// Work of this epoch was begun or is done. (Not while its children are yet to be counted.)
   static void done(int epoch) { ledger->add(epoch, -1); }
 
  private:

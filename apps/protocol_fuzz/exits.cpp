@@ -1,6 +1,6 @@
-// The end of a run in the middle of everything: messages, migrations, broadcasts, reductions, open
-// epochs, coroutines that wait. The oracle: the exit code is the greatest that any PE gave; a PE
-// that gave one runs no more of the program; nothing is left in memory.
+// The end of a run in the middle of work: messages, migrations, broadcasts, reductions, open
+// epochs, waiting coroutines. The oracle: the exit code is the greatest that any PE passed; a PE
+// that passed one runs no more user code; no memory is leaked.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <atomic>
@@ -75,11 +75,12 @@ class Wave : public Chare<Wave, Index1> {
         array()[index()].send<&Wave::wait>(next);
         break;
       case 2:
-        array()[{to.x + 1000}].send<&Wave::splash>(next);  // nobody is there: it waits
+        array()[{to.x + 1000}].send<&Wave::splash>(
+            next);  // there is no such element: the message waits
         array()[index()].send<&Wave::splash>(next);
         return;
       case 3:
-        array()[index()].send<&Wave::nest>(next);  // goes on inside
+        array()[index()].send<&Wave::nest>(next);  // continues inside an epoch
         return;
       case 4:
         array()[{to.x + 100}].send_or_create_here<&Wave::splash>(next);

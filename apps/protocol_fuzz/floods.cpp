@@ -1,7 +1,7 @@
-// All PEs flood one another with messages, some of them only as there is room; the memory for
+// All PEs flood one another with messages, some of them only when there is room. The memory for
 // messages between processes is drawn from the seed, down to one message. The oracle: every message
-// arrives; a process holds of one sender's no more than the budget allows; a producer that waits
-// for room has no more than one message waiting beside it; epochs wait for what is held back.
+// arrives; a process holds no more of one sender's messages than the budget allows; a producer that
+// waits for room has at most one more message waiting; epochs wait for messages that are held back.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <atomic>
@@ -73,7 +73,7 @@ class Basin : public Group<Basin> {
     }
   }
   void fall(Freight freight) {
-    (void)charge(std::chrono::milliseconds(1));  // slower than what comes
+    (void)charge(std::chrono::milliseconds(1));  // slower than the messages arrive
     if (freight.packed)
       deluge->holds(freight.sender, current_pe().machine().process_of(pe()), freight.n_bytes(),
                     false);
@@ -85,7 +85,8 @@ class Basin : public Group<Basin> {
 
 Task flood_twice(Deluge& here) {
   GroupProxy<Basin> basins;
-  // A message to a group that is not known yet has run, as far as memory goes: it waits elsewhere.
+  // A message to a group that is not known yet counts as run for the memory budget, so create the
+  // group first.
   co_await epoch([&] { basins = create_group<Basin>(); });
   const int each = here.n_messages * here.trial.n_pes();
   for (int round = 1; round <= 2; ++round) {

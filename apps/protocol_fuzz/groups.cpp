@@ -1,5 +1,5 @@
-// Groups: a member on each PE, messages to one and to all, reductions in order of PEs and in any
-// order, a group made by a member of another.
+// Groups: one member per PE, messages to one and to all, reductions in the order of PEs and in any
+// order, and a group made by a member of another group.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <numeric>

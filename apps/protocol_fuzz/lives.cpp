@@ -19,7 +19,7 @@ struct Population {
   int n_ended = 0;
   int n_agents_done = 0;
 
-  /// All that the agents sent has come to something.
+  /// True if all messages of the agents have been delivered or counted.
   bool is_settled() {
     const std::lock_guard lock(mutex);
     return n_agents_done == trial.n_pes() &&
@@ -50,7 +50,7 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
     if (ended_) ++population->n_ended;
   }
 
-  /// Hides the base's: an end is to be told from an object that goes on elsewhere.
+  /// Hides the base's function: the oracle must tell an end from a migration.
   void destroy() {
     ended_ = true;
     Chare<Mortal<Mode>, Index2>::destroy();
@@ -135,7 +135,7 @@ class Agent : public Group<Agent<Mode>> {
     }
   }
 
-  /// Sees to it that there is an element of each index; says how many letters were dead.
+  /// Creates missing elements, so that each index has one; records the number of dead letters.
   void mend(ArrayProxy<Element> array, int n_indices) {
     const std::int32_t n_pes = current_pe().n_pes();
     for (int i = 0; i < n_indices; ++i)

@@ -13,7 +13,7 @@ struct Ring {
   std::mutex mutex{};
   std::vector<std::uint64_t> result{};
 
-  /// What an element becomes of itself and its neighbours.
+  /// The next value of an element from its own and its neighbours' values.
   static std::uint64_t next(std::uint64_t left, std::uint64_t me, std::uint64_t right) {
     return mix(left * 3 + me * 5 + right * 7);
   }

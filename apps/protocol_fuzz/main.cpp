@@ -1,9 +1,8 @@
-// The protocol scenarios over many seeds, by hand or for a night:
+// Runs the protocol scenarios over many seeds:
 //
-//     protocol_fuzz --scenario tour --seeds 0:9999        all seeds from 0 to 9999, P by the seed
+//     protocol_fuzz --scenario tour --seeds 0:9999        all seeds from 0 to 9999, PEs by the seed
 //     protocol_fuzz --scenario tour --seeds 17:17 --pes 4
-//     mpirun -n 3 protocol_fuzz --seeds 0:99              on the processes of the job, in real
-//     time:
+//     mpirun -n 3 protocol_fuzz --seeds 0:99              on the processes of the job, in real time:
 //                                                         the scenarios that can, 1 to 3 PEs each
 //
 // A failure prints the command that repeats it; the last line is "N passed, N failed".
@@ -22,7 +21,7 @@ namespace {
 using tess::fuzz::Scenario;
 using tess::fuzz::Trial;
 
-// The trial that runs and the command that repeats it, for an end without return.
+// The running trial and the command that repeats it, for a run that ends the process.
 std::string repeat;
 const Trial* running = nullptr;
 

@@ -1,12 +1,12 @@
-// Elements that are born while rounds of broadcast and reduction go on, most of them with no epoch
-// around. An element that is born after a result was awaited meets only later broadcasts and
-// contributes only to later reductions; where elements refine in the middle of a step, parent and
+// Elements that are created while rounds of broadcast and reduction run, most of them outside of
+// epochs. An element that is created after a result was awaited receives only later broadcasts and
+// contributes only to later reductions. If elements refine in the middle of a step, parent and
 // child meet in one step or in the next, but never one ahead or behind.
 //
-// The oracle is one member of a group, the governor. It knows nothing but the results and what is
-// drawn from the seed, so that the scenarios run on several processes, too: an element is in every
-// result from the first round that it met to its end, and in none twice; what was born in an epoch
-// is in the very next result; at the end all are there.
+// The oracle is one member of a group, the governor. It uses only the results and what is drawn
+// from the seed, so that the scenarios also run on several processes. An element is in every result
+// from the first round that it received to its end, and in none twice; an element that was created
+// in an epoch is in the very next result; at the end all are there.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>
@@ -89,12 +89,12 @@ class Cell : public Chare<Cell, Name> {
   Cell() = default;
   explicit Cell(int floor) : created_(true), floor_(floor) {}
 
-  /// The first message of what was created on demand: it does not end before.
+  /// The first message of an element created on demand: the element does not end before it.
   void create(int floor) {
     created_ = true;
     floor_ = std::max(floor_, floor);
   }
-  /// Where the first element has results judged that are orders, too.
+  /// The target to which the first element sends results that are also orders.
   void report_to(Callback<Share> judge) { judge_ = std::move(judge); }
 
   Task step(Order order);
@@ -137,7 +137,7 @@ class Cell : public Chare<Cell, Name> {
   Mailbox<&Wake::key> waits_;
 };
 
-/// Has an element be born, in one of the ways there are.
+/// Creates an element in one of the possible ways.
 void insert_cell(const ArrayProxy<Cell>& cells, Name name, int floor) {
   Random random = nursery->draws(floor, name, 2);
   switch (random.below(5)) {
@@ -176,7 +176,7 @@ Task Cell::step(Order order) {
   if (inserts_first)
     for (const Name child : children_) insert_cell(array(), child, round);
   const std::vector<Name> later = inserts_first ? std::vector<Name>() : children_;
-  // By a governor's message only where the first element's own says what led to the round.
+  // By a governor's message only if the first element's own message says what led to the round.
   const bool may_ask = index() != 0 && !order.targets.empty();
   Way way = nursery->has_ways ? static_cast<Way>(random.below(may_ask ? 5 : 4)) : Way::at_once;
   if (fate == Nursery::Fate::gives_and_ends) {

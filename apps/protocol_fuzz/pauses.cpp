@@ -1,5 +1,5 @@
-// Epochs one after another, each of little but lasting work: PEs run dry and report, and go on,
-// again and again. The run may not be taken for over while an epoch's report is due.
+// Epochs one after another, each with few but long messages: PEs idle, report and continue, again
+// and again. The run must not be taken for over while an epoch's report is due.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 namespace tess::fuzz {

@@ -1,6 +1,6 @@
-// Elements hand on values of every kind of container, over processes and while they move; a vector
-// of numbers may travel apart from its message (serialize.hpp). The oracle: a value arrives as it
-// was sent, checked member by member against its seed, and every chain comes to its end.
+// Elements pass on values of every kind of container, between processes and while they migrate; a
+// vector of numbers may travel separately from its message (serialize.hpp). The oracle: a value
+// arrives as it was sent, checked member by member against its seed, and every chain ends.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <atomic>
@@ -76,7 +76,7 @@ struct Cargo {
 
 class Carrier : public Chare<Carrier, Index1> {
  public:
-  /// The state is large, too, and moves.
+  /// The state is also large, and migrates.
   void load(std::uint64_t seed) {
     seed_ = seed;
     values_ = numbers(seed);

@@ -1,6 +1,6 @@
-// Rounds of broadcast and reduction while elements move before or after they contribute, end and
-// are born. The oracle: each result is what the contributions to its number, as they were made,
-// combine to; every element that lives through the round is among them.
+// Rounds of broadcast and reduction while elements are created, end, and migrate before or after
+// they contribute. The oracle: each result is the combination of the recorded contributions to its
+// number, and every element that lives through the round is among them.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>
@@ -64,8 +64,9 @@ class Player : public Chare<Player, Index1> {
   explicit Player(bool created) : created_(created) {}
 
   void play(int round);
-  /// Comes to life within a round: its parent gives once it knows of it. The child itself gives
-  /// where it meets a round: this one or the next.
+  /// The first message of an element that is created within a round: its parent contributes once it
+  /// has the answer. The new element contributes in the round that it receives, this one or the
+  /// next.
   void create(Creation creation);
   void give(int round);
 
@@ -81,7 +82,7 @@ class Player : public Chare<Player, Index1> {
         static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
   }
 
-  bool created_ = false;  // what was created on demand does not end before its first message
+  bool created_ = false;  // an element created on demand does not end before its first message
   int last_round_ = -1;
 };
 

@@ -1,5 +1,5 @@
-// The protocol scenarios: each runs a program that leans on one part of the runtime, in an order of
-// delivery that the trial's seed draws, and compares what happened with an oracle. Shared by the
+// The protocol scenarios. Each runs a program that stresses one part of the runtime, with a
+// delivery order that the trial's seed draws, and compares the outcome with an oracle. Used by the
 // program protocol_fuzz and by the tests.
 #pragma once
 
@@ -46,7 +46,7 @@ struct Scenario {
 };
 
 [[nodiscard]] std::span<const Scenario> scenarios();
-/// Throws Error for a name that is none; the message lists the names.
+/// The scenario of this name. Throws Error that lists the names for an unknown one.
 [[nodiscard]] const Scenario& scenario(std::string_view name);
 
 }  // namespace tess::fuzz

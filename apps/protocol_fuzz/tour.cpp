@@ -1,4 +1,4 @@
-// Every element visits every PE while messages from all PEs chase it.
+// Every element visits every PE while messages from all PEs follow it.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>

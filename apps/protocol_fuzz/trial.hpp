@@ -1,11 +1,11 @@
-// One trial: one seed, one number of PEs, one machine, and what was expected of it. A scenario
-// draws its size and shape from the trial's random numbers, runs a program or several, and states
-// what must hold; the first few statements that did not are kept as text.
+// One trial: one seed, one number of PEs, one machine, and its expectations. A scenario draws its
+// size and shape from the trial's random numbers, runs one or several programs, and states what
+// must hold; the first few violations are kept as text.
 //
-// The chares of most scenarios and their oracle share the memory of one process: an oracle is
-// guarded by a mutex, so that the same scenario runs on the machine of threads. On several
-// processes (a job) each draws the same from the seed, and states what it sees: there a scenario
-// runs whose oracle travels in its messages.
+// The chares of most scenarios and their oracle share the memory of one process. An oracle is
+// guarded by a mutex, so that the same scenario runs on the threads machine. On several processes
+// (a job) each process draws the same from the seed and states what it sees; only scenarios that
+// carry their oracle in messages run there.
 #pragma once
 
 #include "runtime/runtime.hpp"
@@ -28,7 +28,7 @@ class Trial {
  public:
   enum class On { simulated, threads, job };
 
-  /// `n_pes`: of the whole job, a multiple of n_processes.
+  /// `n_pes` is the number of PEs of the whole job, a multiple of n_processes.
   Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_processes = 1);
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
@@ -44,7 +44,7 @@ class Trial {
   /// Of the simulated machine: bytes under way from process to process.
   [[nodiscard]] std::uint64_t message_memory() const { return message_memory_; }
 
-  /// No element is sent away but by the scenario.
+  /// Turns forced migrations off.
   void forbid_forced_migration() { forced_migration_ = false; }
 
   /// Runs `main` on PE 0 to the end of the run.
@@ -52,7 +52,7 @@ class Trial {
   Ending run(Main main) {
     return run_message(detail::as_message(std::move(main)));
   }
-  /// The same; the run has to end with exit code 0 and without a report.
+  /// The same; the run must end with exit code 0 and without a report.
   template <class Main>
   void run_clean(Main main) {
     const Ending ending = run(std::move(main));

@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     Options options;
     apps::CommandLine line("Messages around a ring of chares over all PEs.");
-    line.option("--stations", options.stations, "chares in the ring; 0: one a PE")
+    line.option("--stations", options.stations, "chares in the ring; 0: one per PE")
         .between(0, 1'000'000);
     line.option("--rounds", options.rounds, "how often each message goes round")
         .between(1, 1'000'000);

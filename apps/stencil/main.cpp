@@ -1,7 +1,7 @@
 // A Jacobi stencil over a two-dimensional array of blocks. A step is one coroutine: send the edges,
 // await the neighbours', relax, contribute the change; the reduction's result starts the next step.
-// Blocks may migrate between any two steps. Printed: time, and how far the values are from the
-// exact iterate.
+// Blocks may migrate between any two steps. The program prints the time and the distance of the
+// values from the exact iterate.
 #include "apps/command_line.hpp"
 #include "apps/stencil/grid.hpp"
 #include "runtime/runtime.hpp"
@@ -88,7 +88,8 @@ int main(int argc, char** argv) {
     if (!line.parse(argc, argv)) return 0;
     if (grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,
-                 " blocks on an axis of ", grid.problem.size, " points: give at most one a point");
+                 " blocks on an axis of ", grid.problem.size,
+                 " points: give at most one per point");
     return tess::run(setup, [&] { return stencil::relax(grid); });
   });
 }

@@ -59,7 +59,7 @@ void Tile::set_halo(Side side, const std::vector<double>& values) {
 double Tile::jacobi() {
   next_.resize(values_.size());
   const auto stride = static_cast<std::size_t>(width_ + 2);
-  // One maximum would be a chain from point to point; one for each lane is not.
+  // One maximum per lane: a single maximum would be a chain of dependences from point to point.
   constexpr std::int32_t n_lanes = 8;
   std::array<double, n_lanes> change{};
   for (std::int32_t row = 0; row < height_; ++row) {

@@ -1,5 +1,5 @@
-// A rectangle of grid points with a halo of one: the numerics of the stencil program, which know no
-// message. Values are row-major with the halo, (height + 2) × (width + 2).
+// A rectangle of grid points with a halo of one: the numerics of the stencil program, without
+// messages. Values are row-major with the halo, (height + 2) × (width + 2).
 #pragma once
 
 #include "apps/stencil/problem.hpp"

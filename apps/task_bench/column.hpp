@@ -1,10 +1,10 @@
-// One point of a task graph through all steps: a chare. It runs the task of a step where the last
-// input of it arrives, and sends the output to the points that need it. A task that needs nothing
-// of other points is a message of the column to itself, so that each task is scheduled.
+// One point of a task graph through all steps: a chare. It runs the task of a step when the last
+// input arrives, and sends the output to the points that need it. A task without inputs from other
+// points is started by a message of the column to itself, so that each task is scheduled.
 //
 //     begin -> [ take … take -> run -> take of the consumers ]*  -> contribute
 //
-// With a balancer every column waits at the barrier each so many steps.
+// With a balancer every column waits at the barrier once per so many steps.
 #pragma once
 
 #include "apps/task_bench/inputs.hpp"
@@ -18,7 +18,7 @@
 
 namespace task_bench {
 
-/// What the tasks of a run, or of one column, come to.
+/// The totals of the tasks of a run or of one column.
 struct Count {
   std::uint64_t n_tasks = 0;
   std::uint64_t n_inputs = 0;  ///< each held against its dependence

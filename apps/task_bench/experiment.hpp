@@ -10,7 +10,7 @@
 
 namespace task_bench {
 
-/// What was measured of one case (graphs at once).
+/// The measurements of one case (graphs that run at once).
 struct Result {
   std::vector<Graph> graphs;
   std::vector<Row> rows;
@@ -18,8 +18,8 @@ struct Result {
   std::vector<tess::balance::Round> rounds;  ///< of all graphs, where a balancer ran
 };
 
-/// Runs all cases, on PE 0, and reports each through `tell`. Ends the run with exit code 1 where
-/// the columns did not run what the graphs have.
+/// Runs all cases, on PE 0, and reports each through `tell`. Ends the run with exit code 1 if the
+/// columns did not run the tasks of the graphs.
 tess::Task run_all(const Settings& settings, void (*tell)(const Settings&, const Result&),
                    std::vector<Result>& results);
 

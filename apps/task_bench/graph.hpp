@@ -1,16 +1,21 @@
 // The task graphs of Task Bench (Slaughter et al., SC20): a grid of steps × points, in which the
 // task (t, p) needs the outputs of some tasks of step t - 1. No messages here.
 //
-//     trivial              no inputs                    no_comm              p
-//     stencil_1d           p - 1, p, p + 1              stencil_1d_periodic  the same, round a ring
-//     dom                  p - 1, p; a band of points   tree                 p / 2; twice the
-//     points fft                  p, p ± 2^k                   all_to_all           all nearest
-//     radix points around p        spread               radix points, far apart random_nearest some
-//     of the nearest, at random
+//     trivial              no inputs
+//     no_comm              p
+//     stencil_1d           p - 1, p, p + 1
+//     stencil_1d_periodic  the same, on a ring
+//     dom                  p - 1, p; a band of points
+//     tree                 p / 2; twice as many points each step
+//     fft                  p, p ± 2^k
+//     all_to_all           all points
+//     nearest              radix points around p
+//     spread               radix points, far apart
+//     random_nearest       some of the nearest, at random
 //
-// Which points a task needs is a function of its dependence set, of which a graph has a few: fft
-// one per stage, spread and random_nearest one per step of their period. The random edges are drawn
-// by our own hash: they have the statistics of the original's, not its edges.
+// Which points a task needs is a function of its dependence set. A graph has few sets: fft has one
+// per stage, spread and random_nearest have one per step of their period. The random edges are
+// drawn by our own hash: they have the statistics of the original's, but are not the same edges.
 #pragma once
 
 #include "apps/task_bench/kernel.hpp"
@@ -66,7 +71,7 @@ struct Points {
 [[nodiscard]] Points points_at(const Graph& graph, std::int64_t step);
 
 [[nodiscard]] std::int32_t n_sets(const Graph& graph);
-/// The dependence set by which the tasks of a step find their inputs, in step - 1.
+/// The dependence set from which the tasks of a step find their inputs in step - 1.
 [[nodiscard]] std::int32_t set_at(const Graph& graph, std::int64_t step);
 
 /// The points whose outputs a point needs; ascending. Those without a task at the step before are
@@ -77,7 +82,7 @@ struct Points {
 [[nodiscard]] std::vector<std::int32_t> dependents(const Graph& graph, std::int32_t set,
                                                    std::int32_t point);
 
-/// What a whole graph comes to.
+/// The totals of a whole graph.
 struct Totals {
   std::uint64_t n_tasks = 0;
   std::uint64_t n_dependences = 0;
@@ -85,7 +90,7 @@ struct Totals {
 };
 [[nodiscard]] Totals totals(const Graph& graph);
 
-/// Throws tess::Error where the options of a graph do not fit each other.
+/// Throws tess::Error if the options of a graph are inconsistent.
 void validate(const Graph& graph);
 
 }  // namespace task_bench

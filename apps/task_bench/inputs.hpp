@@ -1,6 +1,6 @@
-// The inputs of one point's tasks, kept by step until the task of that step runs: neighbours may be
-// ahead. An output is what Task Bench sends: the step and the point of the task that made it; its
-// consumer holds every input against the dependence that it stands for. No messages here.
+// The inputs of one point's tasks, kept by step until the task of that step runs, since neighbours
+// may be ahead. An output contains what Task Bench sends: the step and the point of its task. The
+// consumer compares every input with its dependence. No messages here.
 //
 //     slots    step 7   (6, 3) (6, 4)  -      one place per dependence of the step's set
 //              step 8     -    (7, 4)  -
@@ -14,7 +14,7 @@
 
 namespace task_bench {
 
-/// What a task hands on, as often as -output bytes hold it.
+/// The output of a task, repeated to fill -output bytes.
 struct Output {
   std::int64_t step = 0;
   std::int64_t point = 0;
@@ -68,7 +68,7 @@ class Inputs {
     return true;
   }
 
-  /// Goes on to the next step; the inputs of this one are forgotten.
+  /// Advances to the next step and forgets the inputs of this one.
   void advance() {
     const Set& set = sets_[set_of(first_)];
     Output* const slot = slot_of(first_);

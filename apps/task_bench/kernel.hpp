@@ -1,4 +1,4 @@
-// What a task does besides its inputs and outputs, as Task Bench defines it: nothing, a chain of
+// The work of a task besides its inputs and outputs, as Task Bench defines it: nothing, a chain of
 // integer steps, arithmetic on 64 doubles, or copies within a scratch buffer. load_imbalance is
 // compute_bound with a random number of iterations. No messages here.
 #pragma once
@@ -43,8 +43,8 @@ struct Kernel {
 void execute(const Kernel& kernel, std::int64_t iterations, std::int64_t step,
              std::span<std::byte> scratch);
 
-/// The nanoseconds that so many iterations take on the simulated machine: 4 an iteration, and bytes
-/// at 20 GB/s.
+/// The nanoseconds that so many iterations take on the simulated machine: 4 per iteration, and
+/// bytes at 20 GB/s.
 [[nodiscard]] std::int64_t virtual_nanoseconds(const Kernel& kernel, std::int64_t iterations);
 
 /// The seconds that a task of so many iterations takes on this core; measured, some milliseconds.
@@ -55,7 +55,7 @@ void execute(const Kernel& kernel, std::int64_t iterations, std::int64_t step,
                                   std::uint64_t n_iterations);
 [[nodiscard]] std::uint64_t bytes(const Kernel& kernel, std::uint64_t n_iterations);
 
-/// Throws tess::Error where the options do not fit each other.
+/// Throws tess::Error if the options are inconsistent.
 void validate(const Kernel& kernel);
 
 }  // namespace task_bench

@@ -1,5 +1,5 @@
-// task_bench: the task graphs of Task Bench (Slaughter et al., SC20) on chare arrays: how small may
-// tasks be before the runtime costs as much as they do?
+// task_bench: the task graphs of Task Bench (Slaughter et al., SC20) on chare arrays. It measures
+// how small tasks may be before the runtime costs as much as they do.
 #include "apps/plot/write_file.hpp"
 #include "apps/task_bench/report.hpp"
 
@@ -19,7 +19,7 @@ tess::Task measure(Settings settings) {
 int start(tess::Setup& setup, int argc, char** argv) {
   const auto settings = parse(argc, argv, *setup.machine);
   if (!settings) return 0;
-  // On all processes: a fault has to meet them all.
+  // On all processes, so that all of them detect an error.
   plot::require_writable("--json", settings->json);
   plot::require_writable("--csv", settings->csv);
   if (!settings->plot.empty() && plot::data_path(settings->plot) == settings->csv)

@@ -1,7 +1,7 @@
 // The minimum effective task granularity, METG(50 %): the smallest grain at which half of the
-// machine's time is spent in kernels (Slaughter et al., SC20). A search over the kernel's
-// iterations: brackets the point, halves the bracket on a logarithmic scale, and interpolates. No
-// messages here: the caller measures.
+// machine's time is spent in kernels (Slaughter et al., SC20). It is found by a search over the
+// kernel's iterations, which brackets the point, halves the bracket on a logarithmic scale, and
+// interpolates. No messages here: the caller measures.
 //
 //     MetgSearch search;
 //     while (const auto iterations = search.next()) search.tell(measure(*iterations));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* metg_line = "{:<22} {:<14} {:>7} {:>7} {:>5} {:>6} {:>12} {:>12} {:>7}\n";
 
-/// Six digits: more are noise, and a file that is read.
+/// Rounds to six digits: more are noise and make the file harder to read.
 double rounded(double value) {
   return std::stod(fmt::format("{:.6g}", value));
 }

@@ -1,4 +1,4 @@
-// What task_bench says: the lines of Task Bench for a run, a table for METG, files.
+// The output of task_bench: the lines of Task Bench for a run, a table for METG, files.
 #pragma once
 
 #include "apps/task_bench/experiment.hpp"
@@ -12,7 +12,7 @@ namespace task_bench {
 void print_result(const Settings& settings, const Result& result);
 void print_head(const Settings& settings, const tess::Machine& machine);
 
-/// What a case uses, and what it does without.
+/// The features that a case uses and does not use.
 [[nodiscard]] std::string explain(const Settings& settings);
 
 void write_json(const std::string& path, const std::vector<Result>& results,

@@ -1,5 +1,5 @@
-// What the command line asks for, in the form that users of Task Bench write: -steps 100 -width 8
-// -type fft -and -type tree. Checked before anything runs.
+// The settings of the command line, in the form that users of Task Bench write: -steps 100 -width 8
+// -type fft -and -type tree. They are checked before anything runs.
 #pragma once
 
 #include "apps/task_bench/graph.hpp"
@@ -27,8 +27,8 @@ struct Settings {
   bool explain = false;
 };
 
-/// The settings; none if --help was printed, by the first process. Throws tess::Error for what
-/// cannot be run on that machine.
+/// The settings; none if the first process printed --help. Throws tess::Error for settings that
+/// cannot run on this machine.
 [[nodiscard]] std::optional<Settings> parse(int argc, char** argv, const tess::Machine& machine);
 
 /// The sets of graphs to run, one after the other: with -type all one per type.

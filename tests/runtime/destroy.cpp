@@ -1,4 +1,4 @@
-// The end of arrays and groups: what is freed, and what is said where it is missed.
+// The end of arrays and groups: what is freed, and the error texts of later uses.
 #include "runtime/balance.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"

@@ -1,6 +1,6 @@
-// The first balance round in the README's own order: create, start_balancing, broadcast. 64 chares,
-// those that are born on PE 0 four times as heavy. Every strategy that balances evens out the true
-// loads in its first round, in which all loads are known. On threads, under mpirun and --sim.
+// The first balance round in the README's order: create, start_balancing, broadcast. There are 64
+// chares; those created on PE 0 are four times as heavy. Every strategy that balances evens out the
+// true loads in its first round, in which all loads are known. On threads, under mpirun and --sim.
 #include "runtime/balance.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
@@ -40,7 +40,7 @@ class Block : public tess::Chare<Block, tess::Index1> {
   double value_ = 1;
 };
 
-/// What the first round of a strategy left.
+/// The result of the first round of a strategy.
 struct Outcome {
   double ratio = 0;  ///< max/average of the true loads
   std::size_t n_unknown = 0;

@@ -1,5 +1,5 @@
-// A job that ends as its argument says, while messages go round all PEs and would do so for ever;
-// run under mpirun by job_ends.sh.
+// A job that ends as its argument says, while messages travel round all PEs and would do so for
+// ever; run under mpirun by job_ends.sh.
 //
 //     test_job throw | fail | memory | check | exit | codes=A,B | forget | wait
 #include "runtime/runtime.hpp"
@@ -34,7 +34,7 @@ class Crowd : public tess::Group<Crowd> {
 #endif
 };
 
-/// What goes wrong does so in an element on the last PE.
+/// The error occurs in an element on the last PE.
 class Actor : public tess::Chare<Actor, tess::Index1> {
  public:
   void act(std::string ending) {
@@ -73,7 +73,7 @@ class Forgetful : public tess::Chare<Forgetful, tess::Index1> {
   double lost_ = 0;
 };
 
-/// The first PE and the last both give a code before either can hear of the other's.
+/// The first and the last PE both pass an exit code before either can learn of the other's.
 void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
   tess::Pe& pe = tess::current_pe();
   crowd[tess::PeId{pe.n_pes() - 1}].send<&Crowd::give>(last);

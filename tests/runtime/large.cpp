@@ -1,10 +1,10 @@
-// Large messages between processes, run under mpirun; each process checks what it sees and ends the
-// job if it is wrong.
+// Large messages between processes, run under mpirun; each process checks what it receives and ends
+// the job if it is wrong.
 //
 //     test_large values          values of all sizes arrive intact; exit() in the middle of others
 //     test_large memory          after warm-up a moved vector of 1 MiB takes no new pages
-//     test_large flood           what has no credit stays with its sender
-//     test_large produce         a producer that asks for room keeps little of its output
+//     test_large flood           messages without credit stay with their sender
+//     test_large produce         a producer that waits for room keeps little of its output
 #include "runtime/runtime.hpp"
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Uses that are wrong, each of which has to end the job with one clear line and an exit code that
-// is not 0; run by misuse.sh.
+// Misuses, each of which must end the job with one clear line and an exit code other than 0; run by
+// misuse.sh.
 //
 //     test_misuse NAME_OF_THE_MISUSE
 #include "runtime/runtime.hpp"

@@ -105,7 +105,7 @@ TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]"
 TEST_CASE("a flood is held back within the budget, and all of it arrives", "[runtime][protocol]") {
   run_seeds("floods");
 }
-TEST_CASE("a deadlock says who waits for what", "[runtime][protocol]") {
+TEST_CASE("a deadlock reports what each wait is for", "[runtime][protocol]") {
   run_seeds("deadlocks");
 }
 TEST_CASE("an exception names the element, the entry method and the PE", "[runtime][protocol]") {
@@ -126,7 +126,7 @@ TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
 }
 
 TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
-  // Not those whose report depends on one order of events.
+  // Not the scenarios whose report depends on one order of events.
   for (const char* name :
        {"create_at_once", "message_first", "lives", "broadcasts", "rounds", "newborns",
         "refinement", "tour", "epochs", "epoch_migrations", "flood_exit", "mailboxes", "destroyed",

@@ -1,4 +1,4 @@
-// The simulated machine: what its options mean, and that a seed repeats a run exactly.
+// The simulated machine: its options, and that a seed repeats a run exactly.
 #include "runtime/machine/simulated.hpp"
 
 #include "runtime/runtime.hpp"

@@ -1,4 +1,4 @@
-// --trace: what the file says of a run whose messages are known.
+// --trace: the contents of the file for a run with known messages.
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"

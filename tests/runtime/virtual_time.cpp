@@ -1,5 +1,5 @@
-// What the simulated machine says of the time of a run, exactly: PEs work at the same time, busy
-// time is messages and charged work, an epoch costs little beside the messages that it counts.
+// The times that the simulated machine reports, exactly: PEs work at the same time, busy time is
+// messages and charged work, and an epoch costs little beside the messages that it counts.
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
@@ -34,7 +34,7 @@ std::int32_t depth_of(std::int32_t n_pes) {
   return depth;
 }
 
-/// Works for a time that depends on its PE, and says so to the reduction.
+/// Works for a time that depends on its PE, and contributes that time to the reduction.
 class Shift : public tess::Chare<Shift, tess::Index1> {
  public:
   void work(tess::Callback<std::int64_t> done) {

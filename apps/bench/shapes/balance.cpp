@@ -1,6 +1,7 @@
 // 64 chares whose work grows with their index, in a block map: 60 iterations of broadcast, work and
-// a reduction of busy times, at_sync() every 20. The limit is what the map of blocks allows for the
-// first 20 and an ideal one for the others, by the rate of the work alone on PE 0.
+// a reduction of busy times, with at_sync() every 20. The limit is the time that the block map
+// allows for the first 20 iterations and an ideal map for the others, from the rate of the work on
+// PE 0.
 #include "runtime/balance.hpp"
 
 #include "apps/bench/shapes/shapes.hpp"
@@ -93,7 +94,7 @@ double grinding_rate() {
   return best;
 }
 
-/// Seconds that no schedule goes below.
+/// A lower bound of the seconds of any schedule.
 double grinding_floor(const GrindPlan& plan, double rate) {
   const std::int32_t n_pes = tess::current_pe().n_pes();
   std::vector<double> of_pe(static_cast<std::size_t>(n_pes));

@@ -1,4 +1,4 @@
-// What a balance round itself costs: 100 000 elements of 1 KiB, of which a tenth moves.
+// The cost of a balance round itself: 100 000 elements of 1 KiB, of which a tenth moves.
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/runtime.hpp"

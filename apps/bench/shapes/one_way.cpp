@@ -1,6 +1,6 @@
-// A ball between two elements, on the first PE and on the last: a number, a vector of bytes that is
-// copied into each message, or one that is moved along. Beside it, in turns, what the machine does
-// without a runtime: raw MPI between processes, a cache line and a copy between cores.
+// A ball between two elements, on the first and on the last PE: a number, a vector of bytes that is
+// copied into each message, or one that is moved along. In turns with it, the limits without a
+// runtime: raw MPI between processes, a cache line and a copy between cores.
 #include "apps/bench/core_ping.hpp"
 #include "apps/bench/mpi_raw.hpp"
 #include "apps/bench/shapes/shapes.hpp"
@@ -24,7 +24,7 @@ class Player : public tess::Chare<Player, tess::Index1> {
  public:
   explicit Player(std::int32_t n) : other_(n - 1 - index().x) {}
 
-  /// To the first: it serves, and gives the number of hits of both in the end.
+  /// To the first element: it serves, and in the end contributes the number of hits of both.
   void serve(Match match, tess::Callback<std::int64_t> done) {
     left_ = match.n_round_trips;
     done_ = std::move(done);
@@ -62,7 +62,7 @@ class Player : public tess::Chare<Player, tess::Index1> {
     TESS_CHECK(bytes.front() == 7 && bytes.back() == 9, "a vector of ", bytes.size(),
                " is damaged");
   }
-  /// The ball has come; true if that was the last time.
+  /// The ball has arrived; returns true if that was the last time.
   bool over(std::int64_t n_hits) {
     ++n_met_;
     if (index().x != 0 || --left_ > 0) return false;
@@ -75,7 +75,7 @@ class Player : public tess::Chare<Player, tess::Index1> {
   tess::Callback<std::int64_t> done_;
 };
 
-/// Has the first PE and the last play a CorePing.
+/// Lets the first and the last PE play a CorePing.
 class CorePlayer : public tess::Group<CorePlayer> {
  public:
   /// `address` is that of a CorePing: both PEs are threads of this process.
@@ -105,7 +105,7 @@ constexpr std::array<Size, 4> sizes{{{"8B", 8, 20'000},
                                      {"64KiB", std::size_t{1} << 16U, 2000},
                                      {"1MiB", std::size_t{1} << 20U, 200}}};
 
-/// One ball and size: its samples, and those of the machine alone.
+/// One ball and size: its samples, and those without the runtime.
 struct OneWayFigure {
   std::string name;
   Ball ball = Ball::number;

@@ -1,4 +1,4 @@
-// All shapes, a source file each.
+// All shapes; each has a source file.
 #pragma once
 
 #include "apps/bench/bench.hpp"

@@ -1,5 +1,5 @@
-// Work under a broadcast: 64 chares that each work 0.4 ms when they hear it, then a reduction. The
-// limit is the work of the busiest PE; where PEs take turns it comes to the sum over PEs.
+// Work under a broadcast: 64 chares that each work 0.4 ms when they receive it, then a reduction.
+// The limit is the work of the busiest PE; if PEs take turns it is the sum over PEs.
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/runtime.hpp"
 

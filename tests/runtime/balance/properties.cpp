@@ -1,4 +1,4 @@
-// What holds for every strategy, whatever it is given.
+// Properties of every strategy, for any input.
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategy.hpp"

@@ -1,4 +1,4 @@
-// What each strategy promises, on scenes whose ideal is known.
+// The promises of each strategy, on scenes with a known ideal.
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategies/diffusion.hpp"
