@@ -1,6 +1,6 @@
-// A line on a terminal that says what long work is at, rewritten in place: for a person who waits.
-// It costs the work one store a phase: a thread that sleeps does the rest, and there is none where
-// the output is no terminal. Nothing is shown before the work has taken a second.
+// A line on a terminal that reports the progress of long work, rewritten in place. It costs the work
+// one store per phase: a sleeping thread does the rest, and only if the output is a terminal. Nothing
+// is shown before the work has taken a second.
 #pragma once
 
 #include <atomic>

@@ -11,7 +11,8 @@
 namespace {
 
 using namespace tess;
-namespace messages = tess::completion;
+using namespace tess::detail;
+namespace messages = tess::detail::completion;
 
 /// A user's message on its way; when it is done it may send others.
 struct Work {

@@ -9,6 +9,7 @@
 namespace {
 
 using namespace tess;
+using namespace tess::detail;
 
 struct Anything {};
 using Table = IndexTable<Index2, Anything>;

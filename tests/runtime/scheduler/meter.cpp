@@ -11,6 +11,7 @@
 namespace {
 
 using namespace tess;
+using namespace tess::detail;
 
 /// Works for so long, as the clock of this thread sees it.
 void work(Meter& meter, double seconds) {
