@@ -488,7 +488,8 @@ void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
   pe.completion().processed(m.epoch);
 }
 
-/// Messages to an ended collection of C are dead letters, unless the class says otherwise.
+/// What happens to messages to an ended collection of C: they count as dead letters, unless the
+/// class defines late_messages.
 template <class C>
 constexpr LateMessages late_messages_of() {
   if constexpr (requires { C::late_messages; }) {

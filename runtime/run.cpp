@@ -86,9 +86,10 @@ std::string options_help() {
          "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations)\n"
          "  --message-memory SIZE\n"
          "              most bytes of messages under way from one process to another (default "
-         "32MiB); more wait\n"
-         "              with their sender\n"
-         "  --stats     print what each PE did: messages, bytes, busy and idle seconds, chares\n"
+         "32MiB);\n"
+         "              later messages wait at their sender\n"
+         "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
+         "chares\n"
          "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
          "              chrome://tracing (process p of several writes F.p)\n";
 }

@@ -13,7 +13,7 @@ struct Resumption {
   void* frame = nullptr;
   template <class Ar>
   void serialize(Ar& /*ar*/) {
-    TESS_CHECK(false, "a suspended coroutine cannot travel");
+    TESS_CHECK(false, "a suspended coroutine cannot leave its PE");
   }
 };
 

@@ -87,9 +87,10 @@ bool row(const char* name, const Items& items, PairRules rules, int runs) {
     ns.push_back(took.count() / static_cast<double>(items.size()));
   }
   std::sort(ns.begin(), ns.end());
-  fmt::print("{:<28} {:>9} objects {:>10} pairs {:>8.1f} ns an object (median), {:>8.1f} least{}\n",
-             name, items.size(), n_pairs, ns[ns.size() / 2], ns.front(),
-             n_pairs == expected ? "" : fmt::format("  WRONG: bisection finds {}", expected));
+  fmt::print(
+      "{:<28} {:>9} objects {:>10} pairs {:>8.1f} ns per object (median), {:>8.1f} least{}\n", name,
+      items.size(), n_pairs, ns[ns.size() / 2], ns.front(),
+      n_pairs == expected ? "" : fmt::format("  WRONG: bisection finds {}", expected));
   return n_pairs == expected;
 }
 

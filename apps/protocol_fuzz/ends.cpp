@@ -16,7 +16,7 @@ class Patient : public Chare<Patient, Index1> {
  public:
   Patient() = default;
   explicit Patient(int ailment) {
-    if (ailment == 1) throw std::runtime_error("stillborn");
+    if (ailment == 1) throw std::runtime_error("the fever of a constructor");
   }
 
   void nothing() {}
@@ -165,7 +165,7 @@ void exceptions(Trial& trial) {
       break;
     case 6:
       expect_end(trial, run([n](auto& patients, auto) { patients[{n}].insert(1); }), 1,
-                 {"stillborn", "on PE"});
+                 {"the fever of a constructor", "on PE"});
       break;
     default: {
       const Ending ending =

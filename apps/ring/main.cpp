@@ -64,7 +64,7 @@ tess::Task go_round(Options options) {
   const std::int64_t n_visits = co_await total;
   const std::int64_t n_hops = token.hops_left * options.messages;
   TESS_CHECK(n_visits == n_hops, n_visits, " visits were counted, not ", n_hops);
-  tess::print(fmt::format("{} hops over {} stations: {:.6f} s, {:.3f} us a hop; each met once\n",
+  tess::print(fmt::format("{} hops over {} stations: {:.6f} s, {:.3f} us per hop; each met once\n",
                           n_hops, n, seconds, seconds * 1e6 / static_cast<double>(n_hops)));
 }
 

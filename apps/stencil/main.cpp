@@ -66,7 +66,7 @@ tess::Task relax(Grid grid) {
   const Outcome outcome = co_await result;
   const double seconds = tess::seconds(pe.now() - begin);
   tess::print(fmt::format(
-      "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us a block and step\n"
+      "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us per block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",
       grid.problem.size, grid.n_blocks, grid.n_steps, seconds,
       seconds * 1e6 / grid.n_steps / grid.n_blocks / grid.n_blocks, outcome.from_iterate,

@@ -29,7 +29,7 @@ enum class KernelType : std::uint8_t {
 struct Kernel {
   KernelType type = KernelType::empty;
   std::int64_t iterations = 0;
-  std::int64_t samples = 16;       ///< of memory_bound: parts of the scratch, one an iteration
+  std::int64_t samples = 16;       ///< memory_bound: parts of the scratch, one per iteration
   std::int64_t scratch_bytes = 0;  ///< of memory_bound, of each point
   double imbalance = 0;            ///< of load_imbalance: (1 ± imbalance / 2) × iterations
   bool persistent = false;         ///< the imbalance of a point is the same at every step

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double half = 0.5;
 constexpr double narrow = 1.05;                       // ratio of a bracket's ends
-constexpr std::int64_t most = std::int64_t{1} << 26;  // iterations: 0.3 s a task
+constexpr std::int64_t most = std::int64_t{1} << 26;  // iterations: 0.3 s per task
 constexpr std::int64_t stride = 4;                    // of the search for a bracket
 constexpr double most_seconds = 5;                    // of a run: no grain is worth longer ones
 

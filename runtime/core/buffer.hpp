@@ -40,7 +40,7 @@ class Buffer {
   std::byte& operator[](std::size_t i) { return bytes_[i]; }
   const std::byte& operator[](std::size_t i) const { return bytes_[i]; }
 
-  /// Keeps the memory.
+  /// Removes all bytes; keeps the memory.
   void clear() { size_ = 0; }
   /// Reserves memory for `n` bytes in total; keeps the contents.
   void reserve(std::size_t n) {

@@ -12,7 +12,7 @@ namespace tess {
 /// What kind of input was refused.
 enum class ErrorCode { bad_argument, bad_file, bad_mesh, bad_value, out_of_range, environment };
 
-/// Input that cannot be used. The message names the value, where it stands, and the remedy.
+/// Input that cannot be used. The message names the value, its place, and the remedy.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

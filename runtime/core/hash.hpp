@@ -43,7 +43,7 @@ class Random {
   std::uint64_t operator()() noexcept { return mix(state_ += 0x9e3779b97f4a7c15U); }
   /// A number of 0 … n − 1; n must not be 0. The bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) noexcept { return (*this)() % n; }
-  /// [0, 1)
+  /// A number in [0, 1).
   double unit() noexcept { return tess::unit((*this)()); }
   bool chance(double probability) noexcept { return unit() < probability; }
 

@@ -22,7 +22,8 @@ void Registry::seal() {
             [](const Registered* a, const Registered* b) { return a->name_ < b->name_; });
   for (std::size_t i = 0; i < things.size(); ++i) {
     TESS_CHECK(i == 0 || things[i - 1]->name_ != things[i]->name_,
-               "two registered things share the name ", things[i]->name_);
+               "two classes or functions that messages name are both called ", things[i]->name_,
+               ": rename one, or put it into a named namespace of its own");
     things[i]->id_ = static_cast<std::uint32_t>(i);
   }
 }
@@ -36,8 +37,8 @@ std::uint64_t Registry::fingerprint() {
 
 const Registered& Registry::at(std::uint32_t id) {
   if (id >= all().size())
-    fail(ErrorCode::bad_value, "a message names action ", id, ", but only ", all().size(),
-         " are known");
+    fail(ErrorCode::bad_value, "a message names action ", id, ", but this program has ",
+         all().size(), ": start the same build everywhere");
   return *all()[id];
 }
 

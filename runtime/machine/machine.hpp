@@ -32,7 +32,7 @@ namespace tess::detail {
 /// another.
 enum class Traffic : std::uint8_t { user, location, migration, control };
 
-/// A large message on its way to another process.
+/// A large message under way to another process.
 struct Parcel {
   Buffer head;
   std::vector<std::span<const std::byte>> parts;  ///< at least one; none is empty

@@ -38,7 +38,7 @@ struct Envelope : Link {
   PeId sender{};
 };
 
-/// What an envelope does when it is its turn. One static object for each kind of message.
+/// The action of an envelope when its turn comes. One static object for each kind of message.
 struct Action : Registered {
   using Run = void (*)(Pe&, Envelope*);
   using Destroy = void (*)(Envelope*);
@@ -54,18 +54,19 @@ struct Action : Registered {
         unpack(unpack_),
         traffic(traffic_) {}
 
-  /// How long its messages run, as far as the PEs of this process know: one that is not quick must
-  /// not keep others from what was sent before it.
+  /// The duration of its messages as known in this process: a message that may be slow must not
+  /// delay earlier messages to other PEs.
   enum class Pace : std::uint8_t { unknown, quick, slow };
   [[nodiscard]] bool quick() const {
-    return pace_.load(std::memory_order_relaxed) == Pace::quick;  // a hint: nothing hangs on it
+    return pace_.load(std::memory_order_relaxed) ==
+           Pace::quick;  // only a hint: correctness does not depend on it
   }
   void set_pace(Pace pace) const {
     if (pace_.load(std::memory_order_relaxed) != pace) pace_.store(pace, std::memory_order_relaxed);
   }
 
   Run run;          ///< on the target PE's thread; takes ownership of the envelope
-  Destroy destroy;  ///< ends the arguments and frees the block
+  Destroy destroy;  ///< destroys the arguments and frees the block
   Pack pack;
   Unpack unpack;
   Traffic traffic;
@@ -74,7 +75,7 @@ struct Action : Registered {
   mutable std::atomic<Pace> pace_{Pace::unknown};
 };
 
-/// Ends a message that will not be run again.
+/// Releases a message that will not run again.
 inline void discard(Envelope* message) {
   message->action->destroy(message);
 }

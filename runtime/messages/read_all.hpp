@@ -26,7 +26,7 @@ auto read_all(Reader& body, const What& what, const Read& read) {
   }
 }
 
-/// A value of its own length behind that length.
+/// Reads a value that is preceded by its length.
 template <class Pack>
 void pack_framed(Writer& ar, const Pack& pack) {
   const std::size_t at = ar.position();

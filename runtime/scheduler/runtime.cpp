@@ -94,7 +94,7 @@ int Runtime::run() {
   if (left_) return exit_code_;
   // Only a simulated machine can notice that no message is under way any more.
   std::string report =
-      "tessera: the run stands still, and the runtime had not noticed: a bug of the runtime";
+      "tessera: no message is under way, but the run has not ended: this is a bug of the runtime";
   for (const std::string& line : still_) report += "\n  " + line;
   error_line(report);
   return 3;

@@ -107,7 +107,7 @@ TEST_CASE("ten thousand arrays, groups and balancers that end leave no memory be
   CHECK(ending.exit_code == 0);
   CHECK(ending.report == "");
   REQUIRE(bytes.size() == n_rounds / 1000);
-  // Tables grow and shrink a little; 8 bytes a round would be 72 KB.
+  // 8 bytes per round would be 72 KB.
   INFO(bytes.front() << " bytes after 1000 rounds, " << bytes.back() << " after all");
   CHECK(bytes.back() < bytes.front() + 32768);
 }

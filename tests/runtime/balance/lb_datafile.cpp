@@ -129,7 +129,7 @@ TEST_CASE("our files have what vt's schema requires, with its types", "[balance]
   }
 }
 
-TEST_CASE("files as vt writes them are read, one a rank", "[balance][lb_datafile]") {
+TEST_CASE("files as vt writes them are read, one per rank", "[balance][lb_datafile]") {
   const auto phases = parse_lb_datafiles({{"data.0.json", rank_0}, {"data.1.json", rank_1}});
   REQUIRE(phases.size() == 1);
   const Snapshot& s = phases[0].snapshot;

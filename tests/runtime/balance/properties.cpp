@@ -42,8 +42,7 @@ TEST_CASE("every strategy keeps pinned elements, memory limits and its seed", "[
   }
 }
 
-TEST_CASE("no strategy moves an element of unknown load, nor looks at what stands for it",
-          "[balance]") {
+TEST_CASE("no strategy moves an element of unknown load, nor uses its entry", "[balance]") {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     Snapshot s = anything(seed);
     Random draw(seed + 1);

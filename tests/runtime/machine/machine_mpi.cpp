@@ -105,8 +105,8 @@ TEST_CASE("a buffer of no bytes arrives", "[runtime][machine][mpi]") {
   CHECK(nothing.n_received + 1 == machine->n_processes());
 }
 
-/// Process 0 sends one buffer of more than MPI can count to the last process, which looks at each
-/// byte and tells all to end.
+/// Process 0 sends one buffer of more than MPI can count to the last process, which checks each
+/// byte and ends the run.
 class Giant final : public Program {
  public:
   static constexpr std::size_t n_bytes = (std::size_t{1} << 31) + 12'345;
