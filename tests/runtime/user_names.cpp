@@ -1,0 +1,79 @@
+// A program may open namespace tess and still use the names of the runtime's internals.
+#include "runtime/balance.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "runtime/runtime.hpp"
+#include "runtime/shared_array.hpp"
+#include "tests/support/catch.hpp"
+
+#include <vector>
+
+namespace tess {
+
+// These would be redefinitions if the runtime's own were in this namespace.
+struct Link {};
+struct Pool {};
+struct Bundle {};
+struct Buffer {};
+struct Version {};
+struct Envelope {};
+struct Action {};
+struct Parcel {};
+struct Program {};
+struct Counters {};
+struct Tally {};
+struct Report {};
+struct Trace {};
+struct Meter {};
+struct Outbox {};
+struct Message {};
+struct Context {};
+struct Suspended {};
+struct Collection {};
+struct Element {};
+struct Array {};
+struct Place {};
+struct Call {};
+struct Construction {};
+struct Arrival {};
+struct Partial {};
+struct Cause {};
+struct Track {};
+
+}  // namespace tess
+
+namespace {
+
+using namespace tess;
+
+struct Topology {
+  int n_links = 0;
+};
+struct Counter {
+  Topology topology;
+  std::vector<Link> links;
+};
+
+class Station : public Chare<Station> {
+ public:
+  void count(Callback<int> target) {
+    const Counter counter{{index().x}, {}};
+    contribute(sum, counter.topology.n_links, target);
+  }
+};
+
+TEST_CASE("a program in namespace tess may use the names of internals", "[runtime]") {
+  Setup setup;
+  SimulatedOptions options = parse_simulated("pes=2,seed=1");
+  setup.machine = make_simulated_machine(options);
+  int total = 0;
+  const auto main = [&total]() -> Task {
+    Future<int> result;
+    const auto stations = create<Station>(range(4));
+    stations.broadcast<&Station::count>(result.callback());
+    total = co_await result;
+  };
+  CHECK(tess::run(setup, main) == 0);
+  CHECK(total == 6);
+}
+
+}  // namespace
