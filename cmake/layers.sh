@@ -14,14 +14,6 @@ git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*
     }
     function refuse(text) { print text; failed = 1 }
     function module_of(room) { sub(/\/.*/, "", room); return room }
-    function floor_of(room,  below, highest, parts, n, i) {
-      if (room in floor) return floor[room]
-      highest = 0
-      n = split(arrows[room], parts, " ")
-      for (i = 1; i <= n; ++i)
-        if (module_of(parts[i]) == module_of(room) && (below = floor_of(parts[i])) > highest) highest = below
-      return floor[room] = highest + 1
-    }
     BEGIN {
       while ((getline line < lines) > 0) {
         sub(/#.*/, "", line)
@@ -36,6 +28,7 @@ git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*
           allowed[left[1], right[i]] = 1
         }
         known[left[1]] = 1
+        order[++n_known] = left[1]
       }
     }
     {
@@ -43,6 +36,8 @@ git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*
       target = $0
       sub(/^[^"]*"/, "", target); sub(/".*/, "", target)
       from = room_of(at[1]); to = room_of(target)
+      if (module_of(to) == "tests" && module_of(from) != "tests") refuse(at[1] ":" at[2] ": only tests include tests (" target ")")
+      if (module_of(from) == "tests") next
       rooms[from] = rooms[to] = 1
       if (from == to) next
       if (!((from, to) in seen)) { seen[from, to] = 1; arrows[from] = arrows[from] " " to }
@@ -52,7 +47,14 @@ git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*
     END {
       if (picture) {
         printf "%-10s %6s %7s %7s %s\n", "module", "rooms", "floors", "arrows", "not allowed"
-        for (room in rooms) { ++n_rooms[module_of(room)]; if (floor_of(room) > top[module_of(room)]) top[module_of(room)] = floor_of(room) }
+        for (k = 1; k <= n_known; ++k) {  # from below: what a room includes has its floor already
+          room = order[k]; module = module_of(room); floor[room] = 1
+          n = split(arrows[room], below, " ")
+          for (i = 1; i <= n; ++i)
+            if (module_of(below[i]) == module && floor[below[i]] >= floor[room]) floor[room] = floor[below[i]] + 1
+          ++n_rooms[module]
+          if (floor[room] > top[module]) top[module] = floor[room]
+        }
         for (key in seen) { split(key, pair, SUBSEP); if (module_of(pair[1]) == module_of(pair[2])) ++n_arrows[module_of(pair[1])] }
         for (module in n_rooms) printf "%-10s %6d %7d %7d %d\n", module, n_rooms[module], top[module], n_arrows[module], upward[module]
       } else if (!failed) print "layers: every include is allowed"

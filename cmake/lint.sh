@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks that all sources are formatted and written in plain English (words.sh); `cmake/lint.sh --fix` formats them, `--tidy` runs clang-tidy (tidy.sh) on the
-# given sources, or on the runtime's core as far as it changed.
+# Checks that all sources are formatted, written in plain English (words.sh), and include what their room may include
+# (layers.sh). `cmake/lint.sh --fix` formats them; `--tidy` runs clang-tidy (tidy.sh) on the given sources, or on the
+# runtime's core as far as it changed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,6 +18,7 @@ case "${1:-}" in
     clang-format-16 --dry-run -Werror "${sources[@]}"
     echo "lint: ${#sources[@]} sources are formatted"
     bash cmake/words.sh
+    bash cmake/layers.sh
     ;;
   *)
     echo "usage: cmake/lint.sh [--fix | --tidy [FILE…]]" >&2

@@ -28,7 +28,7 @@
 
 #include "runtime/array.hpp"
 #include "runtime/balance/rounds/balancer.hpp"
-#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance_options.hpp"
 
 namespace tess {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/progress.hpp"
-#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance_options.hpp"
 
 #include <cstdint>
 #include <optional>

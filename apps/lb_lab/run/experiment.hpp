@@ -2,9 +2,9 @@
 #pragma once
 
 #include "apps/lb_lab/run/station.hpp"
+#include "runtime/balance.hpp"
 #include "runtime/balance/lb_datafile.hpp"
-#include "runtime/balance/rounds/options.hpp"
-#include "runtime/balance/rounds/round.hpp"
+#include "runtime/balance_options.hpp"
 #include "runtime/task.hpp"
 
 #include <chrono>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/lb_lab/workload/workload.hpp"
-#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance_options.hpp"
 
 #include <chrono>
 #include <cstdint>

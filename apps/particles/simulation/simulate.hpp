@@ -7,7 +7,7 @@
 #include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/station.hpp"
-#include "runtime/balance/rounds/round.hpp"
+#include "runtime/balance.hpp"
 #include "runtime/runtime.hpp"
 
 #include <vector>

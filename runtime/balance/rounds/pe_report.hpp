@@ -3,8 +3,8 @@
 // strategy.
 #pragma once
 
-#include "runtime/balance/rounds/options.hpp"
 #include "runtime/balance/snapshot.hpp"
+#include "runtime/balance_options.hpp"
 
 #include <array>
 #include <cstdint>

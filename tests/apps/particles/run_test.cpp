@@ -1,7 +1,7 @@
 // Whole runs: the same bits on any number of PEs, under any schedule and any cut of space, and the
 // bits of a plain loop over all particles.
-#include "runtime/balance/rounds/options.hpp"
 #include "runtime/balance/strategy.hpp"
+#include "runtime/balance_options.hpp"
 #include "tests/apps/particles/run_scene.hpp"
 
 #include <fmt/core.h>

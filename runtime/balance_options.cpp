@@ -1,4 +1,4 @@
-#include "runtime/balance/rounds/options.hpp"
+#include "runtime/balance_options.hpp"
 
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
