@@ -26,6 +26,9 @@ ninja -C "$build" -t deps 2>/dev/null | awk -v root="$PWD/" '
   }
   END { if (line != "") print line }' >"$stamps/reads"
 
+# The precompiled headers are g++'s; sources include what they need.
+sed -E 's/-Winvalid-pch -include [^ ]+//' "$build/compile_commands.json" >"$stamps/compile_commands.json"
+
 stale=()
 for source in "${sources[@]}"; do
   read -r -a reads < <(grep -m 1 "^${source#"$build/"}.o " "$stamps/reads" | cut -d' ' -f2- || echo "$source")
@@ -36,7 +39,7 @@ done
 
 check() {
   local out
-  if out=$(clang-tidy --quiet -p build/release --checks=-bugprone-suspicious-include \
+  if out=$(clang-tidy --quiet -p build/tidy --checks=-bugprone-suspicious-include \
              --extra-arg=-Wno-unknown-warning-option "$1" 2>/dev/null); then
     echo "$3" >"$2"
   else

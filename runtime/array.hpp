@@ -37,6 +37,8 @@ class Array final : public ArrayOf<typename C::Index> {
 
   Array(Pe& pe, CollectionId id, const Range& range)
       : Base(pe, id, plain_name(name_of_type<C>), range) {}
+  Array(const Array&) = delete;
+  Array& operator=(const Array&) = delete;
   ~Array() override { this->destroy_all(); }
 
   [[nodiscard]] PeId home(const Index& index) const override {
@@ -382,7 +384,7 @@ class ElementProxy {
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
     const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
-    ElementProxy(collection, index).template send<F>(std::move(value));
+    ElementProxy(collection, index).template send<F>(std::forward<T>(value));
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{
@@ -456,7 +458,8 @@ class ArrayProxy {
  private:
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
-    ArrayProxy(from_bytes<CollectionId>(callback.where())).template broadcast<F>(std::move(value));
+    ArrayProxy(from_bytes<CollectionId>(callback.where()))
+        .template broadcast<F>(std::forward<T>(value));
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{

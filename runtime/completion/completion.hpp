@@ -98,6 +98,7 @@ class CompletionMessages {
   CompletionMessages() = default;
   CompletionMessages(const CompletionMessages&) = delete;
   CompletionMessages& operator=(const CompletionMessages&) = delete;
+  virtual ~CompletionMessages() = default;
 
   virtual void send(PeId to, const completion::Report& report) = 0;
   virtual void send(PeId to, const completion::Answer& answer) = 0;
@@ -106,9 +107,6 @@ class CompletionMessages {
   virtual void send(PeId to, const completion::End& end) = 0;
   /// Epoch 0 is done. Called on PE 0.
   virtual void quiescent() = 0;
-
- protected:
-  ~CompletionMessages() = default;
 };
 
 /// One PE's part in detecting the completion of all epochs.
