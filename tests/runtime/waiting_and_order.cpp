@@ -5,12 +5,15 @@
 #include "tests/support/catch.hpp"
 
 #include <numeric>
+#include <optional>
 
 namespace {
 
-int simulate(std::uint64_t seed, std::function<void()> main) {
+/// Without a seed messages keep their order.
+template <class Main>
+int simulate(std::int32_t n_pes, std::optional<std::uint64_t> seed, Main main) {
   tess::SimulatedOptions options;
-  options.n_pes = 3;
+  options.n_pes = n_pes;
   options.cost = tess::Time(100);
   options.seed = seed;
   tess::Setup setup;
@@ -57,18 +60,12 @@ tess::Task gather(std::vector<int>& gathered, int n) {
 
 TEST_CASE("a message goes to the coroutine that has waited longest", "[runtime][mailbox]") {
   served.clear();
-  // In one PE, without a seed, messages keep their order.
-  tess::SimulatedOptions options;
-  options.n_pes = 1;
-  options.cost = tess::Time(100);
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(options);
   const auto main = [] {
     const auto waiters = tess::create<Waiter>(tess::range(1));
     for (int i = 1; i <= 4; ++i) waiters[{0}].send<&Waiter::read>(i);
     for (int i = 1; i <= 4; ++i) waiters[{0}].send<&Waiter::put>(i);
   };
-  REQUIRE(tess::run(setup, main) == 0);
+  REQUIRE(simulate(1, std::nullopt, main) == 0);
   CHECK(served == std::vector<int>{11, 22, 33, 44});
 }
 
@@ -76,7 +73,7 @@ TEST_CASE("in_order combines in the order of indices, wherever the elements are"
           "[runtime][reduction]") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     std::vector<int> gathered;
-    REQUIRE(simulate(seed, [&gathered]() -> tess::Task { return gather(gathered, 50); }) == 0);
+    REQUIRE(simulate(3, seed, [&gathered]() -> tess::Task { return gather(gathered, 50); }) == 0);
     std::vector<int> expected(50);
     std::iota(expected.begin(), expected.end(), 0);
     CHECK(gathered == expected);

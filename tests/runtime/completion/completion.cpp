@@ -103,30 +103,17 @@ class Network {
     --n_due;
     at(to).hop_processed();
   }
-  void deliver(PeId to, const messages::Report& m) {
-    at(to).on_report(m);
-    hop(to, m.epoch);
-  }
-  void deliver(PeId to, const messages::Answer& m) {
-    at(to).on_answer(m);
-    hop(to, m.epoch);
-  }
-  void deliver(PeId to, const messages::Wave& m) {
-    at(to).on_wave(m);
-    hop(to, m.epoch);
-  }
-  void deliver(PeId to, const messages::Echo& m) {
-    at(to).on_echo(m);
-    hop(to, m.epoch);
-  }
-  void deliver(PeId to, const messages::End& m) {
-    at(to).on_end(m);
-    hop(to, m.epoch);
-  }
   /// Messages of epochs are hops of the run; those of the run are not.
-  void hop(PeId to, EpochId epoch) {
-    if (epoch.value != 0) at(to).hop_processed();
+  template <class Message>
+  void deliver(PeId to, const Message& m) {
+    handle(at(to), m);
+    if (m.epoch.value != 0) at(to).hop_processed();
   }
+  static void handle(Completion& pe, const messages::Report& m) { pe.on_report(m); }
+  static void handle(Completion& pe, const messages::Answer& m) { pe.on_answer(m); }
+  static void handle(Completion& pe, const messages::Wave& m) { pe.on_wave(m); }
+  static void handle(Completion& pe, const messages::Echo& m) { pe.on_echo(m); }
+  static void handle(Completion& pe, const messages::End& m) { pe.on_end(m); }
 
   std::vector<std::unique_ptr<Port>> ports_;
 };

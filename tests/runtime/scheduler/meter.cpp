@@ -20,6 +20,14 @@ void work(Meter& meter, double seconds) {
   }
 }
 
+/// One simulated PE, whose clock goes on by charge() only.
+std::unique_ptr<Machine> machine_without_costs() {
+  SimulatedOptions options;
+  options.n_pes = 1;
+  options.cost = Time(0);
+  return make_simulated_machine(options);
+}
+
 }  // namespace
 
 TEST_CASE("time in which the thread did not run is taken back from the call that it fell in",
@@ -45,10 +53,7 @@ TEST_CASE("time in which the thread did not run is taken back from the call that
 }
 
 TEST_CASE("the innermost scope has the time", "[runtime][meter]") {
-  SimulatedOptions options;
-  options.n_pes = 1;
-  options.cost = Time(0);
-  const auto machine = make_simulated_machine(options);
+  const auto machine = machine_without_costs();
   Meter meter(*machine, PeId{0});
   const auto pass = [&](int ns) { machine->charge(PeId{0}, Time(ns)); };
   LoadRecord outer_record, inner_record;
@@ -68,10 +73,7 @@ TEST_CASE("the innermost scope has the time", "[runtime][meter]") {
 }
 
 TEST_CASE("an alarm rings once per period, after a call with a record", "[runtime][meter]") {
-  SimulatedOptions options;
-  options.n_pes = 1;
-  options.cost = Time(0);
-  const auto machine = make_simulated_machine(options);
+  const auto machine = machine_without_costs();
   Meter meter(*machine, PeId{0});
   LoadRecord record;
   int n_rings = 0;
