@@ -88,14 +88,6 @@ struct TypedMessage : ElementMessage<typename C::Index> {
     ar(message->arguments);
     return message;
   }
-
- protected:
-  static ElementAction<Index> make_action(
-      typename ElementAction<Index>::Invoke invoke,
-      typename ElementAction<Index>::Construct construct = nullptr,
-      Traffic traffic = Traffic::user) {
-    return {name_of_type<Derived>, &run, &destroy, &pack, &unpack, invoke, construct, traffic};
-  }
 };
 
 /// A call of entry method F of an element of C.
@@ -113,7 +105,7 @@ struct Call final : TypedMessage<Call<C, F>, C, typename EntryTraits<F>::Argumen
         },
         message.arguments);
   }
-  static inline const ElementAction<Index> entry = Base::make_action(&Call::invoke);
+  static inline const ElementAction<Index> entry{std::type_identity<Call>{}, &Call::invoke};
 };
 
 /// A call of the constructor of C with these argument types.
@@ -127,8 +119,8 @@ struct Construction final : TypedMessage<Construction<C, Args...>, C, std::tuple
     return std::apply([](auto&... argument) { return make_chare<C>(std::move(argument)...); },
                       static_cast<Construction&>(message).arguments);
   }
-  static inline const ElementAction<Index> entry =
-      Base::make_action(nullptr, &Construction::construct);
+  static inline const ElementAction<Index> entry{std::type_identity<Construction>{}, nullptr,
+                                                 &Construction::construct};
 };
 
 /// Destroys an element.
@@ -141,7 +133,8 @@ struct Destruction final : TypedMessage<Destruction<C>, C, std::tuple<>> {
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
     static_cast<C&>(element).destroy();
   }
-  static inline const ElementAction<Index> entry = Base::make_action(&Destruction::invoke);
+  static inline const ElementAction<Index> entry{std::type_identity<Destruction>{},
+                                                 &Destruction::invoke};
 };
 
 /// Moves an element to a PE.
@@ -154,7 +147,8 @@ struct Relocation final : TypedMessage<Relocation<C>, C, std::tuple<PeId>> {
   static void invoke(Element& element, ElementMessage<Index>& message) {
     static_cast<C&>(element).migrate_to(std::get<0>(static_cast<Relocation&>(message).arguments));
   }
-  static inline const ElementAction<Index> entry = Base::make_action(&Relocation::invoke);
+  static inline const ElementAction<Index> entry{std::type_identity<Relocation>{},
+                                                 &Relocation::invoke};
 };
 
 /// Ends an element's wait at its balancer's barrier.
@@ -167,8 +161,8 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
     if (Collection::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
   }
-  static inline const ElementAction<Index> entry =
-      Base::make_action(&Awakening::invoke, nullptr, Traffic::control);
+  static inline const ElementAction<Index> entry{std::type_identity<Awakening>{},
+                                                 &Awakening::invoke, nullptr, Traffic::control};
 };
 
 /// A migrating element. Within a process the object itself travels (except with CHECKS=all);

@@ -44,11 +44,16 @@ struct ElementAction : Action {
   /// Constructs the element from the constructor's arguments; only for insert demands.
   using Construct = Element* (*)(ElementMessage<Index>&);
 
-  /// `traffic` is user, or control for a message that the user did not send and that is no dead
-  /// letter.
-  ElementAction(std::string_view name, Run r, Destroy d, Pack p, Unpack u, Invoke i, Construct c,
-                Traffic t)
-      : Action(name, r, d, p, u, t), invoke(i), construct(c) {}
+  /// The action of `Message`. `traffic` is user, or control for a message that the user did not
+  /// send and that is no dead letter. (A constructor, and no function that returns the action: where
+  /// a program never names `Message::entry`, g++ 12 would register a temporary instead.)
+  template <class Message>
+  explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
+                         Traffic t = Traffic::user)
+      : Action(name_of_type<Message>, &Message::run, &Message::destroy, &Message::pack,
+               &Message::unpack, t),
+        invoke(i),
+        construct(c) {}
 
   /// The number of dead letters (0 or 1) for a message of this kind that is not delivered.
   [[nodiscard]] std::uint64_t n_dead_letters() const { return traffic == Traffic::user ? 1 : 0; }
