@@ -1,23 +1,18 @@
-// Processor time of the calling thread since it was made, so that other programs on the machine
-// count less than by the clock.
+// The CPU time of the calling thread since the watch was made.
 #pragma once
 
-#include <ctime>
+#include "runtime/core/cpu_clock.hpp"
 
 namespace bench {
 
 class ThreadWatch {
  public:
-  ThreadWatch() : begin_(now()) {}
-  [[nodiscard]] double nanoseconds() const { return now() - begin_; }
+  [[nodiscard]] double nanoseconds() const {
+    return static_cast<double>(tess::thread_cpu_nanoseconds() - begin_);
+  }
 
  private:
-  static double now() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
-  }
-  double begin_;
+  std::int64_t begin_ = tess::thread_cpu_nanoseconds();
 };
 
 }  // namespace bench

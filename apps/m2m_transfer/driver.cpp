@@ -9,7 +9,7 @@
 
 #include <cstdio>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 Problem read(const Request& request, apps::Progress& progress) {
@@ -85,4 +85,4 @@ int drive(Setup& setup, const DriverOptions& options) {
   });
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 struct DriverOptions {
   Request request;
@@ -23,4 +23,4 @@ struct DriverOptions {
 /// Returns the exit code.
 int drive(Setup& setup, const DriverOptions& options);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

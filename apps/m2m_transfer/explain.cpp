@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 std::string mesh_line(const char* side, const TetMesh& mesh, const MeshCensus& census) {
@@ -47,4 +47,4 @@ std::string explain(const Problem& problem, Output output) {
   return out;
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 /// The output besides the table: none, or the target mesh (--out).
 enum class Output { report, mesh };
@@ -13,4 +13,4 @@ enum class Output { report, mesh };
 /// Returns several lines of text.
 [[nodiscard]] std::string explain(const Problem& problem, Output output);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

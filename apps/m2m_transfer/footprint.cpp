@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sys/resource.h>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 std::uint64_t peak_memory_bytes() {
@@ -33,4 +33,4 @@ void Gauge::read(Callback<Footprint> target) {
   contribute(JoinFootprints{}, mine, std::move(target));
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

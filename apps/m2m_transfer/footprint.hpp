@@ -2,11 +2,12 @@
 // them. A group with one member per PE contributes the numbers to a reduction.
 #pragma once
 
+#include "apps/m2m_transfer/names.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 struct Footprint {
   std::uint64_t peak_memory_bytes = 0;           ///< sum of the peaks of all processes
@@ -26,4 +27,4 @@ class Gauge : public Group<Gauge> {
   void read(Callback<Footprint> target);
 };
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

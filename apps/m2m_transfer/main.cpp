@@ -7,8 +7,8 @@
 namespace {
 
 int run(tess::Setup& setup, int argc, char** argv) {
-  tess::m2m::DriverOptions options;
-  tess::m2m::Request& request = options.request;
+  m2m_transfer::DriverOptions options;
+  m2m_transfer::Request& request = options.request;
   apps::CommandLine line(
       "Moves fields between two tetrahedral meshes, and prints the error and the time.",
       "m2m_transfer");
@@ -56,7 +56,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   if (request.source.empty())
     tess::fail(tess::ErrorCode::bad_argument,
                "SOURCE is missing; give a source and a target mesh (--help lists the arguments)");
-  return tess::m2m::drive(setup, options);
+  return m2m_transfer::drive(setup, options);
 }
 
 }  // namespace

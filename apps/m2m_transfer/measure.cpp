@@ -2,7 +2,7 @@
 
 #include "m2m/transfer.hpp"
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 double seconds_since(Time start) {
@@ -92,4 +92,4 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   });
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

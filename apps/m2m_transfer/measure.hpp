@@ -7,11 +7,11 @@
 #include "apps/progress.hpp"
 #include "runtime/runtime.hpp"
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 /// Fills in the target fields, with an additional field "status", and the report. Destroys the
 /// chares of the meshes at the end. `gauge`: a group that exists on all PEs. `progress` shows the
 /// phases.
 Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

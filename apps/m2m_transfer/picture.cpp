@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 /// A plane perpendicular to the axis `across`. The axes `right` and `up` span the picture.
@@ -159,4 +159,4 @@ std::string picture(const Problem& problem) {
   return out;
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -6,11 +6,11 @@
 
 #include <string>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 /// Draws the first field of a measured problem as SVG: the value, and |value - truth|. Each
 /// tetrahedron that the plane intersects is a polygon with one colour. Vertices outside have the
 /// values of the policy.
 [[nodiscard]] std::string picture(const Problem& problem);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

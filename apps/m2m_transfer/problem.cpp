@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 /// The edge of a cube with the volume of six average tetrahedra: 1/N for kuhn:N.
@@ -69,4 +69,4 @@ Problem load(const Request& request, const Machine& machine) {
   return problem;
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 /// The options of a transfer, as on the command line.
 struct Request {
@@ -42,4 +42,4 @@ struct Problem {
 /// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
 [[nodiscard]] Problem load(const Request& request, const Machine& machine);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 double megabytes(std::uint64_t bytes) {
@@ -144,4 +144,4 @@ std::string json(const std::vector<TransferReport>& reports) {
   return whole.dump(2) + "\n";
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 /// Wall-clock seconds of the phases. `read`: on PE 0; `setup`: partition and distribution.
 struct PhaseSeconds {
@@ -45,4 +45,4 @@ struct TransferReport {
 /// {"definitions": {…}, "pairs": [{…}]}
 [[nodiscard]] std::string json(const std::vector<TransferReport>& reports);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 std::vector<std::string> split_at_commas(const std::string& text) {
@@ -140,4 +140,4 @@ std::vector<Trend> trends(const Study& study) {
   return all;
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 
 struct Study {
   std::vector<TransferReport> reports;  ///< all with the same fields; sorted by policy
@@ -58,4 +58,4 @@ void prepare_folder(const std::string& folder);
 /// the folder. Returns a line that lists them.
 [[nodiscard]] std::string write(const Study& study, const std::string& folder);
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-namespace tess::m2m {
+namespace m2m_transfer {
 namespace {
 
 using Text = std::back_insert_iterator<std::string>;
@@ -185,4 +185,4 @@ std::string write(const Study& study, const std::string& folder) {
                      drawn ? "svg and csv" : "csv");
 }
 
-}  // namespace tess::m2m
+}  // namespace m2m_transfer

@@ -1,5 +1,6 @@
 #include "runtime/machine/simulated.hpp"
 
+#include "runtime/core/cpu_clock.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -8,18 +9,10 @@
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <queue>
 
 namespace tess::detail {
 namespace {
-
-/// The CPU time of this thread in nanoseconds, so that other programs do not count as work.
-std::int64_t thread_cpu_time() {
-  timespec at{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
-  return at.tv_sec * 1'000'000'000 + at.tv_nsec;
-}
 
 struct Event {
   std::int64_t time;
@@ -117,7 +110,7 @@ class SimulatedMachine final : public Machine {
     return now(from).count() + static_cast<std::int64_t>(delay);
   }
   [[nodiscard]] std::int64_t elapsed() const {
-    return options_.cost ? 0 : thread_cpu_time() - step_began_;
+    return options_.cost ? 0 : thread_cpu_nanoseconds() - step_began_;
   }
   void look(std::int32_t pe) {
     Clock& clock = clocks_[static_cast<std::size_t>(pe)];
@@ -169,7 +162,7 @@ void SimulatedMachine::run(Program& program) {
       clock.looks = false;
       if (options_.seed && random_.chance(0.1)) program.idle(pe);
       running_ = event.pe;
-      if (!options_.cost) step_began_ = thread_cpu_time();
+      if (!options_.cost) step_began_ = thread_cpu_nanoseconds();
       const std::size_t ran = program.step(pe, 1);
       const std::int64_t cost =
           options_.cost ? 0 : elapsed();  // the program charges a fixed cost per message

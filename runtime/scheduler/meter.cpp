@@ -1,7 +1,8 @@
 #include "runtime/scheduler/meter.hpp"
 
+#include "runtime/core/cpu_clock.hpp"
+
 #include <algorithm>
-#include <ctime>
 
 namespace tess::detail {
 namespace {
@@ -10,12 +11,6 @@ constexpr double quantum_seconds = 1e-3;
 constexpr double gap_seconds =
     30e-6;  // no step and no check of the queue for so long: the thread slept
 constexpr double noise_seconds = 20e-6;  // the two clocks differ by as much without a reason
-
-double thread_cpu_seconds() {
-  timespec at{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
-  return static_cast<double>(at.tv_sec) + 1e-9 * static_cast<double>(at.tv_nsec);
-}
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using namespace m2m_transfer;
 
 namespace {
 

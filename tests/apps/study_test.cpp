@@ -15,6 +15,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using namespace m2m_transfer;
 using tess::test::message_of;
 using tess::test::Scratch;
 using tess::test::slurp;

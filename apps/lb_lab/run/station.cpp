@@ -1,7 +1,7 @@
 #include "apps/lb_lab/run/station.hpp"
 
-#include "apps/cpu_clock.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
+#include "runtime/core/cpu_clock.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -37,7 +37,7 @@ double Station::clock() const {
 }
 
 double Station::cpu() const {
-  return tess::current_pe().machine().virtual_time() ? clock() : apps::thread_cpu_seconds();
+  return tess::current_pe().machine().virtual_time() ? clock() : tess::thread_cpu_seconds();
 }
 
 std::uint64_t Station::work(double seconds, std::uint64_t word) {

@@ -1,7 +1,7 @@
 #include "apps/lb_lab/workload/kernel.hpp"
 
-#include "apps/cpu_clock.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/cpu_clock.hpp"
 
 #include <algorithm>
 
@@ -30,9 +30,9 @@ double calibrate() {
   constexpr std::uint64_t n_steps = 1'000'000;
   double best = 1e9;
   for (std::uint64_t run = 0; run < 10; ++run) {
-    const double began = apps::thread_cpu_seconds();
+    const double began = tess::thread_cpu_seconds();
     TESS_CHECK(walk(run, n_steps) == run, "a walk and back ended elsewhere");
-    best = std::min(best, apps::thread_cpu_seconds() - began);
+    best = std::min(best, tess::thread_cpu_seconds() - began);
   }
   return static_cast<double>(n_steps) / best;
 }

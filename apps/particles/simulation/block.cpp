@@ -1,7 +1,7 @@
 #include "apps/particles/simulation/block.hpp"
 
-#include "apps/cpu_clock.hpp"
 #include "apps/particles/simulation/observe.hpp"
+#include "runtime/core/cpu_clock.hpp"
 
 #include <algorithm>
 #include <map>
@@ -80,12 +80,12 @@ void Block::advance(std::size_t species, const Stretch& stretch, Station& statio
   const Scene& scene = station.stage().scene;
   const std::int32_t at_once = explodes_within(scene, stretch) ? 1 : stretch.n_steps;
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);
-  const double begin = apps::thread_cpu_seconds();
+  const double begin = tess::thread_cpu_seconds();
   for (std::int32_t done = 0; done < stretch.n_steps; done += at_once) {
     stepper.run(flock.motion.span(), objects, (stretch.first + done) * scene.dt, at_once);
     tess::dn::advance(objects, scene.dt, at_once);
   }
-  station.spent().rules += apps::thread_cpu_seconds() - begin;
+  station.spent().rules += tess::thread_cpu_seconds() - begin;
 }
 
 void Block::advance_audited(Flock& flock, const tess::dn::Stepper& stepper, const Stretch& stretch,
@@ -94,15 +94,15 @@ void Block::advance_audited(Flock& flock, const tess::dn::Stepper& stepper, cons
   const double dt = stage.scene.dt;
   std::vector<tess::dn::Object> objects = station.objects(stretch.first);
   for (std::int32_t step = stretch.first; step < stretch.first + stretch.n_steps; ++step) {
-    const double begin = apps::thread_cpu_seconds();
+    const double begin = tess::thread_cpu_seconds();
     const tess::dn::Particles before = flock.motion;
     const std::vector<tess::dn::Waypoint> waypoints =
         stepper.run_once(flock.motion.span(), objects, step * dt);
-    const double moved = apps::thread_cpu_seconds();
+    const double moved = tess::thread_cpu_seconds();
     note_tunnelled(stage, objects, before, waypoints, flock);
     tess::dn::advance(objects, dt, 1);
     station.spent().rules += moved - begin;
-    station.spent().audit += apps::thread_cpu_seconds() - moved;
+    station.spent().audit += tess::thread_cpu_seconds() - moved;
   }
 }
 

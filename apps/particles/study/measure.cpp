@@ -1,7 +1,7 @@
 #include "apps/particles/study/measure.hpp"
 
-#include "apps/cpu_clock.hpp"
 #include "apps/particles/audit/passage.hpp"
+#include "runtime/core/cpu_clock.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
@@ -132,9 +132,9 @@ Cost least_cost(const std::function<void()>& work, const std::function<void()>& 
   for (int run = 0; run < 5 && sum <= longest; ++run) {
     prepare();
     const Clock::time_point begin = Clock::now();
-    const double cpu_begin = apps::thread_cpu_seconds();
+    const double cpu_begin = tess::thread_cpu_seconds();
     work();
-    least.cpu = std::min(least.cpu, apps::thread_cpu_seconds() - cpu_begin);
+    least.cpu = std::min(least.cpu, tess::thread_cpu_seconds() - cpu_begin);
     const double wall = std::chrono::duration<double>(Clock::now() - begin).count();
     least.wall = std::min(least.wall, wall);
     sum += wall;
