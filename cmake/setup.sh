@@ -1,5 +1,9 @@
 #!/usr/bin/env bash
-# Installs the packages that Tessera builds on, as far as they are missing. Says what it does; quick when nothing is missing.
+# Installs the packages that Tessera builds on, as far as they are missing. Quick when nothing is missing.
+#
+#   cmake/setup.sh [--dry-run]      --dry-run: says what it would do, and does nothing
+#
+# Exit code 2, and nothing is changed, where apt would remove a package or where it may not install.
 set -euo pipefail
 
 packages=(
@@ -9,21 +13,51 @@ packages=(
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev
   gmsh gnuplot-nox
 )
+refuse() {
+  echo "setup: error: $*" >&2
+  exit 2
+}
+
+dry=false
+case "${1:-}" in
+  "") ;;
+  --dry-run) dry=true ;;
+  --help | -h) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) refuse "unknown option $1: there is --dry-run" ;;
+esac
+command -v apt-get >/dev/null || refuse "this script uses apt; install by hand what cmake/setup.sh lists, or the like: ${packages[*]}"
 
 missing=()
 for package in "${packages[@]}"; do
   status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
   [[ $status == "install ok installed" ]] || missing+=("$package")
 done
-
 if ((${#missing[@]} == 0)); then
   echo "setup: all ${#packages[@]} packages are installed"
   exit 0
 fi
 
-echo "setup: installing ${missing[*]}"
 run=()
-if ((EUID != 0)); then run=(sudo); fi
-"${run[@]}" apt-get update -qq
+if ((EUID != 0)); then
+  command -v sudo >/dev/null || refuse "installing ${missing[*]} needs root, and there is no sudo: run cmake/setup.sh as root"
+  run=(sudo)
+fi
+# Names of packages that apt would remove; the list of packages may be old or empty on a new machine.
+removed() { apt-get install -s --no-install-recommends "${missing[@]}" 2>/dev/null | awk '$1 == "Remv" { print $2 }'; }
+known() { apt-get install -s --no-install-recommends "${missing[@]}" >/dev/null 2>&1; }
+
+if $dry; then
+  echo "setup: would install ${missing[*]}${run:+ (with sudo)}"
+  known || echo "setup: apt does not know them all yet: it would fetch its lists first"
+elif ! known; then
+  echo "setup: fetching apt's lists${run:+ (with sudo)}"
+  "${run[@]}" apt-get update -qq
+fi
+lost=$(removed | paste -sd ' ' -)
+if [[ -n $lost ]]; then
+  refuse "apt would remove $lost to install ${missing[*]}; nothing was changed. If that is Boost 1.74's (libboost-dev), keep it: unpack Boost 1.81 or later anywhere, install the others by hand, and configure with -DBoost_ROOT=<its folder>"
+fi
+if $dry; then exit 0; fi
+echo "setup: installing ${missing[*]}${run:+ (with sudo)}"
 DEBIAN_FRONTEND=noninteractive "${run[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 echo "setup: done"

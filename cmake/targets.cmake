@@ -1,32 +1,35 @@
-# The three kinds of target: a library, a program, a test. All carry the same options.
+# The three kinds of target: a library, a program, a test. All are compiled with the same options, of which only
+# those that change what a header means are passed on to a project that links the libraries.
+
+add_library(tess_interface INTERFACE)
+target_compile_features(tess_interface INTERFACE cxx_std_20)
+target_include_directories(tess_interface INTERFACE
+  "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" "$<INSTALL_INTERFACE:include/tessera>")
+if(TESS_CHECKS STREQUAL "all")
+  target_compile_definitions(tess_interface INTERFACE TESS_CHECKS_ALL=1)
+endif()
 
 add_library(tess_options INTERFACE)
-target_compile_features(tess_options INTERFACE cxx_std_20)
-target_include_directories(tess_options INTERFACE "${PROJECT_SOURCE_DIR}")
+target_link_libraries(tess_options INTERFACE tess_interface)
 target_compile_options(tess_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
-if(CMAKE_UNITY_BUILD)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # A source that another includes looks like a header to this warning.
   target_compile_options(tess_options INTERFACE -Wno-subobject-linkage)
 endif()
-if(WARNINGS_AS_ERRORS)
+if(TESS_WARNINGS_AS_ERRORS)
   target_compile_options(tess_options INTERFACE -Werror)
 endif()
 if(TESS_NATIVE)
   target_compile_options(tess_options INTERFACE -march=native)
-else()
-  target_compile_options(tess_options INTERFACE -march=x86-64-v3)
 endif()
-if(CHECKS STREQUAL "all")
-  target_compile_definitions(tess_options INTERFACE TESS_CHECKS_ALL=1)
-endif()
-if(SANITIZE)
+if(TESS_SANITIZE)
   # Null pointers and sizes of objects the address sanitizer sees by itself; alignment x86 forgives.
   # The three together double the time to compile.
   target_compile_options(tess_options INTERFACE
-    -fsanitize=${SANITIZE} -fno-sanitize=null,object-size,alignment -fno-omit-frame-pointer)
-  target_link_options(tess_options INTERFACE -fsanitize=${SANITIZE})
+    -fsanitize=${TESS_SANITIZE} -fno-sanitize=null,object-size,alignment -fno-omit-frame-pointer)
+  target_link_options(tess_options INTERFACE -fsanitize=${TESS_SANITIZE})
 endif()
 
 # The runtime's header takes a second to compile, so it is compiled once for all that build on it.
@@ -43,33 +46,54 @@ function(tess_reuse_runtime_header name)
   endforeach()
 endfunction()
 
-# tess_library(NAME SOURCES … HEADERS … DEPENDS …): headers are listed so that a test compiles each alone.
+# tess_library(NAME SOURCES … HEADERS … DEPENDS … USES … USES_TO_BUILD …): headers are listed so that a test compiles
+# each alone and that they are installed. DEPENDS stand in the headers, USES in the sources only, and USES_TO_BUILD have
+# no library that a program would link. A library of a component (TESS_COMPONENT) is installed.
 # Sanitizer builds make the libraries that a test needs.
 function(tess_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;USES;USES_TO_BUILD" ${ARGN})
+  list(TRANSFORM ARG_HEADERS PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   if(ARG_SOURCES)
-    add_library(${name} STATIC ${ARG_SOURCES} ${ARG_HEADERS})
-    target_link_libraries(${name} PUBLIC tess_options ${ARG_DEPENDS})
+    set(scope PUBLIC)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC tess_interface ${ARG_DEPENDS}
+      PRIVATE ${ARG_USES} $<BUILD_INTERFACE:tess_options> $<BUILD_INTERFACE:${ARG_USES_TO_BUILD}>)
     tess_reuse_runtime_header(${name} ${ARG_DEPENDS})
-    if(SANITIZE)
+    if(TESS_SANITIZE OR NOT PROJECT_IS_TOP_LEVEL)
       set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
     endif()
   else()
+    set(scope INTERFACE)
     add_library(${name} INTERFACE)
-    target_link_libraries(${name} INTERFACE tess_options ${ARG_DEPENDS})
+    target_link_libraries(${name} INTERFACE tess_interface ${ARG_DEPENDS})
   endif()
-  list(TRANSFORM ARG_HEADERS PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+  list(TRANSFORM ARG_HEADERS REPLACE "/[^/]+/\\.\\./" "/")
+  target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${ARG_HEADERS})
+  if(TESS_COMPONENT)
+    install(TARGETS ${name} EXPORT Tessera_${TESS_COMPONENT} FILE_SET HEADERS DESTINATION include/tessera)
+  endif()
   set_property(GLOBAL APPEND PROPERTY TESS_HEADERS ${ARG_HEADERS})
   set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name})
 endfunction()
 
-# tess_app(NAME SOURCES … DEPENDS …): a program in bin/. Sanitizer builds leave programs out.
-function(tess_app name)
+# tess_component(LIBRARY): Tessera::<component> is this library and all that it stands on.
+function(tess_component library)
+  add_library(Tessera::${TESS_COMPONENT} ALIAS ${library})
+  set_target_properties(${library} PROPERTIES EXPORT_NAME ${TESS_COMPONENT})
+endfunction()
+
+# tess_program(NAME SOURCES … DEPENDS …): a program in bin/.
+function(tess_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tess_options ${ARG_DEPENDS})
   tess_reuse_runtime_header(${name} ${ARG_DEPENDS})
-  if(SANITIZE)
+endfunction()
+
+# tess_app(NAME SOURCES … DEPENDS …): the same for programs of users, which sanitizer builds leave out.
+function(tess_app name)
+  tess_program(${name} ${ARGN})
+  if(TESS_SANITIZE)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
   endif()
 endfunction()
@@ -79,13 +103,13 @@ endfunction()
 # TSAN: it has threads, so the thread sanitizer has something to say about it; not about cases tagged [one_thread].
 function(tess_test name)
   cmake_parse_arguments(ARG "TSAN" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
-  if(SANITIZE STREQUAL "thread" AND NOT ARG_TSAN)
+  if(TESS_SANITIZE STREQUAL "thread" AND NOT ARG_TSAN)
     return()
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tess_catch_main ${ARG_DEPENDS})
   target_precompile_headers(${name} REUSE_FROM tess_catch_main)
-  if(SANITIZE STREQUAL "thread")
+  if(TESS_SANITIZE STREQUAL "thread")
     set(cases "~[one_thread]~[.]")
   endif()
   add_test(NAME ${name} COMMAND ${name} ${cases})

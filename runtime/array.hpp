@@ -388,7 +388,7 @@ class ElementProxy {
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{
-      naming::value<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>};
+      naming::name_of<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>};
 
   CollectionId collection_;
   Index index_;
@@ -463,7 +463,7 @@ class ArrayProxy {
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{
-      naming::value<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>};
+      naming::name_of<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>};
 
   CollectionId id_{};
 };

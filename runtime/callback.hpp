@@ -74,7 +74,7 @@ class Callback {
   /// How to call the target: one static object for each pair of target kind and entry method.
   struct Kind : detail::Registered {
     using Call = void (*)(const Callback&, T&&);
-    Kind(std::string_view name, Call call_) : Registered(name), call(call_) {}
+    Kind(naming::Name name, Call call_) : Registered(name), call(call_) {}
     Call call;
   };
 

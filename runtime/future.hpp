@@ -65,7 +65,7 @@ class Future {
     if (future->waiting_) resume_later(future->waiting_);
     pe.completion().processed(pe.context().epoch);
   }
-  static inline const typename Callback<T>::Kind kind_{naming::value<&Future::give>(),
+  static inline const typename Callback<T>::Kind kind_{naming::name_of<&Future::give>(),
                                                        &Future::give};
 
   Pe& pe_;

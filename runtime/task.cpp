@@ -85,10 +85,10 @@ void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type
   if (promise.parent) {
     resume_later(promise.parent);
   } else if (promise.detached) {
-    const std::exception_ptr error = promise.error;
+    const std::exception_ptr thrown = promise.error;
     Pe& pe = *promise.account.pe;
     self.destroy();
-    if (error) pe.keep_exception(error);
+    if (thrown) pe.keep_exception(thrown);
   }
 }
 

@@ -20,7 +20,7 @@ rm -rf "$copy"
 mkdir -p "$copy"
 git ls-files -co --exclude-standard | tar -cf - -T - | tar -xf - -C "$copy"
 cd "$copy"
-cmake --preset release -DCMAKE_UNITY_BUILD=OFF -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DWARNINGS_AS_ERRORS=OFF ${MUTANTS_CMAKE:-} >/dev/null
+cmake --preset release -DCMAKE_UNITY_BUILD=OFF -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DTESS_WARNINGS_AS_ERRORS=OFF ${MUTANTS_CMAKE:-} >/dev/null
 
 n=0
 survivors=()

@@ -53,7 +53,8 @@ void call_owner(const Callback<Hits>& callback, Hits&& hits) {
   owners[owner].template send<F>(std::move(hits));
 }
 template <class C, auto F>
-inline const Callback<Hits>::Kind owner_kind{naming::value<&call_owner<C, F>>(), &call_owner<C, F>};
+inline const Callback<Hits>::Kind owner_kind{naming::name_of<&call_owner<C, F>>(),
+                                             &call_owner<C, F>};
 }  // namespace detail
 
 /// Sends hits to the entry method F(Hits) of the elements of an array. An object of an element has

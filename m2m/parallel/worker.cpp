@@ -20,7 +20,7 @@ void call_target(const Callback<collide::Hits>& callback, collide::Hits&& hits) 
   const Index1 owner = collide::index_of(hits.owner);
   ArrayProxy<Worker>(target)[owner].send<&Worker::receive_hits>(transfer, std::move(hits));
 }
-const Callback<collide::Hits>::Kind target_kind{naming::value<&call_target>(), &call_target};
+const Callback<collide::Hits>::Kind target_kind{naming::name_of<&call_target>(), &call_target};
 
 }  // namespace
 

@@ -23,7 +23,7 @@ struct Action;
 
 struct BroadcastKind : Registered {
   using Unpack = SharedCall (*)(Reader&);
-  BroadcastKind(std::string_view name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
+  BroadcastKind(naming::Name name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
   Unpack unpack;
 };
 

@@ -165,7 +165,7 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
                                                  &Awakening::invoke, nullptr, Traffic::control};
 };
 
-/// A migrating element. Within a process the object itself travels (except with CHECKS=all);
+/// A migrating element. Within a process the object itself travels (except with TESS_CHECKS=all);
 /// between processes its serialised state.
 template <class C>
 struct Arrival final : Envelope {
@@ -199,7 +199,7 @@ struct Arrival final : Envelope {
     ar(arrival->collection, arrival->from, arrival->state);
     return arrival.release();
   }
-  static inline const Action entry{name_of_type<Arrival>, &run, &destroy, &pack, &unpack,
+  static inline const Action entry{naming::name_of<Arrival>(), &run, &destroy, &pack, &unpack,
                                    Traffic::migration};
 };
 
@@ -223,9 +223,9 @@ class CallOfAll final : public BroadcastCall {
  private:
   static SharedCall unpack(Reader& ar) { return SharedCall(new CallOfAll(ar.take<Arguments>())); }
   static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
-  static inline const BroadcastKind kind_{name_of_type<CallOfAll>, &unpack};
+  static inline const BroadcastKind kind_{naming::name_of<CallOfAll>(), &unpack};
   static inline const Action action_{
-      naming::type<CallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
+      naming::name_of<CallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
 
   Arguments arguments_;
 };

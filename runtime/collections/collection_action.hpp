@@ -53,7 +53,7 @@ struct CollectionAction {
     }
   }
   static inline const Action action{
-      naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};
+      naming::name_of<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};
 };
 
 /// Sends a payload to the part of a collection on a PE, where it may not be known yet. It counts as

@@ -50,7 +50,7 @@ struct ElementAction : Action {
   template <class Message>
   explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
                          Traffic t = Traffic::user)
-      : Action(name_of_type<Message>, &Message::run, &Message::destroy, &Message::pack,
+      : Action(naming::name_of<Message>(), &Message::run, &Message::destroy, &Message::pack,
                &Message::unpack, t),
         invoke(i),
         construct(c) {}

@@ -19,7 +19,7 @@ class Partial;
 /// Makes a partial result from bytes; one static object for each pair of value type and operation.
 struct PartialKind : Registered {
   using Unpack = std::unique_ptr<Partial> (*)(Reader&);
-  PartialKind(std::string_view name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
+  PartialKind(naming::Name name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
   Unpack unpack;
 };
 

@@ -34,7 +34,7 @@ class MergedPartial final : public Partial {
     auto target = ar.take<Callback<T>>();
     return std::make_unique<MergedPartial>(std::move(value), std::move(target));
   }
-  static inline const PartialKind kind_{name_of_type<MergedPartial>, &unpack};
+  static inline const PartialKind kind_{naming::name_of<MergedPartial>(), &unpack};
 
   T value_;
   Callback<T> target_;
@@ -69,7 +69,7 @@ class OrderedPartial final : public Partial {
     auto target = ar.take<Callback<T>>();
     return std::make_unique<OrderedPartial>(std::move(values), std::move(target));
   }
-  static inline const PartialKind kind_{name_of_type<OrderedPartial>, &unpack};
+  static inline const PartialKind kind_{naming::name_of<OrderedPartial>(), &unpack};
 
   std::vector<std::pair<Index, T>> values_;
   Callback<T> target_;

@@ -1,7 +1,7 @@
 // Checks for bugs and misuse. TESS_CHECK is on in every build. It prints the condition, its place
 // and what was expected, adds what the runtime does on this thread (PE, array, index, entry,
 // epoch), and ends the job. TESS_DEBUG_CHECK is for costly checks: it is compiled only with
-// CHECKS=all.
+// TESS_CHECKS=all.
 #pragma once
 
 #include "runtime/core/error.hpp"

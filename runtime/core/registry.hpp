@@ -15,11 +15,11 @@ namespace tess::detail {
 /// An object with a name and, once the registry is sealed, a number. It must have static storage.
 class Registered {
  public:
-  explicit Registered(std::string_view name);
+  explicit Registered(naming::Name name);
   Registered(const Registered&) = delete;
   Registered& operator=(const Registered&) = delete;
 
-  [[nodiscard]] std::string_view name() const { return name_; }
+  [[nodiscard]] std::string_view name() const { return name_.text; }
   [[nodiscard]] std::uint32_t id() const { return id_; }
 
  protected:
@@ -27,7 +27,7 @@ class Registered {
 
  private:
   friend class Registry;
-  std::string_view name_;
+  naming::Name name_;
   std::uint32_t id_ = 0;
 };
 

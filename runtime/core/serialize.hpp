@@ -355,7 +355,7 @@ void Writer::put(const T& value) {
     if (value) put(*value);
   } else if constexpr (IsVariant<T>::value) {
     put(static_cast<std::uint64_t>(value.index()));
-    std::visit([this](const auto& held) { put(held); }, value);
+    std::visit([this](const auto& held) { this->put(held); }, value);
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
     const std::uint64_t n = value.size();
@@ -382,14 +382,14 @@ void Writer::put(const T& value) {
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (const auto& item : value) put(item);
   } else if constexpr (IsPair<T>::value || TupleLike<T>) {
-    std::apply([this](const auto&... item) { (put(item), ...); }, value);
+    std::apply([this](const auto&... item) { (this->put(item), ...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to write.
   } else {
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
-    boost::pfr::for_each_field(value, [this](const auto& field) { put(field); });
+    boost::pfr::for_each_field(value, [this](const auto& field) { this->put(field); });
   }
 }
 
@@ -453,14 +453,14 @@ void Reader::get(T& value) {
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (auto& item : value) get(item);
   } else if constexpr (IsPair<T>::value || TupleLike<T>) {
-    std::apply([this](auto&... item) { (get(item), ...); }, value);
+    std::apply([this](auto&... item) { (this->get(item), ...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to read.
   } else {
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
-    boost::pfr::for_each_field(value, [this](auto& field) { get(field); });
+    boost::pfr::for_each_field(value, [this](auto& field) { this->get(field); });
   }
 }
 

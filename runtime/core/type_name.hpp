@@ -3,11 +3,14 @@
 
 #include <string>
 #include <string_view>
+#ifdef __clang__
+#include <typeinfo>
+#endif
 
 namespace tess {
 
 namespace naming {
-// g++ prints "… [with T = Block; std::string_view = …]".
+// g++ prints "… [with T = Block; std::string_view = …]", clang "… [T = Block]".
 [[nodiscard]] constexpr std::string_view between(std::string_view name, std::string_view begin) {
   const auto from = name.find(begin) + begin.size();
   auto to = name.rfind("; std::string_view");
@@ -22,6 +25,36 @@ template <auto Value>
 [[nodiscard]] constexpr std::string_view value() {
   return between(__PRETTY_FUNCTION__, "Value = ");
 }
+
+/// The name of a type or function for people, and a key that no other one in a program has: clang
+/// prints overloads and instances of a template alike, so there the key is the linker's name.
+struct Name {
+  std::string_view text;
+  std::string_view key;
+};
+template <class T>
+struct TypeTag {};
+template <auto Value>
+struct ValueTag {};
+#ifdef __clang__
+template <class T>
+[[nodiscard]] Name name_of() {
+  return {type<T>(), typeid(TypeTag<T>).name()};
+}
+template <auto Value>
+[[nodiscard]] Name name_of() {
+  return {value<Value>(), typeid(ValueTag<Value>).name()};
+}
+#else
+template <class T>
+[[nodiscard]] constexpr Name name_of() {
+  return {type<T>(), type<T>()};
+}
+template <auto Value>
+[[nodiscard]] constexpr Name name_of() {
+  return {value<Value>(), value<Value>()};
+}
+#endif
 }  // namespace naming
 
 /// The name of a type as the compiler spells it: "Block".

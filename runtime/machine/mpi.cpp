@@ -122,19 +122,6 @@ class MpiMachine final : public Machine, private Network {
 
 }  // namespace
 
-bool under_mpirun() {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): asked before there are threads
-  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
-}
-
-bool speaks_for_job() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK"}) {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): asked before there are threads
-    if (const char* rank = std::getenv(name); rank != nullptr) return std::string_view(rank) == "0";
-  }
-  return true;
-}
-
 std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv, MpiOptions options) {
   if (options.pes_per_process < 0)
     fail(ErrorCode::bad_argument, "cannot run on ", options.pes_per_process,

@@ -45,7 +45,7 @@ struct Action : Registered {
   using Pack = void (*)(Envelope&, Writer&);
   using Unpack = Envelope* (*)(Pe&, Reader&);
 
-  Action(std::string_view name, Run run_, Destroy destroy_, Pack pack_, Unpack unpack_,
+  Action(naming::Name name, Run run_, Destroy destroy_, Pack pack_, Unpack unpack_,
          Traffic traffic_)
       : Registered(name),
         run(run_),

@@ -26,8 +26,12 @@ struct PeAction {
     Held::destroy(envelope);
     Handler(pe, std::move(payload));
   }
-  static inline const Action action{
-      naming::value<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Traffic::control};
+  static inline const Action action{naming::name_of<Handler>(),
+                                    &run,
+                                    &Held::destroy,
+                                    &Held::pack,
+                                    &Held::unpack,
+                                    Traffic::control};
 };
 
 /// Sends a payload to a handler on a PE. It counts as a hop of epoch 0 and for no other epoch.

@@ -54,7 +54,7 @@ class Actor : public tess::Chare<Actor, tess::Index1> {
   int delay_ = 1000;
 };
 
-/// Moves, and reads a member into nowhere: builds with CHECKS=all refuse it.
+/// Moves, and reads a member into nowhere: builds with TESS_CHECKS=all refuse it.
 class Forgetful : public tess::Chare<Forgetful, tess::Index1> {
  public:
   void go() {

@@ -58,7 +58,7 @@ here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructo
 here array_after_end "the array of this proxy was destroyed on PE 0"
 here group_after_end "this group was destroyed on PE 0"
 everywhere sum_of_none "waits for a future of int" "Block has no elements: its reductions have no result"
-# What reads other bytes than it wrote, between processes. (With CHECKS=all it is found where it is sent.)
+# What reads other bytes than it wrote, between processes. (With TESS_CHECKS=all it is found where it is sent.)
 for kind in short long; do
   says simulated ${kind}_element "Uneven<[01]> *>\[0\]\|Uneven<[01]>: " "serialize()"
   says simulated ${kind}_argument "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"

@@ -37,7 +37,7 @@ auto sampler_in(const PlacedObject& object) {
 /// The bound of the free way where another object may move by `way` against it.
 F shortened(const PlacedObject& object, F bound, F way) {
   const F rest = bound - way;
-  return (rest < 0.0F) & (way > 0.5F * object.cell) ? all(follow) : rest;
+  return ((rest < 0.0F) & (way > 0.5F * object.cell)) ? all(follow) : rest;
 }
 
 /// Deviation from a straight way, by a spin, of a point that rests on the object at `arm`.

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Builds an outside project on Tessera in one way, and runs its programs alone and (runtime) under mpirun.
+#
+#     outside.sh installed BUILD COMPONENTS…     with find_package, from an installation of this build folder
+#     outside.sh source SOURCE COMPONENTS…       with add_subdirectory
+#
+# CXX is the compiler; MPIEXEC is empty where Tessera is built without MPI.
+set -euo pipefail
+way=$1
+from=$(cd "$2" && pwd)
+shift 2
+components=("$@")
+here=$(cd "$(dirname "$0")" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+options=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "-DCOMPONENTS=$(IFS=';'; echo "${components[*]}")")
+if [[ $way == installed ]]; then
+  cmake --install "$from" --prefix "$scratch/prefix" >/dev/null
+  # As another machine has it: the source folder of the project is not looked at.
+  if grep -rl "$(dirname "$here")" "$scratch/prefix/lib/cmake" >"$scratch/leaks"; then
+    echo "FAILED: the installation names the source folder: $(cat "$scratch/leaks")"
+    exit 1
+  fi
+  options+=("-DCMAKE_PREFIX_PATH=$scratch/prefix")
+else
+  options+=("-DTESSERA=$from")
+fi
+
+cmake -S "$here/outside" -B "$scratch/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+cmake --build "$scratch/build" >"$scratch/log" 2>&1 || { tail -40 "$scratch/log"; exit 1; }
+
+failed=0
+# prints PROGRAM WANT COMMAND…: the command prints this line, once.
+prints() {
+  local want=$1
+  shift
+  local found
+  found=$("$@" 2>&1) || true
+  if [[ $found == "$want" ]]; then
+    echo "ok: ${*##*/}: $found"
+  else
+    echo "FAILED: ${*##*/} printed '$found', wanted '$want'"
+    failed=1
+  fi
+}
+
+declare -A answers=([runtime]="sum 90" [collide]="pairs 3" [field]="distance -0.49" [m2m]="inside 24, boundary 192")
+for component in "${components[@]}"; do
+  program=$scratch/build/uses_$component
+  prints "${answers[$component]}" "$program"
+  if [[ -n ${MPIEXEC:-} && ($component == runtime || $component == m2m) ]]; then
+    prints "${answers[$component]}" "$MPIEXEC" --allow-run-as-root --oversubscribe -n 2 "$program" --pes 1
+  fi
+done
+exit $failed

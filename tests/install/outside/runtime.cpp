@@ -1,0 +1,20 @@
+#include <runtime/balance.hpp>
+#include <runtime/runtime.hpp>
+
+class Cell : public tess::Chare<Cell> {
+ public:
+  void add(int factor, tess::Callback<int> target) {
+    contribute(tess::sum, factor * index().x, target);
+  }
+};
+
+tess::Task total() {
+  const auto cells = tess::create<Cell>(tess::range(10));
+  tess::Future<int> sum;
+  cells.broadcast<&Cell::add>(2, sum.callback());
+  tess::print("sum ", co_await sum, "\n");
+}
+
+int main(int argc, char** argv) {
+  return tess::run(argc, argv, total);
+}
