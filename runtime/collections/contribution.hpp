@@ -44,12 +44,13 @@ void contribute_as(const Key& key, Element& element, Collection& collection, InO
 }
 
 /// Called by the base classes of elements. A constructor's contribution waits until the element is
-/// listed.
+/// listed. The target is passed by reference: a copy of bytes that were just written would stall.
 struct Contribution {
   template <class Key, class Op, class T>
-  static void give(const Key& key, Element& element, Op op, T value, Callback<T> target) {
+  static void give(const Key& key, Element& element, Op op, T value, Callback<T>&& target) {
     if (element.collection_ == nullptr) [[unlikely]] {
-      const auto held = std::make_shared<std::pair<T, Callback<T>>>(std::move(value), target);
+      const auto held =
+          std::make_shared<std::pair<T, Callback<T>>>(std::move(value), std::move(target));
       Element::after_construction("contribute()", [&key, &element, op, held] {
         give(key, element, op, std::move(held->first), std::move(held->second));
       });
