@@ -1,8 +1,6 @@
 #include "runtime/collections/broadcast_log.hpp"
 
 #include "runtime/base/spanning_tree.hpp"
-#include "runtime/collections/collection.hpp"
-#include "runtime/collections/collection_action.hpp"
 
 #include <algorithm>
 
@@ -12,54 +10,35 @@ namespace {
 // Settled broadcasts are reported to the root in portions, so that a broadcast costs no reply.
 constexpr std::uint64_t portion = 16;
 
-void start_arrives(Collection& collection, NumberedCall&& m) {
-  collection.broadcasts().on_start(std::move(m));
-}
-void call_arrives(Collection& collection, NumberedCall&& m) {
-  collection.broadcasts().on_call(std::move(m));
-}
-void settled_arrives(Collection& collection, BroadcastLog::Settled&& m) {
-  collection.broadcasts().on_settled(m);
-}
-void drop_arrives(Collection& collection, BroadcastLog::Drop&& m) {
-  collection.broadcasts().on_drop(m);
-}
-
 }  // namespace
 
-BroadcastLog::BroadcastLog(Pe& pe, Collection& collection)
-    : pe_(pe),
-      collection_(collection),
-      children_(SpanningTree(pe.id(), collection.root(), pe.n_pes()).children()) {}
-
-void start_broadcast(CollectionId collection, SharedCall call) {
-  Pe& pe = current_pe();
-  const EpochId epoch = pe.context().epoch;
-  pe.completion().sent(epoch);
-  send_to_collection<&start_arrives>(pe, collection, root_of(collection, pe.n_pes()),
-                                     NumberedCall{0, epoch, std::move(call)});
-}
+BroadcastLog::BroadcastLog(BroadcastHost& host, Completion& completion, PeId here, PeId root,
+                           std::int32_t n_pes)
+    : host_(host),
+      completion_(completion),
+      here_(here),
+      root_(root),
+      n_pes_(n_pes),
+      children_(SpanningTree(here, root, n_pes).children()) {}
 
 void BroadcastLog::on_start(NumberedCall&& call) {
   call.number = ++last_number_;
-  call.n_complete = collection_.reductions().n_complete();
   on_call(std::move(call));
 }
 
 void BroadcastLog::on_call(NumberedCall&& call) {
   for (const PeId child : children_) {
-    pe_.completion().sent(call.epoch);
-    send_to_collection<&call_arrives>(collection_, child, call);
+    completion_.sent(call.epoch);
+    host_.send(child, call);
   }
-  pe_.flush();  // other processes do not wait for the local elements
+  host_.flush();  // other processes do not wait for the local elements
   early_.emplace(call.number, std::move(call));
   while (!early_.empty() && early_.begin()->first == applied_ + 1) {
     copies_.push_back(std::move(early_.begin()->second));
     early_.erase(early_.begin());
     ++applied_;
     const NumberedCall current = copies_.back();
-    collection_.apply(current);
-    collection_.reductions().applied(current.number, current.n_complete);
+    host_.apply(current);
     settle();
   }
 }
@@ -75,28 +54,22 @@ void BroadcastLog::settle() {
       in_flight_.empty() ? applied_ : std::min(applied_, in_flight_.begin()->first);
   while (settled_ < now) {
     ++settled_;
-    pe_.completion().processed(copies_[settled_ - first_kept_].epoch);
+    completion_.processed(copies_[settled_ - first_kept_].epoch);
   }
   if (settled_ - told_ < portion) return;
   told_ = settled_;
-  send_to_collection<&settled_arrives>(collection_, collection_.root(),
-                                       Settled{pe_.id(), settled_});
+  host_.send(root_, BroadcastSettled{here_, settled_});
 }
 
 void BroadcastLog::end() {
   while (settled_ < applied_) {
     ++settled_;
-    copies_[settled_ - first_kept_].drop(pe_);
+    completion_.processed(copies_[settled_ - first_kept_].epoch);
   }
-  for (const auto& [number, call] : early_) call.drop(pe_);
+  for (const auto& [number, call] : early_) completion_.processed(call.epoch);
   copies_.clear();
   early_.clear();
   in_flight_.clear();
-}
-
-std::uint64_t NumberedCall::drop(Pe& pe) const {
-  pe.completion().processed(epoch);
-  return number == 0 ? 1 : 0;
 }
 
 std::vector<NumberedCall> BroadcastLog::missed(std::uint64_t seen) const {
@@ -106,19 +79,18 @@ std::vector<NumberedCall> BroadcastLog::missed(std::uint64_t seen) const {
   return calls;
 }
 
-void BroadcastLog::on_settled(const Settled& settled) {
+void BroadcastLog::on_settled(const BroadcastSettled& settled) {
   std::uint64_t& known = settled_by_[settled.from];
   known = std::max(known, settled.number);
-  if (settled_by_.size() < static_cast<std::size_t>(pe_.n_pes())) return;
+  if (settled_by_.size() < static_cast<std::size_t>(n_pes_)) return;
   std::uint64_t all = known;
   for (const auto& [pe, number] : settled_by_) all = std::min(all, number);
   if (all == dropped_) return;
   dropped_ = all;
-  for (std::int32_t pe = 0; pe < pe_.n_pes(); ++pe)
-    send_to_collection<&drop_arrives>(collection_, PeId{pe}, Drop{all});
+  for (std::int32_t pe = 0; pe < n_pes_; ++pe) host_.send(PeId{pe}, BroadcastDrop{all});
 }
 
-void BroadcastLog::on_drop(const Drop& drop) {
+void BroadcastLog::on_drop(const BroadcastDrop& drop) {
   while (first_kept_ <= drop.number) {
     copies_.pop_front();
     ++first_kept_;

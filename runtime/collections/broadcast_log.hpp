@@ -11,6 +11,7 @@
 #pragma once
 
 #include "runtime/collections/broadcast_call.hpp"
+#include "runtime/completion/completion.hpp"
 
 #include <cstdint>
 #include <deque>
@@ -19,15 +20,39 @@
 
 namespace tess::detail {
 
-class Collection;
-class Pe;
+/// A PE has settled all broadcasts up to this number.
+struct BroadcastSettled {
+  PeId from;
+  std::uint64_t number;
+};
+/// All PEs have settled all broadcasts up to this number.
+struct BroadcastDrop {
+  std::uint64_t number;
+};
 
-/// Starts a broadcast from this PE, even if the collection is not known here yet.
-void start_broadcast(CollectionId collection, SharedCall call);
+/// What a BroadcastLog needs of its PE and its collection.
+class BroadcastHost {
+ public:
+  BroadcastHost() = default;
+  BroadcastHost(const BroadcastHost&) = delete;
+  BroadcastHost& operator=(const BroadcastHost&) = delete;
+  virtual ~BroadcastHost() = default;
+
+  // The log of PE `to` receives these by on_call(), on_settled() and on_drop().
+  virtual void send(PeId to, const NumberedCall& call) = 0;
+  virtual void send(PeId to, const BroadcastSettled& settled) = 0;
+  virtual void send(PeId to, const BroadcastDrop& drop) = 0;
+  /// Sends all messages that are held back.
+  virtual void flush() = 0;
+  /// Calls all local elements that have not received this broadcast yet.
+  virtual void apply(const NumberedCall& call) = 0;
+};
 
 class BroadcastLog {
  public:
-  BroadcastLog(Pe& pe, Collection& collection);
+  /// The part of PE `here` of `n_pes`; `root` numbers the broadcasts.
+  BroadcastLog(BroadcastHost& host, Completion& completion, PeId here, PeId root,
+               std::int32_t n_pes);
 
   /// The number of the last broadcast for an element that is created here now.
   [[nodiscard]] std::uint64_t applied() const { return applied_; }
@@ -42,26 +67,22 @@ class BroadcastLog {
   /// The calls that an element with this `seen` still has to receive here, oldest first.
   [[nodiscard]] std::vector<NumberedCall> missed(std::uint64_t seen) const;
 
-  struct Settled {
-    PeId from;
-    std::uint64_t number;
-  };
-  struct Drop {
-    std::uint64_t number;
-  };
+  /// At the root: a broadcast starts. It is counted as sent in its epoch.
   void on_start(NumberedCall&& call);
   void on_call(NumberedCall&& call);
-  void on_settled(const Settled& settled);
-  void on_drop(const Drop& drop);
+  void on_settled(const BroadcastSettled& settled);
+  void on_drop(const BroadcastDrop& drop);
 
   [[nodiscard]] std::size_t n_kept() const { return copies_.size(); }
 
  private:
   void settle();
 
-  Pe& pe_;
-  Collection& collection_;
-  std::vector<PeId> children_;
+  BroadcastHost& host_;
+  Completion& completion_;
+  const PeId here_, root_;
+  const std::int32_t n_pes_;
+  const std::vector<PeId> children_;
   std::uint64_t applied_ = 0;
   std::uint64_t settled_ = 0;
   std::uint64_t told_ = 0;

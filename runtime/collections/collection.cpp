@@ -18,10 +18,10 @@ void Element::after_construction(const char* what, std::function<void()> call) {
 Collection::Collection(Pe& pe, CollectionId id, std::string name)
     : HostedCollection(id, std::move(name)),
       pe_(pe),
-      broadcasts_(pe, *this),
-      reductions_(pe, *this, Track::own, root(),
-                  {"reduction", [this](std::uint32_t number) { return elements_before(number); }}) {
-}
+      broadcasts_(broadcast_host_, pe.completion(), pe.id(), root(), pe.n_pes()),
+      reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
+                  {this->name() + ": reduction",
+                   [this](std::uint32_t number) { return elements_before(number); }}) {}
 
 ReductionTree& Collection::tree(Track track) {
   return track == Track::own ? reductions_ : *second_tree_;
@@ -122,7 +122,8 @@ void Collection::apply(const NumberedCall& call) {
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
   settle_join(element);
-  reductions_.contribute(element.state_.next_reduction++, std::move(value), cause_of(element));
+  reductions_.contribute(element.state_.next_reduction++, pe_.context().epoch, std::move(value),
+                         cause_of(element));
 }
 
 std::string Collection::elements_before(std::uint32_t number) const {

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "runtime/collections/balance_record.hpp"
-#include "runtime/collections/broadcast_log.hpp"
+#include "runtime/collections/collection_hosts.hpp"
 #include "runtime/collections/element.hpp"
-#include "runtime/collections/reduction_tree.hpp"
 #include "runtime/scheduler/pe.hpp"
 
 #include <array>
@@ -194,6 +193,8 @@ class Collection : public HostedCollection {
   std::size_t n_new_ = 0;  // local elements that have not contributed since their construction
   unsigned applying_ = 0;
   bool ended_ = false;
+  BroadcastHostOfCollection broadcast_host_{*this};
+  ReductionHostOfCollection reduction_host_{*this, Track::own};
   BroadcastLog broadcasts_;
   ReductionTree reductions_;
 };

@@ -1,71 +1,41 @@
 #include "runtime/collections/reduction_tree.hpp"
 
 #include "runtime/base/spanning_tree.hpp"
-#include "runtime/collections/collection.hpp"
-#include "runtime/collections/collection_action.hpp"
+#include "runtime/completion/completion.hpp"
 #include "runtime/core/check.hpp"
 
 namespace tess::detail {
-namespace {
 
-template <Track track>
-void report_arrives(Collection& collection, ReductionTree::Report&& m) {
-  collection.tree(track).on_report(std::move(m));
-}
-template <Track track>
-void begin_arrives(Collection& collection, ReductionTree::Begin&& m) {
-  collection.tree(track).on_begin(m);
-}
-
-void drop_shares(Pe& pe, const std::vector<EpochShare>& shares) {
+void settle(Completion& completion, const std::vector<EpochShare>& shares) {
   for (const EpochShare& share : shares)
-    for (std::uint64_t k = 0; k < share.n; ++k) pe.completion().processed(share.epoch);
-}
-
-}  // namespace
-
-std::uint64_t ReductionTree::Report::drop(Pe& pe) const {
-  drop_shares(pe, shares);
-  return 0;
+    for (std::uint64_t k = 0; k < share.n; ++k) completion.processed(share.epoch);
 }
 
 void ReductionTree::end() {
-  for (const auto& [number, gathering] : gathering_) drop_shares(pe_, gathering.shares);
-  for (const auto& [number, whole] : whole_) drop_shares(pe_, whole.sum.shares);
+  for (const auto& [number, gathering] : gathering_) settle(completion_, gathering.shares);
+  for (const auto& [number, whole] : whole_) settle(completion_, whole.sum.shares);
   gathering_.clear();
   whole_.clear();
   current_ = nullptr;
 }
 
-ReductionTree::ReductionTree(Pe& pe, Collection& collection, Track track, PeId root,
-                             TreeWords words)
-    : pe_(pe), collection_(collection), track_(track), words_(std::move(words)), root_(root) {
-  const SpanningTree tree(pe.id(), root_, pe.n_pes());
-  parent_ = tree.parent();
-  children_ = tree.children();
-}
-
-void ReductionTree::send(PeId to, Report&& report) {
-  if (track_ == Track::own) {
-    send_to_collection<&report_arrives<Track::own>>(collection_, to, std::move(report));
-  } else {
-    send_to_collection<&report_arrives<Track::second>>(collection_, to, std::move(report));
-  }
-}
+ReductionTree::ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
+                             std::int32_t n_pes, TreeWords words)
+    : host_(host),
+      completion_(completion),
+      words_(std::move(words)),
+      here_(here),
+      root_(root),
+      parent_(SpanningTree(here, root, n_pes).parent()),
+      children_(SpanningTree(here, root, n_pes).children()) {}
 
 void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
-  for (const PeId child : children_) {
-    if (track_ == Track::own) {
-      send_to_collection<&begin_arrives<Track::own>>(collection_, child, Begin{number, cause});
-    } else {
-      send_to_collection<&begin_arrives<Track::second>>(collection_, child, Begin{number, cause});
-    }
-  }
+  for (const PeId child : children_) host_.send(child, ReductionBegin{number, cause});
 }
 
 bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
   if (led_by == 0 || !led_to_.learn(led_by, number)) return false;
-  collection_.postpone_new_elements();
+  host_.postpone_new_elements();
   return true;
 }
 
@@ -117,12 +87,12 @@ void ReductionTree::remove_member(std::uint32_t next) {
 }
 
 void ReductionTree::send_late_change(std::uint32_t number, std::uint32_t joins) {
-  Report late;
+  ReductionReport late;
   late.number = number;
   late.change = -1;
   late.late = true;
   late.joins = joins;
-  send(root_, std::move(late));
+  host_.send(root_, std::move(late));
 }
 
 std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_after) {
@@ -151,8 +121,7 @@ void ReductionTree::leave(std::uint32_t next) {
 void ReductionTree::added(std::uint32_t number, const Cause& cause) {
   Gathering& gathering = *current_;
   take(number, gathering, cause);
-  const EpochId epoch = gathering.shares.front().epoch;
-  pe_.completion().sent(epoch);
+  completion_.sent(gathering.shares.front().epoch);
   ++gathering.shares.front().n;
   ++gathering.n;
   leave(number);
@@ -160,21 +129,20 @@ void ReductionTree::added(std::uint32_t number, const Cause& cause) {
   if (ready(next_report_)) advance();
 }
 
-void ReductionTree::contribute(std::uint32_t number, std::unique_ptr<Partial> value,
+void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
                                const Cause& cause) {
-  const EpochId epoch = pe_.context().epoch;
-  pe_.completion().sent(epoch);
+  completion_.sent(epoch);
   leave(number);
   enter(number + 1);
   if (number < next_report_) {  // this PE has reported: the element arrived later
-    Report late;
+    ReductionReport late;
     late.number = number;
     late.n = 1;
     late.late = true;
     late.cause = cause;
     late.value.held = std::move(value);
     late.shares = {{epoch, 1}};
-    send(root_, std::move(late));
+    host_.send(root_, std::move(late));
     return;
   }
   Gathering& gathering = gathering_[number];
@@ -205,7 +173,7 @@ void ReductionTree::advance() {
       return;
     }
     // An element that is created here after the report has received what led to the reduction.
-    if (gathering.cause.met > collection_.broadcasts().applied()) {
+    if (gathering.cause.met > host_.applied_broadcast()) {
       awaited_broadcast_ = gathering.cause.met;
       return;
     }
@@ -221,9 +189,10 @@ void ReductionTree::advance() {
 }
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
-  if (root_ != pe_.id()) {
-    send(parent_, Report{number, gathered.n, gathered.change, false, 0, gathered.cause,
-                         PartialBox{std::move(gathered.value)}, std::move(gathered.shares)});
+  if (root_ != here_) {
+    host_.send(parent_,
+               ReductionReport{number, gathered.n, gathered.change, false, 0, gathered.cause,
+                               PartialBox{std::move(gathered.value)}, std::move(gathered.shares)});
     return;
   }
   Whole& whole = whole_[number];
@@ -235,7 +204,7 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   complete_if_whole();
 }
 
-void ReductionTree::on_report(Report&& report) {
+void ReductionTree::on_report(ReductionReport&& report) {
   if (report.late) {
     // A late destruction may name a number that is complete: it changes the membership from now on.
     if (report.n == 0 && report.number < next_complete_) {
@@ -267,7 +236,7 @@ void ReductionTree::on_report(Report&& report) {
   advance();
 }
 
-void ReductionTree::on_begin(const Begin& begin) {
+void ReductionTree::on_begin(const ReductionBegin& begin) {
   if (begin.number >= next_report_) gathering_[begin.number].known = true;
   take(begin.number, begin.cause);
   advance();
@@ -283,35 +252,29 @@ void ReductionTree::complete_if_whole() {
     Gathering done = std::move(sum);
     whole_.erase(at);
     ++next_complete_;
-    if (done.value) {
-      const Context before = pe_.context();
-      pe_.context().epoch = done.shares.size() == 1 ? done.shares.front().epoch : EpochId{};
-      pe_.context().led_by = 0;  // the result is not led to by the last contributor's broadcast
-      done.value->complete(pe_);
-      pe_.context() = before;
-    }
+    if (done.value)
+      host_.deliver(*done.value, done.shares.size() == 1 ? done.shares.front().epoch : EpochId{});
     // The result has been sent in the same epoch before the contributions are settled.
-    for (const EpochShare& share : done.shares)
-      for (std::uint64_t k = 0; k < share.n; ++k) pe_.completion().processed(share.epoch);
+    settle(completion_, done.shares);
   }
 }
 
 void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [number, gathering] : gathering_) {
     if (gathering.n == 0 && ready(number)) continue;
-    lines.push_back(text(collection_.name(), ": ", words_.noun, " ", number, " has ", gathering.n,
-                         " contributions on ", pe_.id(), "; it waits for ",
+    lines.push_back(text(words_.name, " ", number, " has ", gathering.n, " contributions on ",
+                         here_, "; it waits for ",
                          ready(number) ? "other PEs" : words_.missing_before(number + 1)));
   }
   // Elements that arrived after this PE had reported; the reductions that they have yet to
   // contribute to are incomplete.
   if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
-    lines.push_back(text(collection_.name(), ": ", words_.noun, " ", elements_at_.lowest(),
-                         " waits for ", words_.missing_before(next_report_)));
+    lines.push_back(text(words_.name, " ", elements_at_.lowest(), " waits for ",
+                         words_.missing_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
     if (whole.sum.n != 0)
-      lines.push_back(text(collection_.name(), ": ", words_.noun, " ", number, " has ", whole.sum.n,
-                           " contributions of ", members_ + whole.sum.change, " members"));
+      lines.push_back(text(words_.name, " ", number, " has ", whole.sum.n, " contributions of ",
+                           members_ + whole.sum.change, " members"));
   }
 }
 

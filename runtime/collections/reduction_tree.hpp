@@ -45,14 +45,16 @@
 
 namespace tess::detail {
 
+class Completion;
 class Pe;
-class Collection;
 
 /// Contributions in one epoch: the epoch is not done while they are under way.
 struct EpochShare {
   EpochId epoch;
   std::uint64_t n = 0;
 };
+/// Counts the contributions as processed in their epochs.
+void settle(Completion& completion, const std::vector<EpochShare>& shares);
 
 /// The causes of contributions: the last broadcast that any of the contributors had received, and
 /// the first that led to one of the contributions (0: none is known).
@@ -61,20 +63,60 @@ struct Cause {
   std::uint32_t led_by = 0;
 };
 
-/// The tree of a collection: its own, or a second one over members that a library defines (the
-/// balancer's barrier).
-enum class Track : std::uint8_t { own, second };
+/// A PE's report to its parent, or a late contribution or change of membership to the root.
+struct ReductionReport {
+  std::uint32_t number = 0;
+  std::uint64_t n = 0;
+  std::int64_t change = 0;
+  bool late = false;  // sent directly to the root
+  // In a late report: the element that leaves the membership of `number` joins there; 0: none.
+  std::uint32_t joins = 0;
+  Cause cause;
+  PartialBox value;
+  std::vector<EpochShare> shares;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(number, n, change, late, joins, cause, value, shares);
+  }
+  std::uint64_t drop(Pe& pe) const;  // the collection has ended
+};
+/// A ready PE asks the PEs below it for their reports.
+struct ReductionBegin {
+  std::uint32_t number = 0;
+  Cause cause;
+};
 
-/// The words of a tree in reports: "reduction", and the members that have not contributed to all
-/// numbers below one.
+/// What a ReductionTree needs of its PE and its collection.
+class ReductionHost {
+ public:
+  ReductionHost() = default;
+  ReductionHost(const ReductionHost&) = delete;
+  ReductionHost& operator=(const ReductionHost&) = delete;
+  virtual ~ReductionHost() = default;
+
+  // The tree of PE `to` receives these by on_report() and on_begin().
+  virtual void send(PeId to, ReductionReport&& report) = 0;
+  virtual void send(PeId to, const ReductionBegin& begin) = 0;
+  /// The number of the last broadcast that was applied on this PE.
+  [[nodiscard]] virtual std::uint64_t applied_broadcast() const = 0;
+  /// Calls postpone() for the elements here that have not contributed since their construction.
+  virtual void postpone_new_elements() = 0;
+  /// At the root: sends a complete result to its target, in this epoch.
+  virtual void deliver(Partial& result, EpochId epoch) = 0;
+};
+
+/// The words of a tree in reports: "Block: reduction", and the members that have not contributed to
+/// all numbers below one.
 struct TreeWords {
-  std::string noun;
+  std::string name;
   std::function<std::string(std::uint32_t)> missing_before;
 };
 
 class ReductionTree {
  public:
-  ReductionTree(Pe& pe, Collection& collection, Track track, PeId root, TreeWords words);
+  /// The part of PE `here` of `n_pes`; `root` completes the reductions.
+  ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
+                std::int32_t n_pes, TreeWords words);
 
   /// The number at which an element joins that is created here now, unless it is postponed.
   [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
@@ -91,8 +133,9 @@ class ReductionTree {
   void leave(std::uint32_t next);
 
   /// An element on this PE contributes to `number`; it was entered with `number` and is now entered
-  /// with the next.
-  void contribute(std::uint32_t number, std::unique_ptr<Partial> value, const Cause& cause = {});
+  /// with the next. The epoch waits for the delivery of the result.
+  void contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
+                  const Cause& cause = {});
 
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
   /// place; otherwise null, then call contribute(). After adding, the caller calls added().
@@ -120,28 +163,8 @@ class ReductionTree {
   /// At the root: the number of complete reductions.
   [[nodiscard]] std::uint32_t n_complete() const { return next_complete_; }
 
-  struct Report {
-    std::uint32_t number = 0;
-    std::uint64_t n = 0;
-    std::int64_t change = 0;
-    bool late = false;  // sent directly to the root
-    // In a late report: the element that leaves the membership of `number` joins there; 0: none.
-    std::uint32_t joins = 0;
-    Cause cause;
-    PartialBox value;
-    std::vector<EpochShare> shares;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(number, n, change, late, joins, cause, value, shares);
-    }
-    std::uint64_t drop(Pe& pe) const;  // the collection has ended
-  };
-  struct Begin {
-    std::uint32_t number = 0;
-    Cause cause;
-  };
-  void on_report(Report&& report);
-  void on_begin(const Begin& begin);
+  void on_report(ReductionReport&& report);
+  void on_begin(const ReductionBegin& begin);
 
   void describe_waiting(std::vector<std::string>& lines) const;
 
@@ -167,7 +190,6 @@ class ReductionTree {
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();
 
-  void send(PeId to, Report&& report);
   void send_late_change(std::uint32_t number, std::uint32_t joins);
   void ask_children(std::uint32_t number, const Cause& cause);
   /// Records that a broadcast led to a contribution to `number`. Returns false if that was known.
@@ -176,12 +198,11 @@ class ReductionTree {
   void take(std::uint32_t number, Gathering& into, const Cause& cause);
   void take(std::uint32_t number, const Cause& cause);
 
-  Pe& pe_;
-  Collection& collection_;
-  const Track track_;
+  ReductionHost& host_;
+  Completion& completion_;
   const TreeWords words_;
-  PeId root_, parent_;
-  std::vector<PeId> children_;
+  const PeId here_, root_, parent_;
+  const std::vector<PeId> children_;
   std::uint32_t next_report_ = 0;  // this PE has reported all lower numbers
   std::map<std::uint32_t, Gathering> gathering_;
   std::map<std::uint32_t, std::int64_t> changes_;

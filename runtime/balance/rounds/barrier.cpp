@@ -12,10 +12,11 @@ SyncState& sync_of(Element& element) {
 }  // namespace
 
 Barrier::Barrier(Pe& pe, Collection& group, PeId coordinator, Callback<std::uint64_t> reached)
-    : pe_(pe),
-      reached_(std::move(reached)),
-      tree_(pe, group, Track::second, coordinator,
-            {"balance round", [this](std::uint32_t round) { return missing_before(round); }}) {
+    : reached_(std::move(reached)),
+      host_(group, Track::second),
+      tree_(host_, pe.completion(), pe.id(), coordinator, pe.n_pes(),
+            {group.name() + ": balance round",
+             [this](std::uint32_t round) { return missing_before(round); }}) {
   group.set_second_tree(tree_);
   tree_.enter(0);
 }
@@ -98,9 +99,8 @@ void Barrier::contribute(SyncState& sync) {
   sync.waits_for = sync.next;
   // The wait itself belongs to the element's epoch. Messages of a round belong to no epoch:
   // otherwise every PE would report each of them to that epoch's coordinator.
-  const EpochId before = std::exchange(pe_.context().epoch, EpochId{});
-  tree_.contribute(sync.next++, std::make_unique<MergedPartial<std::uint64_t, Sum>>(1, reached_));
-  pe_.context().epoch = before;
+  tree_.contribute(sync.next++, EpochId{},
+                   std::make_unique<MergedPartial<std::uint64_t, Sum>>(1, reached_));
 }
 
 void Barrier::resume(std::uint32_t round) {

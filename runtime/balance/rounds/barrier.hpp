@@ -47,8 +47,8 @@ class Barrier {
   void wake(Element& element);
   [[nodiscard]] std::string missing_before(std::uint32_t round) const;
 
-  Pe& pe_;
   const Callback<std::uint64_t> reached_;
+  ReductionHostOfCollection host_;
   ReductionTree tree_;
   Collection* array_ = nullptr;
   std::uint32_t n_resumed_ = 0;  // rounds 0 … n_resumed_ − 1 are over

@@ -1,0 +1,103 @@
+#include "runtime/collections/collection_hosts.hpp"
+
+#include "runtime/collections/collection.hpp"
+#include "runtime/collections/collection_action.hpp"
+
+namespace tess::detail {
+namespace {
+
+void start_arrives(Collection& collection, NumberedCall&& m) {
+  m.n_complete = collection.reductions().n_complete();
+  collection.broadcasts().on_start(std::move(m));
+}
+void call_arrives(Collection& collection, NumberedCall&& m) {
+  collection.broadcasts().on_call(std::move(m));
+}
+void settled_arrives(Collection& collection, BroadcastSettled&& m) {
+  collection.broadcasts().on_settled(m);
+}
+void drop_arrives(Collection& collection, BroadcastDrop&& m) {
+  collection.broadcasts().on_drop(m);
+}
+
+template <Track track>
+void report_arrives(Collection& collection, ReductionReport&& m) {
+  collection.tree(track).on_report(std::move(m));
+}
+template <Track track>
+void begin_arrives(Collection& collection, ReductionBegin&& m) {
+  collection.tree(track).on_begin(m);
+}
+
+}  // namespace
+
+void start_broadcast(CollectionId collection, SharedCall call) {
+  Pe& pe = current_pe();
+  const EpochId epoch = pe.context().epoch;
+  pe.completion().sent(epoch);
+  send_to_collection<&start_arrives>(pe, collection, root_of(collection, pe.n_pes()),
+                                     NumberedCall{0, epoch, std::move(call)});
+}
+
+std::uint64_t NumberedCall::drop(Pe& pe) const {
+  pe.completion().processed(epoch);
+  return number == 0 ? 1 : 0;
+}
+
+std::uint64_t ReductionReport::drop(Pe& pe) const {
+  settle(pe.completion(), shares);
+  return 0;
+}
+
+void BroadcastHostOfCollection::send(PeId to, const NumberedCall& call) {
+  send_to_collection<&call_arrives>(collection_, to, call);
+}
+void BroadcastHostOfCollection::send(PeId to, const BroadcastSettled& settled) {
+  send_to_collection<&settled_arrives>(collection_, to, settled);
+}
+void BroadcastHostOfCollection::send(PeId to, const BroadcastDrop& drop) {
+  send_to_collection<&drop_arrives>(collection_, to, drop);
+}
+
+void BroadcastHostOfCollection::flush() {
+  collection_.pe().flush();
+}
+
+void BroadcastHostOfCollection::apply(const NumberedCall& call) {
+  collection_.apply(call);
+  collection_.reductions().applied(call.number, call.n_complete);
+}
+
+void ReductionHostOfCollection::send(PeId to, ReductionReport&& report) {
+  if (track_ == Track::own) {
+    send_to_collection<&report_arrives<Track::own>>(collection_, to, std::move(report));
+  } else {
+    send_to_collection<&report_arrives<Track::second>>(collection_, to, std::move(report));
+  }
+}
+void ReductionHostOfCollection::send(PeId to, const ReductionBegin& begin) {
+  if (track_ == Track::own) {
+    send_to_collection<&begin_arrives<Track::own>>(collection_, to, begin);
+  } else {
+    send_to_collection<&begin_arrives<Track::second>>(collection_, to, begin);
+  }
+}
+
+std::uint64_t ReductionHostOfCollection::applied_broadcast() const {
+  return collection_.broadcasts().applied();
+}
+
+void ReductionHostOfCollection::postpone_new_elements() {
+  collection_.postpone_new_elements();
+}
+
+void ReductionHostOfCollection::deliver(Partial& result, EpochId epoch) {
+  Pe& pe = collection_.pe();
+  const Context before = pe.context();
+  pe.context().epoch = epoch;
+  pe.context().led_by = 0;  // the result is not led to by the last contributor's broadcast
+  result.complete(pe);
+  pe.context() = before;
+}
+
+}  // namespace tess::detail
