@@ -12,12 +12,11 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   TESS_CHECK(source.n_components == target.n_components, "the source has ", source.n_components,
              " components per vertex, the target ", target.n_components,
              "; scatter both meshes with the same number of components");
-  Pe& pe = current_pe();
   const auto enter = [&options](const char* phase) {
     if (options.on_phase) options.on_phase(phase);
   };
   enter("broad");
-  const Time start = pe.now();
+  const Time start = now();
   TransferSetup setup{{}, {}, source.workers, target.workers};
   co_await epoch([&] {
     setup.collider = collide::make_collider({options.voxel_origin, options.voxel_size, {}});
@@ -31,10 +30,10 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   const collide::Report to_target{report_to_target(target.workers, setup.id), target_model};
   co_await collide::run_collision(setup.collider, to_target);
   setup.collider.destroy();
-  const Time broad = pe.now();
+  const Time broad = now();
   enter("narrow");
   co_await epoch([&] { target.workers.broadcast<&Worker::ask_sources>(setup.id); });
-  const Time narrow = pe.now();
+  const Time narrow = now();
   enter("report");
   OutsideRequest request{setup.id, options.policy, {}};
   if (std::holds_alternative<Nearest>(options.policy)) request.source_boxes = source.boxes;
@@ -44,7 +43,7 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   target.workers.broadcast<&Worker::commit>(setup.id, tally.callback());
   source.workers.broadcast<&Worker::release>(setup.id);
   const Tally all = co_await tally;
-  const Time report = pe.now();
+  const Time report = now();
   if (summary != nullptr)
     *summary = {seconds(broad - start), seconds(narrow - broad), seconds(report - narrow), all};
 }

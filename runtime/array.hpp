@@ -256,12 +256,15 @@ void Arrival<C>::pack_state() {
 
 }  // namespace detail
 
-/// The proxy of one element, by its index. The element need not exist.
-template <class C>
+/// The proxy of one element, by its index. The element need not exist. A class that has a proxy of
+/// its own elements as a member names the index: ElementProxy<Node, Index1>.
+template <class C, class IndexType = typename C::Index>
 class ElementProxy {
  public:
-  using Index = typename C::Index;
+  using Index = IndexType;
 
+  /// Of no element: it can only be assigned to.
+  ElementProxy() = default;
   ElementProxy(CollectionId collection, const Index& index)
       : collection_(collection), index_(index) {}
 
@@ -318,12 +321,22 @@ class ElementProxy {
   /// A target for results: entry method F of this element.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = std::tuple_element_t<0, typename detail::EntryTraits<F>::Arguments>;
+    using T = typename decltype(detail::target_value<F, NoValue>())::type;
     if constexpr (Bitwise<Index>) {
-      return Callback<T>(target_kind<F, T>, std::in_place, collection_, index_);
+      return detail::as_target(Callback<T>(target_kind<F, T>, std::in_place, collection_, index_));
     } else {
-      return Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
+      return detail::as_target(
+          Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_))));
     }
+  }
+
+  friend auto operator<=>(const ElementProxy&, const ElementProxy&) = default;
+  [[nodiscard]] std::size_t hash() const {
+    return static_cast<std::size_t>(mix(collection_.value ^ IndexHash<Index>()(index_)));
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(collection_, index_);
   }
 
  private:
@@ -338,7 +351,10 @@ class ElementProxy {
   void post(detail::Demand demand, Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
-    auto* message = detail::Call<C, F>::make(pe, collection_, index_, std::forward<Args>(args)...);
+    auto* message = [&]<class... P>(std::tuple<P...>*) {
+      return detail::Call<C, F>::make(pe, collection_, index_,
+                                      detail::as_parameter<P>(std::forward<Args>(args))...);
+    }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
     message->demand = demand;
     message->ask = demand == detail::Demand::here;
     if constexpr (!detail::OnePerPe<C>)  // a balancer does not move members of groups
@@ -354,6 +370,8 @@ class ElementProxy {
         collection != nullptr) [[likely]] {
       static_cast<detail::Array<C>*>(collection)->post(message);
     } else {
+      TESS_CHECK(collection_ != CollectionId{}, "a message to an empty ElementProxy<",
+                 name_of_type<C>, ">: assign array[index] to it first");
       pe.send_here(message);  // it waits until the array is known here
     }
   }
@@ -384,14 +402,26 @@ class ElementProxy {
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
     const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
-    ElementProxy(collection, index).template send<F>(std::forward<T>(value));
+    const ElementProxy element(collection, index);
+    if constexpr (std::is_same_v<T, NoValue>) {
+      element.template send<F>();
+    } else {
+      element.template send<F>(std::forward<T>(value));
+    }
+  }
+  template <auto F, class T>
+  static std::string describe_target(const Callback<T>& callback) {
+    const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
+    return text(plain_name(naming::value<F>()), " of ", plain_name(name_of_type<C>),
+                index_text(index));
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>};
+      naming::name_of<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>,
+      &ElementProxy::describe_target<F, T>};
 
-  CollectionId collection_;
-  Index index_;
+  CollectionId collection_{};
+  Index index_{};
 };
 
 /// The proxy of a whole array.
@@ -408,6 +438,22 @@ class ArrayProxy {
   [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
     return ElementProxy<C>(id_, index);
   }
+  /// {1} would be (1, 0) otherwise.
+  template <class Of = C>
+    requires(n_axes_of<typename Of::Index> > 1)
+  ElementProxy<C> operator[](std::int32_t /*x*/) const {
+    static_assert(sizeof(Of) == 0, "an index has a number for each axis: array[{x, y}]");
+  }
+  template <class Of = C>
+  void operator[](const typename detail::FewerAxes<n_axes_of<typename Of::Index>>::type&) const =
+      delete;
+
+  /// The element of this index if it is on this PE now, otherwise null. It may leave or be destroyed
+  /// once the current message is done.
+  template <class Of = C>
+  [[nodiscard]] Of* local(const typename Of::Index& index) const {
+    return static_cast<Of*>(here().find(index));
+  }
 
   /// The number of elements that the array was created with.
   [[nodiscard]] std::int64_t size() const {
@@ -420,9 +466,11 @@ class ArrayProxy {
   void broadcast(Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
-    detail::start_broadcast(
-        id_,
-        detail::SharedCall(new detail::CallOfAll<C, F>(Arguments(std::forward<Args>(args)...))));
+    static_assert(std::is_copy_constructible_v<Arguments>,
+                  "each element gets a copy of a broadcast's arguments, so they can be copied");
+    detail::start_broadcast(id_,
+                            detail::SharedCall(new detail::CallOfAll<C, F>(
+                                detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
 
   /// Ends the array: on every PE its elements are destroyed and its memory is freed, including that
@@ -436,8 +484,8 @@ class ArrayProxy {
   /// A target for results: entry method F of all elements.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = std::tuple_element_t<0, typename detail::EntryTraits<F>::Arguments>;
-    return Callback<T>(target_kind<F, T>, std::in_place, id_);
+    using T = typename decltype(detail::target_value<F, NoValue>())::type;
+    return detail::as_target(Callback<T>(target_kind<F, T>, std::in_place, id_));
   }
 
   /// The part of the array on this PE with its local elements, for libraries and tests.
@@ -458,12 +506,22 @@ class ArrayProxy {
  private:
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
-    ArrayProxy(from_bytes<CollectionId>(callback.where()))
-        .template broadcast<F>(std::forward<T>(value));
+    const ArrayProxy all(from_bytes<CollectionId>(callback.where()));
+    if constexpr (std::is_same_v<T, NoValue>) {
+      all.template broadcast<F>();
+    } else {
+      all.template broadcast<F>(std::forward<T>(value));
+    }
+  }
+  template <auto F, class T>
+  static std::string describe_target(const Callback<T>& /*callback*/) {
+    return text(plain_name(naming::value<F>()), " of all elements of ",
+                plain_name(name_of_type<C>));
   }
   template <auto F, class T>
   static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>};
+      naming::name_of<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>,
+      &ArrayProxy::describe_target<F, T>};
 
   CollectionId id_{};
 };
@@ -524,6 +582,9 @@ CollectionId create_collection(const Range& range, Args&&... args) {
 /// yet.
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
+  static_assert(
+      std::is_constructible_v<C, const std::decay_t<Args>&...>,
+      "the chare has no constructor that takes these arguments (each element gets a copy)");
   if constexpr (Coordinates<typename C::Index>) {
     TESS_CHECK(range.n_axes == 0 || range.n_axes == n_axes_of<typename C::Index>, "a range of ",
                range.n_axes, " axes for an index of ", n_axes_of<typename C::Index>);
@@ -535,3 +596,14 @@ ArrayProxy<C> create(const Range& range, Args&&... args) {
 }
 
 }  // namespace tess
+
+template <class C, class Index>
+struct std::hash<tess::ElementProxy<C, Index>> {
+  std::size_t operator()(const tess::ElementProxy<C, Index>& proxy) const { return proxy.hash(); }
+};
+template <class C>
+struct std::hash<tess::ArrayProxy<C>> {
+  std::size_t operator()(const tess::ArrayProxy<C>& proxy) const {
+    return std::hash<tess::CollectionId>()(proxy.id());
+  }
+};

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,11 @@ class TargetName {
     }
   }
 
+  friend bool operator==(const TargetName& a, const TargetName& b) {
+    if (a.long_ || b.long_) return std::ranges::equal(a.view(), b.view());
+    return a.n_ == b.n_ && a.short_ == b.short_;
+  }
+
   [[nodiscard]] std::span<const std::byte> view() const {
     return long_ ? std::span<const std::byte>(*long_) : std::span(short_).first(n_);
   }
@@ -74,8 +80,11 @@ class Callback {
   /// How to call the target: one static object for each pair of target kind and entry method.
   struct Kind : detail::Registered {
     using Call = void (*)(const Callback&, T&&);
-    Kind(naming::Name name, Call call_) : Registered(name), call(call_) {}
+    using Describe = std::string (*)(const Callback&);
+    Kind(naming::Name name, Call call_, Describe describe_ = nullptr)
+        : Registered(name), call(call_), describe(describe_) {}
     Call call;
+    Describe describe;  ///< for error texts: "Node::result of [3]"
   };
 
   Callback() = default;
@@ -94,6 +103,14 @@ class Callback {
     kind_->call(*this, std::move(value));
   }
 
+  /// The target in words: "Node::result of [3]".
+  [[nodiscard]] std::string name() const {
+    if (kind_ == nullptr) return "no target";
+    return kind_->describe != nullptr ? kind_->describe(*this) : plain_name(kind_->name());
+  }
+
+  friend bool operator==(const Callback&, const Callback&) = default;
+
   template <class Ar>
   void serialize(Ar& ar) {
     if constexpr (Ar::is_reading) {
@@ -109,5 +126,43 @@ class Callback {
   const Kind* kind_ = nullptr;
   detail::TargetName where_;
 };
+
+/// The value of a result that is only the news that it is there.
+struct NoValue {};
+
+/// A target without a value: an entry method that takes none, or a Future<void>.
+template <>
+class Callback<void> {
+ public:
+  Callback() = default;
+  explicit Callback(Callback<NoValue> target) : target_(std::move(target)) {}
+
+  [[nodiscard]] explicit operator bool() const { return static_cast<bool>(target_); }
+  void operator()() const { target_(NoValue{}); }
+  [[nodiscard]] std::string name() const { return target_.name(); }
+  /// The same target, for values that say nothing.
+  [[nodiscard]] const Callback<NoValue>& of_no_value() const { return target_; }
+
+  friend bool operator==(const Callback&, const Callback&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(target_);
+  }
+
+ private:
+  Callback<NoValue> target_;
+};
+
+namespace detail {
+/// The Callback whose values have type T.
+template <class T>
+[[nodiscard]] auto as_target(Callback<T> callback) {
+  if constexpr (std::is_same_v<T, NoValue>) {
+    return Callback<void>(std::move(callback));
+  } else {
+    return callback;
+  }
+}
+}  // namespace detail
 
 }  // namespace tess

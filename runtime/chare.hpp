@@ -15,6 +15,8 @@ namespace tess {
 
 template <class C>
 class ArrayProxy;
+template <class C, class IndexType>
+class ElementProxy;
 
 /// A chare that can wait for its balancer.
 template <class C>
@@ -31,6 +33,11 @@ class Chare : public detail::IndexedElement<IndexType> {
   /// The array of this element.
   [[nodiscard]] ArrayProxy<Derived> array() const {
     return ArrayProxy<Derived>(this->collection_id());
+  }
+
+  /// The proxy of this element.
+  [[nodiscard]] ElementProxy<Derived, Index> self() const {
+    return {this->collection_id(), this->index_};
   }
 
   /// Moves this element to a PE once none of its code runs or waits. The current epoch waits for
@@ -80,6 +87,15 @@ class Chare : public detail::IndexedElement<IndexType> {
   template <class Op, class T>
   void contribute(Op op, T value, Callback<T> target) {
     detail::Contribution::give(index(), *this, op, std::move(value), std::move(target));
+  }
+  /// Contributes to a reduction without values: the target learns that all elements are there.
+  void contribute(Callback<void> target) {
+    contribute(detail::AllThere{}, NoValue{}, target.of_no_value());
+  }
+  template <class Op, class T, class U>
+  void contribute(Op /*op*/, T /*value*/, Callback<U> /*target*/) {
+    static_assert(std::is_same_v<T, U>,
+                  "the value has another type than the target's: Callback<T>");
   }
 };
 

@@ -5,7 +5,8 @@
 //     const double t = co_await total;
 //
 // The callback can be sent anywhere; the result arrives at the PE that made the future. It is taken
-// once, and the future must outlive it: make it a local variable of the coroutine that awaits it.
+// once, and the future must outlive it: make it a local variable of the coroutine that awaits it, or
+// a member of an element that does not migrate meanwhile. A Future<void> gets no value.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -15,28 +16,46 @@
 
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace tess {
 
 template <class T>
 class Future {
  public:
-  Future() : pe_(current_pe()), id_(pe_.enter_future(this)) {}
+  Future() : pe_(&current_pe()), id_(pe_->enter_future(this)) {}
   Future(const Future&) = delete;
   Future& operator=(const Future&) = delete;
-  ~Future() { pe_.leave_future(id_); }
+  /// Not while a coroutine waits for it, and on its own PE only. The other can only be assigned to.
+  Future(Future&& other) : pe_(other.pe_) { take(other); }
+  Future& operator=(Future&& other) {
+    if (this == &other) return *this;
+    TESS_CHECK(!waiting_, "a future is overwritten while a coroutine waits for it");
+    if (id_ != 0) pe_->leave_future(id_);
+    take(other);
+    return *this;
+  }
+  ~Future() {
+    if (id_ != 0) pe_->leave_future(id_);
+  }
 
   /// The target that receives the result.
   [[nodiscard]] Callback<T> callback() const {
-    return Callback<T>(kind_, to_bytes(std::tuple(pe_.id(), id_)));
+    TESS_CHECK(id_ != 0, "a future that was moved from has no callback: use the one it moved to");
+    return Callback<T>(kind_, to_bytes(std::tuple(pe_->id(), id_)));
   }
 
   [[nodiscard]] bool await_ready() const { return value_.has_value(); }
   void await_suspend(Task::Handle task) {
+    TESS_CHECK(id_ != 0, "a future that was moved from is awaited: await the one it moved to");
+    TESS_CHECK(!waiting_, "two coroutines await one future");
     waiting_ = task;
     suspend(task, [] { return text("a future of ", name_of_type<T>); });
   }
-  T await_resume() { return std::move(*value_); }
+  T await_resume() {
+    waiting_ = nullptr;
+    return std::move(*value_);
+  }
 
  private:
   struct Result {
@@ -65,13 +84,41 @@ class Future {
     if (future->waiting_) resume_later(future->waiting_);
     pe.completion().processed(pe.context().epoch);
   }
+  static std::string describe(const Callback<T>& callback) {
+    const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
+    return text("future ", id, " of ", pe);
+  }
   static inline const typename Callback<T>::Kind kind_{naming::name_of<&Future::give>(),
-                                                       &Future::give};
+                                                       &Future::give, &Future::describe};
 
-  Pe& pe_;
-  const std::uint64_t id_;
+  void take(Future& other) {
+    TESS_CHECK(!other.waiting_, "a future is moved while a coroutine waits for it");
+    TESS_CHECK(&current_pe() == other.pe_, "a future of ", other.pe_->id(), " is moved on ",
+               current_pe().id(), ": send its callback() instead");
+    pe_ = other.pe_;
+    id_ = std::exchange(other.id_, 0);
+    value_ = std::exchange(other.value_, std::nullopt);
+    if (id_ != 0) pe_->move_future(id_, this);
+  }
+
+  Pe* pe_;
+  std::uint64_t id_ = 0;  // 0: moved from
   std::optional<T> value_;
   Task::Handle waiting_;
+};
+
+/// A result without a value: the news that something is done.
+template <>
+class Future<void> {
+ public:
+  [[nodiscard]] Callback<void> callback() const { return Callback<void>(news_.callback()); }
+
+  [[nodiscard]] bool await_ready() const { return news_.await_ready(); }
+  void await_suspend(Task::Handle task) { news_.await_suspend(task); }
+  void await_resume() { (void)news_.await_resume(); }
+
+ private:
+  Future<NoValue> news_;
 };
 
 }  // namespace tess

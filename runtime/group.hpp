@@ -39,12 +39,18 @@ class Group : public detail::IndexedElement<Index1> {
   void contribute(Op op, T value, Callback<T> target) {
     detail::Contribution::give(this->index_, *this, op, std::move(value), std::move(target));
   }
+  /// Contributes to a reduction without values: the target learns that all members are there.
+  void contribute(Callback<void> target) {
+    contribute(detail::AllThere{}, NoValue{}, target.of_no_value());
+  }
 };
 
 /// The proxy of a group's member on one PE.
 template <class G>
 class MemberProxy {
  public:
+  /// Of no member: it can only be assigned to.
+  MemberProxy() = default;
   MemberProxy(CollectionId id, PeId pe) : id_(id), pe_(pe) {}
 
   template <auto F, class... Args>
@@ -61,11 +67,18 @@ class MemberProxy {
     return member().template target<F>();
   }
 
- private:
-  [[nodiscard]] ElementProxy<G> member() const { return {id_, Index1{pe_.value}}; }
+  friend auto operator<=>(const MemberProxy&, const MemberProxy&) = default;
+  [[nodiscard]] std::size_t hash() const { return member().hash(); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_, pe_);
+  }
 
-  CollectionId id_;
-  PeId pe_;
+ private:
+  [[nodiscard]] ElementProxy<G, Index1> member() const { return {id_, Index1{pe_.value}}; }
+
+  CollectionId id_{};
+  PeId pe_{};
 };
 
 /// The proxy of a whole group.
@@ -107,6 +120,7 @@ class GroupProxy {
   /// again has no effect.
   void destroy() const { detail::end_collection(id_); }
 
+  friend auto operator<=>(const GroupProxy&, const GroupProxy&) = default;
   template <class Ar>
   void serialize(Ar& ar) {
     ar(id_);
@@ -124,3 +138,14 @@ GroupProxy<G> create_group(Args&&... args) {
 }
 
 }  // namespace tess
+
+template <class G>
+struct std::hash<tess::MemberProxy<G>> {
+  std::size_t operator()(const tess::MemberProxy<G>& proxy) const { return proxy.hash(); }
+};
+template <class G>
+struct std::hash<tess::GroupProxy<G>> {
+  std::size_t operator()(const tess::GroupProxy<G>& proxy) const {
+    return std::hash<tess::CollectionId>()(proxy.id());
+  }
+};

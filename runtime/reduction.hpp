@@ -1,10 +1,12 @@
 // Reductions combine one value of each element: contribute(tess::sum, value, target). The operation
-// is one of those below or any empty function object that combines two values:
+// is one of those below or any function object that combines two values:
 //
 //     struct Longest {
 //       std::string operator()(std::string a, std::string b) const;
 //     };
 //
+// Its members, if it has any, travel with the values, so they are serialisable; all elements give
+// the same.
 // It must be associative and commutative. in_order(op) combines in the order of indices, so that a
 // floating-point result does not depend on the placement of the elements.
 #pragma once
@@ -84,10 +86,12 @@ inline constexpr Concatenate concatenate{};
 
 /// An operation that is applied in the order of indices, once all values are at the root.
 template <class Op>
-struct InOrder {};
+struct InOrder {
+  [[no_unique_address]] Op op;
+};
 template <class Op>
-[[nodiscard]] constexpr InOrder<Op> in_order(Op /*op*/) {
-  return {};
+[[nodiscard]] constexpr InOrder<Op> in_order(Op op) {
+  return {std::move(op)};
 }
 
 }  // namespace tess

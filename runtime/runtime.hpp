@@ -12,6 +12,7 @@
 #include "runtime/epoch.hpp"
 #include "runtime/future.hpp"
 #include "runtime/group.hpp"
+#include "runtime/here.hpp"
 #include "runtime/mailbox.hpp"
 #include "runtime/reduction.hpp"
 #include "runtime/room.hpp"

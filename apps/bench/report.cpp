@@ -18,9 +18,9 @@ std::string shown(double value) {
 
 }  // namespace
 
-Stopwatch::Stopwatch() : begin_(tess::current_pe().now()) {}
+Stopwatch::Stopwatch() : begin_(tess::now()) {}
 double Stopwatch::nanoseconds() const {
-  return std::chrono::duration<double, std::nano>(tess::current_pe().now() - begin_).count();
+  return std::chrono::duration<double, std::nano>(tess::now() - begin_).count();
 }
 
 double Samples::median() const {

@@ -15,11 +15,10 @@ namespace lb_lab {
 namespace {
 
 tess::Task measure(Settings settings, double steps_a_second) {
-  tess::Pe& pe = tess::current_pe();
   Sweep sweep;
   sweep.settings = std::move(settings);
   sweep.on_row = print_row;
-  sweep.machine = pe.machine().describe();
+  sweep.machine = tess::machine().describe();
   print_head();
   co_await run_all(sweep, steps_a_second);
   print_best(sweep);

@@ -79,7 +79,7 @@ tess::Task run_fastest(const Experiment& experiment, std::int32_t repeat, Outcom
 
 tess::Task run_all(Sweep& sweep, double steps_a_second) {
   const Settings& s = sweep.settings;
-  const std::int32_t n_pes = tess::current_pe().n_pes();
+  const std::int32_t n_pes = tess::n_pes();
   for (const std::string& name : s.workloads) {
     Problem problem = problem_of(s, find_workload(name), n_pes);
     const std::uint64_t serial = serial_answer(problem);

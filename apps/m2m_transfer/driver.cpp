@@ -14,10 +14,9 @@ namespace {
 
 Problem read(const Request& request, apps::Progress& progress) {
   progress.phase("reading");
-  Pe& pe = current_pe();
-  const Time start = pe.now();
-  Problem problem = load(request, pe.machine());
-  problem.report.seconds.read = tess::seconds(pe.now() - start);
+  const Time start = now();
+  Problem problem = load(request, machine());
+  problem.report.seconds.read = tess::seconds(now() - start);
   return problem;
 }
 

@@ -23,10 +23,9 @@ Footprint JoinFootprints::operator()(Footprint a, const Footprint& b) const {
 }
 
 void Gauge::read(Callback<Footprint> target) {
-  Pe& here = current_pe();
-  const Machine& machine = here.machine();
+  const Machine& machine = machine();
   Footprint mine;
-  mine.bytes_sent = here.statistics().bytes_sent;
+  mine.bytes_sent = statistics().bytes_sent;
   // All simulated processes share the memory of process 0.
   if (machine.process_of(pe()) == machine.process() && pe().value % machine.pes_per_process() == 0)
     mine.peak_memory_bytes = mine.greatest_peak_memory_bytes = peak_memory_bytes();

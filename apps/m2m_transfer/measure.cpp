@@ -6,7 +6,7 @@ namespace m2m_transfer {
 namespace {
 
 double seconds_since(Time start) {
-  return seconds(current_pe().now() - start);
+  return seconds(now() - start);
 }
 
 /// Stores the gathered values of all vertices in global order.
@@ -44,14 +44,13 @@ void compare_with_truth(Problem& problem) {
 }  // namespace
 
 Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress) {
-  Pe& pe = current_pe();
   TransferReport& report = problem.report;
   Future<Footprint> before, after, most;
   gauge.broadcast<&Gauge::read>(before.callback());
   const Footprint sent_before = co_await before;
 
   progress.phase("partition");
-  const Time start = pe.now();
+  const Time start = now();
   DistributedMesh source, target;
   co_await epoch([&] {
     source = scatter(problem.source, problem.source_fields, report.chares, problem.partition);

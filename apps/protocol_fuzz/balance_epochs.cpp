@@ -69,11 +69,10 @@ void Citizen::live(std::int32_t phase) {
     const std::lock_guard lock(town.mutex);
     town.lived[me].push_back(phase);
   }
-  const Pe& pe = current_pe();
   if (town.rotates && was_on_.value >= 0)
-    town.trial.expect(pe.id().value == (was_on_.value + 1) % pe.n_pes(), element_text(*this),
-                      " was on ", was_on_, " before the round, and is on ", pe.id());
-  was_on_ = pe.id();
+    town.trial.expect(my_pe().value == (was_on_.value + 1) % n_pes(), element_text(*this),
+                      " was on ", was_on_, " before the round, and is on ", my_pe());
+  was_on_ = my_pe();
   charge(std::chrono::microseconds(1 + me % 5));
   if (town.creates(me, phase))
     array()[{Town::child(me, phase)}].send_or_create_here<&Citizen::create>(phase + 1);

@@ -48,16 +48,15 @@ struct Options {
 };
 
 tess::Task go_round(Options options) {
-  tess::Pe& pe = tess::current_pe();
-  const std::int64_t n = options.stations != 0 ? options.stations : pe.n_pes();
+  const std::int64_t n = options.stations != 0 ? options.stations : tess::n_pes();
   const auto ring = tess::create<Station>(tess::range(n));
   const Token token{n * options.rounds, 0, options.rounds * (n * (n - 1) / 2)};
-  const tess::Time begin = pe.now();
+  const tess::Time begin = tess::now();
   const auto send_all = [&] {
     for (std::int32_t k = 0; k < options.messages; ++k) ring[{0}].send<&Station::pass>(token);
   };
   co_await tess::epoch(send_all);
-  const double seconds = tess::seconds(pe.now() - begin);
+  const double seconds = tess::seconds(tess::now() - begin);
 
   tess::Future<std::int64_t> total;
   ring.broadcast<&Station::count>(total.callback());

@@ -57,14 +57,13 @@ class Block : public tess::Chare<Block, tess::Index2> {
 };
 
 tess::Task relax(Grid grid) {
-  tess::Pe& pe = tess::current_pe();
   tess::Future<Outcome> result;
   const auto blocks =
       tess::create<Block>(tess::range(grid.n_blocks, grid.n_blocks), grid, result.callback());
-  const tess::Time begin = pe.now();
+  const tess::Time begin = tess::now();
   blocks.broadcast<&Block::step>(0);
   const Outcome outcome = co_await result;
-  const double seconds = tess::seconds(pe.now() - begin);
+  const double seconds = tess::seconds(tess::now() - begin);
   tess::print(fmt::format(
       "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us per block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",

@@ -12,7 +12,7 @@ namespace {
 class Bench {
  public:
   Bench(const Settings& settings, std::vector<Graph> graphs)
-      : settings_(settings), graphs_(std::move(graphs)), pe_(tess::current_pe()) {
+      : settings_(settings), graphs_(std::move(graphs)) {
     for (const Graph& graph : graphs_) {
       columns_.push_back(tess::create<Column>(tess::range(graph.width), graph));
       totals_.push_back(totals(graph));
@@ -36,13 +36,12 @@ class Bench {
       return 1e-9 * static_cast<double>(virtual_nanoseconds(graph.kernel, iterations));
     return calibrate(graph.kernel, iterations);
   }
-  [[nodiscard]] bool is_virtual() const { return pe_.machine().virtual_time(); }
+  [[nodiscard]] bool is_virtual() const { return tess::machine().virtual_time(); }
   void check(std::size_t graph, const Count& count) const;
   [[nodiscard]] Row row_of(std::optional<std::int64_t> iterations, double seconds) const;
 
   const Settings& settings_;
   const std::vector<Graph> graphs_;
-  tess::Pe& pe_;
   std::vector<tess::ArrayProxy<Column>> columns_;
   std::vector<tess::BalancerProxy> balancers_;
   std::vector<Totals> totals_;
@@ -50,7 +49,7 @@ class Bench {
 
 tess::Task Bench::run(std::optional<std::int64_t> iterations, double* seconds) {
   std::deque<tess::Future<Count>> done;
-  const tess::Time began = pe_.now();
+  const tess::Time began = tess::now();
   for (std::size_t k = 0; k < graphs_.size(); ++k) {
     Run run;
     run.iterations = iterations.value_or(graphs_[k].kernel.iterations);
@@ -65,7 +64,7 @@ tess::Task Bench::run(std::optional<std::int64_t> iterations, double* seconds) {
     const Count count = co_await future;
     check(k, count);
   }
-  *seconds = tess::seconds(pe_.now() - began);
+  *seconds = tess::seconds(tess::now() - began);
 }
 
 void Bench::check(std::size_t graph, const Count& count) const {
@@ -96,8 +95,8 @@ Row Bench::row_of(std::optional<std::int64_t> iterations, double seconds) const 
   }
   row.width = graphs_.front().width;
   row.steps = graphs_.front().steps;
-  row.pes = pe_.n_pes();
-  row.ranks = pe_.machine().n_processes();
+  row.pes = tess::n_pes();
+  row.ranks = tess::machine().n_processes();
   row.iterations = iterations.value_or(graphs_.front().kernel.iterations);
   row.grain_seconds = kernels / static_cast<double>(row.n_tasks);
   row.seconds = seconds;

@@ -7,7 +7,7 @@ namespace task_bench {
 namespace {
 
 tess::Task measure(Settings settings) {
-  const tess::Machine& machine = tess::current_pe().machine();
+  const tess::Machine& machine = tess::machine();
   print_head(settings, machine);
   std::vector<Result> results;
   co_await run_all(settings, &print_result, results);

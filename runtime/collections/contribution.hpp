@@ -12,6 +12,11 @@
 
 namespace tess::detail {
 
+/// The operation of a reduction without values.
+struct AllThere {
+  NoValue operator()(NoValue /*a*/, const NoValue& /*b*/) const { return {}; }
+};
+
 template <class T>
 void check_target(const Element& element, const Callback<T>& target) {
   TESS_CHECK(static_cast<bool>(target), element_text(element), " contributes, but its Callback<",
@@ -20,27 +25,28 @@ void check_target(const Element& element, const Callback<T>& target) {
 
 /// Merges immediately: adds to the local sum that earlier elements have started, if there is one.
 template <class Key, class Op, class T>
-void contribute_as(const Key& /*key*/, Element& element, Collection& collection, Op /*op*/, T value,
+void contribute_as(const Key& /*key*/, Element& element, Collection& collection, Op op, T value,
                    Callback<T>&& target) {
   using Merged = MergedPartial<T, Op>;
   if (Partial* open = collection.open_sum(element, Merged::its_kind()); open != nullptr) {
-    static_cast<Merged*>(open)->add(value);
+    static_cast<Merged*>(open)->add(op, value, target);
     collection.contributed(element);
   } else {
     check_target(element, target);
-    collection.contribute(element, std::make_unique<Merged>(std::move(value), std::move(target)));
+    collection.contribute(
+        element, std::make_unique<Merged>(std::move(op), std::move(value), std::move(target)));
   }
 }
 
 /// Collects the values, which are combined in the order of keys at the end.
 template <class Key, class Op, class T>
-void contribute_as(const Key& key, Element& element, Collection& collection, InOrder<Op> /*op*/,
+void contribute_as(const Key& key, Element& element, Collection& collection, InOrder<Op> op,
                    T value, Callback<T>&& target) {
   check_target(element, target);
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));
-  collection.contribute(
-      element, std::make_unique<OrderedPartial<T, Op, Key>>(std::move(values), std::move(target)));
+  collection.contribute(element, std::make_unique<OrderedPartial<T, Op, Key>>(
+                                     std::move(op.op), std::move(values), std::move(target)));
 }
 
 /// Called by the base classes of elements. A constructor's contribution waits until the element is

@@ -9,6 +9,8 @@
 #include "runtime/core/text.hpp"
 
 #include <array>
+#include <bit>
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -40,6 +42,42 @@ struct Index6 {
   friend auto operator<=>(const Index6&, const Index6&) = default;
 };
 
+namespace detail {
+template <class T>
+struct IsCoordinates : std::false_type {};
+template <std::size_t n>
+struct IsCoordinates<std::array<std::int32_t, n>> : std::true_type {};
+
+/// An index of one axis less.
+template <std::int32_t n_axes>
+struct FewerAxes {};
+template <>
+struct FewerAxes<3> : std::type_identity<Index2> {};
+template <>
+struct FewerAxes<4> : std::type_identity<Index3> {};
+template <>
+struct FewerAxes<5> : std::type_identity<Index4> {};
+template <>
+struct FewerAxes<6> : std::type_identity<Index5> {};
+}  // namespace detail
+
+/// Coordinates of an index that a Range can enumerate: one to six numbers, of which x is the first
+/// or all of them.
+template <class Index>
+concept Coordinates =
+    Bitwise<Index> && sizeof(Index) % 4 == 0 && sizeof(Index) <= 24 && requires(Index i) {
+      requires(std::same_as<decltype(i.x), std::int32_t> ||
+               detail::IsCoordinates<decltype(i.x)>::value);
+    };
+
+template <Coordinates Index>
+inline constexpr std::int32_t n_axes_of = static_cast<std::int32_t>(sizeof(Index) / 4);
+
+template <Coordinates Index>
+[[nodiscard]] auto coordinates(const Index& index) {
+  return std::bit_cast<std::array<std::int32_t, sizeof(Index) / 4>>(index);
+}
+
 /// The hash of an index. It is the same in every process, since homes are computed from it.
 template <class Index>
 struct IndexHash {
@@ -68,6 +106,10 @@ template <class Index>
     return text("[\"", std::string_view(index), "\"]");
   } else if constexpr (Writable<Index>) {
     return text("[", index, "]");
+  } else if constexpr (Coordinates<Index>) {
+    std::string out = "[";
+    for (const std::int32_t at : coordinates(index)) out += text(out.size() > 1 ? "," : "", at);
+    return out + "]";
   } else if constexpr (std::is_aggregate_v<Index>) {
     std::string out = "[";
     const auto add = [&out](const auto& field) {
@@ -142,20 +184,11 @@ template <class... Extent>
 /// The range of a sparse array: it has no elements at first; all are inserted or created on demand.
 inline constexpr Range sparse{};
 
-/// Coordinates of an index that a Range can enumerate.
-template <class Index>
-concept Coordinates = Bitwise<Index> && std::is_aggregate_v<Index> && sizeof(Index) % 4 == 0 &&
-                      sizeof(Index) <= 24 && requires(Index i) { i.x; };
-
-template <Coordinates Index>
-inline constexpr std::int32_t n_axes_of = static_cast<std::int32_t>(sizeof(Index) / 4);
-
 /// The rank of an index within a range in row-major order, or −1 outside.
 template <Coordinates Index>
 [[nodiscard]] std::int64_t rank_in(const Range& range, const Index& index) {
   if (range.n_axes != n_axes_of<Index>) return -1;
-  std::array<std::int32_t, sizeof(Index) / 4> at{};
-  std::memcpy(at.data(), &index, sizeof index);
+  const auto at = coordinates(index);
   std::int64_t rank = 0;
   for (std::size_t axis = 0; axis < at.size(); ++axis) {
     if (at[axis] < 0 || at[axis] >= range.extent[axis]) return -1;

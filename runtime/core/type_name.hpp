@@ -3,9 +3,7 @@
 
 #include <string>
 #include <string_view>
-#ifdef __clang__
 #include <typeinfo>
-#endif
 
 namespace tess {
 
@@ -26,8 +24,8 @@ template <auto Value>
   return between(__PRETTY_FUNCTION__, "Value = ");
 }
 
-/// The name of a type or function for people, and a key that no other one in a program has: clang
-/// prints overloads and instances of a template alike, so there the key is the linker's name.
+/// The name of a type or function for people, and a key that no other one in a program has: the
+/// linker's name, since compilers print overloads alike, and clang instances of a template.
 struct Name {
   std::string_view text;
   std::string_view key;
@@ -36,7 +34,6 @@ template <class T>
 struct TypeTag {};
 template <auto Value>
 struct ValueTag {};
-#ifdef __clang__
 template <class T>
 [[nodiscard]] Name name_of() {
   return {type<T>(), typeid(TypeTag<T>).name()};
@@ -45,16 +42,6 @@ template <auto Value>
 [[nodiscard]] Name name_of() {
   return {value<Value>(), typeid(ValueTag<Value>).name()};
 }
-#else
-template <class T>
-[[nodiscard]] constexpr Name name_of() {
-  return {type<T>(), type<T>()};
-}
-template <auto Value>
-[[nodiscard]] constexpr Name name_of() {
-  return {value<Value>(), value<Value>()};
-}
-#endif
 }  // namespace naming
 
 /// The name of a type as the compiler spells it: "Block".

@@ -2,11 +2,29 @@
 // coroutine. Also the messages that the compiler prints if a member function cannot be one.
 #pragma once
 
+#include "runtime/core/check.hpp"
+
+#include <limits>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace tess {
+
 class Task;
+
+template <class... Parameters>
+struct Overload {
+  template <class C, class R>
+  constexpr auto operator()(R (C::*function)(Parameters...)) const {
+    return function;
+  }
+};
+/// The entry method of these parameters among several of one name:
+/// send<tess::overload<int>(&Block::set)>(3).
+template <class... Parameters>
+inline constexpr Overload<Parameters...> overload{};
+
 }  // namespace tess
 
 namespace tess::detail {
@@ -36,6 +54,46 @@ struct MemberTraits<R (C::*)(P...) const noexcept> : MemberTraits<R (C::*)(P...)
 template <auto F>
 using EntryTraits = MemberTraits<decltype(F)>;
 
+/// True if some number of type From cannot be a To for its type alone: 3.7 as an integer, a double
+/// as a float, a 64-bit number as one of 32 bits. (A sign is looked at when the number is sent.)
+template <class To, class From>
+inline constexpr bool loses_digits =
+    std::is_arithmetic_v<To> && std::is_arithmetic_v<From> && !std::is_same_v<To, bool> &&
+    (std::is_floating_point_v<To> ? std::is_floating_point_v<From> && sizeof(To) < sizeof(From)
+                                  : std::is_floating_point_v<From> || sizeof(To) < sizeof(From));
+
+template <class Parameters, class... Args>
+consteval bool loses() {
+  return []<class... P>(std::tuple<P...>*) {
+    return (loses_digits<P, std::remove_cvref_t<Args>> || ...);
+  }(static_cast<Parameters*>(nullptr));
+}
+
+/// An argument as the entry method's parameter takes it. A number below zero for an unsigned
+/// parameter, or one above the largest of a signed one, is misuse.
+template <class P, class A>
+decltype(auto) as_parameter(A&& argument) {
+  using From = std::remove_cvref_t<A>;
+  if constexpr (std::is_integral_v<P> && std::is_integral_v<From> && !std::is_same_v<P, bool> &&
+                !std::is_same_v<From, bool> && std::is_signed_v<P> != std::is_signed_v<From>) {
+    const P sent = static_cast<P>(argument);
+    TESS_CHECK((sent < P{}) == (argument < From{}), "an argument is ", argument,
+               ", but the entry method takes ", std::numeric_limits<P>::min(), " to ",
+               std::numeric_limits<P>::max());
+    return sent;
+  } else {
+    return std::forward<A>(argument);
+  }
+}
+
+/// The arguments of an entry method as its message carries them.
+template <class Parameters, class... Args>
+[[nodiscard]] Parameters as_parameters(Args&&... args) {
+  return [&]<class... P>(std::tuple<P...>*) {
+    return Parameters(as_parameter<P>(std::forward<Args>(args))...);
+  }(static_cast<Parameters*>(nullptr));
+}
+
 /// Checks that F is an entry method of C that can be called with these arguments.
 template <class C, auto F, class... Args>
 consteval bool check_entry() {
@@ -49,17 +107,35 @@ consteval bool check_entry() {
     static_assert(
         std::is_void_v<typename Traits::Result> || std::is_same_v<typename Traits::Result, Task>,
         "an entry method returns void or tess::Task");
-    static_assert(Traits::n_arguments <= 2,
-                  "an entry method takes at most two arguments: put more into one aggregate");
     static_assert(Traits::by_value_or_const,
                   "an entry method takes its arguments by value or const reference");
     static_assert(std::is_void_v<typename Traits::Result> || Traits::by_value,
                   "a coroutine takes its arguments by value: the message is gone once it waits");
-    static_assert(std::is_constructible_v<typename Traits::Arguments, Args...> &&
-                      sizeof...(Args) == Traits::n_arguments,
-                  "these arguments are not what the entry method takes");
+    if constexpr (sizeof...(Args) == Traits::n_arguments) {
+      static_assert(std::is_constructible_v<typename Traits::Arguments, Args...>,
+                    "these arguments are not what the entry method takes");
+      static_assert(!loses<typename Traits::Arguments, Args...>(),
+                    "an argument would lose digits: give a number of the entry method's type, or "
+                    "convert it where you send");
+    } else {
+      static_assert(sizeof...(Args) == Traits::n_arguments,
+                    "these are more or fewer arguments than the entry method takes");
+    }
   }
   return true;
+}
+
+/// The type of value that a target of entry method F takes: its argument, or `Without`.
+template <auto F, class Without>
+consteval auto target_value() {
+  using Traits = EntryTraits<F>;
+  static_assert(Traits::n_arguments <= 1,
+                "a target is an entry method of one argument, or of none");
+  if constexpr (Traits::n_arguments == 1) {
+    return std::type_identity<std::tuple_element_t<0, typename Traits::Arguments>>();
+  } else {
+    return std::type_identity<Without>();
+  }
 }
 
 }  // namespace tess::detail

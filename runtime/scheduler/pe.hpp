@@ -197,6 +197,7 @@ class Pe {
     futures_.emplace(++n_futures_, future);
     return n_futures_;
   }
+  void move_future(std::uint64_t id, void* future) { futures_[id] = future; }
   void leave_future(std::uint64_t id) { futures_.erase(id); }
   [[nodiscard]] void* find_future(std::uint64_t id) const {
     const auto at = futures_.find(id);

@@ -6,7 +6,7 @@ if output=$("$1" -std=gnu++20 -fsyntax-only "-I$2" "$3" 2>&1); then
   echo "$3 compiles, but should not"
   exit 1
 fi
-if ! grep -E "error: static assertion failed" <<<"$output" | grep -qF -- "$sentence"; then
+if ! grep -E "error: " <<<"$output" | grep -qF -- "$sentence"; then
   echo "$3 does not fail with: $sentence"
   echo "$output" | head -20
   exit 1

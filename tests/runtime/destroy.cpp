@@ -24,7 +24,7 @@ class Worker : public tess::Chare<Worker, tess::Index1> {
   Worker() : ballast_(100) {}
   void work(tess::Callback<double> done) {
     array()[{(index().x + 1) % 16}].send<&Worker::hear>(1.0);
-    migrate_to(tess::PeId{(tess::current_pe().id().value + 1) % tess::current_pe().n_pes()});
+    migrate_to(tess::PeId{(tess::my_pe().value + 1) % tess::n_pes()});
     contribute(tess::sum, 1.0, done);
   }
   void hear(double value) { ballast_[0] += value; }
@@ -63,7 +63,7 @@ tess::Task use_and_end(int round) {
   workers.broadcast<&Worker::work>(worked.callback());
   members.broadcast<&Member::add>(added.callback());
   CHECK(co_await worked == 16);
-  CHECK(co_await added == tess::current_pe().n_pes());
+  CHECK(co_await added == tess::n_pes());
   co_await tess::epoch([&] {
     workers.destroy();
     members.destroy();

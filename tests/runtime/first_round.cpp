@@ -21,8 +21,8 @@ class Block : public tess::Chare<Block, tess::Index1> {
     at_sync();
   }
   void resume_from_sync() {
-    std::vector<std::int64_t> of_pe(static_cast<std::size_t>(tess::current_pe().n_pes()), 0);
-    of_pe[static_cast<std::size_t>(tess::current_pe().id().value)] = load_;
+    std::vector<std::int64_t> of_pe(static_cast<std::size_t>(tess::n_pes()), 0);
+    of_pe[static_cast<std::size_t>(tess::my_pe().value)] = load_;
     contribute(tess::sum, std::move(of_pe), placement_);
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
@@ -36,7 +36,7 @@ class Block : public tess::Chare<Block, tess::Index1> {
     for (std::int64_t i = 0; i < 300 * load_; ++i) value_ = value_ * 0.999 + 1;
   }
   tess::Callback<std::vector<std::int64_t>> placement_;
-  std::int64_t load_ = tess::current_pe().id() == tess::PeId{0} ? 400 : 100;
+  std::int64_t load_ = tess::my_pe() == tess::PeId{0} ? 400 : 100;
   double value_ = 1;
 };
 
@@ -63,7 +63,7 @@ tess::Task balance_by(const std::string& strategy, Outcome* outcome) {
 
 tess::Task balance_by_all() {
   // Other programs disturb what a real machine measures: there the best of a few rounds counts.
-  const int n_tries = tess::current_pe().machine().virtual_time() ? 1 : 8;
+  const int n_tries = tess::machine().virtual_time() ? 1 : 8;
   bool good = true;
   for (const std::string& name : tess::balance::strategy_names()) {
     if (name == "none" || name == "rotate" || name == "random") continue;

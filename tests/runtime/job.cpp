@@ -24,7 +24,7 @@ class Crowd : public tess::Group<Crowd> {
     for (int i = 0; i < n_balls; ++i) pass(i);
   }
   void pass(int ball) {
-    const tess::PeId next{(pe().value + 1) % tess::current_pe().n_pes()};
+    const tess::PeId next{(pe().value + 1) % tess::n_pes()};
     group()[next].send<&Crowd::pass>(ball);
   }
   void give(int code) { tess::exit(code); }
@@ -59,7 +59,7 @@ class Forgetful : public tess::Chare<Forgetful, tess::Index1> {
  public:
   void go() {
     lost_ = 7.5;
-    migrate_to(tess::PeId{tess::current_pe().n_pes() - 1});
+    migrate_to(tess::PeId{tess::n_pes() - 1});
   }
   void end() const { tess::exit(0); }
   template <class Ar>
@@ -97,7 +97,7 @@ int job(int argc, char** argv) {
       forgetful[{0}].send<&Forgetful::end>();
     } else {
       crowd.broadcast<&Crowd::begin>();
-      const std::int32_t n = tess::current_pe().n_pes();
+      const std::int32_t n = tess::n_pes();
       const auto actors = tess::create<Actor>(tess::range(n));
       actors[{n - 1}].send<&Actor::act>(ending);
     }

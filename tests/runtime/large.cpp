@@ -107,7 +107,7 @@ class Station : public tess::Group<Station> {
 
   /// Sends to the last PE.
   tess::Task pour(Flood flood) {
-    const tess::PeId last{tess::current_pe().n_pes() - 1};
+    const tess::PeId last{tess::n_pes() - 1};
     for (int i = 0; i < flood.n; ++i) {
       if (flood.asks) co_await tess::room(group()[last]);
       group()[last].send<&Station::sink>(std::vector<std::byte>(MiB, std::byte{1}), flood.sleep_us);
@@ -126,9 +126,7 @@ class Station : public tess::Group<Station> {
   }
 
  private:
-  [[nodiscard]] tess::PeId next() const {
-    return tess::PeId{(pe().value + 1) % tess::current_pe().n_pes()};
-  }
+  [[nodiscard]] tess::PeId next() const { return tess::PeId{(pe().value + 1) % tess::n_pes()}; }
   int n_met_ = 0;
   long faults_ = 0;
   std::size_t peak_ = 0;
@@ -150,7 +148,7 @@ tess::Task memory() {
 /// From the first PE to the last; then each looks how far its memory has grown.
 tess::Task flood(Flood flood, std::size_t most_sender, std::size_t most_receiver) {
   const auto stations = tess::create_group<Station>();
-  const tess::PeId last{tess::current_pe().n_pes() - 1};
+  const tess::PeId last{tess::n_pes() - 1};
   co_await tess::epoch([&] { stations.broadcast<&Station::watch>(); });
   co_await tess::epoch([&] { stations[tess::PeId{0}].send<&Station::pour>(flood); });
   stations[tess::PeId{0}].send<&Station::within>(most_sender);

@@ -47,8 +47,7 @@ class Sender : public tess::Group<Sender> {
   }
   void touch(tess::ArrayProxy<Heavy> array) { array[{0}].send<&Heavy::touch>(); }
   void count_forwards(tess::Callback<std::int64_t> done) {
-    contribute(tess::sum, static_cast<std::int64_t>(tess::current_pe().statistics().forwards),
-               std::move(done));
+    contribute(tess::sum, static_cast<std::int64_t>(tess::statistics().forwards), std::move(done));
   }
 };
 
@@ -74,7 +73,7 @@ TEST_CASE("old news of where an element is does not displace newer news", "[runt
   const int code = run_on_three([] {
     const auto array = tess::create<Heavy>(tess::sparse);
     tess::Index1 index{0};
-    while (array.here().home(index) == tess::current_pe().id()) ++index.x;
+    while (array.here().home(index) == tess::my_pe()) ++index.x;
     using Elements = tess::detail::ArrayOf<tess::Index1>;
     const auto news = [&](std::int32_t pe, tess::detail::Version version) {
       Elements::hint_arrives(array.here(), {index, {tess::PeId{pe}, version}});

@@ -31,6 +31,12 @@ struct Uneven {
 using Short = Uneven<0>;
 using Long = Uneven<1>;
 
+struct Scaled {
+  int by = 1;
+  int operator()(int a, int b) const { return by * (a + b); }
+  friend bool operator==(const Scaled&, const Scaled&) = default;
+};
+
 class Block : public tess::Chare<Block, tess::Index1> {
  public:
   Block() = default;
@@ -42,6 +48,10 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void end() { destroy(); }
   void answer(tess::Callback<int> target) { target(7); }
   void give(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
+  void give_to_some() { contribute(tess::sum, 1, array()[{index().x % 2}].target<&Block::take>()); }
+  void give_scaled(tess::Callback<int> target) { contribute(Scaled{index().x}, 1, target); }
+  void take(int /*sum*/) {}
+  void count(std::uint64_t /*n*/) {}
   void move(PeId pe) { migrate_to(pe); }
   template <class Ar>
   void serialize(Ar& /*ar*/) {}
@@ -51,7 +61,7 @@ class Block : public tess::Chare<Block, tess::Index1> {
 template <class Value>
 class Carrier : public tess::Chare<Carrier<Value>, tess::Index1> {
  public:
-  void go() { this->migrate_to(PeId{tess::current_pe().n_pes() - 1}); }
+  void go() { this->migrate_to(PeId{tess::n_pes() - 1}); }
   void hear(Value /*value*/) {}
   void give(tess::Callback<Value> target) { this->contribute(tess::sum, Value{}, target); }
   template <class Ar>
@@ -69,18 +79,18 @@ void carry() {
 }
 template <class Value>
 void hear() {
-  const std::int32_t n = tess::current_pe().n_pes();
+  const std::int32_t n = tess::n_pes();
   const auto carriers = tess::create<Carrier<Value>>(tess::range(n));
   carriers[{n - 1}].template send<&Carrier<Value>::hear>(Value{});
 }
 template <class Value>
 void hear_all() {
-  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::current_pe().n_pes()));
+  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::n_pes()));
   carriers.template broadcast<&Carrier<Value>::hear>(Value{});
 }
 template <class Value>
 tess::Task sum_all() {
-  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::current_pe().n_pes()));
+  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::n_pes()));
   tess::Future<Value> sum;
   carriers.template broadcast<&Carrier<Value>::give>(sum.callback());
   (void)co_await sum;
@@ -90,6 +100,13 @@ tess::Task sum_of_none() {
   const auto blocks = tess::create<Block>(tess::sparse);
   tess::Future<int> sum;
   blocks.broadcast<&Block::give>(sum.callback());
+  (void)co_await sum;
+}
+
+tess::Task sum_scaled() {
+  const auto blocks = tess::create<Block>(tess::range(3));
+  tess::Future<int> sum;
+  blocks.broadcast<&Block::give_scaled>(sum.callback());
   (void)co_await sum;
 }
 
@@ -117,6 +134,10 @@ const std::map<std::string, std::function<void()>> misuses{
     {"move_to_55", [] { blocks()[{1}].send<&Block::move>(PeId{55}); }},
     {"empty_callback", [] { blocks()[{2}].send<&Block::answer>(tess::Callback<int>()); }},
     {"empty_target", [] { blocks().broadcast<&Block::give>(tess::Callback<int>()); }},
+    {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
+    {"different_operations", [] { const tess::Task task = sum_scaled(); }},
+    {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
+    {"negative_argument", [] { blocks()[{0}].send<&Block::count>(-1); }},
     {"exit_-1", [] { tess::exit(-1); }},
     {"exit_256", [] { tess::exit(256); }},
     {"throw_inserted", [] { blocks()[{7}].insert(1); }},

@@ -16,7 +16,7 @@ std::vector<std::uint64_t> trace;  // one thread runs all simulated PEs
 
 void Walker::walk(std::uint64_t seed) {
   tess::Random random(seed);
-  trace.push_back(seed ^ static_cast<std::uint64_t>(tess::current_pe().now().count()));
+  trace.push_back(seed ^ static_cast<std::uint64_t>(tess::now().count()));
   if (trace.size() > 500) return;
   migrate_to(tess::PeId{static_cast<std::int32_t>(random.below(3))});
   array()[{static_cast<int>(random.below(5))}].send<&Walker::walk>(random());

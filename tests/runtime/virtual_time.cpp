@@ -38,7 +38,7 @@ std::int32_t depth_of(std::int32_t n_pes) {
 class Shift : public tess::Chare<Shift, tess::Index1> {
  public:
   void work(tess::Callback<std::int64_t> done) {
-    tess::charge(work_of(tess::current_pe().id()));
+    tess::charge(work_of(tess::my_pe()));
     contribute(tess::sum, std::int64_t{1}, std::move(done));
   }
   static nanoseconds work_of(tess::PeId pe) { return nanoseconds(50'000 + 10'000 * pe.value); }
@@ -50,22 +50,21 @@ struct IterationTimes {
 
 tess::Task iterate(IterationTimes& times) {
   constexpr std::int32_t n_each = 4, n_rounds = 10;
-  tess::Pe& pe = tess::current_pe();
-  const auto shifts = tess::create<Shift>(tess::range(n_each * pe.n_pes()));
-  for (std::int32_t i = 0; i < pe.n_pes(); ++i) {
+  const auto shifts = tess::create<Shift>(tess::range(n_each * tess::n_pes()));
+  for (std::int32_t i = 0; i < tess::n_pes(); ++i) {
     const nanoseconds work = n_each * Shift::work_of(tess::PeId{i});
     times.busiest = std::max(times.busiest, work);
     times.sum += work;
   }
   nanoseconds began{0};
   for (std::int32_t round = 0; round <= n_rounds; ++round) {
-    if (round == 1) began = pe.now();  // the first waits for the array, too
+    if (round == 1) began = tess::now();  // the first waits for the array, too
     tess::Future<std::int64_t> done;
     shifts.broadcast<&Shift::work>(done.callback());
     const std::int64_t n = co_await done;
-    TESS_CHECK(n == n_each * pe.n_pes(), n, " chares worked");
+    TESS_CHECK(n == n_each * tess::n_pes(), n, " chares worked");
   }
-  times.mean = (pe.now() - began) / n_rounds;
+  times.mean = (tess::now() - began) / n_rounds;
 }
 
 constexpr std::int32_t n_files = 50;
@@ -75,7 +74,7 @@ class Clerk : public tess::Group<Clerk> {
  public:
   void begin(std::int32_t n) {
     for (std::int32_t i = 0; i < n * (pe().value + 1); ++i) group()[pe()].send<&Clerk::file>();
-    group()[tess::PeId{(pe().value + 1) % tess::current_pe().n_pes()}].send<&Clerk::file>();
+    group()[tess::PeId{(pe().value + 1) % tess::n_pes()}].send<&Clerk::file>();
   }
   void file() { tess::charge(nanoseconds(7001)); }
 };
@@ -93,7 +92,7 @@ class Tourist : public tess::Chare<Tourist, tess::Index1> {
   void begin(std::int32_t n_hops) { hop({static_cast<std::uint64_t>(index().x), n_hops + 1}); }
   void hop(Trip trip) {
     if (--trip.hops_left == 0) {
-      last_trip_ended = std::max(last_trip_ended, tess::current_pe().now());
+      last_trip_ended = std::max(last_trip_ended, tess::now());
       return;
     }
     trip.state = trip.state * 6364136223846793005U + 1442695040888963407U;
@@ -108,9 +107,8 @@ class Tourist : public tess::Chare<Tourist, tess::Index1> {
 class Counter : public tess::Group<Counter> {
  public:
   void count(tess::Callback<std::vector<std::uint64_t>> done) {
-    tess::Pe& here = tess::current_pe();
-    std::vector<std::uint64_t> counts(static_cast<std::size_t>(here.n_pes()));
-    counts[static_cast<std::size_t>(pe().value)] = here.statistics().messages;
+    std::vector<std::uint64_t> counts(static_cast<std::size_t>(tess::n_pes()));
+    counts[static_cast<std::size_t>(pe().value)] = tess::statistics().messages;
     contribute(tess::sum, std::move(counts), std::move(done));
   }
 };
@@ -130,10 +128,9 @@ void walk_without_epoch(const Walk& walk) {
 }
 
 tess::Task walk_in_epoch(Walk& walk) {
-  tess::Pe& pe = tess::current_pe();
   const auto body = [&] { walk_without_epoch(walk); };
   co_await tess::epoch(body);
-  walk.in_epoch = pe.now();
+  walk.in_epoch = tess::now();
   tess::Future<std::vector<std::uint64_t>> done;
   tess::create_group<Counter>().broadcast<&Counter::count>(done.callback());
   walk.messages = co_await done;

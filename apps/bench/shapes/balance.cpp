@@ -42,9 +42,8 @@ class Grinder : public tess::Chare<Grinder, tess::Index1> {
     const Stopwatch watch;
     load_[0] = grind(load_[0], plan_.unit * (index().x + 1));
     ++n_steps_;
-    const tess::Pe& pe = tess::current_pe();
-    std::vector<double> busy(static_cast<std::size_t>(pe.n_pes()));
-    busy[static_cast<std::size_t>(pe.id().value)] = watch.nanoseconds();
+    std::vector<double> busy(static_cast<std::size_t>(tess::n_pes()));
+    busy[static_cast<std::size_t>(tess::my_pe().value)] = watch.nanoseconds();
     contribute(tess::sum, std::move(busy), array()[{0}].target<&Grinder::iterated>());
   }
   /// The first element conducts.
@@ -96,7 +95,7 @@ double grinding_rate() {
 
 /// A lower bound of the seconds of any schedule.
 double grinding_floor(const GrindPlan& plan, double rate) {
-  const std::int32_t n_pes = tess::current_pe().n_pes();
+  const std::int32_t n_pes = tess::n_pes();
   std::vector<double> of_pe(static_cast<std::size_t>(n_pes));
   double whole = 0;
   for (std::int32_t i = 0; i < n_grinders; ++i) {

@@ -49,7 +49,7 @@ using SparseVoters = tess::ArrayProxy<Voter<tess::Index3>>;
 class Registrar : public tess::Group<Registrar> {
  public:
   void fill(SparseVoters voters, std::int64_t n) {
-    const std::int64_t me = pe().value, n_pes = tess::current_pe().n_pes();
+    const std::int64_t me = pe().value, n_pes = tess::n_pes();
     fill_from({voters, n * me / n_pes, n * (me + 1) / n_pes});
   }
 

@@ -51,7 +51,7 @@ class Toucher : public tess::Group<Toucher> {
   /// `share` of the whole: this PE sends to its part of it.
   void begin(Share share) {
     const std::int64_t n = share.last;
-    const std::int64_t me = pe().value, n_pes = tess::current_pe().n_pes();
+    const std::int64_t me = pe().value, n_pes = tess::n_pes();
     share.next = n * me / n_pes;
     share.last = n * (me + 1) / n_pes;
     touch(share);
@@ -69,7 +69,7 @@ class Toucher : public tess::Group<Toucher> {
   }
   /// The memory of all processes. What was freed goes back to the system first.
   void sum_memory(tess::Callback<double> sum) {
-    const tess::Machine& machine = tess::current_pe().machine();
+    const tess::Machine& machine = tess::machine();
     const bool speaks =
         pe().value == 0 || (!machine.virtual_time() && pe().value % machine.pes_per_process() == 0);
     if (speaks) malloc_trim(0);

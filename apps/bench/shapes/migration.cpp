@@ -17,7 +17,7 @@ class Nomad : public tess::Chare<Nomad, tess::Index1> {
 
   void go() {
     ++n_moves_;
-    next_ = tess::PeId{(tess::current_pe().id().value + 1) % tess::current_pe().n_pes()};
+    next_ = tess::PeId{(tess::my_pe().value + 1) % tess::n_pes()};
     migrate_to(next_);
   }
   void go_followed(tess::Callback<std::int64_t> arrived) {
@@ -25,7 +25,7 @@ class Nomad : public tess::Chare<Nomad, tess::Index1> {
     go();
   }
   void follow(tess::Callback<std::int64_t> arrived) {
-    TESS_CHECK(tess::current_pe().id() == next_, "element ", index().x, " did not move");
+    TESS_CHECK(tess::my_pe() == next_, "element ", index().x, " did not move");
     contribute(tess::sum, std::int64_t{1}, std::move(arrived));
   }
   void check(tess::Callback<std::int64_t> n_moves) {

@@ -140,8 +140,7 @@ tess::Task ping_cores(tess::GroupProxy<CorePlayer> group, std::size_t n_bytes,
   group.local().expect(done.callback());
   const auto address = reinterpret_cast<std::uint64_t>(&ping);  // NOLINT
   const auto play = [&] {
-    group[tess::PeId{tess::current_pe().n_pes() - 1}].send<&CorePlayer::play>(address,
-                                                                              n_round_trips);
+    group[tess::PeId{tess::n_pes() - 1}].send<&CorePlayer::play>(address, n_round_trips);
     group[tess::PeId{0}].send<&CorePlayer::play>(address, n_round_trips);
   };
   co_await tess::epoch(play);  // neither side uses `ping` any more
@@ -150,7 +149,7 @@ tess::Task ping_cores(tess::GroupProxy<CorePlayer> group, std::size_t n_bytes,
 
 /// One turn: every ball and size once, the cores' own beside them.
 tess::Task one_way_turn(const Bench& bench, std::int32_t turn, OneWay& all) {
-  const std::int32_t n_pes = tess::current_pe().n_pes();
+  const std::int32_t n_pes = tess::n_pes();
   const auto players = tess::create<Player>(tess::range(n_pes), n_pes);
   const auto cores = tess::create_group<CorePlayer>();
   double nanoseconds = 0;

@@ -17,9 +17,8 @@ class Labourer : public tess::Chare<Labourer, tess::Index1> {
       while (watch.nanoseconds() < static_cast<double>(nanoseconds)) {
       }
     }
-    const tess::Pe& pe = tess::current_pe();
-    std::vector<double> worked(static_cast<std::size_t>(pe.n_pes()));
-    worked[static_cast<std::size_t>(pe.id().value)] = watch.nanoseconds();
+    std::vector<double> worked(static_cast<std::size_t>(tess::n_pes()));
+    worked[static_cast<std::size_t>(tess::my_pe().value)] = watch.nanoseconds();
     contribute(tess::sum, std::move(worked), std::move(done));
   }
 };

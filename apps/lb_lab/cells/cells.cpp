@@ -10,13 +10,12 @@ namespace lb_lab {
 namespace {
 
 tess::Task start_and_wait(tess::ArrayProxy<Worker> workers, Outcome& outcome) {
-  tess::Pe& pe = tess::current_pe();
   tess::Future<std::uint64_t> answer;
-  const tess::Time began = pe.now();
+  const tess::Time began = tess::now();
   outcome.began = tess::seconds(began);
   workers.broadcast<&Worker::begin>(answer.callback());
   outcome.answer = co_await answer;
-  outcome.seconds = tess::seconds(pe.now() - began);
+  outcome.seconds = tess::seconds(tess::now() - began);
 }
 
 tess::Task run_cells(const Experiment& experiment, tess::GroupProxy<Station> stations,

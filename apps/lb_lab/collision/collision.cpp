@@ -24,7 +24,7 @@ class Collision final : public Stepped {
     // Two deep: all boxes are in one layer.
     collider_ = tess::collide::make_collider(
         {.size = {domain.width / columns, domain.height / rows, 2}, .rules = pair_rules});
-    const std::int32_t n = owners_a_pe * tess::current_pe().n_pes();
+    const std::int32_t n = owners_a_pe * tess::n_pes();
     owners_ = tess::create<Owner>(tess::range(n), stations_, n);
     return balances(experiment_) ? start_balancing(collider_.voxels, experiment_, outcome_)
                                  : tess::BalancerProxy();

@@ -21,8 +21,8 @@ void send_to_lesser(const tess::Callback<tess::collide::Hits>& callback,
   tess::ArrayProxy<Owner>(owners)[owner].send<&Owner::receive>(std::move(hits));
 }
 
-const tess::Callback<tess::collide::Hits>::Kind lesser_owner{"lb_lab: pairs to the lesser owner",
-                                                             &send_to_lesser};
+const tess::Callback<tess::collide::Hits>::Kind lesser_owner{
+    tess::naming::name_of<&send_to_lesser>(), &send_to_lesser};
 
 }  // namespace
 

@@ -16,7 +16,7 @@ class Source : public tess::Group<Source> {
   Source(tess::GroupProxy<Station> stations, tess::ArrayProxy<Region> regions) {
     const Problem& problem = stations.local().plan().problem;
     const Swarm swarm(problem);
-    const auto n_pes = static_cast<std::uint64_t>(tess::current_pe().n_pes());
+    const auto n_pes = static_cast<std::uint64_t>(tess::n_pes());
     const auto me = static_cast<std::uint64_t>(pe().value);
     std::map<tess::Index2, Arrivals> strip;
     for (std::uint64_t i = me * swarm.size() / n_pes; i < (me + 1) * swarm.size() / n_pes; ++i) {

@@ -29,15 +29,15 @@ Station::Station(Plan plan)
       slowness_(plan_.speeds.empty() ? 1 : std::ranges::max(plan_.speeds) / speed_) {
   const double before = clock();
   walked_ = walk(1, 1000);
-  fixed_cost_ = tess::current_pe().machine().virtual_time() && clock() <= before;
+  fixed_cost_ = tess::machine().virtual_time() && clock() <= before;
 }
 
 double Station::clock() const {
-  return tess::seconds(tess::current_pe().now());
+  return tess::seconds(tess::now());
 }
 
 double Station::cpu() const {
-  return tess::current_pe().machine().virtual_time() ? clock() : tess::thread_cpu_seconds();
+  return tess::machine().virtual_time() ? clock() : tess::thread_cpu_seconds();
 }
 
 std::uint64_t Station::work(double seconds, std::uint64_t word) {

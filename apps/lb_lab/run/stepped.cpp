@@ -8,13 +8,12 @@ tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> s
                        Stepped& workload, Outcome& outcome) {
   const Plan& plan = experiment.plan;
   const std::int32_t n = plan.problem.n_iterations;
-  tess::Pe& pe = tess::current_pe();
   tess::BalancerProxy balancer;
   co_await tess::epoch([&] { balancer = workload.create(); });
   co_await workload.begin();
   co_await tess::epoch([&] { stations.broadcast<&Station::first_begins>(); });
 
-  outcome.began = tess::seconds(pe.now());
+  outcome.began = tess::seconds(tess::now());
   for (std::int32_t t = 0; t < n; ++t) {
     co_await workload.step(t);
     co_await tess::epoch([&] { stations.broadcast<&Station::iteration_ends>(t); });
@@ -23,7 +22,7 @@ tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> s
     const std::int32_t phase = (t + 1) / plan.period - 1;
     co_await tess::epoch([&] { stations.broadcast<&Station::round_ends>(phase); });
   }
-  outcome.seconds = tess::seconds(pe.now()) - outcome.began;
+  outcome.seconds = tess::seconds(tess::now()) - outcome.began;
 
   co_await workload.end();
   tess::Future<std::uint64_t> answer;

@@ -51,7 +51,6 @@ std::int32_t exchange_interval(const Scene& scene) {
 }
 
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options) {
-  tess::Pe& pe = tess::current_pe();
   const Scene& scene = stage->scene;
   const StageHandle handle{stage};
   const auto stations = tess::create_group<Station>();
@@ -64,8 +63,8 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
       options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
   };
   const auto hand_out = [&] {
-    const std::int32_t each = pe.machine().pes_per_process();
-    for (std::int32_t first = 0; first < pe.n_pes(); first += each)
+    const std::int32_t each = tess::machine().pes_per_process();
+    for (std::int32_t first = 0; first < tess::n_pes(); first += each)
       stations[tess::PeId{first}].send<&Station::take>(handle);
   };
   co_await tess::epoch(hand_out);
@@ -124,10 +123,10 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
                                       next_after(step, outputs.trajectories, scene.steps)});
     stretch.n_steps = to - step;
     stretch.ask = Stretch::nothing;
-    const tess::Time begin = pe.now();
+    const tess::Time begin = tess::now();
     co_await tess::epoch(move);
     if (rounds_between) co_await balancer.round();
-    result.seconds += tess::seconds(pe.now() - begin);
+    result.seconds += tess::seconds(tess::now() - begin);
     step = to;
   }
   if (options.balance) result.rounds = balancer.history();

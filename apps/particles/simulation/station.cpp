@@ -12,9 +12,8 @@ namespace {
 
 /// The PEs of this process: the first and how many.
 std::pair<std::int32_t, std::int32_t> pes_of_process() {
-  tess::Pe& pe = tess::current_pe();
-  const std::int32_t each = pe.machine().pes_per_process();
-  return {pe.id().value / each * each, each};
+  const std::int32_t each = tess::machine().pes_per_process();
+  return {tess::my_pe().value / each * each, each};
 }
 
 }  // namespace
@@ -87,7 +86,7 @@ void Station::emit(tess::ArrayProxy<Block> blocks) {
   const Stage& stage = *stage_;
   const std::uint64_t n = stage.source.size();
   const auto rank = static_cast<std::uint64_t>(pe().value),
-             n_pes = static_cast<std::uint64_t>(tess::current_pe().n_pes());
+             n_pes = static_cast<std::uint64_t>(tess::n_pes());
   const std::uint64_t begin = n * rank / n_pes, end = n * (rank + 1) / n_pes;
   std::map<tess::Index3, Arrivals> leaving;
   const auto send = [&](tess::Index3 to, Arrivals& arrivals) {

@@ -100,7 +100,7 @@ void Barrier::contribute(SyncState& sync) {
   // The wait itself belongs to the element's epoch. Messages of a round belong to no epoch:
   // otherwise every PE would report each of them to that epoch's coordinator.
   tree_.contribute(sync.next++, EpochId{},
-                   std::make_unique<MergedPartial<std::uint64_t, Sum>>(1, reached_));
+                   std::make_unique<MergedPartial<std::uint64_t, Sum>>(Sum{}, 1, reached_));
 }
 
 void Barrier::resume(std::uint32_t round) {

@@ -1,0 +1,193 @@
+// What a user may do with the public types, on two virtual processes in any order of messages.
+#include "runtime/machine/simulated.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+#include <map>
+#include <unordered_set>
+
+namespace {
+
+int run_seeded(std::uint64_t seed, const std::function<tess::Task()>& main) {
+  tess::SimulatedOptions options;
+  options.n_pes = 4;
+  options.pes_per_process = 2;
+  options.seed = seed;
+  options.cost = tess::Time(100);
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(options);
+  setup.options.seed = seed;
+  return tess::run(setup, main);
+}
+void over_seeds(const std::function<tess::Task()>& main) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    INFO("seed " << seed);
+    REQUIRE(run_seeded(seed, main) == 0);
+  }
+}
+
+/// a + b, in units of `unit`: an operation with a member.
+struct InUnits {
+  int unit = 1;
+  int operator()(int a, int b) const { return (a / unit + b / unit) * unit; }
+  friend bool operator==(const InUnits&, const InUnits&) = default;
+};
+
+class Node : public tess::Chare<Node> {
+ public:
+  Node() = default;
+  explicit Node(tess::ElementProxy<Node, tess::Index1> next) : next_(next) {}
+  void add(int unit, tess::Callback<int> target) { contribute(InUnits{unit}, 25, target); }
+  void add_in_order(int unit, tess::Callback<int> target) {
+    contribute(tess::in_order(InUnits{unit}), 25, target);
+  }
+  void there(tess::Callback<void> target) { contribute(target); }
+  void follow(tess::ElementProxy<Node, tess::Index1> other) { next_ = other; }
+  void pass(tess::Callback<int> target) {
+    if (next_ == tess::ElementProxy<Node, tess::Index1>()) return target(index().x);
+    next_.send<&Node::pass>(target);
+  }
+  void four(int a, std::string b, double c, std::vector<int> d, tess::Callback<double> target) {
+    target(a + static_cast<double>(b.size()) + c + static_cast<double>(d.size()));
+  }
+  void set(int value) { value_ = value; }
+  void set(std::string name) { value_ = static_cast<int>(name.size()); }
+  void tell(tess::Callback<int> target) { target(value_); }
+  void large(std::uint64_t n) { value_ = static_cast<int>(n); }
+  void begin() {
+    result_ = tess::Future<int>();
+    const tess::Task waiting = wait();
+    self().send<&Node::finish>(result_.callback());
+  }
+  tess::Task wait() { value_ = co_await result_; }
+  void finish(tess::Callback<int> target) { target(77); }
+  [[nodiscard]] int value() const { return value_; }
+
+ private:
+  tess::ElementProxy<Node, tess::Index1> next_;
+  tess::Future<int> result_;
+  int value_ = 0;
+};
+
+class Greeter : public tess::Group<Greeter> {
+ public:
+  void hello(tess::MemberProxy<Greeter> from, tess::Callback<int> target) {
+    contribute(tess::sum, from == group()[tess::PeId{0}] ? 1 : 0, target);
+  }
+};
+
+class Cube : public tess::Chare<Cube, tess::Index3> {};
+
+}  // namespace
+
+TEST_CASE("the state of a reduction's operation travels", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(6));
+    tess::Future<int> merged, ordered;
+    nodes.broadcast<&Node::add>(10, merged.callback());
+    CHECK(co_await merged == 120);
+    nodes.broadcast<&Node::add_in_order>(10, ordered.callback());
+    CHECK(co_await ordered == 120);
+  });
+}
+
+TEST_CASE("an element's proxy is a value: empty, compared, hashed, sent, kept", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(5));
+    for (int i = 0; i < 4; ++i) nodes[{i}].send<&Node::follow>(nodes[{i + 1}]);
+    co_await tess::epoch([] {});
+    const std::unordered_set<tess::ElementProxy<Node>> set{nodes[{1}], nodes[{2}], nodes[{1}]};
+    CHECK(set.size() == 2);
+    const std::map<tess::ElementProxy<Node>, int> map{{nodes[{1}], 1}, {nodes[{0}], 0}};
+    CHECK(map.begin()->second == 0);
+    CHECK(std::unordered_set<tess::ArrayProxy<Node>>{nodes, nodes}.size() == 1);
+    co_await tess::epoch([&] {
+      for (int i = 0; i < 4; ++i) nodes[{i}].send<&Node::follow>(nodes[{i + 1}]);
+    });
+    tess::Future<int> last;
+    nodes[{0}].send<&Node::pass>(last.callback());
+    CHECK(co_await last == 4);
+
+    const auto members = tess::create_group<Greeter>();
+    tess::Future<int> all;
+    tess::MemberProxy<Greeter> from;
+    CHECK(from != members[tess::PeId{1}]);
+    from = members[tess::PeId{0}];
+    members.broadcast<&Greeter::hello>(from, all.callback());
+    CHECK(co_await all == tess::n_pes());
+    CHECK(std::unordered_set<tess::MemberProxy<Greeter>>{from, members[tess::PeId{1}]}.size() == 2);
+  });
+}
+
+TEST_CASE("a result without a value: futures, targets, reductions", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(7));
+    tess::Future<void> there;
+    nodes.broadcast<&Node::there>(there.callback());
+    co_await there;
+
+    // A target that takes no value: begin() makes a member future, whose result sets the value.
+    co_await tess::epoch([&] { nodes[{3}].target<&Node::begin>()(); });
+    tess::Future<int> value;
+    nodes[{3}].send<&Node::tell>(value.callback());
+    CHECK(co_await value == 77);
+    co_await tess::epoch([&] { nodes.target<&Node::begin>()(); });
+    tess::Future<int> last;
+    nodes[{6}].send<&Node::tell>(last.callback());
+    CHECK(co_await last == 77);
+  });
+}
+
+TEST_CASE("a future is moved, also once its result is there", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(3));
+    std::vector<tess::Future<int>> all;
+    for (int i = 0; i < 3; ++i) nodes[{i}].send<&Node::tell>(all.emplace_back().callback());
+    co_await tess::epoch([&] { nodes.broadcast<&Node::large>(5); });
+    std::vector<tess::Future<int>> moved;
+    for (tess::Future<int>& one : all) moved.push_back(std::move(one));
+    for (tess::Future<int>& one : moved) CHECK(co_await one % 5 == 0);
+  });
+}
+
+TEST_CASE("an entry method has any number of arguments, and overloads", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(4));
+    tess::Future<double> sum;
+    nodes[{2}].send<&Node::four>(1, "four", 0.5, std::vector<int>(3), sum.callback());
+    CHECK(co_await sum == 8.5);
+    co_await tess::epoch([&] {
+      nodes[{0}].send<tess::overload<int>(&Node::set)>(12);
+      nodes[{3}].send<tess::overload<std::string>(&Node::set)>("three");
+    });
+    tess::Future<int> first, last;
+    nodes[{0}].send<&Node::tell>(first.callback());
+    nodes[{3}].send<&Node::tell>(last.callback());
+    CHECK(co_await first == 12);
+    CHECK(co_await last == 5);
+  });
+}
+
+TEST_CASE("an element is found on its PE only", "[api]") {
+  REQUIRE(run_seeded(1, []() -> tess::Task {
+            const auto nodes = tess::create<Node>(tess::range(8));
+            CHECK(nodes.local({0}) != nullptr);  // the first block of indices is on PE 0
+            CHECK(nodes.local({7}) == nullptr);
+            CHECK(nodes.local({8}) == nullptr);
+            CHECK(tess::my_pe() == tess::PeId{0});
+            CHECK(tess::n_pes() == 4);
+            CHECK(tess::machine().virtual_time());
+            const tess::Time before = tess::now();
+            co_await tess::epoch([&] { nodes.broadcast<&Node::large>(9); });
+            CHECK(tess::now() > before);
+            CHECK(nodes.local({0})->value() == 9);
+          }) == 0);
+}
+
+TEST_CASE("indices of several axes are proxies' keys", "[api]") {
+  CHECK(tess::index_text(tess::Index3{1, -2, 3}) == "[1,-2,3]");
+  const tess::ElementProxy<Cube> a(tess::CollectionId{1}, {1, 2, 3}),
+      b(tess::CollectionId{1}, {1, 2, 4});
+  CHECK(a < b);
+  CHECK(std::hash<tess::ElementProxy<Cube>>()(a) != std::hash<tess::ElementProxy<Cube>>()(b));
+}
