@@ -154,8 +154,9 @@ BalanceRecord& Collection::make_record(Element& element) {
 }
 
 bool Collection::awake(Element& element) {
-  SyncState& sync = make_record(element).sync;
-  return std::exchange(sync.phase, SyncPhase::runs) == SyncPhase::resumes;
+  if (!element.balance_ || element.balance_->sync.phase != SyncPhase::resumes) return false;
+  element.balance_->sync.phase = SyncPhase::runs;
+  return true;
 }
 
 void Collection::end() {

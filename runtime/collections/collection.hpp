@@ -116,8 +116,8 @@ class Collection : public HostedCollection {
   [[nodiscard]] std::int64_t n_away() const { return n_away_; }
   /// The element waits until its balancer resumes it.
   void at_sync(Element& element);
-  /// The message of resume() has arrived. Returns true if this incarnation of the element was
-  /// waiting.
+  /// The message of resume() has arrived. Returns false if it was sent to an earlier incarnation of
+  /// the element; then the wait of this one, if it waits, goes on.
   [[nodiscard]] static bool awake(Element& element);
   /// Lets the element migrate once none of its code runs or waits. The current epoch waits for the
   /// migration, unless a waiting coroutine delays it.

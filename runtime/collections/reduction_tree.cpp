@@ -50,7 +50,9 @@ void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cau
 
 void ReductionTree::take(std::uint32_t number, const Cause& cause) {
   if (number >= next_report_) {
-    take(number, gathering_[number], cause);
+    Gathering& gathering = gathering_[number];
+    gathering.known = true;
+    take(number, gathering, cause);
   } else if (learn(number, cause.led_by)) {
     ask_children(number, cause);
   }
@@ -206,16 +208,14 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
 
 void ReductionTree::on_report(ReductionReport&& report) {
   if (report.late) {
-    // A late destruction may name a number that is complete: it changes the membership from now on.
-    if (report.n == 0 && report.number < next_complete_) {
-      members_ += report.change;
-    } else {
-      Whole& whole = whole_[report.number];
-      whole.sum.n += report.n;
-      whole.sum.change += report.change;
-      merge(whole.sum, std::move(report.value.held));
-      merge(whole.sum, report.shares);
-    }
+    // A member of a number contributes to it or is destroyed before the number is complete.
+    TESS_CHECK(report.number >= next_complete_, words_.name, " ", report.number,
+               " is complete, but a report of one of its members arrives");
+    Whole& whole = whole_[report.number];
+    whole.sum.n += report.n;
+    whole.sum.change += report.change;
+    merge(whole.sum, std::move(report.value.held));
+    merge(whole.sum, report.shares);
     if (report.joins != 0) whole_[report.joins].sum.change += 1;
     take(report.number, report.cause);
     advance();
@@ -237,7 +237,6 @@ void ReductionTree::on_report(ReductionReport&& report) {
 }
 
 void ReductionTree::on_begin(const ReductionBegin& begin) {
-  if (begin.number >= next_report_) gathering_[begin.number].known = true;
   take(begin.number, begin.cause);
   advance();
 }

@@ -196,6 +196,8 @@ class ReductionTree {
   bool learn(std::uint32_t number, std::uint32_t led_by);
   /// Merges the cause of a contribution to `number`.
   void take(std::uint32_t number, Gathering& into, const Cause& cause);
+  /// The same for a contribution elsewhere, of which this PE learns by a message that is no report
+  /// of a child: a new element below may wait for this knowledge, so the children are asked.
   void take(std::uint32_t number, const Cause& cause);
 
   ReductionHost& host_;

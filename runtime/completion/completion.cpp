@@ -102,7 +102,7 @@ bool Completion::report(EpochId epoch, Tally& tally) {
   return true;
 }
 
-void Completion::on_report(const Report& report) {
+void Completion::on(const Report& report) {
   if (is_over(report.epoch)) {  // the runtime may still count its own work there
     messages_.send(report.from, End{report.epoch});
     return;
@@ -117,7 +117,7 @@ void Completion::on_report(const Report& report) {
   list(report.epoch, tally);
 }
 
-void Completion::on_answer(const Answer& answer) {
+void Completion::on(const Answer& answer) {
   Tally* tally = find(answer.epoch);
   if (tally == nullptr) return;  // the end of the epoch overtook this message
   tally->unanswered = false;
@@ -134,7 +134,7 @@ void Completion::check(EpochId epoch, Counters sum) {
   of.wave_runs = true;
   of.again = false;
   of.processed_before_wave = sum.processed;
-  on_wave(Wave{epoch, here_, ++of.wave});
+  on(Wave{epoch, here_, ++of.wave});
 }
 
 Counters Completion::reading(EpochId epoch) const {
@@ -143,7 +143,7 @@ Counters Completion::reading(EpochId epoch) const {
   return at == tallies_.end() ? Counters{} : at->second.own;
 }
 
-void Completion::on_wave(const Wave& wave) {
+void Completion::on(const Wave& wave) {
   Relay relay{wave, reading(wave.epoch), 0};
   for (const PeId child : SpanningTree(here_, wave.root, n_pes_).children()) {
     ++relay.waiting;
@@ -156,7 +156,7 @@ void Completion::on_wave(const Wave& wave) {
   }
 }
 
-void Completion::on_echo(const Echo& message) {
+void Completion::on(const Echo& message) {
   Relay& relay = relays_.at(message.epoch);
   TESS_CHECK(relay.wave.number == message.number, "epoch ", message.epoch.value, ": echo of wave ",
              message.number, " while wave ", relay.wave.number, " runs");
@@ -204,7 +204,7 @@ void Completion::end(EpochId epoch) {
   tallies_.erase(epoch);
 }
 
-void Completion::on_end(const End& end_of) {
+void Completion::on(const End& end_of) {
   end(end_of.epoch);
 }
 

@@ -154,12 +154,12 @@ class Completion {
   /// Appends one line for each unfinished epoch that this PE opened.
   void describe_open(std::vector<std::string>& lines) const;
 
-  // Handlers of the messages.
-  void on_report(const Report& report);
-  void on_answer(const Answer& answer);
-  void on_wave(const Wave& wave);
-  void on_echo(const Echo& echo);
-  void on_end(const End& end);
+  // A message about an epoch has arrived.
+  void on(const Report& report);
+  void on(const Answer& answer);
+  void on(const Wave& wave);
+  void on(const Echo& echo);
+  void on(const End& end);
 
  private:
   struct Coordinated {

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # bad_input.sh BIN: bad input gives one line of error that names it, exit code 2, and no output files.
-set -uo pipefail
+source "$(dirname "$0")/../support/checks.sh"
 bin=$1
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-failed=0
-passed=0
 
 # refuses WORD COMMAND…: the command exits with 2, and prints one line with WORD to standard error.
 refuses() {
@@ -15,10 +11,9 @@ refuses() {
   local code=$?
   if [[ $code -eq 2 && $(wc -l <"$scratch/err") -eq 1 && ! -e $scratch/result.exo && ! -e $scratch/result.json ]] &&
     grep -q -- "$word" "$scratch/err"; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED: $* (exit $code, wanted 2 and one line with '$word'):"
+    fail "$* (exit $code, wanted 2 and one line with '$word'):"
     cat "$scratch/err"
   fi
 }
@@ -35,7 +30,7 @@ box "$scratch/box.msh" 1 0
 box "$scratch/far.msh" 1 1e15
 box "$scratch/tiny.msh" 1e-150 0
 box "$scratch/point.msh" 1e-322 0
-"$bin/m2m_transfer" "$scratch/box.msh" kuhn:4 >"$scratch/out" || { echo "FAILED: box.msh is refused"; failed=1; }
+"$bin/m2m_transfer" "$scratch/box.msh" kuhn:4 >"$scratch/out" || fail "box.msh is refused"
 refuses "far.msh: .* shift the mesh" "${transfer[@]}" "$scratch/far.msh" kuhn:2
 refuses "far.msh: .* shift the mesh" "${transfer[@]}" kuhn:2 "$scratch/far.msh"
 refuses "tiny.msh: .* rescale the mesh" "${transfer[@]}" "$scratch/tiny.msh" "$scratch/tiny.msh"
@@ -73,7 +68,7 @@ refuses "do not work with --study" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$sc
 
 # A job of several processes prints the error once, and all of them end with 2. (mpirun reports the exit code of the first
 # process that failed; --quiet suppresses its own messages.)
-job=(timeout 60 mpirun --quiet --allow-run-as-root --oversubscribe)
+job=(timeout 60 "${mpirun[@]}")
 refuses missing.exo "${job[@]}" -n 2 "${transfer[@]}" "$scratch/missing.exo" kuhn:2 --pes 2
 refuses perhaps "${job[@]}" -n 2 "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)' --pes 1
 refuses --nonsense "${job[@]}" -n 2 "$bin/hello" --nonsense
@@ -85,10 +80,9 @@ for fault in "$scratch/missing.exo kuhn:2" "kuhn:2 kuhn:2 --nonsense" "kuhn:2 ku
   "${job[@]}" -n 4 "$scratch/keep_code" "${transfer[@]}" $fault \
     >"$scratch/out" 2>"$scratch/err"
   if [[ $(cat "$scratch"/code.[0-3] | tr '\n' ' ') == "2 2 2 2 " && $(wc -l <"$scratch/err") -eq 1 ]]; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED: four processes, $fault: exit codes $(cat "$scratch"/code.* | tr '\n' ' ')"
+    fail "four processes, $fault: exit codes $(cat "$scratch"/code.* | tr '\n' ' ')"
     cat "$scratch/err"
   fi
 done
@@ -97,10 +91,9 @@ done
 for program in hello ring m2m_transfer; do
   if "${job[@]}" -n 2 "$bin/$program" --help >"$scratch/out" 2>"$scratch/err" &&
     [[ $(grep -ci '^usage' "$scratch/out") -eq 1 && ! -s $scratch/err ]]; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED: two processes, $program --help:"
+    fail "two processes, $program --help:"
     cat "$scratch/out" "$scratch/err"
   fi
 done
@@ -126,9 +119,8 @@ refuses --nonsense "${lab[@]}" --nonsense
 # A hexahedron, and a truncated ExodusII file.
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 5 2 0 0 1 2 3 4 5 6 7 8\n$EndElements\n' >"$scratch/hex.msh"
 refuses "hex.msh: .*hex8" "${transfer[@]}" "$scratch/hex.msh" kuhn:2
-"$bin/m2m_transfer" kuhn:4 kuhn:8 --out "$scratch/whole.exo" >/dev/null || { echo "FAILED: whole.exo"; failed=1; }
+"$bin/m2m_transfer" kuhn:4 kuhn:8 --out "$scratch/whole.exo" >/dev/null || fail "whole.exo"
 head -c $(($(stat -c %s "$scratch/whole.exo") / 2)) "$scratch/whole.exo" >"$scratch/cut.exo"
 refuses "cut.exo: is truncated" "${transfer[@]}" "$scratch/cut.exo" kuhn:2
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

@@ -1,20 +1,14 @@
 #!/usr/bin/env bash
 # examples.sh BIN: hello, ring and stencil on threads, under mpirun and on the simulated machine, with their answers.
-set -uo pipefail
+source "$(dirname "$0")/../support/checks.sh"
 bin=$1
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-failed=0
-passed=0
-mpirun=(mpirun -q --allow-run-as-root --oversubscribe)
 
 # check WHAT CODE: counts a result.
 check() {
   if (($2 == 0)); then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED: $1"
+    fail "$1"
     tail -5 "$scratch/out"
   fi
 }
@@ -62,5 +56,4 @@ coarse=$(distance 7 2000) fine=$(distance 15 8000)
 python3 -c "import sys; sys.exit(0 if 3.7 < $coarse / $fine < 4.3 else 1)"
 check "the stencil is not second order: $coarse and $fine from the solution" $?
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

@@ -1,13 +1,8 @@
 #!/usr/bin/env bash
 # same_answer.sh BIN MESHES: the answer of a transfer is the same bit for bit for every number of PEs, processes and chares,
 # every voxel size, and every adversarial schedule. MESHES: the folder of make_meshes.sh.
-set -uo pipefail
+source "$(dirname "$0")/../support/checks.sh"
 bin=$1 meshes=$2
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-failed=0
-passed=0
-mpirun=(mpirun --allow-run-as-root --oversubscribe)
 
 transfer=("$bin/m2m_transfer" "$meshes/cube_0.08.msh" "$meshes/cube_0.0566.msh" --field gaussian --field sin --policy nearest)
 
@@ -23,10 +18,9 @@ same() {
   timeout 60 "$@" --json "$scratch/again.json" >"$scratch/out" 2>&1
   local code=$?
   if [[ $code -eq 0 && $(hash_of "$scratch/again.json") == "$want" ]]; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED (exit $code): $*"
+    fail "(exit $code): $*"
     tail -5 "$scratch/out"
   fi
 }
@@ -63,15 +57,13 @@ no_growth() {
   local code=$? few=0 many=0
   ((code == 0)) && few=$(memory_of "$scratch/few.json") many=$(memory_of "$scratch/many.json")
   if ((code == 0 && many < few + 4000000)) && [[ $(hash_of "$scratch/few.json") == "$(hash_of "$scratch/many.json")" ]]; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED (exit $code): $few bytes after 10 transfers, $many after 1000: $*"
+    fail "(exit $code): $few bytes after 10 transfers, $many after 1000: $*"
     tail -5 "$scratch/out"
   fi
 }
 no_growth "${small[@]}" --pes 2
 no_growth "${mpirun[@]}" -n 2 "${small[@]}" --pes 1
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

@@ -2,13 +2,8 @@
 # task_bench.sh BIN: runs task_bench with every type and kernel, with its inputs checked, on threads, under mpirun and in
 # adversarial order. It finds a wrong input. METG and balancing give the results that follow from the cost model of the
 # simulated machine.
-set -uo pipefail
+source "$(dirname "$0")/../support/checks.sh"
 bin=$1/task_bench
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-passed=0
-failed=0
-mpirun=(mpirun -q --allow-run-as-root --oversubscribe)
 
 # ok TEXT COMMAND…: requires exit code 0, and the text in the output.
 ok() {
@@ -17,10 +12,9 @@ ok() {
   timeout 60 "$@" >"$scratch/out" 2>"$scratch/err"
   local code=$?
   if [[ $code -eq 0 ]] && grep -q -- "$want" "$scratch/out"; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED (exit $code, wanted \"$want\"): $*"
+    fail "(exit $code, wanted \"$want\"): $*"
     tail -3 "$scratch/out" "$scratch/err"
   fi
 }
@@ -32,10 +26,9 @@ fails() {
   local code=$?
   if [[ $code -eq $want_code ]] && grep -q -- "$want" "$scratch/err" &&
     { [[ $want_code -ne 2 ]] || [[ $(wc -l <"$scratch/err") -eq 1 ]]; }; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED (exit $code, wanted $want_code and \"$want\"): $*"
+    fail "(exit $code, wanted $want_code and \"$want\"): $*"
     cat "$scratch/err"
   fi
 }
@@ -76,7 +69,7 @@ fails 1 "wrong input" "${mpirun[@]}" -n 2 "$bin" -steps 20 -width 8 -type fft --
 # Virtual time is exact: 100 ns per message, with one message per task of trivial and two of stencil_1d.
 "$bin" -metg -type all -steps 200 --sim pes=4,cost=100ns,latency=0us --repeat 1 --json "$scratch/m.json" \
   --csv "$scratch/rows.csv" --plot "$scratch/m.svg" >"$scratch/out" 2>&1
-python3 - "$scratch/m.json" "$scratch/rows.csv" <<'PYTHON' && passed=$((passed + 1)) || failed=$((failed + 1))
+python3 - "$scratch/m.json" "$scratch/rows.csv" <<'PYTHON' && pass || fail "the rows"
 import csv, json, sys
 results = json.load(open(sys.argv[1]))["results"]
 metg = {one["type"]: one["metg_us"] for one in results}
@@ -90,7 +83,7 @@ for one in results:
 rows = list(csv.DictReader(open(sys.argv[2])))
 assert len(rows) == sum(len(one["rows"]) for one in results)
 PYTHON
-[[ -s $scratch/m.csv ]] || { failed=$((failed + 1)); echo "FAILED: no m.csv"; }
+[[ -s $scratch/m.csv ]] || fail "no m.csv"
 
 # Persistent imbalance with four columns per PE: greedy_refine removes it. The times of the simulated machine are exact.
 seconds_of() { timeout 60 "$@" | sed -n 's/^Elapsed Time \(.*\) seconds/\1/p'; }
@@ -99,10 +92,9 @@ work=("$bin" -type nearest -steps 200 -width 64 -kernel load_imbalance -imbalanc
 plain=$(seconds_of "${work[@]}")
 balanced=$(seconds_of "${work[@]}" --balance greedy_refine --balance-every 20)
 if python3 -c "import sys; sys.exit(0 if $balanced < 0.97 * $plain else 1)"; then
-  passed=$((passed + 1))
+  pass
 else
-  failed=$((failed + 1))
-  echo "FAILED: balanced $balanced s, without $plain s"
+  fail "balanced $balanced s, without $plain s"
 fi
 
 fails 2 "-nonsense" "$bin" -nonsense
@@ -130,5 +122,4 @@ ok "-imbalance" "$bin" --help
 ok "--sim" "$bin" -h
 ok "no barrier" "$bin" --explain
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

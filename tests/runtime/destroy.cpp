@@ -210,4 +210,29 @@ TEST_CASE("an array and a group are ended by their own members", "[runtime][dest
   CHECK(ending.exit_code == 0);
 }
 
+class Sleeper : public tess::Chare<Sleeper, tess::Index1> {
+ public:
+  static inline int n_resumed = 0;
+  void rest() { at_sync(); }
+  void resume_from_sync() { ++n_resumed; }
+};
+
+TEST_CASE(
+    "the message that ends an earlier life's wait at the barrier does not end the next life's",
+    "[runtime][destroy][balance]") {
+  Sleeper::n_resumed = 0;
+  const Ending ending = run(1, [] {
+    const auto sleepers = tess::create<Sleeper>(tess::range(1));
+    tess::start_balancing(sleepers, {.strategy = "greedy"});
+    sleepers[{0}].send<&Sleeper::rest>();
+    // As if it had been sent to an element that was destroyed meanwhile.
+    tess::Pe& pe = tess::current_pe();
+    auto* late = tess::detail::Awakening<Sleeper>::make(pe, sleepers.id(), tess::Index1{0});
+    pe.completion().sent(late->epoch);
+    sleepers.here().post(late);
+  });
+  CHECK(ending.exit_code == 0);
+  CHECK(Sleeper::n_resumed == 1);
+}
+
 }  // namespace

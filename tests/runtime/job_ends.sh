@@ -2,25 +2,20 @@
 # How a job ends under mpirun: with the exit code and the line that it should, on all processes, within seconds.
 #
 #     job_ends.sh MPIEXEC JOB OTHER_JOB CHECKS
-set -uo pipefail
-mpirun=("$1" --allow-run-as-root --oversubscribe)
+source "$(dirname "$0")/../support/checks.sh"
+mpirun=("$1" "${mpirun_options[@]}")
 job=$2
 other=$3
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-failed=0
-passed=0
 # Generous: what is not found by itself never ends.
 limit=30
 
 verdict() {
   local what=$1 code=$2 want=$3 word=$4
   if [[ $code =~ ^($want)$ ]] && { [[ -z $word ]] || grep -q -- "$word" "$scratch/err"; }; then
-    passed=$((passed + 1))
+    pass
     echo "ok: $what: exit code $code; $(grep -m 1 -- "$word" "$scratch/err")"
   else
-    failed=$((failed + 1))
-    echo "FAILED: $what: exit code $code, wanted $want and a line with '$word':"
+    fail "$what: exit code $code, wanted $want and a line with '$word':"
     tail -20 "$scratch/err"
   fi
 }
@@ -38,10 +33,9 @@ once() {
   local n
   n=$(grep -c -- "$1" "$scratch/err")
   if ((n == 1)); then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED: '$1' stands in $n lines, not in one"
+    fail "'$1' stands in $n lines, not in one"
   fi
 }
 
@@ -83,5 +77,4 @@ kill -KILL "$(sed -n 's/^PE 1 pid //p' "$scratch/out")"
 wait $run
 verdict "process 1 is killed" $? "137" "rank 1 .* signal 9"
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

@@ -2,18 +2,15 @@
 # Each misuse ends the job on every machine with exit code 1 and a line that says what is wrong and where.
 #
 #     misuse.sh MPIEXEC PROGRAM
-set -uo pipefail
+source "$(dirname "$0")/../support/checks.sh"
 program=$2
 threads=("$program")
 simulated=("$program")
-processes=("$1" --allow-run-as-root --oversubscribe -n 2 "$program")
+processes=("$1" "${mpirun_options[@]}" -n 2 "$program")
 on_threads=(--pes 2)
 on_simulated=(--sim pes=2,per-process=1,cost=100ns)
 on_processes=(--pes 1)
-out=$(mktemp)
-trap 'rm -f "$out"' EXIT
-failed=0
-passed=0
+out=$scratch/out
 
 # says WHERE MISUSE PATTERN…: on that machine the misuse ends with exit code 1 and matches all patterns.
 says() {
@@ -26,10 +23,9 @@ says() {
     grep -q -- "$pattern" "$out" || missing+=" '$pattern'"
   done
   if ((code == 1)) && [[ -z $missing ]]; then
-    passed=$((passed + 1))
+    pass
   else
-    failed=$((failed + 1))
-    echo "FAILED: $misuse on $where: exit code $code, not found:$missing"
+    fail "$misuse on $where: exit code $code, not found:$missing"
     head -8 "$out"
   fi
 }
@@ -71,5 +67,4 @@ for kind in short long; do
 done
 says processes short_element "Uneven<0> >\[0\]\|Uneven<0>: " "serialize()"
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

@@ -1,13 +1,8 @@
 #!/usr/bin/env bash
 # The answer of a laboratory run is the same bit for bit on threads, under mpirun and on the simulated machine, for every
 # number of PEs and chares; the program itself compares every run with the serial answer.
-set -uo pipefail
+source "$(dirname "$0")/../../support/checks.sh"
 lab=$1/lb_lab
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-failed=0
-passed=0
-mpirun=(mpirun --allow-run-as-root --oversubscribe)
 what=(--workload moving_hot_spot_comm,stencil,collision,particles --strategy greedy,graph --iterations 12 --period 3 --grain 5us)
 
 # hashes PES COMMAND…: the program runs 32 cells' worth of chares on that many PEs, and all hashes are those of the first run.
@@ -18,12 +13,11 @@ hashes() {
     grep -A14 '"workload"' "$scratch/run.json" | grep -oE '"(workload|result_hash)": "[^"]*"' | paste - - | sort -u >"$scratch/now"
     [[ -e $scratch/first ]] || cp "$scratch/now" "$scratch/first"
     if [[ $(wc -l <"$scratch/now") -eq 4 ]] && cmp -s "$scratch/first" "$scratch/now"; then
-      passed=$((passed + 1))
+      pass
       return
     fi
   fi
-  failed=$((failed + 1))
-  echo "FAILED: $*"
+  fail "$*"
   tail -3 "$scratch/out"
   cat "$scratch/now"
 }
@@ -37,5 +31,4 @@ hashes 4 "${mpirun[@]}" -n 2 "$lab" --pes 2 --when periodic
 hashes 16 "$lab" --sim pes=16
 for seed in 1 2 3; do hashes 8 "$lab" --sim "pes=8,seed=$seed,migrate=0.1"; done
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish

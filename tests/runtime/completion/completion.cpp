@@ -106,14 +106,9 @@ class Network {
   /// Messages of epochs are hops of the run; those of the run are not.
   template <class Message>
   void deliver(PeId to, const Message& m) {
-    handle(at(to), m);
+    at(to).on(m);
     if (m.epoch.value != 0) at(to).hop_processed();
   }
-  static void handle(Completion& pe, const messages::Report& m) { pe.on_report(m); }
-  static void handle(Completion& pe, const messages::Answer& m) { pe.on_answer(m); }
-  static void handle(Completion& pe, const messages::Wave& m) { pe.on_wave(m); }
-  static void handle(Completion& pe, const messages::Echo& m) { pe.on_echo(m); }
-  static void handle(Completion& pe, const messages::End& m) { pe.on_end(m); }
 
   std::vector<std::unique_ptr<Port>> ports_;
 };
@@ -231,7 +226,7 @@ TEST_CASE("a PE reports an epoch once until it is answered", "[runtime][completi
   }
   REQUIRE(network.bag.size() == 1);
   CHECK(std::get<messages::Report>(network.bag.front().what).counters == Counters{1, 0});
-  other.on_answer({epoch});
+  other.on(messages::Answer{epoch});
   (void)other.report_epochs();
   REQUIRE(network.bag.size() == 2);
   CHECK(std::get<messages::Report>(network.bag.back().what).counters == Counters{10, 0});
