@@ -435,13 +435,13 @@ class ArrayProxy {
   /// The element of this index. (A template, so that a proxy may be a member of a class before C is
   /// complete.)
   template <class Of = C>
-  [[nodiscard]] ElementProxy<C> operator[](const typename Of::Index& index) const {
-    return ElementProxy<C>(id_, index);
+  [[nodiscard]] ElementProxy<Of> operator[](const typename Of::Index& index) const {
+    return ElementProxy<Of>(id_, index);
   }
   /// {1} would be (1, 0) otherwise.
   template <class Of = C>
     requires(n_axes_of<typename Of::Index> > 1)
-  ElementProxy<C> operator[](std::int32_t /*x*/) const {
+  void operator[](std::int32_t /*x*/) const {
     static_assert(sizeof(Of) == 0, "an index has a number for each axis: array[{x, y}]");
   }
   template <class Of = C>

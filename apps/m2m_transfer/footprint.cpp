@@ -23,7 +23,7 @@ Footprint JoinFootprints::operator()(Footprint a, const Footprint& b) const {
 }
 
 void Gauge::read(Callback<Footprint> target) {
-  const Machine& machine = machine();
+  const Machine& machine = tess::machine();
   Footprint mine;
   mine.bytes_sent = statistics().bytes_sent;
   // All simulated processes share the memory of process 0.

@@ -92,7 +92,8 @@ void Life::live() {
   }
   Random random = l.draws(root, path, phase + 100);
   if (random.chance(l.move_chance))
-    migrate_to(PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+    migrate_to(
+        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
   if (phase_ == l.n_phases(root, path)) {
     destroy();
     return;
@@ -116,11 +117,11 @@ class Rotor : public Chare<Rotor, Index1> {
   void begin() { at_sync(); }
   void resume_from_sync() {
     // In the first round elements stay that ran before they were measured.
-    if (round_ == 0) first_ = my_pe().value - 1;
+    if (round_ == 0) first_ = tess::my_pe().value - 1;
     ++round_;
-    const int n_pes = n_pes();
+    const int n_pes = tess::n_pes();
     const int expected = (first_ + round_ + n_pes) % n_pes;
-    trial->expect(my_pe().value == expected, element_text(*this), " is on ", my_pe(),
+    trial->expect(tess::my_pe().value == expected, element_text(*this), " is on ", tess::my_pe(),
                   " after round ", round_, ", not on PE ", expected);
     if (round_ < n_rounds) {
       at_sync();
@@ -243,7 +244,7 @@ void balance_rounds(Trial& trial) {
     const auto lives = create<Life>(sparse);
     if (!late) start_balancing(lives, options);
     for (int i = 0; i < n; ++i) {
-      lives[{i, 1}].insert_on(PeId{i % n_pes()});
+      lives[{i, 1}].insert_on(PeId{i % tess::n_pes()});
       lives[{i, 1}].send<&Life::begin>();
     }
     if (late) start_balancing(lives, options);

@@ -41,8 +41,8 @@ class Marcher : public Chare<Marcher, Index1> {
 
  private:
   void wander() {
-    const std::int32_t n_pes = n_pes();
-    migrate_to(PeId{(my_pe().value + 1 + index().x % n_pes) % n_pes});
+    const std::int32_t n_pes = tess::n_pes();
+    migrate_to(PeId{(tess::my_pe().value + 1 + index().x % n_pes) % n_pes});
   }
   void reach() {
     charge(std::chrono::microseconds(1 + index().x % 3));

@@ -70,9 +70,10 @@ void Citizen::live(std::int32_t phase) {
     town.lived[me].push_back(phase);
   }
   if (town.rotates && was_on_.value >= 0)
-    town.trial.expect(my_pe().value == (was_on_.value + 1) % n_pes(), element_text(*this),
-                      " was on ", was_on_, " before the round, and is on ", my_pe());
-  was_on_ = my_pe();
+    town.trial.expect(tess::my_pe().value == (was_on_.value + 1) % tess::n_pes(),
+                      element_text(*this), " was on ", was_on_, " before the round, and is on ",
+                      tess::my_pe());
+  was_on_ = tess::my_pe();
   charge(std::chrono::microseconds(1 + me % 5));
   if (town.creates(me, phase))
     array()[{Town::child(me, phase)}].send_or_create_here<&Citizen::create>(phase + 1);

@@ -56,7 +56,7 @@ class Listener : public Chare<Listener, Index1> {
 
  private:
   static PeId draw_pe(Random& random) {
-    return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))};
+    return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
   }
   void move(Random& random) {
     if (heard->destroy_chance > 0 || random.chance(0.5)) {  // otherwise it would be a dead letter

@@ -22,7 +22,7 @@ class NewElement : public Chare<NewElement, Index1> {
   NewElement() {
     contribute(sum, 1, nursery->created);
     if (nursery->syncs) at_sync();
-    if (index().x % 3 == 0) migrate_to(PeId{(my_pe().value + index().x) % n_pes()});
+    if (index().x % 3 == 0) migrate_to(PeId{(tess::my_pe().value + index().x) % tess::n_pes()});
   }
   void give(Callback<int> target) { contribute(sum, 1, target); }
   void resume_from_sync() { ++nursery->n_resumed; }

@@ -91,7 +91,7 @@ class Demanded : public Chare<Demanded<Index>, Index> {
   }
   void move(Random& random) {
     this->migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
   }
 
   int number_ = -1;  // until the first message
@@ -140,9 +140,9 @@ class Crowd : public Group<Crowd<Index>> {
         element.insert(token);
         break;
       case 1:
-        element.insert_on(
-            PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))},
-            token);
+        element.insert_on(PeId{static_cast<std::int32_t>(
+                              random.below(static_cast<std::uint64_t>(tess::n_pes())))},
+                          token);
         break;
       case 2:
         element.insert_if_absent(token);
@@ -161,7 +161,7 @@ class Crowd : public Group<Crowd<Index>> {
   }
 
  private:
-  [[nodiscard]] static int group_size() { return n_pes(); }
+  [[nodiscard]] static int group_size() { return tess::n_pes(); }
   static std::vector<int> shuffled(int n, Random& random) {
     std::vector<int> order(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) order[static_cast<std::size_t>(i)] = i;

@@ -106,12 +106,12 @@ class Clerk : public Group<Clerk> {
     if (n_hops == 0) {
       flies.destroy();
     } else {
-      const PeId next{(pe().value + 1) % n_pes()};
+      const PeId next{(pe().value + 1) % tess::n_pes()};
       group()[next].send<&Clerk::end>(flies, n_hops - 1);
     }
   }
   void pass(int n_hops) {
-    const PeId next{(pe().value * 3 + 1) % n_pes()};
+    const PeId next{(pe().value * 3 + 1) % tess::n_pes()};
     if (n_hops != 0) group()[next].send<&Clerk::pass>(n_hops - 1);
   }
   void add(int /*sum*/) {}
@@ -143,7 +143,7 @@ void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random)
         made = remains->n_made[flies.id()]++;
       }
       const PeId where{
-          static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))};
+          static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
       flies[{1000 + made}].insert_on(where, errand);
       break;
     }
@@ -168,7 +168,8 @@ void Mayfly::run(Errand errand) {
   Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(remains->trial.seed())));
   if (random.chance(remains->end_chance)) array().destroy();
   if (random.chance(0.3))
-    migrate_to(PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+    migrate_to(
+        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
   if (random.chance(0.05)) destroy();
   if (random.chance(0.05)) start_meeting(array(), errand.clerks);
   if (random.chance(0.2)) sync();
@@ -181,7 +182,7 @@ void Mayfly::run(Errand errand) {
 Task Mayfly::wait(Errand errand) {
   const CollectionId array_id = array().id();
   remains->deliver(array_id, errand.token);
-  const PeId other{(errand.token * 7 + 1) % n_pes()};
+  const PeId other{(errand.token * 7 + 1) % tess::n_pes()};
   co_await epoch([&] { errand.clerks[other].send<&Clerk::pass>(errand.token % 5); });
   remains->trial.expect(canary_ == 4711, "a coroutine goes on in an element that was destroyed");
   if (errand.token % 3 == 0) meet(errand.clerks);
@@ -238,7 +239,8 @@ bool balance(const ArrayProxy<Mayfly>& flies, Random& random) {
 
 Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
   Random random(seed);
-  const PeId other{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))};
+  const PeId other{
+      static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
   const Errand errand{clerks, static_cast<int>(random.below(1000)),
                       static_cast<int>(random.below(12))};
   ArrayProxy<Mayfly> flies;

@@ -116,7 +116,7 @@ class Branch : public Chare<Branch, Index1> {
   void wander(Random& random) {
     if (random.chance(ledger->move_chance))
       migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
   }
   /// Up to n_most children, which share the energy.
   void split(Twig twig, int n_most) {

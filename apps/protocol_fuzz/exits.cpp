@@ -54,15 +54,15 @@ struct Parcel {
 class Wave : public Chare<Wave, Index1> {
  public:
   void splash(Drop drop) {
-    flood->runs(my_pe());
+    flood->runs(tess::my_pe());
     Random random(drop.seed);
     if (random.chance(flood->exit_chance)) {
-      flood->exit_here(my_pe(), static_cast<int>(random.below(100)));
+      flood->exit_here(tess::my_pe(), static_cast<int>(random.below(100)));
       return;
     }
     if (random.chance(0.2))
       migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
     Drop next;
     next.seed = random();
     const Index to{
@@ -91,19 +91,19 @@ class Wave : public Chare<Wave, Index1> {
     array()[to].send_or_create_home<&Wave::splash>(next);
   }
   void ripple(Drop drop) {
-    flood->runs(my_pe());
+    flood->runs(tess::my_pe());
     contribute(concatenate, std::vector<Drop>{drop}, array()[{0}].target<&Wave::gathered>());
   }
-  void gathered(std::vector<Drop> /*drops*/) { flood->runs(my_pe()); }
+  void gathered(std::vector<Drop> /*drops*/) { flood->runs(tess::my_pe()); }
   Task wait(Drop drop) {
     const Parcel parcel = co_await parcels_.take(static_cast<int>(drop.seed % 3));
-    flood->runs(my_pe());
+    flood->runs(tess::my_pe());
     (void)co_await parcels_.take(parcel.key + 1);
   }
   Task nest(Drop drop) {
-    flood->runs(my_pe());
+    flood->runs(tess::my_pe());
     co_await inner(drop);
-    flood->runs(my_pe());
+    flood->runs(tess::my_pe());
   }
 
   template <class Ar>

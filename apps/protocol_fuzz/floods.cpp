@@ -20,7 +20,7 @@ struct Deluge {
 
   void holds(PeId sender, ProcessId process, std::uint64_t n_bytes, bool more) {
     const std::lock_guard lock(mutex);
-    Machine& machine = machine();
+    const Machine& machine = tess::machine();
     held.resize(static_cast<std::size_t>(machine.n_pes() * machine.n_processes()));
     std::uint64_t& now =
         held[static_cast<std::size_t>(sender.value * machine.n_processes() + process.value)];
@@ -44,9 +44,9 @@ struct Freight {
   void serialize(Ar& ar) {
     ar(sender, values);
     if constexpr (Ar::is_reading) {
-      if (my_pe() == sender) return;  // CHECKS=all: the sender reads what it is about to send
+      if (tess::my_pe() == sender) return;  // CHECKS=all: the sender reads what it is about to send
       packed = true;
-      deluge->holds(sender, machine().process_of(my_pe()), n_bytes(), true);
+      deluge->holds(sender, tess::machine().process_of(tess::my_pe()), n_bytes(), true);
     }
   }
 };
@@ -55,7 +55,7 @@ class Basin : public Group<Basin> {
  public:
   Task pour() {
     Random random(mix(deluge->seed + static_cast<std::uint64_t>(pe().value)));
-    const auto n_pes = static_cast<std::uint64_t>(n_pes());
+    const auto n_pes = static_cast<std::uint64_t>(tess::n_pes());
     const PeId fixed{static_cast<std::int32_t>(random.below(n_pes))};
     for (int i = 0; i < deluge->n_messages; ++i) {
       const PeId to =
@@ -75,7 +75,7 @@ class Basin : public Group<Basin> {
   void fall(Freight freight) {
     (void)charge(std::chrono::milliseconds(1));  // slower than the messages arrive
     if (freight.packed)
-      deluge->holds(freight.sender, machine().process_of(pe()), freight.n_bytes(), false);
+      deluge->holds(freight.sender, tess::machine().process_of(pe()), freight.n_bytes(), false);
     for (const double value : freight.values)
       deluge->trial.expect(value == 2.5, "a value was garbled on its way");
     ++deluge->n_arrived;

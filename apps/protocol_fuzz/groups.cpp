@@ -22,11 +22,11 @@ class Member : public Group<Member> {
  public:
   explicit Member(std::string word) : word_(std::move(word)) {
     // Messages of a constructor: the group is not known anywhere yet.
-    group()[PeId{(pe().value + 1) % n_pes()}].send<&Member::call>(pe(), 0);
+    group()[PeId{(pe().value + 1) % tess::n_pes()}].send<&Member::call>(pe(), 0);
   }
 
   void call(PeId from, int round) {
-    roll->trial.expect(my_pe() == pe(), "a member runs on another PE");
+    roll->trial.expect(tess::my_pe() == pe(), "a member runs on another PE");
     roll->trial.expect(&group().local() == this, "local() is another member");
     {
       const std::lock_guard lock(roll->mutex);
@@ -37,17 +37,17 @@ class Member : public Group<Member> {
   void play(int round) {
     if (round % 2 == 0) {
       contribute(in_order(concatenate), std::vector<std::string>{text(word_, pe().value)},
-                 group()[PeId{round % n_pes()}].target<&Member::ordered>());
+                 group()[PeId{round % tess::n_pes()}].target<&Member::ordered>());
     } else {
       contribute(sum, pe().value, group()[PeId{0}].target<&Member::summed>());
     }
-    if (round + 1 < roll->n_rounds && pe().value == round % n_pes())
+    if (round + 1 < roll->n_rounds && pe().value == round % tess::n_pes())
       group().broadcast<&Member::play>(round + 1);
   }
   void ordered(std::vector<std::string> words) {
     const std::lock_guard lock(roll->mutex);
     ++roll->n_ordered;
-    const auto n = static_cast<std::size_t>(n_pes());
+    const auto n = static_cast<std::size_t>(tess::n_pes());
     roll->trial.expect(words.size() == n, words.size(), " words of ", n, " members");
     for (std::size_t i = 0; i < words.size(); ++i)
       roll->trial.expect(words[i] == text("word ", i), "word ", i, " is ", words[i]);
@@ -55,7 +55,7 @@ class Member : public Group<Member> {
   void summed(int total) {
     const std::lock_guard lock(roll->mutex);
     ++roll->n_results;
-    const int n = n_pes();
+    const int n = tess::n_pes();
     roll->trial.expect(total == n * (n - 1) / 2, "the sum over all PEs is ", total);
   }
   void make_second();
@@ -77,7 +77,7 @@ class Sender : public Group<Sender> {
  public:
   void send(GroupProxy<Second> to) {
     to.broadcast<&Second::call>();
-    to[PeId{(pe().value + 1) % n_pes()}].send<&Second::call>();
+    to[PeId{(pe().value + 1) % tess::n_pes()}].send<&Second::call>();
   }
 };
 

@@ -60,7 +60,7 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
     Random random(mix(static_cast<std::uint64_t>(token) ^ population->trial.seed()));
     if (random.chance(0.3))
       this->migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
     ++n_taken_;
     const std::lock_guard lock(population->mutex);
     ++population->delivered[static_cast<std::size_t>(token)];
@@ -137,7 +137,7 @@ class Agent : public Group<Agent<Mode>> {
 
   /// Creates missing elements, so that each index has one; records the number of dead letters.
   void mend(ArrayProxy<Element> array, int n_indices) {
-    const std::int32_t n_pes = n_pes();
+    const std::int32_t n_pes = tess::n_pes();
     for (int i = 0; i < n_indices; ++i)
       if (i % n_pes == this->pe().value) array[{i, 1}].insert_if_absent(i);
     const std::lock_guard lock(population->mutex);

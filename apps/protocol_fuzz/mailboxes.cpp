@@ -71,7 +71,8 @@ class Bead : public Chare<Bead, Index1> {
 
  private:
   void move(Random& random) {
-    migrate_to(PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+    migrate_to(
+        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
   }
 
   std::uint64_t value_ = 0;

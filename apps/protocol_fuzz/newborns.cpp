@@ -44,7 +44,7 @@ struct Nursery {
 const Nursery* nursery = nullptr;
 
 PeId draw_pe(Random& random) {
-  return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))};
+  return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
 }
 
 /// What one element gives to a round.

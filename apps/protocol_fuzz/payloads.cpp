@@ -93,7 +93,7 @@ class Carrier : public Chare<Carrier, Index1> {
     if (random.chance(0.2)) load(random() | 1U);
     if (random.chance(0.3))
       migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
     if (left == 0) {
       ++relay->n_ended;
       return;

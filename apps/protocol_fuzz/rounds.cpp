@@ -78,7 +78,8 @@ class Player : public Chare<Player, Index1> {
  private:
   void create_child(int round);
   void move(Random& random) {
-    migrate_to(PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(n_pes())))});
+    migrate_to(
+        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
   }
 
   bool created_ = false;  // an element created on demand does not end before its first message

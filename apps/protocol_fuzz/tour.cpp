@@ -18,9 +18,9 @@ class Tourist : public Chare<Tourist, Index3> {
  public:
   /// One more stop: marks this PE, and goes to one not seen yet.
   void visit(int n_stops) {
-    const auto n_pes = static_cast<std::size_t>(n_pes());
+    const auto n_pes = static_cast<std::size_t>(tess::n_pes());
     seen_.resize(n_pes);
-    seen_[static_cast<std::size_t>(my_pe().value)] = true;
+    seen_[static_cast<std::size_t>(tess::my_pe().value)] = true;
     std::vector<PeId> left;
     for (std::size_t pe = 0; pe < n_pes; ++pe)
       if (!seen_[pe]) left.push_back(PeId{static_cast<std::int32_t>(pe)});

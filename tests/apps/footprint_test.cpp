@@ -18,7 +18,7 @@ class Chatter : public Group<Chatter> {
  public:
   void talk(int left) {
     if (left == 0) return;
-    const PeId next{(pe().value + 1) % n_pes()};
+    const PeId next{(pe().value + 1) % tess::n_pes()};
     group()[next].send<&Chatter::hear>(std::vector<std::uint8_t>(n_bytes));
     group()[pe()].send<&Chatter::talk>(left - 1);
   }

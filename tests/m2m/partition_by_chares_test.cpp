@@ -18,7 +18,7 @@ struct Partitioner : Chare<Partitioner, Index1> {
   /// Waits until all PEs of the process are here, then partitions.
   void cut(Callback<std::vector<Parts>> target) {
     waiting.fetch_add(1);
-    while (waiting.load() < n_pes()) std::this_thread::yield();
+    while (waiting.load() < tess::n_pes()) std::this_thread::yield();
     const TetMesh mesh = kuhn_mesh({6, 0.2});
     std::vector<Parts> parts;
     for (const PartitionMethod method : {PartitionMethod::rcb, PartitionMethod::hsfc})
@@ -36,7 +36,7 @@ struct Partitioner : Chare<Partitioner, Index1> {
 };
 
 Task cut_everywhere(std::vector<Parts>* out) {
-  const auto chares = create<Partitioner>(range(n_pes()));
+  const auto chares = create<Partitioner>(range(tess::n_pes()));
   Future<std::vector<Parts>> parts;
   chares.broadcast<&Partitioner::cut>(parts.callback());
   *out = co_await parts;
