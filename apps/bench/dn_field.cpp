@@ -12,7 +12,7 @@
 #include "apps/bench/report.hpp"
 #include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "runtime/runtime.hpp"
 
@@ -87,7 +87,7 @@ class Bench {
   Bench(const Report& report, const Options& options)
       : report_(report),
         options_(options),
-        field_(build_exact(box_, grid_around(bounds(box_), resolution, 0.45))),
+        field_(build_field(box_, grid_around(bounds(box_), resolution, 0.45))),
         spread_(placed(options.particles, HUGE_VAL)),
         near_(placed(options.particles, 2 * cell())) {}
 
@@ -243,7 +243,7 @@ class Bench {
     for (const int cuts : {1, 10, 100}) {
       const Surface surface = cut_box(cuts);
       names.push_back(tess::text("dn impact; spread; ", surface.triangles.size(), " triangles"));
-      fields.push_back(build_exact(surface, field_.grid));
+      fields.push_back(build_field(surface, field_.grid));
     }
     std::vector<Run> runs;
     for (const Field& field : fields)

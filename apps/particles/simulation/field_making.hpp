@@ -3,7 +3,7 @@
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"
-#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/stepper.hpp"
 
@@ -55,15 +55,12 @@ class FieldInTheMaking {
   /// More than one for large fields, so that the progress line moves.
   [[nodiscard]] int n_distance_stages() const;
 
-  std::optional<tess::dn::ExactBuilder> exact_;
-  std::optional<tess::dn::BlurredBuilder> blurred_;
-  tess::dn::Content content_ = tess::dn::Content::distance_and_normal;
+  std::optional<tess::dn::FieldBuilder> builder_;  // none for a field from a file
   tess::dn::Field field_;
   std::optional<tess::dn::CompressedField> compressed_;
   std::uint64_t flat_bytes_ = 0;
   int n_parts_ = 0;
   tess::dn::Grid grid_;
-  std::vector<tess::dn::BuiltSlab> slabs_;  // by their first layer
   std::chrono::steady_clock::time_point start_;
   double seconds_ = 0;
 };

@@ -1,7 +1,7 @@
 // The stability report's extreme places and fields: starts inside and on the surface, scales,
 // offsets, compressed and blurred fields, particles that are not finite.
 #include "apps/particles/stability/parts.hpp"
-#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 
 #include <algorithm>
@@ -97,10 +97,7 @@ void blurred_fields(Rows& rows) {
   const Surface surface = make_sphere(0.5, 40);
   const Grid grid = grid_around(bounds(surface), 41, 0.25);
   for (const Method method : {Method::normals, Method::potential}) {
-    BlurredOptions options;
-    options.method = method;
-    options.thickness = 0.25;
-    const Field field = build_blurred(surface, grid, options);
+    const Field field = build_field(surface, grid, {.thickness = 0.25, .method = method});
     double angle = 0, changed = 0;
     bounce_off_ball({&field, {}}, [&](Vec3 from, Particle end) {
       angle = std::max(angle, std::acos(std::min(1.0, dot(direction(end.velocity), from))));

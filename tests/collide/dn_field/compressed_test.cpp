@@ -1,6 +1,6 @@
 #include "collide/dn_field/compressed.hpp"
 
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
@@ -57,7 +57,7 @@ TEST_CASE(
         for (const Content content : {Content::distance_and_normal, Content::distance}) {
           const Grid grid = grid_around(bounds(surface), n, 0.3);
           const Sides sides = surface.triangles.size() == 128 ? Sides::two : Sides::one;
-          const Field flat = build_exact(surface, grid, {sides, content, cells * grid.cell, {}});
+          const Field flat = build_field(surface, grid, {sides, content, cells * grid.cell, {}});
           for (const auto& [distance, angle] :
                {std::pair{0.2, 8.0}, {0.05, 2.0}, {0.01, 10.0}, {0.001, 0.1}, {0.0, 0.0}}) {
             const ErrorBound bound{distance * grid.cell, angle * degree};
@@ -80,7 +80,7 @@ TEST_CASE("a compressed field takes at most a fifth of the flat one's memory", "
        {make_sphere(1, 60), make_torus(1, 0.4, 80), make_box({1, 0.7, 0.5})}) {
     const Grid grid = grid_around(bounds(surface), 60, 0.3);
     const Field flat =
-        build_exact(surface, grid, {Sides::one, Content::distance_and_normal, 4 * grid.cell, {}});
+        build_field(surface, grid, {Sides::one, Content::distance_and_normal, 4 * grid.cell, {}});
     const CompressedField field = compress(flat, {0.05 * grid.cell, 2 * degree});
     INFO(flat.bytes() << " bytes flat, " << field.bytes() << " compressed");
     CHECK(5 * field.bytes() <= flat.bytes());
@@ -91,7 +91,7 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
           "[dn_field]") {
   const Surface torus = make_torus(1, 0.4, 40);
   const Grid grid = grid_around(bounds(torus), 30, 0.3);
-  const Field flat = build_exact(torus, grid);
+  const Field flat = build_field(torus, grid);
   const ErrorBound bound{0.05 * grid.cell, 3 * degree};
   for (const int block_shift : {2, 3, 4}) {
     const CompressedField field = compress(flat, bound, block_shift);
@@ -123,7 +123,7 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
 
 TEST_CASE("bounds that mean nothing are refused", "[dn_field]") {
   const Surface box = make_box({1, 1, 1});
-  const Field flat = build_exact(box, grid_around(bounds(box), 12, 0.5));
+  const Field flat = build_field(box, grid_around(bounds(box), 12, 0.5));
   CHECK(refusal([&] { (void)compress(flat, {-1, 0.1}); }).find("distance -1") != std::string::npos);
   CHECK_FALSE(refusal([&] { (void)compress(flat, {0.1, std::nan("")}); }).empty());
   CHECK(refusal([&] { (void)compress(flat, {0.1, 0.1}, 7); }).find("2^7") != std::string::npos);

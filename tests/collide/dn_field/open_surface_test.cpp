@@ -1,4 +1,4 @@
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
@@ -82,7 +82,7 @@ TEST_CASE("no particle leaves a room of open surfaces through its joints", "[dn_
             const bool springs = n_scenes++ % 3 == 0;
             const WedgeRoom room(angle);
             const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
-            const Field field = build_exact(room.surface, grid,
+            const Field field = build_field(room.surface, grid,
                                             {Sides::two, Content::distance_and_normal, 0.3, {}});
             const Bvh triangles(room.surface);
             Object object{&field, {}, nullptr, &triangles};
@@ -131,7 +131,7 @@ TEST_CASE("a particle that flies into the joint of open surfaces comes out again
       const WedgeRoom room(angle);
       const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
       const Field field =
-          build_exact(room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
+          build_field(room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
       const Bvh triangles(room.surface);
       const Object object{&field, {}, nullptr, &triangles};
       Rules rules;

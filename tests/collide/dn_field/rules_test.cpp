@@ -181,8 +181,8 @@ TEST_CASE("a spring adds no energy, by any look-up and stiffness", "[dn_field][r
   // Curved, with a medial axis within reach, and a corner seen from within: normals that change in
   // a step, that blend to nothing, and that know one wall of three.
   const Surface ball = make_sphere(1, 40), ring = make_torus(1, 0.4, 48);
-  const std::array fields{build_exact(ball, grid_around(bounds(ball), 40, 0.5)),
-                          build_exact(ring, grid_around(bounds(ring), 40, 0.5)),
+  const std::array fields{build_field(ball, grid_around(bounds(ball), 40, 0.5)),
+                          build_field(ring, grid_around(bounds(ring), 40, 0.5)),
                           room_field(cube_grid(1.5, 40), 1)};
   for (const Field& field : fields)
     for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
