@@ -163,7 +163,7 @@ void compressed_rows(const Bench& bench, int n) {
   const Field flat = build_field(bench.torus, grid,
                                  {Sides::one, Content::distance_and_normal, band * grid.cell, {}});
   const ErrorBound bound{0.05 * grid.cell, 2 * std::numbers::pi / 180};
-  const CompressedField field =
+  const Field field =
       timed(bench, fmt::format("compression {}^3", n), 0, [&] { return compress(flat, bound); });
   const auto kilobytes = [&](const std::string& name, std::size_t bytes, double reference) {
     Samples samples;
@@ -172,11 +172,12 @@ void compressed_rows(const Bench& bench, int n) {
   };
   kilobytes("memory flat", flat.bytes(), 0);
   kilobytes("memory compressed", field.bytes(), 0.2e-3 * static_cast<double>(flat.bytes()));
-  tess::print(fmt::format(
-      "# compressed {}^3: asked for {:.3f} cells and {:.2f} degrees, measured {:.3f} "
-      "and {:.2f}\n",
-      n, bound.distance / grid.cell, bound.angle * 180 / std::numbers::pi,
-      field.measured.distance / grid.cell, field.measured.angle * 180 / std::numbers::pi));
+  tess::print(
+      fmt::format("# compressed {}^3: asked for {:.3f} cells and {:.2f} degrees, measured {:.3f} "
+                  "and {:.2f}\n",
+                  n, bound.distance / grid.cell, bound.angle * 180 / std::numbers::pi,
+                  field.planes->measured.distance / grid.cell,
+                  field.planes->measured.angle * 180 / std::numbers::pi));
   const std::size_t count = 1'000'000;
   const Cloud cloud(count);
   std::vector<float> expected(count), found(count), nx(count), ny(count), nz(count);

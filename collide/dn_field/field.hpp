@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,14 @@ enum class Sides : std::uint32_t { one, two };
 /// What a field stores.
 enum class Content : std::uint32_t { distance, distance_and_normal };
 
+struct Planes;
+
 struct Field {
   Grid grid;
   Method method = Method::exact;
   Sides sides = Sides::one;
   double thickness = 0;               ///< |distance| is cut off here
-  std::vector<float> distance;        ///< grid.size()
+  std::vector<float> distance;        ///< grid.size(); empty if compressed
   std::vector<std::uint32_t> normal;  ///< grid.size() codes of normal_code.hpp, or empty
 
   /// Upper bound of the distance difference between adjacent voxels (26 neighbours); +inf if not
@@ -34,10 +37,10 @@ struct Field {
   float jump = HUGE_VALF;
 
   std::uint64_t surface = 0;  ///< fingerprint() of the surface it was built from; 0: of none
+  std::shared_ptr<const Planes> planes{};  ///< of a compressed field (compressed.hpp); else null
 
-  [[nodiscard]] std::size_t bytes() const {
-    return distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
-  }
+  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] Content content() const;
 };
 
 /// Field::jump of a field; for exact distances it is at most a voxel's diagonal.

@@ -85,9 +85,7 @@ bool goes_below(const Object& object, double depth, double begin, Vec3 from, Vec
 double distance_at(const tess::dn::Object& object, tess::dn::Vec3 p) {
   const Grid& grid = object.field->grid;
   const auto voxel = [&](int i, int j, int k) {
-    return static_cast<double>(object.compressed != nullptr
-                                   ? voxel_distance(*object.compressed, i, j, k)
-                                   : object.field->distance[grid.index(i, j, k)]);
+    return static_cast<double>(voxel_distance(*object.field, i, j, k));
   };
   std::array<int, 3> low{};
   std::array<double, 3> part{};

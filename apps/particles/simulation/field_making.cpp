@@ -77,10 +77,7 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
   if (builder_) field_ = builder_->finish();
   builder_.reset();
   flat_bytes_ = field_.bytes();
-  if (compression) {
-    compressed_ = compress(field_, bound_of(*compression, field_));
-    field_ = outline(*compressed_);
-  }
+  if (compression) field_ = compress(field_, bound_of(*compression, field_));
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 

@@ -140,8 +140,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   for (const FieldInTheMaking& field : stage->fields) {
     result.fields.cells += field.field().grid.size();
     result.fields.bytes += field.flat_bytes();
-    if (const auto& compressed = field.compressed())
-      result.fields.bytes_used += compressed->bytes();
+    result.fields.bytes_used += field.field().bytes();
   }
 }
 

@@ -2,6 +2,7 @@
 // offsets, compressed and blurred fields, particles that are not finite.
 #include "apps/particles/stability/parts.hpp"
 #include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/shapes.hpp"
 
 #include <algorithm>
@@ -79,9 +80,9 @@ void compressed_fields(Rows& rows) {
   const Field ball = sphere_field(cube_grid(1, 41), 0.5);
   for (const double cells : {1e-3, 1e-2, 1e-1, 1.0}) {
     const ErrorBound bound{cells * ball.grid.cell, cells};
-    const CompressedField compressed = compress(ball, bound);
+    const Field compressed = compress(ball, bound);
     double place = 0, changed = 0;
-    bounce_off_ball({&ball, {}, &compressed}, [&](Vec3 from, Particle end) {
+    bounce_off_ball({&compressed, {}}, [&](Vec3 from, Particle end) {
       place = std::max(place, norm(end.position - 1.5 * from));
       changed = std::max(changed, std::abs(norm(end.velocity) - 1));
     });

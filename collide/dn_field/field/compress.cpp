@@ -50,7 +50,7 @@ class Compressor {
         thickness_(static_cast<float>(field.thickness)) {}
 
   /// Empty if the layout's entries do not meet the bound even voxel by voxel.
-  [[nodiscard]] std::optional<CompressedField> run();
+  [[nodiscard]] std::optional<Planes> run();
 
  private:
   struct Voxel {
@@ -214,21 +214,9 @@ bool Compressor::divide(std::array<int, 3> low, int s, std::vector<Entry>& entri
   return true;
 }
 
-std::optional<CompressedField> Compressor::run() {
+std::optional<Planes> Compressor::run() {
   const Grid& grid = field_.grid;
-  CompressedField made{grid,
-                       field_.method,
-                       field_.sides,
-                       field_.normal.empty() ? Content::distance : Content::distance_and_normal,
-                       field_.thickness,
-                       shift_,
-                       {},
-                       layout_,
-                       {},
-                       {},
-                       bound_,
-                       {},
-                       field_.jump};
+  Planes made{field_.content(), shift_, {}, layout_, {}, {}, bound_, {}};
   const int block = 1 << shift_;
   for (std::size_t a = 0; a < 3; ++a) made.n_blocks[a] = (grid.n[a] + block - 1) / block;
   std::unordered_map<std::uint64_t, std::uint32_t> undivided;  // blocks that are alike share one
@@ -279,20 +267,16 @@ EntryLayout narrow_layout(const Field& field, const ErrorBound& bound, int shift
   return {false, bits, static_cast<float>(range / steps)};
 }
 
-CompressedField smaller_of(std::optional<CompressedField> a, CompressedField b) {
-  return a && a->bytes() <= b.bytes() ? std::move(*a) : std::move(b);
-}
-
 }  // namespace
 
-CompressedField compress(const Field& field, const ErrorBound& bound, int block_shift) {
+Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
   if (!(bound.distance >= 0) || !(bound.angle >= 0))
     fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",
          bound.angle, "; neither may be negative or NaN");
   if (block_shift != 0 && (block_shift < min_shift || block_shift > max_shift))
     fail(ErrorCode::bad_argument, "blocks of 2^", block_shift, " voxels; the exponent must be ",
          min_shift, " to ", max_shift, ", or 0 for the best");
-  std::optional<CompressedField> best;
+  std::optional<Planes> best;
   const int first = block_shift == 0 ? min_shift : block_shift;
   const int last = block_shift == 0 ? max_shift - 1 : block_shift;
   for (int shift = first; shift <= last; ++shift) {
@@ -303,9 +287,17 @@ CompressedField compress(const Field& field, const ErrorBound& bound, int block_
       fail(ErrorCode::bad_value,
            "a voxel's distance is not finite, or beyond the field's thickness of ", field.thickness,
            "; build the field again");
-    best = smaller_of(std::move(best), std::move(*made));
+    if (!best || made->bytes() < best->bytes()) best = std::move(made);
   }
-  return std::move(*best);
+  return {field.grid,
+          field.method,
+          field.sides,
+          field.thickness,
+          {},
+          {},
+          field.jump,
+          field.surface,
+          std::make_shared<const Planes>(std::move(*best))};
 }
 
 }  // namespace tess::dn

@@ -38,15 +38,17 @@ struct PlaneSampler {
   int n[3] = {0, 0, 0};
 };
 
-inline PlaneSampler sampler_of(const CompressedField& field) {
-  return {field.block.data(),
-          field.entry.data(),
-          EntryDecoder(field.layout),
+inline PlaneSampler plane_sampler_of(const Field& field) {
+  const Planes& planes = *field.planes;
+  const auto& [nx, ny, nz] = planes.n_blocks;
+  return {planes.block.data(),
+          planes.entry.data(),
+          EntryDecoder(planes.layout),
           static_cast<float>(field.grid.cell),
           static_cast<float>(field.thickness),
-          field.block_shift,
-          field.n_blocks[0],
-          field.n_blocks[0] * field.n_blocks[1],
+          planes.block_shift,
+          nx,
+          nx * ny,
           {field.grid.n[0], field.grid.n[1], field.grid.n[2]}};
 }
 
@@ -93,13 +95,13 @@ inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
 
 /// The nearest and the tangent look-up. The tangent continues the plane of the voxel's entry. Both
 /// decode the normal.
-template <LookUp Kind, Ask Asked>
+template <LookUp Kind, Ask>
   requires(Kind != LookUp::trilinear)
 inline Sample sample(const PlaneSampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
   const Stored plane = planes_at(field, voxel);
   const Stored stored{plane.distance, only(voxel.in, plane.normal)};
-  return answer<Kind, Asked>(field.cell, voxel, stored, g);
+  return answer<Kind>(field.cell, voxel, stored, g);
 }
 
 }  // namespace lanes

@@ -1,5 +1,6 @@
 #include "collide/dn_field/field.hpp"
 
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/geometry/lanes.hpp"
 
 #include <algorithm>
@@ -53,6 +54,17 @@ float greatest_jump(const Grid& grid, std::span<const float> distance) {
       largest = std::max(largest, greatest_difference(rows, right, grid.n[0] - right));
     }
   return largest;
+}
+
+std::size_t Field::bytes() const {
+  return planes != nullptr
+             ? planes->bytes()
+             : distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
+}
+
+Content Field::content() const {
+  if (planes != nullptr) return planes->content;
+  return normal.empty() ? Content::distance : Content::distance_and_normal;
 }
 
 float greatest_jump(const Field& field) {

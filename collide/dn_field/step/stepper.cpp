@@ -94,30 +94,29 @@ void validate(const Rules& rules, std::span<const Object> objects) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Object& object = objects[i];
     const Frame& frame = object.frame;
-    const CompressedField* compressed = object.compressed;
-    if ((compressed == nullptr) != (objects[0].compressed == nullptr))
-      fail(ErrorCode::bad_argument, "object ", i,
-           compressed == nullptr ? " has a flat field and object 0 a compressed one"
-                                 : " has a compressed field and object 0 a flat one",
-           "; compress all of a scene or none");
-    if (compressed != nullptr && rules.look_up == LookUp::trilinear)
-      fail(ErrorCode::bad_argument, "object ", i,
-           " has a compressed field, which has no trilinear look-up; take nearest or "
-           "tangent");
     if (object.field == nullptr || object.field->grid.size() == 0 ||
-        (compressed == nullptr && object.field->distance.size() != object.field->grid.size()) ||
-        (compressed != nullptr && compressed->grid.n != object.field->grid.n))
+        (object.field->planes == nullptr &&
+         object.field->distance.size() != object.field->grid.size()))
       fail(ErrorCode::bad_argument, "object ", i, " has no field; build one");
-    if (object.field->grid.size() >= std::size_t{1} << 31U)
-      fail(ErrorCode::bad_argument, "object ", i, " has ", object.field->grid.size(),
+    const Field& field = *object.field;
+    const bool compressed = field.planes != nullptr;
+    if (compressed != (objects[0].field->planes != nullptr))
+      fail(ErrorCode::bad_argument, "object ", i,
+           compressed ? " has a compressed field and object 0 a flat one"
+                      : " has a flat field and object 0 a compressed one",
+           "; compress all of a scene or none");
+    if (compressed && rules.look_up == LookUp::trilinear)
+      fail(ErrorCode::bad_argument, "object ", i,
+           " has a compressed field, which has no trilinear look-up; take nearest or tangent");
+    if (field.grid.size() >= std::size_t{1} << 31U)
+      fail(ErrorCode::bad_argument, "object ", i, " has ", field.grid.size(),
            " voxels, above 2^31; lower its resolution");
     if (needed_content(rules) == Content::distance_and_normal &&
-        (compressed != nullptr ? compressed->content != Content::distance_and_normal
-                               : object.field->normal.size() != object.field->grid.size()))
+        (field.content() == Content::distance ||
+         (!compressed && field.normal.size() != field.grid.size())))
       fail(ErrorCode::bad_argument, "object ", i,
            " stores no normals and a rule or the tangent look-up needs them; build its field with "
            "distance and normal");
-    const Field& field = *object.field;
     const double within =
         frame.scale * covered(field.thickness, field.grid.cell, field.sides, look_up_of(rules));
     if (reach(rules) > within)

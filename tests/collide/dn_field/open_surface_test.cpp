@@ -85,7 +85,7 @@ TEST_CASE("no particle leaves a room of open surfaces through its joints", "[dn_
             const Field field = build_field(room.surface, grid,
                                             {Sides::two, Content::distance_and_normal, 0.3, {}});
             const Bvh triangles(room.surface);
-            Object object{&field, {}, nullptr, &triangles};
+            Object object{&field, {}, &triangles};
             object.frame.axes = rotation({anywhere(random), anywhere(random), anywhere(random)});
             if (spins) object.frame.angular_velocity = {1, -2, 3};
             Rules rules;
@@ -133,7 +133,7 @@ TEST_CASE("a particle that flies into the joint of open surfaces comes out again
       const Field field =
           build_field(room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
       const Bvh triangles(room.surface);
-      const Object object{&field, {}, nullptr, &triangles};
+      const Object object{&field, {}, &triangles};
       Rules rules;
       rules.look_up = look_up;
       rules.impact = Impact{1, 0, Sweep::on};
