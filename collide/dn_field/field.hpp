@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 namespace tess::dn {
@@ -45,7 +44,5 @@ struct Field {
 
 /// Field::jump of a field; for exact distances it is at most a voxel's diagonal.
 [[nodiscard]] float greatest_jump(const Field& field);
-/// The same within some layers. distance: layers × n[1] × n[0].
-[[nodiscard]] float greatest_jump(const Grid& grid, std::span<const float> distance);
 
 }  // namespace tess::dn

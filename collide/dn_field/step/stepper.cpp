@@ -4,7 +4,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace tess::dn {
 namespace {
@@ -16,32 +15,6 @@ double steps_before(double time, double step) {
   const double steps = time / step, whole = std::round(steps);
   return std::abs(steps - whole) < 1e-6 ? whole : steps;
 }
-
-/// The last particles, fewer than a vector, copied to a vector of their own.
-class Rest {
- public:
-  explicit Rest(const ParticleSpan& particles) : from_(particles) {
-    for_each([](double& room, double& particle) { room = particle; });
-  }
-  void put_back() {
-    for_each([](double& room, double& particle) { particle = room; });
-  }
-  [[nodiscard]] ParticleSpan span() {
-    return {room_[0].data(), room_[1].data(), room_[2].data(), room_[3].data(),
-            room_[4].data(), room_[5].data(), lanes::width};
-  }
-
- private:
-  template <class Copy>
-  void for_each(const Copy& copy) {
-    const std::array<double*, 6> particles{from_.x, from_.y, from_.z, from_.vx, from_.vy, from_.vz};
-    for (std::size_t a = 0; a < particles.size(); ++a)
-      for (std::size_t i = 0; i < from_.count; ++i) copy(room_[a][i], particles[a][i]);
-  }
-
-  ParticleSpan from_;
-  std::array<std::array<double, lanes::width>, 6> room_{};
-};
 
 }  // namespace
 
@@ -66,7 +39,10 @@ void Stepper::run(ParticleSpan particles, std::span<const Object> objects, doubl
   const double before = steps_before(time, plan.step);
   const auto flight = std::make_unique<BlockFlight>(waypoints != nullptr);
   const std::size_t whole = particles.count / lanes::width * lanes::width;
-  Rest rest(particles.part(whole, particles.count - whole));
+  // The last particles, fewer than a vector, get a vector of their own.
+  const ParticleSpan rest = particles.part(whole, particles.count - whole);
+  const auto room = std::make_unique<ParticleRoom>();
+  copy(rest, room->span(rest.count));
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
     const ObjectPoses poses = object_poses(run, standing, before + done, now);
@@ -79,9 +55,9 @@ void Stepper::run(ParticleSpan particles, std::span<const Object> objects, doubl
     };
     for (std::size_t first = 0; first < whole; first += block_size)
       fly(first, particles.part(first, std::min(block_size, whole - first)));
-    if (whole < particles.count) fly(whole, rest.span());
+    if (whole < particles.count) fly(whole, room->span(lanes::width));
   }
-  rest.put_back();
+  copy(room->span(rest.count), rest);
 }
 
 void advance(std::span<Object> objects, double step, int n_steps) {
