@@ -27,10 +27,8 @@ void require_met(const Surface& surface, const Grid& grid,
   const Bounds box = bounds(surface);
   fail(ErrorCode::bad_argument,
        "no voxel of the grid meets the surface, which the blurred methods start from: voxels from ",
-       corner(grid.origin), " to ",
-       corner(grid.centre(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1)), ", surface from ",
-       corner(box.low), " to ", corner(box.high),
-       "; put the grid around the surface, or take the exact method");
+       corner(grid.box().low), " to ", corner(grid.box().high), ", surface from ", corner(box.low),
+       " to ", corner(box.high), "; put the grid around the surface, or take the exact method");
 }
 
 bool has_body(const Field& field, std::size_t at, Vec3 normal) {
