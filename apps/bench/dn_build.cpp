@@ -12,6 +12,7 @@
 #include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
 #include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/shapes.hpp"

@@ -244,7 +244,7 @@ class Study {
     time_crowd(nullptr, {}, subject_, n, row);
     rows_.push_back(row);
     const Field compressed = compress(field_, bound_of({}, field_));
-    for (const Field* field : {&field_, &compressed})
+    for (const Field* field : std::array<const Field*, 2>{&field_, &compressed})
       for (const LookUp kind : kinds_of(*field)) {
         row.look_up = name_of(kind);
         row.stored = field == &field_ ? "flat" : "compressed";

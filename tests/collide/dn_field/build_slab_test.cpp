@@ -1,4 +1,5 @@
 #include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/collide/dn_field/triangle_distance.hpp"
