@@ -130,17 +130,16 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     step = to;
   }
   if (options.balance) result.rounds = balancer.history();
-  tess::Future<std::vector<double>> spent;
+  tess::Future<std::vector<Spent>> spent;
   stations.broadcast<&Station::give_spent>(spent.callback());
-  const std::vector<double> of = co_await spent;
-  result.loop_seconds = of[0], result.audit_seconds = of[1];
-  tess::Future<double> build_seconds;
-  stations.broadcast<&Station::give_build_seconds>(build_seconds.callback());
-  result.fields.build_seconds = co_await build_seconds;
+  for (const Spent& of_pe : co_await spent) {
+    result.loop_seconds += of_pe.rules, result.audit_seconds += of_pe.audit;
+    result.fields.build_seconds = std::max(result.fields.build_seconds, of_pe.build);
+  }
   for (const FieldInTheMaking& field : stage->fields) {
     result.fields.cells += field.field().grid.size();
     result.fields.bytes += field.flat_bytes();
-    result.fields.bytes_used += field.field().bytes();
+    if (field.field().planes != nullptr) result.fields.bytes_used += field.field().bytes();
   }
 }
 

@@ -30,7 +30,7 @@ struct Snapshot {
 struct FieldCost {
   double build_seconds = 0;            ///< of the slowest; they are built at the same time
   std::uint64_t cells = 0, bytes = 0;  ///< of the flat field
-  std::uint64_t bytes_used = 0;        ///< of the one that the run uses
+  std::uint64_t bytes_used = 0;        ///< of the compressed one, if the run uses it
 };
 
 struct RunResult {

@@ -7,13 +7,6 @@
 namespace tess::dn::stability {
 namespace {
 
-Rules impact(double restitution, Sweep sweep, LookUp look_up = LookUp::tangent) {
-  Rules rules;
-  rules.look_up = look_up;
-  rules.impact = Impact{restitution, 0, sweep};
-  return rules;
-}
-
 double total_speed_error(Particle particle, double speed) {
   return std::abs(norm(particle.velocity) / speed - 1);
 }

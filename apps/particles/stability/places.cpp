@@ -10,12 +10,6 @@
 namespace tess::dn::stability {
 namespace {
 
-Rules bouncing() {
-  Rules rules;
-  rules.impact = Impact{1, 0, Sweep::on};
-  return rules;
-}
-
 Vec3 some_direction(int i) {
   return direction({std::sin(1.0 * i), std::cos(2.0 * i), std::sin(3.0 * i + 1)});
 }
@@ -29,7 +23,7 @@ void starts(Rows& rows) {
       const Vec3 from = some_direction(i);
       const Vec3 velocity = 0.3 * direction({std::cos(5.0 * i), std::sin(7.0 * i), 0.2});
       const Particle end =
-          flown(bouncing(), 0.02, 20, {&object, 1}, {(1 - depth) * from, velocity});
+          flown(impact(1, Sweep::on), 0.02, 20, {&object, 1}, {(1 - depth) * from, velocity});
       gain = std::max(gain, norm(end.velocity) / 0.3 - 1);
       inside = std::max(inside, 1 - norm(end.position));
     }
@@ -43,12 +37,12 @@ void scales(Rows& rows) {
   const Field ball = sphere_field(cube_grid(2, 41), 1);
   const Object object{&ball, {}};
   const Particle start{{1.5, 0.3, 0.2}, {-1, 0.1, 0}};
-  const Particle plain = flown(bouncing(), 0.05, 20, {&object, 1}, start);
+  const Particle plain = flown(impact(1, Sweep::on), 0.05, 20, {&object, 1}, start);
   for (const double scale : {1e-6, 1e-3, 1e3, 1e6}) {
     Object scaled{&ball, {}};
     scaled.frame.scale = scale;
-    const Particle end =
-        flown(bouncing(), 0.05, 20, {&scaled, 1}, {scale * start.position, scale * start.velocity});
+    const Particle end = flown(impact(1, Sweep::on), 0.05, 20, {&scaled, 1},
+                               {scale * start.position, scale * start.velocity});
     rows.add("scale", "scale", scale, norm((1 / scale) * end.position - plain.position), 1e-5);
     rows.add("scale: |v|", "scale", scale,
              std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1), 1e-13);
@@ -57,8 +51,8 @@ void scales(Rows& rows) {
     const Vec3 shift = offset * Vec3{1, -1, 1};
     Object shifted{&ball, {}};
     shifted.frame.position = shift;
-    const Particle end =
-        flown(bouncing(), 0.05, 20, {&shifted, 1}, {shift + start.position, start.velocity});
+    const Particle end = flown(impact(1, Sweep::on), 0.05, 20, {&shifted, 1},
+                               {shift + start.position, start.velocity});
     rows.add("offset", "offset", offset, norm(end.position - shift - plain.position),
              1e-5 + 1e-14 * offset);
     rows.add("offset: |v|", "offset", offset,
@@ -71,7 +65,7 @@ template <class Visit>
 void bounce_off_ball(const Object& object, const Visit& visit) {
   for (int i = 0; i < 60; ++i) {
     const Vec3 from = some_direction(i);
-    visit(from, flown(bouncing(), 0.05, 40, {&object, 1}, {1.5 * from, -from}));
+    visit(from, flown(impact(1, Sweep::on), 0.05, 40, {&object, 1}, {1.5 * from, -from}));
   }
 }
 
@@ -116,7 +110,7 @@ void blurred_fields(Rows& rows) {
 void not_finite(Rows& rows) {
   const Field ball = sphere_field(cube_grid(2, 17), 1);
   const Object object{&ball, {}};
-  Rules rules = bouncing();
+  Rules rules = impact(1, Sweep::on);
   rules.spring = Spring{100, 1, 0.1};
   rules.surface_drag = SurfaceDrag{1, 0.2, DragLaw::linear};
   rules.surface_flow = SurfaceFlow{1, 1, 0.3};
