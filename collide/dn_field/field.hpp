@@ -13,6 +13,10 @@
 namespace tess::dn {
 
 enum class Method : std::uint32_t { exact, normals, potential };
+inline constexpr const char* method_names[] = {"exact", "normals", "potential"};
+[[nodiscard]] constexpr const char* name_of(Method method) {
+  return method_names[static_cast<std::size_t>(method)];
+}
 
 /// one: distances are negative inside. two: an open surface (a shell, a plate), met from either
 /// side.

@@ -14,6 +14,10 @@ namespace tess::dn {
 /// tangent: that value continued along the voxel's normal; exact for planes, error of order 2.
 /// trilinear: interpolated between eight voxels, continuous; exact for planes, error of order 2.
 enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
+inline constexpr const char* look_up_names[] = {"nearest", "tangent", "trilinear"};
+[[nodiscard]] constexpr const char* name_of(LookUp kind) {
+  return look_up_names[static_cast<std::size_t>(kind)];
+}
 
 inline constexpr float half_diagonal = 0.8660255F;  ///< of a voxel, in cells
 

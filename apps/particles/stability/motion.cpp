@@ -11,12 +11,6 @@ double total_speed_error(Particle particle, double speed) {
   return std::abs(norm(particle.velocity) / speed - 1);
 }
 
-const char* name_of(LookUp look_up) {
-  return look_up == LookUp::nearest   ? "nearest"
-         : look_up == LookUp::tangent ? "tangent"
-                                      : "trilinear";
-}
-
 /// Particles shot from outside the fields at an open surface and at a ball: the rows count those
 /// that end on the wrong side. From a displacement of two thicknesses a step on, only a sweep along
 /// the path finds the surface.

@@ -12,13 +12,6 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-std::string name_of(Method method) {
-  return std::string(method_names[static_cast<std::size_t>(method)]);
-}
-std::string name_of(LookUp look_up) {
-  return std::string(look_up_names[static_cast<std::size_t>(look_up)]);
-}
-
 /// The look-ups that a field supports.
 std::vector<LookUp> kinds_of(const Field& field) {
   if (field.planes != nullptr) return {LookUp::nearest, LookUp::tangent};
