@@ -70,10 +70,4 @@ class Stepper {
 /// Throws Error(bad_value) where validate(rules) does, or if the step is not positive and finite.
 [[nodiscard]] Stepper make_stepper(const Rules& rules, double step);
 
-/// The sum of v²/2 over all particles with finite velocity.
-[[nodiscard]] double kinetic_energy(ParticleSpan particles);
-
-/// The number of particles with a coordinate or velocity that is NaN or infinite.
-[[nodiscard]] std::size_t count_nonfinite(ParticleSpan particles);
-
 }  // namespace tess::dn

@@ -110,21 +110,4 @@ void validate(const Rules& rules, std::span<const Object> objects) {
   }
 }
 
-double kinetic_energy(ParticleSpan particles) {
-  double twice = 0;
-  for (std::size_t p = 0; p < particles.count; ++p) {
-    const Vec3 v{particles.vx[p], particles.vy[p], particles.vz[p]};
-    if (const double square = dot(v, v); std::isfinite(square)) twice += square;
-  }
-  return 0.5 * twice;
-}
-
-std::size_t count_nonfinite(ParticleSpan particles) {
-  std::size_t found = 0;
-  for (std::size_t p = 0; p < particles.count; ++p)
-    found += !is_finite({particles.x[p], particles.y[p], particles.z[p]}) ||
-             !is_finite({particles.vx[p], particles.vy[p], particles.vz[p]});
-  return found;
-}
-
 }  // namespace tess::dn
