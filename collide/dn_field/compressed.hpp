@@ -21,11 +21,16 @@ struct ErrorBound {
 };
 
 /// The bits of an entry. Wide: a float and a code of normal_code.hpp. Narrow: two coordinates of
-/// `normal_bits` bits on the octahedral map; the rest of 32 bits is the distance in steps.
+/// `normal_bits` bits on the octahedral map, 0 … 2 middle(); mask() in the first means no normal. The
+/// rest of 32 bits is the distance in steps, plus zero().
 struct EntryLayout {
   bool wide = false;
   int normal_bits = 0;
   float step = 0;
+
+  [[nodiscard]] std::int32_t mask() const { return (1 << normal_bits) - 1; }
+  [[nodiscard]] std::int32_t middle() const { return mask() >> 1; }
+  [[nodiscard]] std::int32_t zero() const { return 1 << (31 - 2 * normal_bits); }
 };
 
 struct Planes {

@@ -47,17 +47,17 @@ void choose(const Node& node, const Bounds& box, double dt, const Rules& rules,
   double max_speed = 0, detail = 0;
   node.read({{"max_speed", max_speed, positive, "the largest speed relative to the surface"},
              {"detail", detail, positive, "the size of the smallest feature"}});
-  const auto plan = [&](Coverage coverage) {
+  const auto plan = [&](double speed) {
     const FieldPlan chosen =
-        choose_plan(box, {max_speed / object.frame.scale, dt, detail}, coverage, most_voxels);
+        choose_plan(box, {speed / object.frame.scale, dt, detail}, most_voxels);
     object.grid = chosen.grid, object.thickness = chosen.thickness, object.blur = chosen.blur;
   };
   try {
     try {
-      plan(Coverage::step);
+      plan(max_speed);
     } catch (const tess::Error&) {
       if (!rules.impact || rules.impact->sweep == Sweep::off) throw;
-      plan(Coverage::swept);
+      plan(0);
     }
   } catch (const tess::Error& error) {
     node.refuse(std::string("cannot be met: ") + error.what());

@@ -44,7 +44,6 @@ class Compressor {
       : field_(field),
         bound_(bound),
         layout_(layout),
-        decoder_(layout),
         shift_(shift),
         cell_(static_cast<float>(field.grid.cell)),
         thickness_(static_cast<float>(field.thickness)) {}
@@ -65,7 +64,7 @@ class Compressor {
   [[nodiscard]] Entry written(double distance, Vec3 normal) const;
   [[nodiscard]] Plane plane(const Entry& e) const {
     const lanes::I zero{};
-    const lanes::Stored all = lanes::decode(decoder_, zero + static_cast<std::int32_t>(e.low),
+    const lanes::Stored all = lanes::decode(layout_, zero + static_cast<std::int32_t>(e.low),
                                             zero + static_cast<std::int32_t>(e.high));
     return {all.distance[0], {all.normal.x[0], all.normal.y[0], all.normal.z[0]}};
   }
@@ -77,7 +76,6 @@ class Compressor {
   const Field& field_;
   ErrorBound bound_, off_{}, measured_{};
   EntryLayout layout_;
-  EntryDecoder decoder_;
   int shift_;
   float cell_, thickness_;
   std::vector<Voxel> voxels_;
@@ -121,27 +119,27 @@ Vec3 Compressor::direction_of_cell() const {
 Entry Compressor::written(double distance, Vec3 normal) const {
   if (layout_.wide)
     return {std::bit_cast<std::uint32_t>(static_cast<float>(distance)), encode_normal(normal)};
-  const auto most = static_cast<double>(decoder_.zero - 1);
+  const auto most = static_cast<double>(layout_.zero() - 1);
   const double steps =
       layout_.step > 0 ? std::round(distance / static_cast<double>(layout_.step)) : 0;
   const auto above =
-      static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + decoder_.zero);
-  return {above << (2 * decoder_.bits) | narrow_normal(normal), 0};
+      static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + layout_.zero());
+  return {above << (2 * layout_.normal_bits) | narrow_normal(normal), 0};
 }
 
 /// The two coordinates on the octahedral map that decode closest to `normal`: one of four
 /// neighbours.
 std::uint32_t Compressor::narrow_normal(Vec3 normal) const {
-  if (normal == Vec3{}) return static_cast<std::uint32_t>(decoder_.mask << decoder_.bits);
+  if (normal == Vec3{}) return static_cast<std::uint32_t>(layout_.mask() << layout_.normal_bits);
   const auto [u, v] = on_octahedral_map(normal);
   const auto low = [&](double t) {
-    return std::clamp(static_cast<int>(std::floor((t + 1) * decoder_.middle)), 0,
-                      2 * decoder_.middle - 1);
+    return std::clamp(static_cast<int>(std::floor((t + 1) * layout_.middle())), 0,
+                      2 * layout_.middle() - 1);
   };
   lanes::I words{};
   for (int corner = 0; corner < 4; ++corner)
-    words[corner] = (low(u) + (corner & 1)) << decoder_.bits | (low(v) + (corner >> 1));
-  const lanes::F3 decoded = lanes::decode(decoder_, words, lanes::I{}).normal;
+    words[corner] = (low(u) + (corner & 1)) << layout_.normal_bits | (low(v) + (corner >> 1));
+  const lanes::F3 decoded = lanes::decode(layout_, words, lanes::I{}).normal;
   std::uint32_t best = 0;
   double closest = -2;
   for (int corner = 0; corner < 4; ++corner) {

@@ -164,7 +164,7 @@ TEST_CASE("bad surfaces and grids are refused with a reason", "[dn_field]") {
                   tess::Error);
   CHECK_THROWS_AS(grid_around({{0, 0, 0}, {1, 1, 1}}, 100000, 0.1), tess::Error);
   CHECK(refusal([&] {
-          (void)choose_plan({{0, 0, 0}, {1, 1, 1}}, {100, 1, 0.1}, Coverage::step, 1 << 20);
+          (void)choose_plan({{0, 0, 0}, {1, 1, 1}}, {100, 1, 0.1}, 1 << 20);
         }).find("above the limit") != std::string::npos);
 }
 
