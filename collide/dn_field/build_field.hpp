@@ -6,11 +6,11 @@
 // denser or coarser than the grid. Blocks of 4³ voxels traverse a tree of the triangles together;
 // blocks beyond the thickness are skipped.
 //
-// Normals. exact: along the gradient of the distance; within a thousandth of a cell from the surface
-// those of the nearest triangle. normals: the surface's normals are rasterised and blurred; after
-// every round the voxels on the surface get their first value back. potential: occupancy is blurred
-// in the same way, and the normal is its gradient. By the two latter, normals are perpendicular to
-// the surface near it, and follow the object's overall shape further away.
+// Normals. exact: along the gradient of the distance; within a thousandth of a cell from the
+// surface those of the nearest triangle. normals: the surface's normals are rasterised and blurred;
+// after every round the voxels on the surface get their first value back. potential: occupancy is
+// blurred in the same way, and the normal is its gradient. By the two latter, normals are
+// perpendicular to the surface near it, and follow the object's overall shape further away.
 //
 // We differ from the paper: distances are exact instead of counted in voxels. The potential is
 // blurred once more without restoring anything, because otherwise the voxels' steps appear in its

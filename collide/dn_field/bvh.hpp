@@ -109,8 +109,8 @@ class Bvh {
       stack[height++] = nodes_[at].first + 1;
     }
   }
-  /// Calls visit(leaf) for leaves within sqrt(`limit2`) of `from`, a point or a box, near ones first;
-  /// a visit may reduce the limit.
+  /// Calls visit(leaf) for leaves within sqrt(`limit2`) of `from`, a point or a box, near ones
+  /// first; a visit may reduce the limit.
   template <class From, class Visit>
   void descend_near(const From& from, const double& limit2, const Visit& visit) const {
     struct Pending {

@@ -21,8 +21,8 @@ struct ErrorBound {
 };
 
 /// The bits of an entry. Wide: a float and a code of normal_code.hpp. Narrow: two coordinates of
-/// `normal_bits` bits on the octahedral map, 0 … 2 middle(); mask() in the first means no normal. The
-/// rest of 32 bits is the distance in steps, plus zero().
+/// `normal_bits` bits on the octahedral map, 0 … 2 middle(); mask() in the first means no normal.
+/// The rest of 32 bits is the distance in steps, plus zero().
 struct EntryLayout {
   bool wide = false;
   int normal_bits = 0;
@@ -33,6 +33,7 @@ struct EntryLayout {
   [[nodiscard]] std::int32_t zero() const { return 1 << (31 - 2 * normal_bits); }
 };
 
+/// The voxels of a compressed field.
 struct Planes {
   Content content = Content::distance_and_normal;
   int block_shift = 2;            ///< e: blocks of 2^e voxels on each axis
@@ -49,8 +50,9 @@ struct Planes {
 };
 
 /// Compresses `field` so that every voxel meets `bound`, and measures it on all voxels, with the
-/// look-up's own arithmetic. The result has the jump of `field`. block_shift 2 to 4, or 0: the one that takes least memory. Throws
-/// Error(bad_argument) for a bound that is negative or NaN, or another block_shift.
+/// look-up's own arithmetic. The result has the jump of `field`. block_shift 2 to 4, or 0: the one
+/// that takes least memory. Throws Error(bad_argument) for a bound that is negative or NaN, or
+/// another block_shift.
 [[nodiscard]] Field compress(const Field& field, const ErrorBound& bound, int block_shift = 0);
 
 /// The flat field that look-ups of the compressed `field` see, with the jump of its own distances.

@@ -8,8 +8,8 @@ namespace tess::dn {
 
 /// What the fastest particle and the step require of a field.
 struct Demand {
-  /// Relative to the surface, in the object's units; 0 where paths are swept: no speed passes through
-  /// then, and two cells are enough.
+  /// Relative to the surface, in the object's units. 0 where paths are swept: no speed passes
+  /// through then, and two cells are enough.
   double max_speed = 0;
   double step = 0;    ///< time step
   double detail = 0;  ///< smallest feature to resolve: at least two voxels across it
@@ -33,7 +33,8 @@ struct FieldPlan {
   Blur blur;
 };
 
-/// Resolution from the smallest feature, thickness from speed × step plus two cells, blur from both. Throws Error(bad_argument) if more than `max_voxels` would be needed.
+/// Resolution from the smallest feature, thickness from speed × step plus two cells, blur from
+/// both. Throws Error(bad_argument) if more than `max_voxels` would be needed.
 [[nodiscard]] FieldPlan choose_plan(const Bounds& box, const Demand& demand,
                                     std::size_t max_voxels);
 
