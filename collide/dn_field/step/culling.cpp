@@ -115,15 +115,19 @@ void cull(std::span<const PlacedObject> objects, LookUp kind, Sweep sweep, Reach
 ParticleSpan NearParticles::pack(const ParticleSpan& block) {
   const std::size_t whole = (count + width - 1) / width * width;
   for (std::size_t a = 0; a < 6; ++a) {
-    for (std::size_t i = 0; i < count; ++i) packed.values[a][i] = block.columns()[a][index[i]];
-    for (std::size_t i = count; i < whole; ++i) packed.values[a][i] = 0;
+    const double* const from = block.columns()[a];
+    double* const to = packed.values[a];
+    for (std::size_t i = 0; i < count; ++i) to[i] = from[index[i]];
+    std::fill(to + count, to + whole, 0);
   }
   return packed.span(whole);
 }
 
 void NearParticles::unpack(const ParticleSpan& block) const {
-  for (std::size_t a = 0; a < 6; ++a)
-    for (std::size_t i = 0; i < count; ++i) block.columns()[a][index[i]] = packed.values[a][i];
+  for (std::size_t a = 0; a < 6; ++a) {
+    double* const to = block.columns()[a];
+    for (std::size_t i = 0; i < count; ++i) to[index[i]] = packed.values[a][i];
+  }
 }
 
 }  // namespace tess::dn
