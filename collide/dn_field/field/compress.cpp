@@ -35,7 +35,6 @@ float distance_to(const Plane& plane, float x, float y, float z, float thickness
 
 struct Entry {
   std::uint32_t low = 0, high = 0;  // high: of wide layouts only
-  friend bool operator==(const Entry&, const Entry&) = default;
 };
 
 class Compressor {
