@@ -11,8 +11,8 @@
 #include "apps/bench/report.hpp"
 #include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
-#include "collide/dn_field/build_blurred.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/shapes.hpp"
@@ -80,10 +80,10 @@ void exact_rows(const Bench& bench) {
   };
   for (const auto& [n, openvdb] : {Case{64, 430}, {128, 650}, {256, 1170}}) {
     const Grid grid = bench.grid(n);
-    const ExactOptions options{Sides::one, Content::distance_and_normal, band * grid.cell, {}};
-    check_exact(build_exact(bench.torus, grid, options));
+    const FieldOptions options{Sides::one, Content::distance_and_normal, band * grid.cell, {}};
+    check_exact(build_field(bench.torus, grid, options));
     timed(bench, fmt::format("exact field {}^3 of 3 cells", n), openvdb,
-          [&] { return build_exact(bench.torus, grid, options); });
+          [&] { return build_field(bench.torus, grid, options); });
     if (!OpenVdbField::build(bench.torus, grid, band)) continue;
     timed(bench, fmt::format("OpenVDB level set {}^3 of 3 cells", n), 0, [&] {
       auto made = OpenVdbField::build(bench.torus, grid, band);
@@ -99,9 +99,9 @@ void exact_rows(const Bench& bench) {
 /// A row of a mesh whose inside only the winding number determines; some signs are checked.
 void damaged_row(const Bench& bench, const std::string& what, const Surface& surface) {
   const Grid grid = bench.grid(60);
-  const ExactOptions options{Sides::one, Content::distance, band * grid.cell, {}};
+  const FieldOptions options{Sides::one, Content::distance, band * grid.cell, {}};
   const Field field = timed(bench, "exact field 60^3 of 3 cells of " + what, 0,
-                            [&] { return build_exact(surface, grid, options); });
+                            [&] { return build_field(surface, grid, options); });
   const Bvh tree(surface);
   std::mt19937 random(1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -118,7 +118,7 @@ void damaged_row(const Bench& bench, const std::string& what, const Surface& sur
 void other_rows(const Bench& bench) {
   const Grid grid = bench.grid(60);
   check_exact(timed(bench, "exact field 60^3 of all voxels", 0,
-                    [&] { return build_exact(bench.torus, grid); }));
+                    [&] { return build_field(bench.torus, grid); }));
   Surface open = bench.torus;
   open.triangles.resize(open.triangles.size() - 6000);
   damaged_row(bench, "an open mesh", open);
@@ -130,7 +130,8 @@ void other_rows(const Bench& bench) {
   for (const auto& [method, name] :
        {std::pair{Method::normals, "normals"}, std::pair{Method::potential, "potential"}})
     check_exact(timed(bench, fmt::format("{} method 60^3 of 6 cells", name), 0, [&, m = method] {
-      return build_blurred(bench.torus, grid, {m, Sides::one, 6 * grid.cell, {}, {}});
+      return build_field(bench.torus, grid,
+                         {Sides::one, Content::distance_and_normal, 6 * grid.cell, m, {}});
     }));
 }
 
@@ -160,10 +161,10 @@ void look_up_row(const Bench& bench, const std::string& name, std::size_t n, con
 
 void compressed_rows(const Bench& bench, int n) {
   const Grid grid = bench.grid(n);
-  const Field flat = build_exact(bench.torus, grid,
+  const Field flat = build_field(bench.torus, grid,
                                  {Sides::one, Content::distance_and_normal, band * grid.cell, {}});
   const ErrorBound bound{0.05 * grid.cell, 2 * std::numbers::pi / 180};
-  const CompressedField field =
+  const Field field =
       timed(bench, fmt::format("compression {}^3", n), 0, [&] { return compress(flat, bound); });
   const auto kilobytes = [&](const std::string& name, std::size_t bytes, double reference) {
     Samples samples;
@@ -172,11 +173,12 @@ void compressed_rows(const Bench& bench, int n) {
   };
   kilobytes("memory flat", flat.bytes(), 0);
   kilobytes("memory compressed", field.bytes(), 0.2e-3 * static_cast<double>(flat.bytes()));
-  tess::print(fmt::format(
-      "# compressed {}^3: asked for {:.3f} cells and {:.2f} degrees, measured {:.3f} "
-      "and {:.2f}\n",
-      n, bound.distance / grid.cell, bound.angle * 180 / std::numbers::pi,
-      field.measured.distance / grid.cell, field.measured.angle * 180 / std::numbers::pi));
+  tess::print(
+      fmt::format("# compressed {}^3: asked for {:.3f} cells and {:.2f} degrees, measured {:.3f} "
+                  "and {:.2f}\n",
+                  n, bound.distance / grid.cell, bound.angle * 180 / std::numbers::pi,
+                  field.planes->measured.distance / grid.cell,
+                  field.planes->measured.angle * 180 / std::numbers::pi));
   const std::size_t count = 1'000'000;
   const Cloud cloud(count);
   std::vector<float> expected(count), found(count), nx(count), ny(count), nz(count);

@@ -2,7 +2,7 @@
 
 #include "apps/bench/openvdb_field.hpp"
 #include "apps/bench/thread_watch.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "runtime/core/check.hpp"
 
 #include <fmt/core.h>
@@ -17,7 +17,7 @@ void look_up_beside_openvdb(const Report& report, const Surface& surface, const 
   const auto theirs = OpenVdbField::build(surface, grid, half_width);
   if (!theirs) return;
   const Field ours =
-      build_exact(surface, grid, {Sides::one, Content::distance, half_width * grid.cell, {}});
+      build_field(surface, grid, {Sides::one, Content::distance, half_width * grid.cell, {}});
   constexpr std::size_t count = 1'000'000;
   std::vector<float> x(count), y(count), z(count), our_distance(count), their_distance(count);
   std::mt19937 random(7);

@@ -23,8 +23,9 @@ std::optional<std::uint64_t> compressed_bytes(const Stage& stage) {
   std::uint64_t bytes = 0;
   try {
     for (const FieldInTheMaking& of : stage.fields)
-      bytes += of.compressed() ? of.compressed()->bytes()
-                               : compress(of.field(), bound_of({}, of.field())).bytes();
+      bytes += of.field().planes != nullptr
+                   ? of.field().bytes()
+                   : compress(of.field(), bound_of({}, of.field())).bytes();
   } catch (const std::bad_alloc&) {
     return std::nullopt;
   } catch (const tess::Error&) {

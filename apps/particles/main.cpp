@@ -7,17 +7,11 @@
 #include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
 
-#include <cstring>
 #include <fmt/format.h>
 
 namespace {
 
 int run(tess::Setup& setup, int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--help-scene") != 0) continue;
-    tess::print(particles::scene_help());
-    return 0;
-  }
   particles::Options options;
   apps::CommandLine line("Particles against objects of any shape, by distance/normal fields.",
                          "particles");
@@ -47,6 +41,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
   bool help_scene = false;
   line.flag("--help-scene", help_scene, "describe the keys of a scene file");
   if (!line.parse(argc, argv)) return 0;
+  if (help_scene) {
+    tess::print(particles::scene_help());
+    return 0;
+  }
   if (!balance.empty()) options.run.balance = tess::parse_balance(balance);
   const bool prints = setup.machine->process().value == 0;
   if (stability && !particles::print_stability(prints)) return 1;

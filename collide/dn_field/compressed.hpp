@@ -7,13 +7,10 @@
 //
 // An entry is a plane equation: the distance of a voxel is that of its centre from the plane, cut
 // off at the thickness. A sample takes the same few steps for every division, without a branch.
-// Read-only once made; any thread.
+// Read-only once made; any thread. There is no trilinear look-up.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
-#include "collide/dn_field/look_up.hpp"
-
-#include <span>
 
 namespace tess::dn {
 
@@ -24,19 +21,21 @@ struct ErrorBound {
 };
 
 /// The bits of an entry. Wide: a float and a code of normal_code.hpp. Narrow: two coordinates of
-/// `normal_bits` bits on the octahedral map; the rest of 32 bits is the distance in steps.
+/// `normal_bits` bits on the octahedral map, 0 … 2 middle(); mask() in the first means no normal.
+/// The rest of 32 bits is the distance in steps, plus zero().
 struct EntryLayout {
   bool wide = false;
   int normal_bits = 0;
   float step = 0;
+
+  [[nodiscard]] std::int32_t mask() const { return (1 << normal_bits) - 1; }
+  [[nodiscard]] std::int32_t middle() const { return mask() >> 1; }
+  [[nodiscard]] std::int32_t zero() const { return 1 << (31 - 2 * normal_bits); }
 };
 
-struct CompressedField {
-  Grid grid;
-  Method method = Method::exact;
-  Sides sides = Sides::one;
+/// The voxels of a compressed field.
+struct Planes {
   Content content = Content::distance_and_normal;
-  double thickness = 0;
   int block_shift = 2;            ///< e: blocks of 2^e voxels on each axis
   std::array<int, 3> n_blocks{};  ///< n / 2^e, rounded up
   EntryLayout layout;
@@ -44,7 +43,6 @@ struct CompressedField {
   std::vector<std::uint32_t> entry;  ///< one word an entry, two where the layout is wide
   ErrorBound bound;                  ///< asked for
   ErrorBound measured;               ///< the greatest over all voxels; never above bound
-  float jump = HUGE_VALF;            ///< Field::jump of the flat field that it was made from
 
   [[nodiscard]] std::size_t bytes() const {
     return (block.size() + entry.size()) * sizeof(std::uint32_t);
@@ -52,22 +50,20 @@ struct CompressedField {
 };
 
 /// Compresses `field` so that every voxel meets `bound`, and measures it on all voxels, with the
-/// look-up's own arithmetic. block_shift 2 to 4, or 0: the one that takes least memory. Throws
-/// Error(bad_argument) for a bound that is negative or NaN, or another block_shift.
-[[nodiscard]] CompressedField compress(const Field& field, const ErrorBound& bound,
-                                       int block_shift = 0);
+/// look-up's own arithmetic. The result has the jump of `field`. block_shift 2 to 4, or 0: the one
+/// that takes least memory. Throws Error(bad_argument) for a bound that is negative or NaN, or
+/// another block_shift.
+[[nodiscard]] Field compress(const Field& field, const ErrorBound& bound, int block_shift = 0);
 
-/// The flat field that look-ups of `field` see, with the jump of its own distances.
-[[nodiscard]] Field expanded(const CompressedField& field);
+/// The flat field that look-ups of the compressed `field` see, with the jump of its own distances.
+[[nodiscard]] Field expanded(const Field& field);
 
-/// The flat field without its arrays, for Object::field beside Object::compressed.
-[[nodiscard]] Field outline(const CompressedField& field);
+/// The distance of voxel (i, j, k), flat or compressed.
+[[nodiscard]] float voxel_distance(const Field& field, int i, int j, int k);
 
-/// The distance of voxel (i, j, k).
-[[nodiscard]] float voxel_distance(const CompressedField& field, int i, int j, int k);
-
-/// Samples the field as look_up() of a flat one does, within the bound; nearest or tangent.
-void look_up(const CompressedField& field, LookUp kind, const Points& points,
-             const Answers& answers);
+/// The largest error of a voxel's distance by compression.
+[[nodiscard]] inline double compression_error(const Field& field) {
+  return field.planes != nullptr ? field.planes->measured.distance : 0;
+}
 
 }  // namespace tess::dn

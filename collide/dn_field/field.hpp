@@ -7,12 +7,16 @@
 
 #include <cmath>
 #include <cstdint>
-#include <span>
+#include <memory>
 #include <vector>
 
 namespace tess::dn {
 
 enum class Method : std::uint32_t { exact, normals, potential };
+inline constexpr const char* method_names[] = {"exact", "normals", "potential"};
+[[nodiscard]] constexpr const char* name_of(Method method) {
+  return method_names[static_cast<std::size_t>(method)];
+}
 
 /// one: distances are negative inside. two: an open surface (a shell, a plate), met from either
 /// side.
@@ -21,12 +25,14 @@ enum class Sides : std::uint32_t { one, two };
 /// What a field stores.
 enum class Content : std::uint32_t { distance, distance_and_normal };
 
+struct Planes;
+
 struct Field {
   Grid grid;
   Method method = Method::exact;
   Sides sides = Sides::one;
   double thickness = 0;               ///< |distance| is cut off here
-  std::vector<float> distance;        ///< grid.size()
+  std::vector<float> distance;        ///< grid.size(); empty if compressed
   std::vector<std::uint32_t> normal;  ///< grid.size() codes of normal_code.hpp, or empty
 
   /// Upper bound of the distance difference between adjacent voxels (26 neighbours); +inf if not
@@ -34,15 +40,13 @@ struct Field {
   float jump = HUGE_VALF;
 
   std::uint64_t surface = 0;  ///< fingerprint() of the surface it was built from; 0: of none
+  std::shared_ptr<const Planes> planes{};  ///< of a compressed field (compressed.hpp); else null
 
-  [[nodiscard]] std::size_t bytes() const {
-    return distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
-  }
+  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] Content content() const;
 };
 
 /// Field::jump of a field; for exact distances it is at most a voxel's diagonal.
 [[nodiscard]] float greatest_jump(const Field& field);
-/// The same within some layers. distance: layers × n[1] × n[0].
-[[nodiscard]] float greatest_jump(const Grid& grid, std::span<const float> distance);
 
 }  // namespace tess::dn

@@ -14,7 +14,7 @@
 namespace tess::dn {
 
 /// Writes `field` to `path`, and replaces a file of that name once the new one is complete. Throws
-/// Error(environment) if it cannot be written.
+/// Error(environment) if it cannot be written, Error(bad_argument) for a compressed field.
 void save_field(const Field& field, const std::string& path);
 
 /// Reads a file of save_field. Throws Error(bad_file) naming the file and the fault: cannot be

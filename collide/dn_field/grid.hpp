@@ -33,6 +33,8 @@ struct Grid {
   [[nodiscard]] Vec3 centre(int i, int j, int k) const {
     return origin + cell * Vec3{1.0 * i, 1.0 * j, 1.0 * k};
   }
+  /// From the centre of the first voxel to that of the last.
+  [[nodiscard]] Bounds box() const { return {origin, centre(n[0] - 1, n[1] - 1, n[2] - 1)}; }
 };
 
 /// A cubic grid of n³ voxels around `box`, with at least `margin` left free on every side.

@@ -1,6 +1,6 @@
-// Samples of a field at many points: structure of arrays in, structure of arrays out, branch-free,
-// a vector of points at a time. Points are in the object's own coordinates. Any thread. The step
-// loop samples fields in its own loops.
+// Samples of a field, flat or compressed, at many points: structure of arrays in, structure of
+// arrays out, branch-free, a vector of points at a time. Points are in the object's own coordinates.
+// Any thread. The step loop samples fields in its own loops.
 #pragma once
 
 #include "collide/dn_field/field.hpp"
@@ -14,6 +14,10 @@ namespace tess::dn {
 /// tangent: that value continued along the voxel's normal; exact for planes, error of order 2.
 /// trilinear: interpolated between eight voxels, continuous; exact for planes, error of order 2.
 enum class LookUp : std::uint32_t { nearest, tangent, trilinear };
+inline constexpr const char* look_up_names[] = {"nearest", "tangent", "trilinear"};
+[[nodiscard]] constexpr const char* name_of(LookUp kind) {
+  return look_up_names[static_cast<std::size_t>(kind)];
+}
 
 inline constexpr float half_diagonal = 0.8660255F;  ///< of a voxel, in cells
 
@@ -44,7 +48,8 @@ struct Answers {
 /// Distances are `out_of_reach` outside the grid and for NaN points. Normals have unit length, or
 /// are zero where there is none: outside, on the medial axis, beyond the thickness. The trilinear
 /// look-up ends at the outer voxels' centres, the others at their faces. Throws Error(bad_argument)
-/// if normals are asked of a field that stores none; the tangent look-up always reads them.
+/// if normals are asked of a field that stores none (the tangent look-up always reads them), and
+/// for a trilinear look-up of a compressed field.
 void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers);
 
 inline constexpr float out_of_reach = 3.0e38F;

@@ -8,6 +8,7 @@
 
 #include <boost/align/aligned_allocator.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct ParticleSpan {
   [[nodiscard]] ParticleSpan part(std::size_t first, std::size_t n) const {
     return {x + first, y + first, z + first, vx + first, vy + first, vz + first, n};
   }
+  [[nodiscard]] std::array<double*, 6> columns() const { return {x, y, z, vx, vy, vz}; }
 };
 
 /// Aligned to cache lines, so that a vector is loaded from one line.

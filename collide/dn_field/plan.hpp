@@ -8,14 +8,12 @@ namespace tess::dn {
 
 /// What the fastest particle and the step require of a field.
 struct Demand {
-  double max_speed = 0;  ///< relative to the surface, in the object's units
-  double step = 0;       ///< time step
-  double detail = 0;     ///< smallest feature to resolve: at least two voxels across it
+  /// Relative to the surface, in the object's units. 0 where paths are swept: no speed passes
+  /// through then, and two cells are enough.
+  double max_speed = 0;
+  double step = 0;    ///< time step
+  double detail = 0;  ///< smallest feature to resolve: at least two voxels across it
 };
-
-/// Whether a field must cover the displacement of a whole step, or, where paths are swept and no
-/// speed passes through, only two cells.
-enum class Coverage { step, swept };
 
 /// A 3D blur with linear attenuation: weight 1 − r / (radius + 1) for voxels at most radius away.
 struct Blur {
@@ -35,9 +33,9 @@ struct FieldPlan {
   Blur blur;
 };
 
-/// Resolution from the smallest feature, thickness from speed × step (two cells if swept), blur
-/// from both. Throws Error(bad_argument) if more than `max_voxels` would be needed.
-[[nodiscard]] FieldPlan choose_plan(const Bounds& box, const Demand& demand, Coverage coverage,
+/// Resolution from the smallest feature, thickness from speed × step plus two cells, blur from
+/// both. Throws Error(bad_argument) if more than `max_voxels` would be needed.
+[[nodiscard]] FieldPlan choose_plan(const Bounds& box, const Demand& demand,
                                     std::size_t max_voxels);
 
 }  // namespace tess::dn

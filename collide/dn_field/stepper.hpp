@@ -8,7 +8,6 @@
 // side, a particle turns back the way it came instead of being reflected.
 #pragma once
 
-#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/frame.hpp"
 #include "collide/dn_field/particles.hpp"
 #include "collide/dn_field/rules.hpp"
@@ -20,13 +19,11 @@ namespace tess::dn {
 
 class Bvh;
 
-/// An obstacle. The field is shared, read-only, and must outlive the object.
+/// An obstacle. The field is shared, read-only, and must outlive the object. Either all fields of a
+/// scene are compressed or none is.
 struct Object {
   const Field* field = nullptr;
   Frame frame;  ///< at the start of a run, with its velocities
-  /// If given, this field is sampled, and `field` is the one it was made from or its outline().
-  /// Either all objects of a scene have one or none has.
-  const CompressedField* compressed = nullptr;
   /// If given, the tree of the surface that the field was built from. With it, particles do not
   /// pass the joints of an open surface.
   const Bvh* triangles = nullptr;
@@ -72,11 +69,5 @@ class Stepper {
 
 /// Throws Error(bad_value) where validate(rules) does, or if the step is not positive and finite.
 [[nodiscard]] Stepper make_stepper(const Rules& rules, double step);
-
-/// The sum of v²/2 over all particles with finite velocity.
-[[nodiscard]] double kinetic_energy(ParticleSpan particles);
-
-/// The number of particles with a coordinate or velocity that is NaN or infinite.
-[[nodiscard]] std::size_t count_nonfinite(ParticleSpan particles);
 
 }  // namespace tess::dn

@@ -2,6 +2,7 @@
 // particles use structure of arrays: see particles.hpp.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace tess::dn {
@@ -40,6 +41,11 @@ constexpr double component(Vec3 a, int axis) {
   return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
 
+/// A part of a line p + t way; empty where first > last.
+struct LinePart {
+  double first = -HUGE_VAL, last = HUGE_VAL;
+};
+
 /// An axis-aligned box, empty until extended.
 struct Bounds {
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
@@ -53,11 +59,28 @@ struct Bounds {
   [[nodiscard]] Vec3 centre() const { return 0.5 * (low + high); }
 
   /// Squared distance from `p` to the box; zero inside.
-  [[nodiscard]] double distance2(Vec3 p) const {
-    const double dx = std::fmax(0.0, std::fmax(low.x - p.x, p.x - high.x));
-    const double dy = std::fmax(0.0, std::fmax(low.y - p.y, p.y - high.y));
-    const double dz = std::fmax(0.0, std::fmax(low.z - p.z, p.z - high.z));
+  [[nodiscard]] double distance2(Vec3 p) const { return distance2(Bounds{p, p}); }
+  /// Squared distance between two boxes; zero where they overlap.
+  [[nodiscard]] double distance2(const Bounds& b) const {
+    const double dx = std::max({0.0, low.x - b.high.x, b.low.x - high.x});
+    const double dy = std::max({0.0, low.y - b.high.y, b.low.y - high.y});
+    const double dz = std::max({0.0, low.z - b.high.z, b.low.z - high.z});
     return dx * dx + dy * dy + dz * dz;
+  }
+  /// The part of the line p + t way in the box.
+  [[nodiscard]] LinePart part_of_line(Vec3 p, Vec3 way) const {
+    LinePart part;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = component(way, axis);
+      const double to_low = component(low - p, axis), to_high = component(high - p, axis);
+      if (d == 0) {
+        if (to_low > 0 || to_high < 0) return {HUGE_VAL, -HUGE_VAL};
+        continue;
+      }
+      part.first = std::max(part.first, std::min(to_low / d, to_high / d));
+      part.last = std::min(part.last, std::max(to_low / d, to_high / d));
+    }
+    return part;
   }
 };
 

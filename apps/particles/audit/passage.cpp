@@ -55,27 +55,15 @@ bool goes_below(const Object& object, double depth, double begin, Vec3 from, Vec
   const double length = norm(to - from), cell = field.grid.cell;
   if (begin < -depth) return false;
   // The part of the path that lies in the grid, cut into pieces of half a cell.
-  const Vec3 low = field.grid.origin, along = to - from;
-  const Vec3 high =
-      field.grid.centre(field.grid.n[0] - 1, field.grid.n[1] - 1, field.grid.n[2] - 1);
-  double first = 0, last = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double a = component(from, axis), d = component(along, axis);
-    if (d == 0) {
-      if (a < component(low, axis) || a > component(high, axis)) return false;
-      continue;
-    }
-    const double one = (component(low, axis) - a) / d, other = (component(high, axis) - a) / d;
-    first = std::max(first, std::min(one, other));
-    last = std::min(last, std::max(one, other));
-  }
+  const auto [enters, leaves] = field.grid.box().part_of_line(from, to - from);
+  const double first = std::max(0.0, enters), last = std::min(1.0, leaves);
   if (!(first <= last)) return false;
   const auto pieces =
       static_cast<std::size_t>(std::ceil((last - first) * length / (0.5 * cell))) + 1;
   for (std::size_t i = 0; i <= pieces; ++i) {
     const double t =
         first + (last - first) * (static_cast<double>(i) / static_cast<double>(pieces));
-    if (distance_at(object, from + t * along) < -depth) return true;
+    if (distance_at(object, from + t * (to - from)) < -depth) return true;
   }
   return false;
 }
@@ -85,9 +73,7 @@ bool goes_below(const Object& object, double depth, double begin, Vec3 from, Vec
 double distance_at(const tess::dn::Object& object, tess::dn::Vec3 p) {
   const Grid& grid = object.field->grid;
   const auto voxel = [&](int i, int j, int k) {
-    return static_cast<double>(object.compressed != nullptr
-                                   ? voxel_distance(*object.compressed, i, j, k)
-                                   : object.field->distance[grid.index(i, j, k)]);
+    return static_cast<double>(voxel_distance(*object.field, i, j, k));
   };
   std::array<int, 3> low{};
   std::array<double, 3> part{};

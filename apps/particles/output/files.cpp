@@ -54,14 +54,15 @@ void prepare_files(const Scene& scene, const Options& options) {
 }
 
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {
+  using namespace tess::dn;
   const Outputs& outputs = stage.scene.outputs;
   const fs::path in(folder);
   for (std::size_t i = 0; outputs.fields && i < stage.fields.size(); ++i)
     save_field(stage.fields[i].field(), (in / field_file(i)).string());
   if (const auto& slice = outputs.slice) {
-    const FieldInTheMaking& of = stage.fields[slice->object];
+    const Field& field = stage.fields[slice->object].field();
     plot::write_file((in / "field.svg").string(),
-                     slice_svg(of.compressed() ? expanded(*of.compressed()) : of.field(),
+                     slice_svg(field.planes != nullptr ? expanded(field) : field,
                                outputs.axes.front(), slice->at));
   }
   if (result.trajectories.empty()) return;

@@ -210,8 +210,7 @@ std::string slice_svg(const Field& field, int axis, double at) {
     const auto [x, y, z] = voxel(i, j);
     return grid.centre(x, y, z);
   };
-  const Frame2D frame(axis,
-                      {grid.origin, grid.centre(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1)});
+  const Frame2D frame(axis, grid.box());
   const auto below = [&](double level) {
     auto lines = plot::contours(
         count(across), count(up),

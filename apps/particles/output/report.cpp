@@ -29,7 +29,7 @@ std::string_view method_of(const Scene& scene) {
   const auto method = scene.objects.front().method;
   for (const SceneObject& object : scene.objects)
     if (object.method != method) return "mixed";
-  return method_names[static_cast<std::size_t>(method)];
+  return name_of(method);
 }
 
 double per_particle_step(const Scene& scene, double seconds) {

@@ -38,6 +38,9 @@ inline constexpr double largest_number = 1e100, least_positive = 1e-100;
 inline constexpr std::int64_t largest_whole = std::int64_t{1} << 53;
 
 using Words = std::vector<std::string_view>;
+[[nodiscard]] inline Words words_of(const auto& names) {
+  return {std::begin(names), std::end(names)};
+}
 class Key;
 
 class Node {

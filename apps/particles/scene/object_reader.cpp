@@ -47,17 +47,17 @@ void choose(const Node& node, const Bounds& box, double dt, const Rules& rules,
   double max_speed = 0, detail = 0;
   node.read({{"max_speed", max_speed, positive, "the largest speed relative to the surface"},
              {"detail", detail, positive, "the size of the smallest feature"}});
-  const auto plan = [&](Coverage coverage) {
+  const auto plan = [&](double speed) {
     const FieldPlan chosen =
-        choose_plan(box, {max_speed / object.frame.scale, dt, detail}, coverage, most_voxels);
+        choose_plan(box, {speed / object.frame.scale, dt, detail}, most_voxels);
     object.grid = chosen.grid, object.thickness = chosen.thickness, object.blur = chosen.blur;
   };
   try {
     try {
-      plan(Coverage::step);
+      plan(max_speed);
     } catch (const tess::Error&) {
       if (!rules.impact || rules.impact->sweep == Sweep::off) throw;
-      plan(Coverage::swept);
+      plan(0);
     }
   } catch (const tess::Error& error) {
     node.refuse(std::string("cannot be met: ") + error.what());
@@ -109,7 +109,7 @@ SceneObject read_object(const Node& node, const std::string& folder, double dt,
        {"field", field},
        {"resolution", resolution, 4, 1024},
        {"thickness", object.thickness, positive},
-       {"method", object.method, method_names},
+       {"method", object.method, words_of(method_names)},
        {"sides", object.sides, {"one", "two"}},
        {"blur", blur},
        {"transform", [&](const Node& of) { object.frame = read_transform(of); }},

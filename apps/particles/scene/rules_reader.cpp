@@ -56,7 +56,7 @@ Rules read_rules(const Node& node) {
   const auto explosions = [&](const Node& of) {
     for (const Node& item : of.items()) rules.explosions.push_back(read_explosion(item));
   };
-  node.read({{"look_up", rules.look_up, look_up_names},
+  node.read({{"look_up", rules.look_up, words_of(look_up_names)},
              {"spring", spring},
              {"impact", impact},
              {"surface_drag", surface_drag},

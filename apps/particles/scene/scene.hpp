@@ -19,10 +19,6 @@
 
 namespace particles {
 
-/// The words of scene files, in the order of tess::dn::Method and tess::dn::LookUp.
-inline const std::vector<std::string_view> method_names{"exact", "normals", "potential"},
-    look_up_names{"nearest", "tangent", "trilinear"};
-
 /// An object with the field around it.
 struct SceneObject {
   std::string name;

@@ -36,7 +36,6 @@ Content content_of(const Scene& scene) {
 
 void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
   start_ = std::chrono::steady_clock::now();
-  content_ = content;
   n_parts_ = n_parts;
   if (!object.field.empty()) {
     field_ = load_field(object.field);
@@ -45,17 +44,13 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
           tess::ErrorCode::bad_file, object.field,
           ": holds no normals, which rules, pictures or files of this scene ask for; take one that "
           "outputs.fields wrote");
+    if (content == Content::distance) field_.normal = {};
     return;
   }
   grid_ = object.grid;
-  if (object.method == Method::exact) {
-    const ExactOptions options{object.sides, content, object.thickness, {}};
-    field_ = exact_.emplace(object.surface, object.grid, options).empty_field();
-    slabs_.assign(static_cast<std::size_t>(grid_.n[2]), {});
-  } else {
-    const BlurredOptions options{object.method, object.sides, object.thickness, object.blur, {}};
-    blurred_.emplace(object.surface, object.grid, options);
-  }
+  builder_.emplace(
+      object.surface, object.grid,
+      FieldOptions{object.sides, content, object.thickness, object.method, object.blur});
 }
 
 int FieldInTheMaking::n_distance_stages() const {
@@ -67,38 +62,22 @@ int FieldInTheMaking::n_distance_stages() const {
 }
 
 int FieldInTheMaking::n_stages() const {
-  if (exact_) return n_distance_stages();
-  return blurred_ ? n_distance_stages() + blurred_->n_rounds() : 0;
+  return builder_ ? n_distance_stages() + builder_->n_rounds() - 1 : 0;
 }
 
 void FieldInTheMaking::fill(int stage, int part) {
   if (stage >= n_stages()) return;
   const Layers all{0, grid_.n[2]};
-  const int round = stage - n_distance_stages();
-  const Layers mine =
-      share(round < 0 ? share(all, stage, n_distance_stages()) : all, part, n_parts_);
-  if (mine.first == mine.last) return;
-  if (round >= 0)
-    blurred_->build_round(round, mine.first, mine.last);
-  else if (blurred_)
-    blurred_->build_distances(mine.first, mine.last);
-  else
-    slabs_[static_cast<std::size_t>(mine.first)] =
-        exact_->build(slab_of(field_, mine.first, mine.last));
+  const int n = n_distance_stages();
+  const auto [first, last] = share(stage < n ? share(all, stage, n) : all, part, n_parts_);
+  if (first < last) builder_->build(std::max(0, stage - n + 1), first, last);
 }
 
 void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
-  if (exact_) exact_->finish(field_, slabs_);
-  if (blurred_) field_ = blurred_->finish();
-  exact_.reset();
-  blurred_.reset();
-  if (content_ == Content::distance)
-    field_.normal = std::vector<std::uint32_t>();  // and the memory
+  if (builder_) field_ = builder_->finish();
+  builder_.reset();
   flat_bytes_ = field_.bytes();
-  if (compression) {
-    compressed_ = compress(field_, bound_of(*compression, field_));
-    field_ = outline(*compressed_);
-  }
+  if (compression) field_ = compress(field_, bound_of(*compression, field_));
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "apps/particles/scene/scene.hpp"
-#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/compressed.hpp"
-#include "collide/dn_field/stepper.hpp"
 
 #include <chrono>
 #include <optional>
@@ -31,21 +30,11 @@ class FieldInTheMaking {
   /// Fills a part in a stage, if the part exists. PEs fill different parts at the same time, and
   /// all before the next stage begins.
   void fill(int stage, int part);
-  /// With a compression the compressed field replaces the flat arrays.
+  /// With a compression, the field is compressed.
   void finish(const std::optional<Compression>& compression = {});
 
-  /// The flat field; of a compressed one its outline.
   [[nodiscard]] const tess::dn::Field& field() const { return field_; }
-  [[nodiscard]] const std::optional<tess::dn::CompressedField>& compressed() const {
-    return compressed_;
-  }
-  /// The flat field, moved out.
   [[nodiscard]] tess::dn::Field take() && { return std::move(field_); }
-  /// For the step loop, of an object that stands at `frame`.
-  [[nodiscard]] tess::dn::Object object(const tess::dn::Frame& frame,
-                                        const tess::dn::Bvh* triangles) const {
-    return {&field_, frame, compressed_ ? &*compressed_ : nullptr, triangles};
-  }
   /// Bytes of the flat field, also where the compressed one has replaced it.
   [[nodiscard]] std::uint64_t flat_bytes() const { return flat_bytes_; }
   /// From begin() to finish().
@@ -55,15 +44,11 @@ class FieldInTheMaking {
   /// More than one for large fields, so that the progress line moves.
   [[nodiscard]] int n_distance_stages() const;
 
-  std::optional<tess::dn::ExactBuilder> exact_;
-  std::optional<tess::dn::BlurredBuilder> blurred_;
-  tess::dn::Content content_ = tess::dn::Content::distance_and_normal;
+  std::optional<tess::dn::FieldBuilder> builder_;  // none for a field from a file
   tess::dn::Field field_;
-  std::optional<tess::dn::CompressedField> compressed_;
   std::uint64_t flat_bytes_ = 0;
   int n_parts_ = 0;
   tess::dn::Grid grid_;
-  std::vector<tess::dn::BuiltSlab> slabs_;  // by their first layer
   std::chrono::steady_clock::time_point start_;
   double seconds_ = 0;
 };

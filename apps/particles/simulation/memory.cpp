@@ -2,7 +2,7 @@
 
 #include "apps/particles/audit/measured.hpp"
 #include "apps/particles/audit/passage.hpp"
-#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "runtime/base/usable_memory.hpp"
 #include "runtime/core/error.hpp"
 
@@ -26,9 +26,9 @@ void check_memory(const Scene& scene, int n_processes) {
   };
   for (std::size_t i = 0; builds_fields(scene) && i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    const bool blurs = object.field.empty() && object.method != tess::dn::Method::exact;
-    add((blurs ? tess::dn::bytes_per_voxel_blurring : 8.0) *
-            static_cast<double>(object.grid.size()),
+    const tess::dn::FieldOptions options{.method = object.field.empty() ? object.method
+                                                                        : tess::dn::Method::exact};
+    add(building_bytes_per_voxel(options) * static_cast<double>(object.grid.size()),
         tess::text("objects[", i, "].", object.field.empty() ? "resolution" : "field"),
         static_cast<std::uint64_t>(object.grid.n[0]), "voxels along an axis make the fields");
   }

@@ -28,14 +28,7 @@ std::uint32_t asked(const Scene& scene, std::int32_t step) {
   return ask;
 }
 
-}  // namespace
-
-bool keeps_triangles(const Scene& scene, const SceneObject& object) {
-  const bool sheet = object.sides == tess::dn::Sides::two,
-             thin = object.walls.least < 2 * least_wall(scene, object);
-  return (sheet && scene.rules.impact) || ((sheet || thin) && n_audited(scene) > 0);
-}
-
+/// The edge of the blocks: as the scene gives it, or chosen.
 double block_edge(const Scene& scene) {
   constexpr double particles_a_block = 2000, most_an_axis = 8;
   if (scene.block > 0) return scene.block;
@@ -45,9 +38,12 @@ double block_edge(const Scene& scene) {
   return longest > 0 ? longest / std::clamp(an_axis, 1.0, most_an_axis) : 1;
 }
 
-std::int32_t exchange_interval(const Scene& scene) {
-  constexpr int usual = 8;
-  return scene.exchange > 0 ? scene.exchange : usual;
+}  // namespace
+
+bool keeps_triangles(const Scene& scene, const SceneObject& object) {
+  const bool sheet = object.sides == tess::dn::Sides::two,
+             thin = object.walls.least < 2 * least_wall(scene, object);
+  return (sheet && scene.rules.impact) || ((sheet || thin) && n_audited(scene) > 0);
 }
 
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options) {
@@ -80,7 +76,8 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   now_at_part(0, 0);
   co_await tess::epoch([&] { stations.broadcast<&Station::finish_fields>(); });
   result.block = block_edge(scene);
-  result.exchange = exchange_interval(scene);
+  constexpr int usual_exchange = 8;
+  result.exchange = scene.exchange > 0 ? scene.exchange : usual_exchange;
   result.audited = stage->n_audited;
   co_await tess::epoch([&] { stations.broadcast<&Station::prepare>(result.block); });
   now_at("placing particles");
@@ -130,18 +127,16 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     step = to;
   }
   if (options.balance) result.rounds = balancer.history();
-  tess::Future<std::vector<double>> spent;
+  tess::Future<std::vector<Spent>> spent;
   stations.broadcast<&Station::give_spent>(spent.callback());
-  const std::vector<double> of = co_await spent;
-  result.loop_seconds = of[0], result.audit_seconds = of[1];
-  tess::Future<double> build_seconds;
-  stations.broadcast<&Station::give_build_seconds>(build_seconds.callback());
-  result.fields.build_seconds = co_await build_seconds;
+  for (const Spent& of_pe : co_await spent) {
+    result.loop_seconds += of_pe.rules, result.audit_seconds += of_pe.audit;
+    result.fields.build_seconds = std::max(result.fields.build_seconds, of_pe.build);
+  }
   for (const FieldInTheMaking& field : stage->fields) {
     result.fields.cells += field.field().grid.size();
     result.fields.bytes += field.flat_bytes();
-    if (const auto& compressed = field.compressed())
-      result.fields.bytes_used += compressed->bytes();
+    if (field.field().planes != nullptr) result.fields.bytes_used += field.field().bytes();
   }
 }
 

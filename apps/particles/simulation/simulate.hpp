@@ -50,10 +50,6 @@ struct RunResult {
 /// the audit of sheets and thin walls.
 [[nodiscard]] bool keeps_triangles(const Scene& scene, const SceneObject& object);
 
-/// The edge of blocks and the steps between exchanges that a run of this scene uses.
-[[nodiscard]] double block_edge(const Scene& scene);
-[[nodiscard]] std::int32_t exchange_interval(const Scene& scene);
-
 /// Runs the scene from PE 0. `stage`: of this process; holds the fields afterwards.
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options = {});
 

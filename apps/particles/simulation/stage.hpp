@@ -7,6 +7,7 @@
 #include "apps/particles/simulation/emit.hpp"
 #include "apps/particles/simulation/field_making.hpp"
 #include "collide/dn_field/bvh.hpp"
+#include "collide/dn_field/stepper.hpp"
 
 #include <memory>
 #include <optional>
@@ -59,7 +60,7 @@ struct Stage {
     std::vector<tess::dn::Object> objects;
     for (std::size_t i = 0; i < fields.size(); ++i)
       objects.push_back(
-          fields[i].object(scene.objects[i].frame, triangles[i] ? &*triangles[i] : nullptr));
+          {&fields[i].field(), scene.objects[i].frame, triangles[i] ? &*triangles[i] : nullptr});
     return objects;
   }
 };

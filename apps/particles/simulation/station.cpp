@@ -122,14 +122,10 @@ void Station::give_samples(tess::Callback<std::vector<Sample>> target) {
   contribute(tess::concatenate, std::exchange(samples_, {}), std::move(target));
 }
 
-void Station::give_spent(tess::Callback<std::vector<double>> target) {
-  contribute(tess::in_order(tess::sum), std::vector{spent_.rules, spent_.audit}, std::move(target));
-}
-
-void Station::give_build_seconds(tess::Callback<double> target) {
-  double longest = 0;
-  for (const FieldInTheMaking& field : stage_->fields) longest = std::max(longest, field.seconds());
-  contribute(tess::max, longest, std::move(target));
+void Station::give_spent(tess::Callback<std::vector<Spent>> target) {
+  for (const FieldInTheMaking& field : stage_->fields)
+    spent_.build = std::max(spent_.build, field.seconds());
+  contribute(tess::concatenate, std::vector{spent_}, std::move(target));
 }
 
 }  // namespace particles

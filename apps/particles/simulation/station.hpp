@@ -27,6 +27,12 @@ struct Sample {
   tess::dn::Vec3 position, velocity;
 };
 
+/// Seconds on one PE.
+struct Spent {
+  double rules = 0, audit = 0;  ///< CPU of the blocks
+  double build = 0;             ///< of the slowest field
+};
+
 class Station : public tess::Group<Station> {
  public:
   // Set-up, an epoch each. The first PE of each process takes the stage and passes it on; all PEs
@@ -49,19 +55,12 @@ class Station : public tess::Group<Station> {
   [[nodiscard]] const std::vector<tess::dn::Object>& objects(std::int32_t step);
   [[nodiscard]] Measured& measured() { return measured_; }
   [[nodiscard]] std::vector<Sample>& samples() { return samples_; }
-  /// CPU seconds of the blocks on this PE.
-  struct Spent {
-    double rules = 0, audit = 0;
-  };
   [[nodiscard]] Spent& spent() { return spent_; }
 
   // Reductions; the members keep nothing of what they give.
   void give_measured(tess::Callback<Measured> target);
   void give_samples(tess::Callback<std::vector<Sample>> target);
-  /// CPU seconds of the rules and of the audit, summed over PEs.
-  void give_spent(tess::Callback<std::vector<double>> target);
-  /// Seconds of building the slowest field.
-  void give_build_seconds(tess::Callback<double> target);
+  void give_spent(tess::Callback<std::vector<Spent>> target);
 
  private:
   /// Does `action` to a field; errors name its object.

@@ -152,9 +152,8 @@ void bounces(Rows& rows) {
   const Field floor = plane_field(cube_grid(2, 9), up);
   const Object object{&floor, {}};
   for (const double step : {1e-3, 1e-2, 1e-1, 1.0}) {
-    Rules rules;
+    Rules rules = impact(1, Sweep::off);
     rules.gravity = Gravity{{0, 0, -1}};
-    rules.impact = Impact{1, 0, Sweep::off};
     Particle now{{0, 0, 0.5}, {}};
     double most = 0, least = HUGE_VAL;
     for (int i = 0; i < 2000; ++i) {
@@ -176,9 +175,8 @@ void bounces(Rows& rows) {
   // Restitution e: at rest (v0/g)(1 + e)/(1 - e) after the start of the fall; bounces shorter than
   // a step, the last 2 v/g, are cut off.
   const double step = 1e-3, e = 0.7, v0 = 1;
-  Rules rules;
+  Rules rules = impact(e, Sweep::off);
   rules.gravity = Gravity{{0, 0, -1}};
-  rules.impact = Impact{e, 0, Sweep::off};
   const double at_rest = v0 * (1 + e) / (1 - e);
   Particle now{{0, 0, 0.5 * v0 * v0}, {}};
   double moved = 0;
@@ -192,6 +190,13 @@ void bounces(Rows& rows) {
 }
 
 }  // namespace
+
+Rules impact(double restitution, Sweep sweep, LookUp look_up) {
+  Rules rules;
+  rules.look_up = look_up;
+  rules.impact = Impact{restitution, 0, sweep};
+  return rules;
+}
 
 Particle flown(const Rules& rules, double step, int n_steps, std::span<const Object> objects,
                Particle start) {

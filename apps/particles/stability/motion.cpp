@@ -7,21 +7,8 @@
 namespace tess::dn::stability {
 namespace {
 
-Rules impact(double restitution, Sweep sweep, LookUp look_up = LookUp::tangent) {
-  Rules rules;
-  rules.look_up = look_up;
-  rules.impact = Impact{restitution, 0, sweep};
-  return rules;
-}
-
 double total_speed_error(Particle particle, double speed) {
   return std::abs(norm(particle.velocity) / speed - 1);
-}
-
-const char* name_of(LookUp look_up) {
-  return look_up == LookUp::nearest   ? "nearest"
-         : look_up == LookUp::tangent ? "tangent"
-                                      : "trilinear";
 }
 
 /// Particles shot from outside the fields at an open surface and at a ball: the rows count those

@@ -21,6 +21,9 @@ struct Rows {
 struct Particle {
   Vec3 position, velocity;
 };
+/// Impacts only.
+[[nodiscard]] Rules impact(double restitution, Sweep sweep, LookUp look_up = LookUp::tangent);
+
 /// A particle after n_steps.
 [[nodiscard]] Particle flown(const Rules& rules, double step, int n_steps,
                              std::span<const Object> objects, Particle start);

@@ -1,19 +1,14 @@
 // The stability report's extreme places and fields: starts inside and on the surface, scales,
 // offsets, compressed and blurred fields, particles that are not finite.
 #include "apps/particles/stability/parts.hpp"
-#include "collide/dn_field/build_blurred.hpp"
+#include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/shapes.hpp"
 
 #include <algorithm>
 
 namespace tess::dn::stability {
 namespace {
-
-Rules bouncing() {
-  Rules rules;
-  rules.impact = Impact{1, 0, Sweep::on};
-  return rules;
-}
 
 Vec3 some_direction(int i) {
   return direction({std::sin(1.0 * i), std::cos(2.0 * i), std::sin(3.0 * i + 1)});
@@ -28,7 +23,7 @@ void starts(Rows& rows) {
       const Vec3 from = some_direction(i);
       const Vec3 velocity = 0.3 * direction({std::cos(5.0 * i), std::sin(7.0 * i), 0.2});
       const Particle end =
-          flown(bouncing(), 0.02, 20, {&object, 1}, {(1 - depth) * from, velocity});
+          flown(impact(1, Sweep::on), 0.02, 20, {&object, 1}, {(1 - depth) * from, velocity});
       gain = std::max(gain, norm(end.velocity) / 0.3 - 1);
       inside = std::max(inside, 1 - norm(end.position));
     }
@@ -42,12 +37,12 @@ void scales(Rows& rows) {
   const Field ball = sphere_field(cube_grid(2, 41), 1);
   const Object object{&ball, {}};
   const Particle start{{1.5, 0.3, 0.2}, {-1, 0.1, 0}};
-  const Particle plain = flown(bouncing(), 0.05, 20, {&object, 1}, start);
+  const Particle plain = flown(impact(1, Sweep::on), 0.05, 20, {&object, 1}, start);
   for (const double scale : {1e-6, 1e-3, 1e3, 1e6}) {
     Object scaled{&ball, {}};
     scaled.frame.scale = scale;
-    const Particle end =
-        flown(bouncing(), 0.05, 20, {&scaled, 1}, {scale * start.position, scale * start.velocity});
+    const Particle end = flown(impact(1, Sweep::on), 0.05, 20, {&scaled, 1},
+                               {scale * start.position, scale * start.velocity});
     rows.add("scale", "scale", scale, norm((1 / scale) * end.position - plain.position), 1e-5);
     rows.add("scale: |v|", "scale", scale,
              std::abs(norm(end.velocity) / (scale * norm(start.velocity)) - 1), 1e-13);
@@ -56,8 +51,8 @@ void scales(Rows& rows) {
     const Vec3 shift = offset * Vec3{1, -1, 1};
     Object shifted{&ball, {}};
     shifted.frame.position = shift;
-    const Particle end =
-        flown(bouncing(), 0.05, 20, {&shifted, 1}, {shift + start.position, start.velocity});
+    const Particle end = flown(impact(1, Sweep::on), 0.05, 20, {&shifted, 1},
+                               {shift + start.position, start.velocity});
     rows.add("offset", "offset", offset, norm(end.position - shift - plain.position),
              1e-5 + 1e-14 * offset);
     rows.add("offset: |v|", "offset", offset,
@@ -70,7 +65,7 @@ template <class Visit>
 void bounce_off_ball(const Object& object, const Visit& visit) {
   for (int i = 0; i < 60; ++i) {
     const Vec3 from = some_direction(i);
-    visit(from, flown(bouncing(), 0.05, 40, {&object, 1}, {1.5 * from, -from}));
+    visit(from, flown(impact(1, Sweep::on), 0.05, 40, {&object, 1}, {1.5 * from, -from}));
   }
 }
 
@@ -79,9 +74,9 @@ void compressed_fields(Rows& rows) {
   const Field ball = sphere_field(cube_grid(1, 41), 0.5);
   for (const double cells : {1e-3, 1e-2, 1e-1, 1.0}) {
     const ErrorBound bound{cells * ball.grid.cell, cells};
-    const CompressedField compressed = compress(ball, bound);
+    const Field compressed = compress(ball, bound);
     double place = 0, changed = 0;
-    bounce_off_ball({&ball, {}, &compressed}, [&](Vec3 from, Particle end) {
+    bounce_off_ball({&compressed, {}}, [&](Vec3 from, Particle end) {
       place = std::max(place, norm(end.position - 1.5 * from));
       changed = std::max(changed, std::abs(norm(end.velocity) - 1));
     });
@@ -97,10 +92,7 @@ void blurred_fields(Rows& rows) {
   const Surface surface = make_sphere(0.5, 40);
   const Grid grid = grid_around(bounds(surface), 41, 0.25);
   for (const Method method : {Method::normals, Method::potential}) {
-    BlurredOptions options;
-    options.method = method;
-    options.thickness = 0.25;
-    const Field field = build_blurred(surface, grid, options);
+    const Field field = build_field(surface, grid, {.thickness = 0.25, .method = method});
     double angle = 0, changed = 0;
     bounce_off_ball({&field, {}}, [&](Vec3 from, Particle end) {
       angle = std::max(angle, std::acos(std::min(1.0, dot(direction(end.velocity), from))));
@@ -118,7 +110,7 @@ void blurred_fields(Rows& rows) {
 void not_finite(Rows& rows) {
   const Field ball = sphere_field(cube_grid(2, 17), 1);
   const Object object{&ball, {}};
-  Rules rules = bouncing();
+  Rules rules = impact(1, Sweep::on);
   rules.spring = Spring{100, 1, 0.1};
   rules.surface_drag = SurfaceDrag{1, 0.2, DragLaw::linear};
   rules.surface_flow = SurfaceFlow{1, 1, 0.3};

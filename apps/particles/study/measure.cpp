@@ -45,10 +45,10 @@ Samples samples_of(const Subject& subject, std::size_t n) {
   return samples;
 }
 
-void compare(const LookUpAll& look_up, const Samples& samples, StudyRow& row) {
+void compare(const Field& field, LookUp kind, const Samples& samples, StudyRow& row) {
   const std::size_t n = samples.distance.size();
   std::vector<float> distance(n), nx(n), ny(n), nz(n);
-  look_up({samples.x, samples.y, samples.z}, {distance, nx, ny, nz});
+  look_up(field, kind, {samples.x, samples.y, samples.z}, {distance, nx, ny, nz});
   RootMeanSquare distances, angles;
   row.distance_error_max = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -142,6 +142,10 @@ Cost least_cost(const std::function<void()>& work, const std::function<void()>& 
   return least;
 }
 
+void set_times(StudyRow& row, const Cost& cost, double n) {
+  row.ns = 1e9 * cost.wall / n, row.cpu_ns = 1e9 * cost.cpu / n;
+}
+
 void time_steps(const Object* object, const Rules& rules, double dt, int n_steps,
                 const Subject& subject, std::size_t n, StudyRow& row) {
   const Particles start = crowd(subject, n);
@@ -150,8 +154,7 @@ void time_steps(const Object* object, const Rules& rules, double dt, int n_steps
   Particles particles;
   const Cost cost = least_cost([&] { stepper.run(particles.span(), objects, 0, n_steps); },
                                [&] { particles = start; });
-  const double to_ns = 1e9 / (static_cast<double>(n) * n_steps);
-  row.ns = to_ns * cost.wall, row.cpu_ns = to_ns * cost.cpu;
+  set_times(row, cost, static_cast<double>(n) * n_steps);
 }
 
 }  // namespace particles

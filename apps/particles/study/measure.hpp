@@ -30,11 +30,9 @@ struct Samples {
 };
 [[nodiscard]] Samples samples_of(const Subject& subject, std::size_t n);
 
-/// A look-up: fills in the answers for the points.
-using LookUpAll = std::function<void(const tess::dn::Points&, const tess::dn::Answers&)>;
-
 /// Errors of distance and normal.
-void compare(const LookUpAll& look_up, const Samples& samples, StudyRow& row);
+void compare(const tess::dn::Field& field, tess::dn::LookUp kind, const Samples& samples,
+             StudyRow& row);
 
 /// Moves the particles of all bounces step by step, and compares each with the exact bounce.
 void compare_bounces(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
@@ -56,6 +54,9 @@ struct Cost {
 /// more than a second together. `prepare` is not timed.
 [[nodiscard]] Cost least_cost(
     const std::function<void()>& work, const std::function<void()>& prepare = [] {});
+
+/// Sets the times in nanoseconds per piece of work; the work had `n` of them.
+void set_times(StudyRow& row, const Cost& cost, double n);
 
 /// Times n_steps steps of dt of a crowd of `n` in one call; `object` may be null.
 void time_steps(const tess::dn::Object* object, const tess::dn::Rules& rules, double dt,

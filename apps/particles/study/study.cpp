@@ -2,6 +2,7 @@
 
 #include "apps/particles/simulation/field_making.hpp"
 #include "apps/particles/study/measure.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "runtime/core/error.hpp"
 
 #include <array>
@@ -11,11 +12,10 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-std::string name_of(Method method) {
-  return std::string(method_names[static_cast<std::size_t>(method)]);
-}
-std::string name_of(LookUp look_up) {
-  return std::string(look_up_names[static_cast<std::size_t>(look_up)]);
+/// The look-ups that a field supports.
+std::vector<LookUp> kinds_of(const Field& field) {
+  if (field.planes != nullptr) return {LookUp::nearest, LookUp::tangent};
+  return {LookUp::nearest, LookUp::tangent, LookUp::trilinear};
 }
 
 /// Impact without loss.
@@ -97,34 +97,32 @@ class Study {
         row.rule = "impact, swept";
         row.step = 0.1;
         row.stored = "flat";
-        study_look_ups({&field, {}}, samples, row);
+        study_look_ups(field, samples, row);
         if (method == Method::exact) study_compressed(field, samples, row);
       }
   }
 
   void study_compressed(const Field& field, const Samples& samples, StudyRow row) {
-    std::optional<CompressedField> compressed;
-    const Cost cost = least_cost([&] { compressed.emplace(compress(field, bound_of({}, field))); });
-    study_memory(field, *compressed, cost, samples, row);
+    Field compressed;
+    const Cost cost = least_cost([&] { compressed = compress(field, bound_of({}, field)); });
+    study_memory(field, compressed, cost, samples, row);
     row.build_seconds += cost.wall, row.build_cpu_seconds += cost.cpu;
-    row.bytes = static_cast<double>(compressed->bytes());
+    row.bytes = static_cast<double>(compressed.bytes());
     row.stored = "compressed";
-    study_look_ups({&field, {}, &*compressed}, samples, row);
+    study_look_ups(compressed, samples, row);
   }
 
   /// Swept impacts in a field as it is stored. Flat fields also have the errors of distance and
   /// normal; memory rows have those of compressed ones.
-  void study_look_ups(const Object& object, const Samples& samples, StudyRow row) {
-    for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
-      if (object.compressed != nullptr && kind == LookUp::trilinear) continue;
+  void study_look_ups(const Field& field, const Samples& samples, StudyRow row) {
+    for (const LookUp kind : kinds_of(field)) {
       row.look_up = name_of(kind);
-      const Rules rules = impact_rules(kind, Sweep::on);
-      if (object.compressed == nullptr) {
-        compare([&](const Points& points,
-                    const Answers& answers) { look_up(*object.field, kind, points, answers); },
-                samples, row);
+      if (field.planes == nullptr) {
+        compare(field, kind, samples, row);
         row.order = order_of(row);
       }
+      const Object object{&field, {}};
+      const Rules rules = impact_rules(kind, Sweep::on);
       compare_bounces(object, rules, row.step * subject_.thickness, subject_, row);
       time_crowd(&object, rules, subject_, options_.n_timed, row);
       rows_.push_back(row);
@@ -146,7 +144,7 @@ class Study {
   }
 
   /// Nearest look-ups of a flat and a compressed field, by themselves.
-  void study_memory(const Field& field, const CompressedField& compressed, const Cost& compression,
+  void study_memory(const Field& field, const Field& compressed, const Cost& compression,
                     const Samples& samples, StudyRow row) {
     const Particles particles = crowd(subject_, options_.n_timed);
     const std::vector<float> x(particles.x.begin(), particles.x.end()),
@@ -156,22 +154,19 @@ class Study {
     row.look_up = name_of(LookUp::nearest);
     row.rule = "look-up alone";
     row.step = -1;
-    const auto measure = [&](const LookUpAll& look_up_all) {
-      compare(look_up_all, samples, row);
-      const Cost cost = least_cost([&] { look_up_all({x, y, z}, {distance, nx, ny, nz}); });
-      const double to_ns = 1e9 / static_cast<double>(x.size());
-      row.ns = to_ns * cost.wall, row.cpu_ns = to_ns * cost.cpu;
+    const auto measure = [&](const Field& of) {
+      compare(of, LookUp::nearest, samples, row);
+      const Cost cost = least_cost([&] {
+        look_up(of, LookUp::nearest, {x, y, z}, {distance, nx, ny, nz});
+      });
+      set_times(row, cost, static_cast<double>(x.size()));
       memory_.push_back(row);
     };
-    measure([&](const Points& points, const Answers& answers) {
-      look_up(field, LookUp::nearest, points, answers);
-    });
+    measure(field);
     row.stored = "compressed";
     row.bytes = static_cast<double>(compressed.bytes());
     row.build_seconds = compression.wall, row.build_cpu_seconds = compression.cpu;
-    measure([&](const Points& points, const Answers& answers) {
-      look_up(compressed, LookUp::nearest, points, answers);
-    });
+    measure(compressed);
   }
 
   /// All rules by themselves, at several steps, in the object's own field.
@@ -241,14 +236,13 @@ class Study {
     row.rule = "no collision";
     time_crowd(nullptr, {}, subject_, n, row);
     rows_.push_back(row);
-    const CompressedField compressed = compress(field_, bound_of({}, field_));
-    for (const bool flat : {true, false})
-      for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
-        if (!flat && kind == LookUp::trilinear) continue;
+    const Field compressed = compress(field_, bound_of({}, field_));
+    for (const Field* field : std::array<const Field*, 2>{&field_, &compressed})
+      for (const LookUp kind : kinds_of(*field)) {
         row.look_up = name_of(kind);
-        row.stored = flat ? "flat" : "compressed";
-        row.bytes = static_cast<double>(flat ? field_.bytes() : compressed.bytes());
-        const Object object{&field_, {}, flat ? nullptr : &compressed};
+        row.stored = field == &field_ ? "flat" : "compressed";
+        row.bytes = static_cast<double>(field->bytes());
+        const Object object{field, {}};
         for (const Sweep sweep : {Sweep::off, Sweep::on}) {
           row.rule = sweep == Sweep::on ? "impact, swept" : "impact";
           time_crowd(&object, impact_rules(kind, sweep), subject_, n, row);
@@ -276,8 +270,7 @@ class Study {
       for (std::size_t p = 0; p < particles.size(); ++p)
         sum = sum + subject_.tree.closest(particles.position(p), reach * reach).distance2;
     });
-    const double to_ns = 1e9 / static_cast<double>(particles.size());
-    row.ns = to_ns * cost.wall, row.cpu_ns = to_ns * cost.cpu;
+    set_times(row, cost, static_cast<double>(particles.size()));
   }
 
   const StudyOptions& options_;

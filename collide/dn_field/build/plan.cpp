@@ -27,12 +27,10 @@ void require_blur(const Blur& blur) {
     fail(ErrorCode::bad_argument, "blur of ", blur.rounds, " rounds; it takes at least one");
 }
 
-FieldPlan choose_plan(const Bounds& box, const Demand& demand, Coverage coverage,
-                      std::size_t max_voxels) {
-  const double speed = coverage == Coverage::swept ? 0 : demand.max_speed;
-  const double reach = speed * demand.step;
+FieldPlan choose_plan(const Bounds& box, const Demand& demand, std::size_t max_voxels) {
+  const double reach = demand.max_speed * demand.step;
   if (!(reach >= 0) || !std::isfinite(reach))
-    fail(ErrorCode::bad_argument, "speed ", speed, " × step ", demand.step,
+    fail(ErrorCode::bad_argument, "speed ", demand.max_speed, " × step ", demand.step,
          " must be finite, not negative");
   if (!(demand.detail > 0))
     fail(ErrorCode::bad_argument, "smallest feature ", demand.detail, " must be positive");

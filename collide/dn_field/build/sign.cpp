@@ -1,6 +1,6 @@
 #include "collide/dn_field/build/sign.hpp"
 
-#include "collide/dn_field/geometry/disjoint_sets.hpp"
+#include <boost/pending/disjoint_sets.hpp>
 
 #include <algorithm>
 
@@ -13,8 +13,8 @@ constexpr double accuracies[] = {2, 4, 12, HUGE_VAL};
 /// off the middle of its rim, so that caps do not lie in planes of voxels.
 std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
                                                 const std::vector<RimEdge>& edges) {
-  DisjointSets pieces(surface.vertices.size());
-  for (const RimEdge& e : edges) pieces.join(e.from, e.to);
+  boost::disjoint_sets_with_storage<> pieces(surface.vertices.size());
+  for (const RimEdge& e : edges) pieces.union_set(e.from, e.to);
   struct Middle {
     Vec3 sum;
     double count = 0;
@@ -23,7 +23,7 @@ std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
   };
   std::vector<Middle> middle(surface.vertices.size());
   for (const RimEdge& e : edges) {
-    Middle& m = middle[pieces.set_of(e.from)];
+    Middle& m = middle[pieces.find_set(e.from)];
     for (const std::uint32_t v : {e.from, e.to}) {
       m.sum += surface.vertices[v];
       m.box.extend(surface.vertices[v]);
@@ -39,7 +39,7 @@ std::vector<std::array<std::uint32_t, 3>> close(Surface& surface,
   std::vector<std::array<std::uint32_t, 3>> caps;
   for (const RimEdge& e : edges)
     for (int i = 0; i < e.surplus; ++i)
-      caps.push_back({e.to, e.from, middle[pieces.set_of(e.from)].apex});
+      caps.push_back({e.to, e.from, middle[pieces.find_set(e.from)].apex});
   return caps;
 }
 

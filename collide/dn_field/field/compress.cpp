@@ -35,7 +35,6 @@ float distance_to(const Plane& plane, float x, float y, float z, float thickness
 
 struct Entry {
   std::uint32_t low = 0, high = 0;  // high: of wide layouts only
-  friend bool operator==(const Entry&, const Entry&) = default;
 };
 
 class Compressor {
@@ -44,13 +43,12 @@ class Compressor {
       : field_(field),
         bound_(bound),
         layout_(layout),
-        decoder_(layout),
         shift_(shift),
         cell_(static_cast<float>(field.grid.cell)),
         thickness_(static_cast<float>(field.thickness)) {}
 
   /// Empty if the layout's entries do not meet the bound even voxel by voxel.
-  [[nodiscard]] std::optional<CompressedField> run();
+  [[nodiscard]] std::optional<Planes> run();
 
  private:
   struct Voxel {
@@ -65,7 +63,7 @@ class Compressor {
   [[nodiscard]] Entry written(double distance, Vec3 normal) const;
   [[nodiscard]] Plane plane(const Entry& e) const {
     const lanes::I zero{};
-    const lanes::Stored all = lanes::decode(decoder_, zero + static_cast<std::int32_t>(e.low),
+    const lanes::Stored all = lanes::decode(layout_, zero + static_cast<std::int32_t>(e.low),
                                             zero + static_cast<std::int32_t>(e.high));
     return {all.distance[0], {all.normal.x[0], all.normal.y[0], all.normal.z[0]}};
   }
@@ -77,7 +75,6 @@ class Compressor {
   const Field& field_;
   ErrorBound bound_, off_{}, measured_{};
   EntryLayout layout_;
-  EntryDecoder decoder_;
   int shift_;
   float cell_, thickness_;
   std::vector<Voxel> voxels_;
@@ -121,27 +118,27 @@ Vec3 Compressor::direction_of_cell() const {
 Entry Compressor::written(double distance, Vec3 normal) const {
   if (layout_.wide)
     return {std::bit_cast<std::uint32_t>(static_cast<float>(distance)), encode_normal(normal)};
-  const auto most = static_cast<double>(decoder_.zero - 1);
+  const auto most = static_cast<double>(layout_.zero() - 1);
   const double steps =
       layout_.step > 0 ? std::round(distance / static_cast<double>(layout_.step)) : 0;
   const auto above =
-      static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + decoder_.zero);
-  return {above << (2 * decoder_.bits) | narrow_normal(normal), 0};
+      static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + layout_.zero());
+  return {above << (2 * layout_.normal_bits) | narrow_normal(normal), 0};
 }
 
 /// The two coordinates on the octahedral map that decode closest to `normal`: one of four
 /// neighbours.
 std::uint32_t Compressor::narrow_normal(Vec3 normal) const {
-  if (normal == Vec3{}) return static_cast<std::uint32_t>(decoder_.mask << decoder_.bits);
+  if (normal == Vec3{}) return static_cast<std::uint32_t>(layout_.mask() << layout_.normal_bits);
   const auto [u, v] = on_octahedral_map(normal);
   const auto low = [&](double t) {
-    return std::clamp(static_cast<int>(std::floor((t + 1) * decoder_.middle)), 0,
-                      2 * decoder_.middle - 1);
+    return std::clamp(static_cast<int>(std::floor((t + 1) * layout_.middle())), 0,
+                      2 * layout_.middle() - 1);
   };
   lanes::I words{};
   for (int corner = 0; corner < 4; ++corner)
-    words[corner] = (low(u) + (corner & 1)) << decoder_.bits | (low(v) + (corner >> 1));
-  const lanes::F3 decoded = lanes::decode(decoder_, words, lanes::I{}).normal;
+    words[corner] = (low(u) + (corner & 1)) << layout_.normal_bits | (low(v) + (corner >> 1));
+  const lanes::F3 decoded = lanes::decode(layout_, words, lanes::I{}).normal;
   std::uint32_t best = 0;
   double closest = -2;
   for (int corner = 0; corner < 4; ++corner) {
@@ -214,21 +211,9 @@ bool Compressor::divide(std::array<int, 3> low, int s, std::vector<Entry>& entri
   return true;
 }
 
-std::optional<CompressedField> Compressor::run() {
+std::optional<Planes> Compressor::run() {
   const Grid& grid = field_.grid;
-  CompressedField made{grid,
-                       field_.method,
-                       field_.sides,
-                       field_.normal.empty() ? Content::distance : Content::distance_and_normal,
-                       field_.thickness,
-                       shift_,
-                       {},
-                       layout_,
-                       {},
-                       {},
-                       bound_,
-                       {},
-                       field_.jump};
+  Planes made{field_.content(), shift_, {}, layout_, {}, {}, bound_, {}};
   const int block = 1 << shift_;
   for (std::size_t a = 0; a < 3; ++a) made.n_blocks[a] = (grid.n[a] + block - 1) / block;
   std::unordered_map<std::uint64_t, std::uint32_t> undivided;  // blocks that are alike share one
@@ -279,20 +264,16 @@ EntryLayout narrow_layout(const Field& field, const ErrorBound& bound, int shift
   return {false, bits, static_cast<float>(range / steps)};
 }
 
-CompressedField smaller_of(std::optional<CompressedField> a, CompressedField b) {
-  return a && a->bytes() <= b.bytes() ? std::move(*a) : std::move(b);
-}
-
 }  // namespace
 
-CompressedField compress(const Field& field, const ErrorBound& bound, int block_shift) {
+Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
   if (!(bound.distance >= 0) || !(bound.angle >= 0))
     fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",
          bound.angle, "; neither may be negative or NaN");
   if (block_shift != 0 && (block_shift < min_shift || block_shift > max_shift))
     fail(ErrorCode::bad_argument, "blocks of 2^", block_shift, " voxels; the exponent must be ",
          min_shift, " to ", max_shift, ", or 0 for the best");
-  std::optional<CompressedField> best;
+  std::optional<Planes> best;
   const int first = block_shift == 0 ? min_shift : block_shift;
   const int last = block_shift == 0 ? max_shift - 1 : block_shift;
   for (int shift = first; shift <= last; ++shift) {
@@ -303,9 +284,17 @@ CompressedField compress(const Field& field, const ErrorBound& bound, int block_
       fail(ErrorCode::bad_value,
            "a voxel's distance is not finite, or beyond the field's thickness of ", field.thickness,
            "; build the field again");
-    best = smaller_of(std::move(best), std::move(*made));
+    if (!best || made->bytes() < best->bytes()) best = std::move(made);
   }
-  return std::move(*best);
+  return {field.grid,
+          field.method,
+          field.sides,
+          field.thickness,
+          {},
+          {},
+          field.jump,
+          field.surface,
+          std::make_shared<const Planes>(std::move(*best))};
 }
 
 }  // namespace tess::dn

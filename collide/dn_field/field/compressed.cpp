@@ -12,28 +12,26 @@ lanes::Stored voxel(const PlaneSampler& sampler, int i, int j, int k) {
 
 }  // namespace
 
-float voxel_distance(const CompressedField& field, int i, int j, int k) {
-  return voxel(sampler_of(field), i, j, k).distance[0];
+float voxel_distance(const Field& field, int i, int j, int k) {
+  return field.planes != nullptr ? voxel(plane_sampler_of(field), i, j, k).distance[0]
+                                 : field.distance[field.grid.index(i, j, k)];
 }
 
-Field expanded(const CompressedField& field) {
-  Field flat = outline(field);
-  const PlaneSampler sampler = sampler_of(field);
-  const bool has_normals = field.content == Content::distance_and_normal;
+Field expanded(const Field& field) {
+  Field flat = field;
+  flat.planes = nullptr;
+  const PlaneSampler sampler = plane_sampler_of(field);
   const auto [nx, ny, nz] = field.grid.n;
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
         const lanes::Stored here = voxel(sampler, i, j, k);
         flat.distance.push_back(here.distance[0]);
-        if (has_normals) flat.normal.push_back(encode_normal(lanes::lane(here.normal, 0)));
+        if (field.content() == Content::distance_and_normal)
+          flat.normal.push_back(encode_normal(lanes::lane(here.normal, 0)));
       }
   flat.jump = greatest_jump(flat);
   return flat;
-}
-
-Field outline(const CompressedField& field) {
-  return {field.grid, field.method, field.sides, field.thickness, {}, {}, field.jump};
 }
 
 }  // namespace tess::dn

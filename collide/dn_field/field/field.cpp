@@ -1,5 +1,6 @@
 #include "collide/dn_field/field.hpp"
 
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/geometry/lanes.hpp"
 
 #include <algorithm>
@@ -40,23 +41,31 @@ float greatest_difference(const std::array<const float*, 4>& rows, int right, in
 // Adjacent voxels are corners of one cube of 2³ voxels, so the least and the greatest value of each
 // cube suffice, in a third of the time of 13 pairs per voxel. Along an axis of one voxel the cubes
 // are flat.
-float greatest_jump(const Grid& grid, std::span<const float> distance) {
-  const std::size_t layer = grid.index(0, 0, 1);
-  const auto n_layers = static_cast<int>(distance.size() / layer);
+float greatest_jump(const Field& field) {
+  const Grid& grid = field.grid;
   const auto next = [](int n) { return n > 1 ? 1 : 0; };
-  const int right = next(grid.n[0]), up = next(grid.n[1]), above = next(n_layers);
+  const int right = next(grid.n[0]), up = next(grid.n[1]), above = next(grid.n[2]);
   float largest = 0;
-  for (int k = 0; k < n_layers - above; ++k)
+  for (int k = 0; k < grid.n[2] - above; ++k)
     for (int j = 0; j < grid.n[1] - up; ++j) {
-      const auto row = [&](int dj, int dk) { return &distance[grid.index(0, j + dj, k + dk)]; };
+      const auto row = [&](int dj, int dk) {
+        return &field.distance[grid.index(0, j + dj, k + dk)];
+      };
       const std::array rows{row(0, 0), row(up, 0), row(0, above), row(up, above)};
       largest = std::max(largest, greatest_difference(rows, right, grid.n[0] - right));
     }
   return largest;
 }
 
-float greatest_jump(const Field& field) {
-  return greatest_jump(field.grid, field.distance);
+std::size_t Field::bytes() const {
+  return planes != nullptr
+             ? planes->bytes()
+             : distance.size() * sizeof(float) + normal.size() * sizeof(std::uint32_t);
+}
+
+Content Field::content() const {
+  if (planes != nullptr) return planes->content;
+  return normal.empty() ? Content::distance : Content::distance_and_normal;
 }
 
 }  // namespace tess::dn

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 namespace tess::dn {
 namespace {
@@ -161,6 +162,8 @@ class FileReader {
 }  // namespace
 
 void save_field(const Field& field, const std::string& path) {
+  if (field.planes != nullptr)
+    fail(ErrorCode::bad_argument, path, ": compressed fields are not saved; save the flat one");
   Head head{magic, version, flat, 0, 0};
   each_piece(field, [&](std::span<const std::byte> piece) { head.body_bytes += piece.size(); });
   Checksum checksum;

@@ -24,8 +24,8 @@ void fill(const auto& given, const Grid& grid, const Points& points, const Answe
     return found;
   };
   const auto put = [&](const auto& write, const Sample& found) {
-    if constexpr (Asked != Ask::normal) write(answers.distance, found.distance);
-    if constexpr (Asked != Ask::distance) {
+    if (!answers.distance.empty()) write(answers.distance, found.distance);
+    if constexpr (Asked == Ask::both) {
       write(answers.nx, found.normal.x);
       write(answers.ny, found.normal.y);
       write(answers.nz, found.normal.z);
@@ -48,13 +48,11 @@ void fill(const auto& given, const Grid& grid, const Points& points, const Answe
 template <LookUp Kind>
 void fill(const auto& sampler, const Grid& grid, const Points& points, const Answers& answers) {
   if (answers.nx.empty()) return fill<Kind, Ask::distance>(sampler, grid, points, answers);
-  if (answers.distance.empty()) return fill<Kind, Ask::normal>(sampler, grid, points, answers);
   fill<Kind, Ask::both>(sampler, grid, points, answers);
 }
 
 /// Returns whether anything is asked for.
-bool check(const Grid& grid, bool has_normals, LookUp kind, const Points& points,
-           const Answers& answers) {
+bool check(const Field& field, LookUp kind, const Points& points, const Answers& answers) {
   const std::size_t count = points.x.size();
   TESS_CHECK(points.y.size() == count && points.z.size() == count, "expected ", count,
              " coordinates on each axis");
@@ -63,34 +61,29 @@ bool check(const Grid& grid, bool has_normals, LookUp kind, const Points& points
   for (const auto& normal : {answers.nx, answers.ny, answers.nz})
     TESS_CHECK(normal.size() == answers.nx.size() && (normal.empty() || normal.size() == count),
                "expected room for ", count, " normals on each axis, or none");
-  TESS_CHECK(grid.size() < (std::size_t{1} << 31U), "voxels are numbered in 31 bits");
+  TESS_CHECK(field.grid.size() < (std::size_t{1} << 31U), "voxels are numbered in 31 bits");
   if (count == 0 || (answers.distance.empty() && answers.nx.empty())) return false;
-  if ((!answers.nx.empty() || kind == LookUp::tangent) && !has_normals)
-    fail(ErrorCode::bad_argument, "normals are asked of a field of ", grid.size(),
+  if ((!answers.nx.empty() || kind == LookUp::tangent) && field.content() == Content::distance)
+    fail(ErrorCode::bad_argument, "normals are asked of a field of ", field.grid.size(),
          " voxels that stores none; build it with distance and normal");
+  if (field.planes != nullptr && kind == LookUp::trilinear)
+    fail(ErrorCode::bad_argument,
+         "a compressed field has no trilinear look-up; take nearest or tangent");
   return true;
 }
 
 }  // namespace
 
 void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers) {
-  if (!check(field.grid, !field.normal.empty(), kind, points, answers)) return;
+  if (!check(field, kind, points, answers)) return;
+  const auto fill_from = [&](const auto& sampler) {
+    if (kind == LookUp::nearest) fill<LookUp::nearest>(sampler, field.grid, points, answers);
+    if (kind == LookUp::tangent) fill<LookUp::tangent>(sampler, field.grid, points, answers);
+  };
+  if (field.planes != nullptr) return fill_from(plane_sampler_of(field));
   const Sampler sampler = sampler_of(field);
-  if (kind == LookUp::nearest) fill<LookUp::nearest>(sampler, field.grid, points, answers);
-  if (kind == LookUp::tangent) fill<LookUp::tangent>(sampler, field.grid, points, answers);
+  fill_from(sampler);
   if (kind == LookUp::trilinear) fill<LookUp::trilinear>(sampler, field.grid, points, answers);
-}
-
-void look_up(const CompressedField& field, LookUp kind, const Points& points,
-             const Answers& answers) {
-  const bool has_normals = field.content == Content::distance_and_normal;
-  if (!check(field.grid, has_normals, kind, points, answers)) return;
-  if (kind == LookUp::trilinear)
-    fail(ErrorCode::bad_argument,
-         "a compressed field has no trilinear look-up; take nearest or tangent");
-  const PlaneSampler sampler = sampler_of(field);
-  if (kind == LookUp::nearest) return fill<LookUp::nearest>(sampler, field.grid, points, answers);
-  fill<LookUp::tangent>(sampler, field.grid, points, answers);
 }
 
 }  // namespace tess::dn

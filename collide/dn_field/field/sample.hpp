@@ -24,7 +24,7 @@ inline Sampler sampler_of(const Field& field) {
 }
 
 /// What a loop computes.
-enum class Ask : std::uint32_t { distance, normal, both };
+enum class Ask : std::uint32_t { distance, both };
 
 struct Sample {
   lanes::I in;        ///< whether the field covers the point; otherwise the distances mean nothing
@@ -101,9 +101,9 @@ template <LookUp Kind, Ask Asked>
 inline Stored read(const Sampler& field, const Voxel& voxel) {
   Stored stored{};
   const I at = position(field, voxel);
-  if constexpr (Asked != Ask::distance || Kind == LookUp::tangent)
+  if constexpr (Asked == Ask::both || Kind == LookUp::tangent)
     stored.normal = only(voxel.in, unit(decode(gather(field.normal, at))));
-  if constexpr (Asked != Ask::normal) stored.distance = gather(field.distance, at);
+  stored.distance = gather(field.distance, at);
   return stored;
 }
 
@@ -117,15 +117,13 @@ inline Stored read_changed(const Sampler& field, const Voxel& voxel, I changed,
 }
 
 /// The sample at g from the voxel's data.
-template <LookUp Kind, Ask Asked>
+template <LookUp Kind>
 inline Sample answer(float cell, const Voxel& voxel, const Stored& stored, F3 g) {
-  Sample found{voxel.in, stored.distance, stored.normal, stored.distance};
-  if constexpr (Asked != Ask::normal) {
-    const F3 from = offset(voxel, g);
-    found.free = stored.distance - cell * sqrt(dot(from, from));
-    if constexpr (Kind == LookUp::tangent)
-      found.distance = stored.distance + cell * dot(stored.normal, from);
-  }
+  const F3 from = offset(voxel, g);
+  Sample found{voxel.in, stored.distance, stored.normal,
+               stored.distance - cell * sqrt(dot(from, from))};
+  if constexpr (Kind == LookUp::tangent)
+    found.distance = stored.distance + cell * dot(stored.normal, from);
   return found;
 }
 
@@ -133,7 +131,7 @@ template <LookUp Kind, Ask Asked>
   requires(Kind != LookUp::trilinear)
 inline Sample sample(const Sampler& field, F3 g) {
   const Voxel voxel = voxel_of(field.n, g);
-  return answer<Kind, Asked>(field.cell, voxel, read<Kind, Asked>(field, voxel), g);
+  return answer<Kind>(field.cell, voxel, read<Kind, Asked>(field, voxel), g);
 }
 
 template <LookUp Kind, Ask Asked>
@@ -158,17 +156,15 @@ inline Sample sample(const Sampler& field, F3 g) {
     const I at = corner + (dz * field.layer + dy * field.row);
     const F beside = (dy != 0 ? v : 1.0F - v) * (dz != 0 ? w : 1.0F - w);
     const F low = (1.0F - u) * beside, high = u * beside;
-    if constexpr (Asked != Ask::normal) {
-      const auto [first, second] = gather_two(field.distance, at);
-      found.distance = found.distance + (low * first + high * second);
-    }
-    if constexpr (Asked != Ask::distance) {
-      const auto [first, second] = gather_two(field.normal, at);
-      found.normal = found.normal + (low * decode(first) + high * decode(second));
+    const auto [first, second] = gather_two(field.distance, at);
+    found.distance = found.distance + (low * first + high * second);
+    if constexpr (Asked == Ask::both) {
+      const auto [one, other] = gather_two(field.normal, at);
+      found.normal = found.normal + (low * decode(one) + high * decode(other));
     }
   }
-  if constexpr (Asked != Ask::normal) found.free = found.distance - half_diagonal * field.cell;
-  if constexpr (Asked != Ask::distance) found.normal = only(in, unit(found.normal));
+  found.free = found.distance - half_diagonal * field.cell;
+  if constexpr (Asked == Ask::both) found.normal = only(in, unit(found.normal));
   return found;
 }
 

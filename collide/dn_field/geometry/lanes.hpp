@@ -145,8 +145,6 @@ inline F floor(F v) {
 inline D sqrt(D v) {
 #ifdef __AVX512F__
   return (D)_mm512_maskz_sqrt_pd(0xFF, (__m512d)v);  // the plain one warns in g++ 12
-#elif defined(__AVX2__)
-  return (D)_mm256_sqrt_pd((__m256d)v);
 #else
   for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
   return v;
@@ -155,8 +153,6 @@ inline D sqrt(D v) {
 inline F sqrt(F v) {
 #ifdef __AVX512F__
   return (F)_mm256_sqrt_ps((__m256)v);
-#elif defined(__AVX2__)
-  return (F)_mm_sqrt_ps((__m128)v);
 #else
   for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
   return v;
@@ -167,25 +163,12 @@ inline F sqrt(F v) {
 inline D fma(D a, D b, D c) {
 #ifdef __AVX512F__
   return (D)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
-#elif defined(__FMA__)
-  return (D)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
 #else
   for (int i = 0; i < width; ++i) c[i] = std::fma(a[i], b[i], c[i]);
   return c;
 #endif
 }
 
-inline F gather(const float* table, I at) {
-#ifdef __AVX512F__
-  return (F)_mm256_i32gather_ps(table, (__m256i)at, 4);
-#elif defined(__AVX2__)
-  return (F)_mm_i32gather_ps(table, (__m128i)at, 4);
-#else
-  F v;
-  for (int i = 0; i < width; ++i) v[i] = table[at[i]];
-  return v;
-#endif
-}
 inline I gather(const std::uint32_t* table, I at) {
 #ifdef __AVX512F__
   return (I)_mm256_i32gather_epi32(reinterpret_cast<const int*>(table), (__m256i)at, 4);
@@ -193,9 +176,27 @@ inline I gather(const std::uint32_t* table, I at) {
   return (I)_mm_i32gather_epi32(reinterpret_cast<const int*>(table), (__m128i)at, 4);
 #else
   I v;
-  for (int i = 0; i < width; ++i) v[i] = std::bit_cast<std::int32_t>(table[at[i]]);
+  for (int i = 0; i < width; ++i) v[i] = load<std::int32_t>(table + at[i]);
   return v;
 #endif
+}
+/// Reads only the lanes of the mask.
+inline I gather(const std::uint32_t* table, I at, I mask) {
+#ifdef __AVX512F__
+  const int* from = reinterpret_cast<const int*>(table);
+  return (I)_mm256_mask_i32gather_epi32((__m256i)I{}, from, (__m256i)at, (__m256i)mask, 4);
+#elif defined(__AVX2__)
+  const int* from = reinterpret_cast<const int*>(table);
+  return (I)_mm_mask_i32gather_epi32((__m128i)I{}, from, (__m128i)at, (__m128i)mask, 4);
+#else
+  I v{};
+  for (int i = 0; i < width; ++i)
+    if (mask[i] != 0) v[i] = load<std::int32_t>(table + at[i]);
+  return v;
+#endif
+}
+inline F gather(const float* table, I at, auto... mask) {
+  return (F)gather(reinterpret_cast<const std::uint32_t*>(table), at, mask...);
 }
 /// table[at] and table[at + 1].
 template <class V>
@@ -227,34 +228,6 @@ inline Two<F> gather_two(const float* table, I at) {
   const auto [first, second] = gather_two(reinterpret_cast<const std::uint32_t*>(table), at);
   return {(F)first, (F)second};
 }
-/// Reads only the lanes of the mask.
-inline F gather(const float* table, I at, I mask) {
-#ifdef __AVX512F__
-  return (F)_mm256_mask_i32gather_ps((__m256)F{}, table, (__m256i)at, (__m256)mask, 4);
-#elif defined(__AVX2__)
-  return (F)_mm_mask_i32gather_ps((__m128)F{}, table, (__m128i)at, (__m128)mask, 4);
-#else
-  F v{};
-  for (int i = 0; i < width; ++i)
-    if (mask[i] != 0) v[i] = table[at[i]];
-  return v;
-#endif
-}
-inline I gather(const std::uint32_t* table, I at, I mask) {
-#ifdef __AVX512F__
-  const int* from = reinterpret_cast<const int*>(table);
-  return (I)_mm256_mask_i32gather_epi32((__m256i)I{}, from, (__m256i)at, (__m256i)mask, 4);
-#elif defined(__AVX2__)
-  const int* from = reinterpret_cast<const int*>(table);
-  return (I)_mm_mask_i32gather_epi32((__m128i)I{}, from, (__m128i)at, (__m128i)mask, 4);
-#else
-  I v{};
-  for (int i = 0; i < width; ++i)
-    if (mask[i] != 0) v[i] = std::bit_cast<std::int32_t>(table[at[i]]);
-  return v;
-#endif
-}
-
 /// A point or vector in each lane.
 template <class V>
 struct Three {

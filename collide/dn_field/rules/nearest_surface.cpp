@@ -22,7 +22,7 @@ Sample sample_again(const Sampler& field, F3 g, const NearestSurface& last, Near
   if (any(changed)) stored = read_changed(field, voxel, changed, stored);
   store(nearest.voxel + p, key);
   store(nearest.stored + p, stored.distance);
-  return answer<Kind, Ask::both>(field.cell, voxel, stored, g);
+  return answer<Kind>(field.cell, voxel, stored, g);
 }
 
 template <Storage How>
@@ -164,9 +164,8 @@ NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, S
   return choose<LookUp::trilinear, Storage::flat>(asked, setting, sweep);
 }
 
-double jump_of(const Object& object) {
-  const double off = object.compressed != nullptr ? object.compressed->measured.distance : 0;
-  return static_cast<double>(object.field->jump) + 2 * off;
+double jump_of(const Field& field) {
+  return static_cast<double>(field.jump) + 2 * compression_error(field);
 }
 
 PlacedObject placed(const Object& object, LookUp kind, double step, bool restless) {
@@ -189,14 +188,11 @@ PlacedObject placed(const Object& object, LookUp kind, double step, bool restles
   result.scale = static_cast<float>(frame.scale);
   result.cell = static_cast<float>(cell);
   if (field.sides == Sides::two) result.padding = open_surface_clearance(kind) * result.cell;
-  result.doubt = half_diagonal * static_cast<float>(cell);
-  result.jump = static_cast<float>(jump_of(object) * frame.scale);
-  result.compressed = object.compressed != nullptr;
-  if (result.compressed) {
-    result.planes = sampler_of(*object.compressed);
-    result.error = static_cast<float>(object.compressed->measured.distance * frame.scale);
-    result.doubt += result.error;
-  }
+  result.jump = static_cast<float>(jump_of(field) * frame.scale);
+  result.compressed = field.planes != nullptr;
+  if (result.compressed) result.planes = plane_sampler_of(field);
+  result.error = static_cast<float>(compression_error(field) * frame.scale);
+  result.doubt = half_diagonal * static_cast<float>(cell) + result.error;
   result.frame = frame;
   result.step = step;
   result.growth = step * frame.scale_rate / frame.scale;

@@ -55,8 +55,8 @@ struct PlacedObject {
   [[nodiscard]] bool bends() const { return spin != 0 || growth != 0; }
 };
 
-/// Field::jump of the samples of this object, in its own units.
-[[nodiscard]] double jump_of(const Object& object);
+/// Field::jump of the samples of a field, compressed or not.
+[[nodiscard]] double jump_of(const Field& field);
 
 /// `object` at the start of a step; `restless`: whether any object of the scene moves.
 [[nodiscard]] PlacedObject placed(const Object& object, LookUp kind, double step, bool restless);
@@ -67,7 +67,8 @@ enum class Setting : std::uint32_t { one_at_rest, general };
 /// How the fields of a scene are stored.
 enum class Storage : std::uint32_t { flat, compressed };
 [[nodiscard]] inline Storage storage_of(std::span<const Object> objects) {
-  return !objects.empty() && objects[0].compressed != nullptr ? Storage::compressed : Storage::flat;
+  return !objects.empty() && objects[0].field->planes != nullptr ? Storage::compressed
+                                                                 : Storage::flat;
 }
 
 /// Writes `nearest`. `last` is the result of the previous pass over these particles, and may be the

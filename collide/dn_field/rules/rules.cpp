@@ -3,27 +3,27 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 namespace tess::dn {
 namespace {
 
-void finite(std::string_view key, double value) {
+/// The remedy is for values below `least`.
+void check(std::string_view key, double value, double least = -HUGE_VAL,
+           std::string_view remedy = {}) {
   if (!std::isfinite(value))
     fail(ErrorCode::bad_value, key, " is ", value, "; give a finite number");
+  if (value < least) fail(ErrorCode::bad_value, key, " is ", value, "; ", remedy);
 }
-
 void not_negative(std::string_view key, double value, std::string_view remedy) {
-  finite(key, value);
-  if (value < 0) fail(ErrorCode::bad_value, key, " is ", value, "; ", remedy);
+  check(key, value, 0, remedy);
 }
-
 void positive(std::string_view key, double value, std::string_view remedy) {
-  finite(key, value);
-  if (!(value > 0)) fail(ErrorCode::bad_value, key, " is ", value, "; ", remedy);
+  check(key, value, std::numeric_limits<double>::denorm_min(), remedy);
 }
 
-void finite(std::string_view key, Vec3 value) {
+void check(std::string_view key, Vec3 value) {
   if (!is_finite(value))
     fail(ErrorCode::bad_value, key, " is (", value.x, ", ", value.y, ", ", value.z,
          "); give three finite numbers");
@@ -34,7 +34,7 @@ constexpr std::string_view no_push = "a negative rate would drive particles; giv
 void validate(const Spring& spring) {
   positive("spring.stiffness", spring.stiffness, "give a positive one, or leave the spring out");
   not_negative("spring.damping", spring.damping, no_push);
-  finite("spring.reach", spring.reach);
+  check("spring.reach", spring.reach);
   const double critical = 2 * std::sqrt(spring.stiffness);
   if (!(spring.damping <= 0.999 * critical))
     fail(ErrorCode::bad_value, "spring.damping is ", spring.damping,
@@ -43,7 +43,7 @@ void validate(const Spring& spring) {
 }
 
 void validate(const Impact& impact) {
-  finite("impact.restitution", impact.restitution);
+  check("impact.restitution", impact.restitution);
   if (impact.restitution < 0 || impact.restitution > 1)
     fail(ErrorCode::bad_value, "impact.restitution is ", impact.restitution,
          "; give 0 (slides) to 1 (no loss), more would make energy");
@@ -51,10 +51,10 @@ void validate(const Impact& impact) {
 }
 
 void validate(const Explosion& explosion) {
-  finite("explosion.centre", explosion.centre);
-  finite("explosion.strength", explosion.strength);
+  check("explosion.centre", explosion.centre);
+  check("explosion.strength", explosion.strength);
   positive("explosion.radius", explosion.radius, "give how far it reaches");
-  finite("explosion.start", explosion.start);
+  check("explosion.start", explosion.start);
   not_negative("explosion.duration", explosion.duration, "give how long it lasts");
 }
 
@@ -68,13 +68,13 @@ void validate(const Rules& rules) {
     not_negative("surface_drag.threshold", drag->threshold, "give the distance it reaches");
   }
   if (const auto& flow = rules.surface_flow) {
-    finite("surface_flow.alpha_in", flow->alpha_in);
-    finite("surface_flow.alpha_out", flow->alpha_out);
+    check("surface_flow.alpha_in", flow->alpha_in);
+    check("surface_flow.alpha_out", flow->alpha_out);
     not_negative("surface_flow.distance", flow->distance, "give the distance it reaches");
   }
-  if (rules.gravity) finite("gravity.acceleration", rules.gravity->acceleration);
+  if (rules.gravity) check("gravity.acceleration", rules.gravity->acceleration);
   if (rules.wind) {
-    finite("wind.velocity", rules.wind->velocity);
+    check("wind.velocity", rules.wind->velocity);
     not_negative("wind.rate", rules.wind->rate, no_push);
   }
   if (rules.air_drag) not_negative("air_drag.rate", rules.air_drag->rate, no_push);

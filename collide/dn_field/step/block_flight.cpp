@@ -71,11 +71,12 @@ void BlockFlight::meet_surface(const Run& run, const ObjectPoses& poses, int ste
   half_drag();
   if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, nearest);
   const bool open = plan.rules.impact && std::ranges::any_of(objects, &PlacedObject::open_surface);
-  if (plan.rules.spring || open) start_.save(particles);
+  const ParticleSpan start = start_.span(particles.count);
+  if (plan.rules.spring || open) copy(particles, start);
   run.loop(run.constants, particles, nearest, scratch_);
   trace(run.constants, objects, plan.rules.look_up, particles, scratch_);
   const CorrectedStep corrected{run.constants, run.setting, plan.sweep, nearest,
-                                start_,        particles,   scratch_};
+                                start,         particles,   scratch_};
   bool returned = false;
   if (plan.rules.spring) {
     sample_all(run, poses.objects_at(step + 1), particles, *after_);
@@ -145,8 +146,7 @@ void BlockFlight::fly(const Run& run, const ObjectPoses& poses, const ParticleSp
     }
     if (8 * near_.count < block.count) ahead = std::min(run.look_ahead, 2 * ahead);
     whole_block = false;
-    pack(block, near_);
-    const ParticleSpan packed = near_.packed();
+    const ParticleSpan packed = near_.pack(block);
     new_particles(packed.count);
     for (int k = i; k < next && packed.count > 0; ++k) step_near(run, poses, k, packed);
     fly_free(run.constants, block, poses.changes_in(i, next));

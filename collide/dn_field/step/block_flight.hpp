@@ -36,7 +36,7 @@ class BlockFlight {
   bool culling_paid_ = true;  // the last time, for whichever block
   bool keeps_waypoints_;
   Scratch scratch_;
-  StartState start_;
+  ParticleRoom start_;  // the particles before the rules of the surface
 };
 
 }  // namespace tess::dn

@@ -19,12 +19,6 @@ void erase_waypoints(const CorrectedStep& step, std::size_t p, L which) {
 
 }  // namespace
 
-void StartState::save(const ParticleSpan& particles) {
-  const double* const from[] = {particles.x,  particles.y,  particles.z,
-                                particles.vx, particles.vy, particles.vz};
-  for (std::size_t a = 0; a < 6; ++a) std::copy_n(from[a], particles.count, values_[a]);
-}
-
 bool limit_springs(const CorrectedStep& step, const NearestSurface& nearest_after) {
   const SpringConstants spring = step.constants.spring;  // copies that no store can change
   const ParticleSpan particles = step.particles;
@@ -42,8 +36,8 @@ bool limit_springs(const CorrectedStep& step, const NearestSurface& nearest_afte
     set_velocities(particles, p, select(slows, u + sqrt(only(slows, left / kinetic)) * w, v));
     if (!any(returns)) continue;
     returned = true;
-    const D3 back = fma(all(step.constants.step), u, step.start.places(p)),
-             turned = u + (u - step.start.velocities(p));
+    const D3 back = fma(all(step.constants.step), u, places(step.start, p)),
+             turned = u + (u - velocities(step.start, p));
     set_places(particles, p, select(returns, back, places(particles, p)));
     set_velocities(particles, p, select(returns, turned, velocities(particles, p)));
     erase_waypoints(step, p, returns);
@@ -72,7 +66,7 @@ bool keep_off_open_surfaces(const CorrectedStep& step, bool springs,
   bool returned = false;
   for (std::size_t p = 0; p < particles.count; p += width) {
     D3 x = places(particles, p), v = velocities(particles, p);
-    const D3 x0 = step.start.places(p), v0 = step.start.velocities(p);
+    const D3 x0 = places(step.start, p), v0 = velocities(step.start, p);
     L may = ~L{};
     if (step.sweep == Sweep::on) {
       D3 way = x - x0;

@@ -15,28 +15,13 @@
 
 namespace tess::dn {
 
-/// Positions and velocities of a block before the rules of the surface.
-class StartState {
- public:
-  void save(const ParticleSpan& particles);
-  [[nodiscard]] lanes::D3 places(std::size_t p) const {
-    return lanes::load3(values_[0] + p, values_[1] + p, values_[2] + p);
-  }
-  [[nodiscard]] lanes::D3 velocities(std::size_t p) const {
-    return lanes::load3(values_[3] + p, values_[4] + p, values_[5] + p);
-  }
-
- private:
-  alignas(64) double values_[6][block_size];
-};
-
 /// A step that is to be corrected.
 struct CorrectedStep {
   const RuleConstants& constants;
   Setting setting;
   Sweep sweep;
   const NearestSurface& nearest;  ///< at the start of the step
-  const StartState& start;
+  const ParticleSpan& start;      ///< the particles before the rules of the surface
   const ParticleSpan& particles;
   Scratch& scratch;  ///< energy: read; waypoints of particles that return are erased
 };

@@ -112,24 +112,22 @@ void cull(std::span<const PlacedObject> objects, LookUp kind, Sweep sweep, Reach
   near.count += n_later;
 }
 
-void pack(const ParticleSpan& block, NearParticles& near) {
-  const std::array<const double*, 6> from{block.x, block.y, block.z, block.vx, block.vy, block.vz};
-  const std::size_t whole = (near.count + width - 1) / width * width;
-  for (std::size_t a = 0; a < 6; ++a) {
-    for (std::size_t i = 0; i < near.count; ++i) near.values[a][i] = from[a][near.index[i]];
-    for (std::size_t i = near.count; i < whole; ++i) near.values[a][i] = 0;
-  }
-}
-
-ParticleSpan NearParticles::packed() {
+ParticleSpan NearParticles::pack(const ParticleSpan& block) {
   const std::size_t whole = (count + width - 1) / width * width;
-  return {values[0], values[1], values[2], values[3], values[4], values[5], whole};
+  for (std::size_t a = 0; a < 6; ++a) {
+    const double* const from = block.columns()[a];
+    double* const to = packed.values[a];
+    for (std::size_t i = 0; i < count; ++i) to[i] = from[index[i]];
+    std::fill(to + count, to + whole, 0);
+  }
+  return packed.span(whole);
 }
 
-void NearParticles::unpack(const ParticleSpan& block) {
-  const std::array<double*, 6> to{block.x, block.y, block.z, block.vx, block.vy, block.vz};
-  for (std::size_t a = 0; a < 6; ++a)
-    for (std::size_t i = 0; i < count; ++i) to[a][index[i]] = values[a][i];
+void NearParticles::unpack(const ParticleSpan& block) const {
+  for (std::size_t a = 0; a < 6; ++a) {
+    double* const to = block.columns()[a];
+    for (std::size_t i = 0; i < count; ++i) to[index[i]] = packed.values[a][i];
+  }
 }
 
 }  // namespace tess::dn

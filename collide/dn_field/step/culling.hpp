@@ -4,7 +4,7 @@
 // free loop. The others are packed, so that vectors are full. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/rules/nearest_surface.hpp"
+#include "collide/dn_field/step/particle_room.hpp"
 
 #include <cstdint>
 
@@ -15,12 +15,12 @@ struct NearParticles {
   std::size_t count = 0;
   std::uint32_t index[block_size];     ///< in the block; those near in the first step come first
   alignas(64) float room[block_size];  ///< displacement below which no surface is felt
-  alignas(64) double values[6][block_size];
+  ParticleRoom packed;
 
-  /// The packed particles, filled up to whole vectors.
-  [[nodiscard]] ParticleSpan packed();
+  /// Copies the listed particles, and fills up whole vectors.
+  ParticleSpan pack(const ParticleSpan& block);
   /// Copies the packed particles back into the block.
-  void unpack(const ParticleSpan& block);
+  void unpack(const ParticleSpan& block) const;
 };
 
 /// How far rules reach and particles fly.
@@ -34,8 +34,5 @@ struct Reach {
 /// Lists the particles that may be near a surface within `reach.time`; a NaN counts as near.
 void cull(std::span<const PlacedObject> objects, LookUp kind, Sweep sweep, Reach reach,
           const ParticleSpan& block, NearParticles& near);
-
-/// Copies the listed particles.
-void pack(const ParticleSpan& block, NearParticles& near);
 
 }  // namespace tess::dn

@@ -14,8 +14,7 @@ void set_lengths(Run& run, std::span<const Object> objects) {
     const double cell = object.frame.scale * object.field->grid.cell;
     coarsest = std::max(coarsest, cell);
     finest = std::min(finest, cell);
-    if (object.compressed != nullptr)
-      error = std::max(error, object.frame.scale * object.compressed->measured.distance);
+    error = std::max(error, object.frame.scale * compression_error(*object.field));
   }
   run.constants.slack =
       (plan.rules.look_up == LookUp::nearest ? 0.5 * std::sqrt(3.0) : 1e-3) * coarsest + error;
@@ -37,7 +36,7 @@ Run run_of(const Stepper::Plan& plan, std::span<const Object> objects) {
   run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
   set_lengths(run, objects);
   for (const Object& object : objects)
-    if (object.frame.is_growing() || !(jump_of(object) < 4 * object.field->grid.cell))
+    if (object.frame.is_growing() || !(jump_of(*object.field) < 4 * object.field->grid.cell))
       run.look_ahead = 1;
   return run;
 }

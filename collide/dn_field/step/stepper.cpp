@@ -4,7 +4,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace tess::dn {
 namespace {
@@ -16,32 +15,6 @@ double steps_before(double time, double step) {
   const double steps = time / step, whole = std::round(steps);
   return std::abs(steps - whole) < 1e-6 ? whole : steps;
 }
-
-/// The last particles, fewer than a vector, copied to a vector of their own.
-class Rest {
- public:
-  explicit Rest(const ParticleSpan& particles) : from_(particles) {
-    for_each([](double& room, double& particle) { room = particle; });
-  }
-  void put_back() {
-    for_each([](double& room, double& particle) { particle = room; });
-  }
-  [[nodiscard]] ParticleSpan span() {
-    return {room_[0].data(), room_[1].data(), room_[2].data(), room_[3].data(),
-            room_[4].data(), room_[5].data(), lanes::width};
-  }
-
- private:
-  template <class Copy>
-  void for_each(const Copy& copy) {
-    const std::array<double*, 6> particles{from_.x, from_.y, from_.z, from_.vx, from_.vy, from_.vz};
-    for (std::size_t a = 0; a < particles.size(); ++a)
-      for (std::size_t i = 0; i < from_.count; ++i) copy(room_[a][i], particles[a][i]);
-  }
-
-  ParticleSpan from_;
-  std::array<std::array<double, lanes::width>, 6> room_{};
-};
 
 }  // namespace
 
@@ -66,7 +39,10 @@ void Stepper::run(ParticleSpan particles, std::span<const Object> objects, doubl
   const double before = steps_before(time, plan.step);
   const auto flight = std::make_unique<BlockFlight>(waypoints != nullptr);
   const std::size_t whole = particles.count / lanes::width * lanes::width;
-  Rest rest(particles.part(whole, particles.count - whole));
+  // The last particles, fewer than a vector, get a vector of their own.
+  const ParticleSpan rest = particles.part(whole, particles.count - whole);
+  const auto room = std::make_unique<ParticleRoom>();
+  copy(rest, room->span(rest.count));
   for (int done = 0; done < n_steps; done += steps_at_once) {
     const int now = std::min(steps_at_once, n_steps - done);
     const ObjectPoses poses = object_poses(run, standing, before + done, now);
@@ -79,9 +55,9 @@ void Stepper::run(ParticleSpan particles, std::span<const Object> objects, doubl
     };
     for (std::size_t first = 0; first < whole; first += block_size)
       fly(first, particles.part(first, std::min(block_size, whole - first)));
-    if (whole < particles.count) fly(whole, rest.span());
+    if (whole < particles.count) fly(whole, room->span(lanes::width));
   }
-  rest.put_back();
+  copy(room->span(rest.count), rest);
 }
 
 void advance(std::span<Object> objects, double step, int n_steps) {
@@ -94,30 +70,29 @@ void validate(const Rules& rules, std::span<const Object> objects) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Object& object = objects[i];
     const Frame& frame = object.frame;
-    const CompressedField* compressed = object.compressed;
-    if ((compressed == nullptr) != (objects[0].compressed == nullptr))
-      fail(ErrorCode::bad_argument, "object ", i,
-           compressed == nullptr ? " has a flat field and object 0 a compressed one"
-                                 : " has a compressed field and object 0 a flat one",
-           "; compress all of a scene or none");
-    if (compressed != nullptr && rules.look_up == LookUp::trilinear)
-      fail(ErrorCode::bad_argument, "object ", i,
-           " has a compressed field, which has no trilinear look-up; take nearest or "
-           "tangent");
     if (object.field == nullptr || object.field->grid.size() == 0 ||
-        (compressed == nullptr && object.field->distance.size() != object.field->grid.size()) ||
-        (compressed != nullptr && compressed->grid.n != object.field->grid.n))
+        (object.field->planes == nullptr &&
+         object.field->distance.size() != object.field->grid.size()))
       fail(ErrorCode::bad_argument, "object ", i, " has no field; build one");
-    if (object.field->grid.size() >= std::size_t{1} << 31U)
-      fail(ErrorCode::bad_argument, "object ", i, " has ", object.field->grid.size(),
+    const Field& field = *object.field;
+    const bool compressed = field.planes != nullptr;
+    if (compressed != (objects[0].field->planes != nullptr))
+      fail(ErrorCode::bad_argument, "object ", i,
+           compressed ? " has a compressed field and object 0 a flat one"
+                      : " has a flat field and object 0 a compressed one",
+           "; compress all of a scene or none");
+    if (compressed && rules.look_up == LookUp::trilinear)
+      fail(ErrorCode::bad_argument, "object ", i,
+           " has a compressed field, which has no trilinear look-up; take nearest or tangent");
+    if (field.grid.size() >= std::size_t{1} << 31U)
+      fail(ErrorCode::bad_argument, "object ", i, " has ", field.grid.size(),
            " voxels, above 2^31; lower its resolution");
     if (needed_content(rules) == Content::distance_and_normal &&
-        (compressed != nullptr ? compressed->content != Content::distance_and_normal
-                               : object.field->normal.size() != object.field->grid.size()))
+        (field.content() == Content::distance ||
+         (!compressed && field.normal.size() != field.grid.size())))
       fail(ErrorCode::bad_argument, "object ", i,
            " stores no normals and a rule or the tangent look-up needs them; build its field with "
            "distance and normal");
-    const Field& field = *object.field;
     const double within =
         frame.scale * covered(field.thickness, field.grid.cell, field.sides, look_up_of(rules));
     if (reach(rules) > within)
@@ -133,23 +108,6 @@ void validate(const Rules& rules, std::span<const Object> objects) {
         fail(ErrorCode::bad_argument, "object ", i, " has (", v.x, ", ", v.y, ", ", v.z,
              ") as position or velocity; give finite numbers");
   }
-}
-
-double kinetic_energy(ParticleSpan particles) {
-  double twice = 0;
-  for (std::size_t p = 0; p < particles.count; ++p) {
-    const Vec3 v{particles.vx[p], particles.vy[p], particles.vz[p]};
-    if (const double square = dot(v, v); std::isfinite(square)) twice += square;
-  }
-  return 0.5 * twice;
-}
-
-std::size_t count_nonfinite(ParticleSpan particles) {
-  std::size_t found = 0;
-  for (std::size_t p = 0; p < particles.count; ++p)
-    found += !is_finite({particles.x[p], particles.y[p], particles.z[p]}) ||
-             !is_finite({particles.vx[p], particles.vy[p], particles.vz[p]});
-  return found;
 }
 
 }  // namespace tess::dn

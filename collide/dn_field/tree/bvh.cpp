@@ -7,18 +7,6 @@ namespace {
 constexpr std::uint32_t leaf_size = 4;
 constexpr double slack = 1 + 1e-9;  // so that rounding never prunes the nearest box
 
-double gap2(const Bounds& a, const Bounds& b) {
-  const double x = std::max({0.0, a.low.x - b.high.x, b.low.x - a.high.x});
-  const double y = std::max({0.0, a.low.y - b.high.y, b.low.y - a.high.y});
-  const double z = std::max({0.0, a.low.z - b.high.z, b.low.z - a.high.z});
-  return x * x + y * y + z * z;
-}
-
-struct Pending {
-  std::uint32_t node;
-  double distance2;
-};
-
 struct Centroid {
   std::array<float, 3> at;  // in units of the surface's box: no offset is lost in float
   std::uint32_t triangle;
@@ -109,7 +97,7 @@ void Bvh::summarise() {
         weighted += moments_[child].area * moments_[child].centre;
       }
     } else {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      each_triangle(node, [&](std::uint32_t i) {
         const PreparedTriangle& t = prepared_[i];
         for (const Vec3 p : t.corner) node.box.extend(p);
         const Vec3 area_normal = 0.5 * cross(t.edge[0], -t.edge[2]);
@@ -117,7 +105,7 @@ void Bvh::summarise() {
         moment.area_normal += area_normal;
         moment.area += area;
         weighted += area / 3 * (t.corner[0] + t.corner[1] + t.corner[2]);
-      }
+      });
     }
     moment.centre = moment.area > 0 ? (1 / moment.area) * weighted : node.box.centre();
     const Vec3 reach = moment.centre - node.box.low, rest = node.box.high - moment.centre;
@@ -127,32 +115,17 @@ void Bvh::summarise() {
 }
 
 ClosestPoint Bvh::closest(Vec3 p, double limit2) const {
-  std::array<Pending, max_depth> stack;
-  std::size_t height = 0;
   ClosestPoint best;
   double bound = limit2;
-  stack[height++] = {0, nodes_[0].box.distance2(p)};
-  while (height > 0) {
-    const Pending top = stack[--height];
-    if (top.distance2 > bound) continue;
-    const Node& node = nodes_[top.node];
-    if (node.count == 0) {
-      Pending near{node.first, nodes_[node.first].box.distance2(p)};
-      Pending far{node.first + 1, nodes_[node.first + 1].box.distance2(p)};
-      if (far.distance2 < near.distance2) std::swap(near, far);
-      if (far.distance2 <= bound) stack[height++] = far;
-      if (near.distance2 <= bound) stack[height++] = near;
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+  descend_near(p, bound, [&](const Node& leaf) {
+    each_triangle(leaf, [&](std::uint32_t i) {
       const Vec3 offset = offset_from(prepared_[i], p);
       const double distance2 = dot(offset, offset);
-      if (distance2 <= bound) {
-        bound = distance2;
-        best = {distance2, p - offset, order_[i]};
-      }
-    }
-  }
+      if (distance2 > bound) return;
+      bound = distance2;
+      best = {distance2, p - offset, order_[i]};
+    });
+  });
   return best;
 }
 
@@ -212,42 +185,24 @@ void Bvh::closest(PointBlock& block) const {
   for (std::size_t l = 0; l < PointBlock::size; ++l)
     if (block.distance2[l] >= 0) box.extend({block.x[l], block.y[l], block.z[l]});
   block.place.fill(PointBlock::none);
-  std::array<Pending, max_depth> stack;
-  std::size_t height = 0;
   double bound = furthest(block) * slack;
-  stack[height++] = {0, gap2(nodes_[0].box, box)};
-  while (height > 0) {
-    const Pending top = stack[--height];
-    if (top.distance2 > bound) continue;
-    const Node& node = nodes_[top.node];
-    if (node.count == 0) {
-      Pending near{node.first, gap2(nodes_[node.first].box, box)};
-      Pending far{node.first + 1, gap2(nodes_[node.first + 1].box, box)};
-      if (far.distance2 < near.distance2) std::swap(near, far);
-      if (far.distance2 <= bound) stack[height++] = far;
-      if (near.distance2 <= bound) stack[height++] = near;
-      continue;
-    }
-    const Layers layers = nearer_layers(block, node.box);
-    if (layers == Layers{}) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      offer(block, layers, prepared_[i], i);
+  descend_near(box, bound, [&](const Node& leaf) {
+    const Layers layers = nearer_layers(block, leaf.box);
+    if (layers == Layers{}) return;
+    each_triangle(leaf, [&](std::uint32_t i) { offer(block, layers, prepared_[i], i); });
     bound = furthest(block) * slack;
-  }
+  });
 }
 
 bool Bvh::may_reach(const Bounds& box, double limit2) const {
-  std::array<std::uint32_t, max_depth> stack;
-  std::size_t height = 0;
-  stack[height++] = 0;
-  while (height > 0) {
-    const Node& node = nodes_[stack[--height]];
-    if (gap2(node.box, box) > limit2) continue;
-    if (node.count != 0) return true;
-    stack[height++] = node.first;
-    stack[height++] = node.first + 1;
-  }
-  return false;
+  bool found = false;
+  descend([&](std::uint32_t at) {
+    const Node& node = nodes_[at];
+    if (found || node.box.distance2(box) > limit2) return false;
+    found = node.count != 0;
+    return true;
+  });
+  return found;
 }
 
 }  // namespace tess::dn

@@ -8,18 +8,8 @@ constexpr double way_slack = 1e-9;  // of the segment, for rounding
 
 /// Whether the segment meets the box, up to rounding.
 bool may_meet(const Bounds& box, Vec3 from, Vec3 way) {
-  double first = -way_slack, last = 1 + way_slack;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double at = component(from, axis), d = component(way, axis);
-    const double low = component(box.low, axis) - at, high = component(box.high, axis) - at;
-    if (d == 0) {
-      if (low > 0 || high < 0) return false;
-      continue;
-    }
-    first = std::max(first, std::min(low / d, high / d) - way_slack);
-    last = std::min(last, std::max(low / d, high / d) + way_slack);
-  }
-  return first <= last;
+  const auto [first, last] = box.part_of_line(from, way);
+  return std::max(first, 0.0) - way_slack <= std::min(last, 1.0) + way_slack;
 }
 
 /// The fraction at which the segment crosses the triangle (Möller and Trumbore 1997), from either
@@ -42,20 +32,15 @@ double crossing_at(Vec3 from, Vec3 way, const std::array<Vec3, 3>& corner) {
 
 void Bvh::crossings(Vec3 from, Vec3 to, std::vector<Crossing>& into) const {
   const Vec3 way = to - from;
-  std::array<std::uint32_t, max_depth> stack{};
-  std::size_t height = 1;  // the root
-  while (height > 0) {
-    const Node& node = nodes_[stack[--height]];
-    if (!may_meet(node.box, from, way)) continue;
-    if (node.count == 0) {
-      stack[height++] = node.first;
-      stack[height++] = node.first + 1;
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      if (const double at = crossing_at(from, way, prepared_[i].corner); at > 0)
-        into.push_back({at, order_[i]});
-  }
+  descend([&](std::uint32_t at) {
+    const Node& node = nodes_[at];
+    if (!may_meet(node.box, from, way)) return false;
+    each_triangle(node, [&](std::uint32_t i) {
+      if (const double part = crossing_at(from, way, prepared_[i].corner); part > 0)
+        into.push_back({part, order_[i]});
+    });
+    return true;
+  });
 }
 
 }  // namespace tess::dn

@@ -55,27 +55,19 @@ bool add_half_angle(Turns& sum, Vec3 p, const PreparedTriangle& t) {
 }  // namespace
 
 double Bvh::winding_number(Vec3 p, double accuracy) const {
-  std::array<std::uint32_t, max_depth> stack;
-  std::size_t height = 0;
-  stack[height++] = 0;
   double angle = 0;
   Turns halves;
-  while (height > 0) {
-    const std::uint32_t at = stack[--height];
-    const Node& node = nodes_[at];
+  descend([&](std::uint32_t at) {
     const Moment& moment = moments_[at];
     const Vec3 to = moment.centre - p;
     const double distance2 = dot(to, to), reach = accuracy * moment.radius;
     if (accuracy > 0 && distance2 > reach * reach) {
       angle += dot(to, moment.area_normal) / (distance2 * std::sqrt(distance2));
-    } else if (node.count == 0) {
-      stack[height++] = node.first;
-      stack[height++] = node.first + 1;
-    } else {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        add_half_angle(halves, p, prepared_[i]);
+      return false;
     }
-  }
+    each_triangle(nodes_[at], [&](std::uint32_t i) { add_half_angle(halves, p, prepared_[i]); });
+    return true;
+  });
   return (angle + 2 * halves.angle()) / (4 * std::numbers::pi);
 }
 
@@ -84,39 +76,35 @@ double Bvh::winding_number(Vec3 p, double accuracy) const {
 // area; half of the bound for s = r covers it. Errors of many clusters have many signs and add up
 // as independent ones; twice their root sum of squares is allowed for.
 WindingEstimate Bvh::winding_estimate(Vec3 p, double radius, double accuracy) const {
-  std::array<std::uint32_t, max_depth> stack;
-  std::size_t height = 0;
-  stack[height++] = 0;
   double angle = 0, error2 = 0;
+  bool decided = true;
   Turns halves;
   const auto off_by = [&error2](double area, double shift, double distance) {
     const double off = 2 * area * shift / (distance * distance * distance);
     error2 += off * off;
   };
-  while (height > 0) {
-    const std::uint32_t at = stack[--height];
-    const Node& node = nodes_[at];
+  descend([&](std::uint32_t at) {
     const Moment& moment = moments_[at];
     const Vec3 to = moment.centre - p;
     const double distance = norm(to);
+    if (!decided) return false;
     if (distance > accuracy * moment.radius + 2 * radius) {
       angle += dot(to, moment.area_normal) / (distance * distance * distance);
       off_by(moment.area, radius + truncated * moment.radius, distance - radius);
-    } else if (node.count == 0) {
-      stack[height++] = node.first;
-      stack[height++] = node.first + 1;
-    } else {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const PreparedTriangle& t = prepared_[i];
-        if (radius > 0) {
-          const double least = std::sqrt(distance2(t, p.x, p.y, p.z)) - radius;
-          if (least <= 0) return {0, HUGE_VAL};
-          off_by(0.5 * norm(cross(t.edge[0], t.edge[2])), radius, least);
-        }
-        if (!add_half_angle(halves, p, t)) return {0, HUGE_VAL};
-      }
+      return false;
     }
-  }
+    each_triangle(nodes_[at], [&](std::uint32_t i) {
+      const PreparedTriangle& t = prepared_[i];
+      if (radius > 0) {
+        const double least = std::sqrt(distance2(t, p.x, p.y, p.z)) - radius;
+        decided = decided && least > 0;
+        off_by(0.5 * norm(cross(t.edge[0], t.edge[2])), radius, least);
+      }
+      decided = add_half_angle(halves, p, t) && decided;
+    });
+    return true;
+  });
+  if (!decided) return {0, HUGE_VAL};
   return {(angle + 2 * halves.angle()) / (4 * std::numbers::pi),
           2 * std::sqrt(error2) / (4 * std::numbers::pi) + 1e-9};
 }

@@ -1,8 +1,9 @@
 #include "collide/dn_field/orientation.hpp"
 
 #include "collide/dn_field/bvh.hpp"
-#include "collide/dn_field/geometry/disjoint_sets.hpp"
 #include "collide/dn_field/geometry/surface_edges.hpp"
+
+#include <boost/pending/disjoint_sets.hpp>
 
 #include <algorithm>
 
@@ -23,18 +24,16 @@ struct Part {
 
 /// The connected parts of `surface`, by their lowest vertex.
 std::vector<Part> parts_of(const Surface& surface, bool closed) {
-  DisjointSets sets(surface.vertices.size());
-  for (const auto& [a, b, c] : surface.triangles) sets.join(a, b), sets.join(a, c);
-  std::vector<std::uint32_t> number(surface.vertices.size(), 0);
+  const std::size_t n = surface.vertices.size();
+  boost::disjoint_sets_with_storage<> sets(n);
+  for (const auto& [a, b, c] : surface.triangles) sets.union_set(a, b), sets.union_set(a, c);
+  std::vector<std::size_t> number(n), part_of_set(n, n);
   std::vector<Part> parts;
-  for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
-    const std::uint32_t lowest = sets.set_of(v);
-    if (lowest == v) {
-      number[v] = static_cast<std::uint32_t>(parts.size());
-      parts.emplace_back();
-    }
-    number[v] = number[lowest];
-    parts[number[v]].box.extend(surface.vertices[v]);
+  for (std::size_t v = 0; v < n; ++v) {
+    std::size_t& part = part_of_set[sets.find_set(v)];
+    if (part == n) part = parts.size(), parts.emplace_back();
+    number[v] = part;
+    parts[part].box.extend(surface.vertices[v]);
   }
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     Part& part = parts[number[surface.triangles[t][0]]];

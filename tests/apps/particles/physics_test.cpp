@@ -153,9 +153,9 @@ TEST_CASE("a particle that dips under two walls in a corner has passed neither",
           "[particles][physics]") {
   // Object 0 is met by its upper side, object 1 by its lower one.
   const tess::dn::Surface plate = tess::dn::make_box({1, 1, 0.01});
-  const tess::dn::Field field = tess::dn::build_exact(plate, grid_around(bounds(plate), 20, 0.3));
+  const tess::dn::Field field = tess::dn::build_field(plate, grid_around(bounds(plate), 20, 0.3));
   const tess::dn::Bvh triangles(plate);
-  const tess::dn::Object object{&field, {}, nullptr, &triangles};
+  const tess::dn::Object object{&field, {}, &triangles};
   const auto after = [&](Mark mark, std::uint16_t number, double from, double to) {
     return mark_after(mark, {number, object, 1}, {0.1, 0.2, from}, {0.1, 0.2, to});
   };

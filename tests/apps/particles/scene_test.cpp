@@ -2,7 +2,7 @@
 
 #include "apps/particles/simulation/emit.hpp"
 #include "apps/particles/simulation/memory.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/field_file.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/base/usable_memory.hpp"
@@ -330,7 +330,7 @@ TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
   const std::string box = R"({"box": {"half": [1, 1, 1]}})",
                     other = R"({"box": {"half": [1, 1, 1.2]}})";
   const tess::dn::Surface surface = tess::dn::make_box({1, 1, 1});
-  tess::dn::save_field(build_exact(surface, grid_around(bounds(surface), 16, 0.5),
+  tess::dn::save_field(build_field(surface, grid_around(bounds(surface), 16, 0.5),
                                    {tess::dn::Sides::two, tess::dn::Content::distance, 0.4, {}}),
                        (folder / "a.dnf").string());
   CHECK(read(with_field(box)) == "16 0.4 1");

@@ -1,7 +1,5 @@
-#include "collide/dn_field/build_blurred.hpp"
-
 #include "collide/dn_field/build/voxels.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
@@ -56,9 +54,11 @@ TEST_CASE("a plate between two layers is refused by normals and served by potent
   for (const int n : {20, 21}) {
     const Grid grid = grid_around(bounds(plate), n, 0.4);
     CHECK(refusal([&] {
-            (void)build_blurred(plate, grid, {Method::normals, Sides::one, 0.4, {}, {}});
+            (void)build_field(plate, grid,
+                              {Sides::one, Content::distance_and_normal, 0.4, Method::normals, {}});
           }).find("near-zero thickness") != std::string::npos);
-    const Field field = build_blurred(plate, grid, {Method::potential, Sides::two, 0.4, {}, {}});
+    const Field field = build_field(
+        plate, grid, {Sides::two, Content::distance_and_normal, 0.4, Method::potential, {}});
     for (const int k : {n / 2 - 2, n / 2 + 2})
       CHECK(decoded(field.normal[grid.index(n / 2, n / 2, k)]).z ==
             Approx(k < n / 2 ? -1 : 1).epsilon(0.01));
@@ -66,7 +66,8 @@ TEST_CASE("a plate between two layers is refused by normals and served by potent
   const Grid away{{5, 5, 5}, 0.1, {8, 8, 8}};
   for (const Method method : {Method::normals, Method::potential})
     CHECK(refusal([&] {
-            (void)build_blurred(plate, away, {method, Sides::one, 0.4, {}, {}});
+            (void)build_field(plate, away,
+                              {Sides::one, Content::distance_and_normal, 0.4, method, {}});
           }).find("no voxel of the grid") != std::string::npos);
 }
 
@@ -92,11 +93,12 @@ TEST_CASE("both of the paper's methods give a sphere's normals, and exact distan
   const Grid grid = grid_around(bounds(sphere), 40, 0.4);
   const double thickness = 6 * grid.cell;
   const Field exact =
-      build_exact(sphere, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
+      build_field(sphere, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
   for (const Method method : {Method::normals, Method::potential})
     for (const int radius : {2, 3, 4}) {
       const Blur blur{radius, 6 / radius + 1};
-      const Field field = build_blurred(sphere, grid, {method, Sides::one, thickness, blur, {}});
+      const Field field = build_field(
+          sphere, grid, {Sides::one, Content::distance_and_normal, thickness, method, blur});
       CHECK(field.method == method);
       CHECK(field.distance == exact.distance);
       int missing = 0;
@@ -115,20 +117,19 @@ TEST_CASE("a blurred field does not depend on how its layers are split", "[dn_fi
   const Surface torus = make_torus(1, 0.4, 24);
   const Grid grid = grid_around(bounds(torus), 26, 0.3);
   for (const Method method : {Method::normals, Method::potential}) {
-    const BlurredOptions options{method, Sides::one, 0.3, {3, 2}, {}};
-    const Field whole = build_blurred(torus, grid, options);
+    const FieldOptions options{Sides::one, Content::distance_and_normal, 0.3, method, {3, 2}};
+    const Field whole = build_field(torus, grid, options);
     for (const std::vector<int>& cuts :
          {std::vector<int>{0, 26}, {0, 4, 4, 12, 26}, {0, 1, 2, 7, 25, 26}}) {
-      BlurredBuilder builder(torus, grid, options);
+      FieldBuilder builder(torus, grid, options);
       const auto each_part = [&cuts](const auto& build) {
         std::vector<std::jthread> threads;
         for (std::size_t i = cuts.size() - 1; i > 0; --i)
           threads.emplace_back([&build, from = cuts[i - 1], to = cuts[i]] { build(from, to); });
       };
-      each_part([&](int first, int last) { builder.build_distances(first, last); });
-      CHECK(builder.n_rounds() == (method == Method::normals ? 3 : 4));
+      CHECK(builder.n_rounds() == (method == Method::normals ? 4 : 5));
       for (int round = 0; round < builder.n_rounds(); ++round)
-        each_part([&](int first, int last) { builder.build_round(round, first, last); });
+        each_part([&](int first, int last) { builder.build(round, first, last); });
       const Field field = builder.finish();
       CHECK(field.distance == whole.distance);
       CHECK(field.normal == whole.normal);
@@ -141,7 +142,8 @@ TEST_CASE("a blurred field does not depend on how its layers are split", "[dn_fi
 TEST_CASE("the potential of a thin plate points away from it on both sides", "[dn_field]") {
   const Grid grid{{-1, -1, -0.95}, 0.1, {21, 21, 20}};
   const Field field =
-      build_blurred(make_plate(0.8, 4), grid, {Method::potential, Sides::two, 0.5, {}, {}});
+      build_field(make_plate(0.8, 4), grid,
+                  {Sides::two, Content::distance_and_normal, 0.5, Method::potential, {}});
   for (const int k : {5, 6, 7, 8, 9, 10, 11, 12, 13, 14}) {
     const double away = k < 9.5 ? -1 : 1;
     CHECK(decoded(field.normal[grid.index(10, 10, k)]).z == Approx(away).epsilon(0.01));
@@ -170,9 +172,10 @@ TEST_CASE("normals away from a box turn smoothly: less from voxel to voxel than 
         }
     return most / degree;
   };
-  const Field blurred = build_blurred(box, grid, {Method::normals, Sides::one, thickness, {}, {}});
+  const Field blurred = build_field(
+      box, grid, {Sides::one, Content::distance_and_normal, thickness, Method::normals, {}});
   const Field exact =
-      build_exact(box, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
+      build_field(box, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
   INFO("largest turn " << largest_turn(blurred) << "°, exact " << largest_turn(exact) << "°");
   CHECK(largest_turn(blurred) < largest_turn(exact));
 }
@@ -181,7 +184,8 @@ TEST_CASE("the normals method refuses objects of near-zero thickness", "[dn_fiel
   const auto built = [](const Surface& surface, int n, Method method, Sides sides) {
     const Grid grid = grid_around(bounds(surface), n, 0.3);
     return refusal([&] {
-      (void)build_blurred(surface, grid, {method, sides, 3 * grid.cell, {}, {}});
+      (void)build_field(surface, grid,
+                        {sides, Content::distance_and_normal, 3 * grid.cell, method, {}});
     });
   };
   CHECK(built(make_plate(1, 6), 24, Method::normals, Sides::one).find("near-zero thickness") !=
@@ -196,15 +200,13 @@ TEST_CASE("the normals method refuses objects of near-zero thickness", "[dn_fiel
 
 TEST_CASE("a plan covers the step and resolves the detail, or is refused", "[dn_field]") {
   const Bounds box{{-1, -1, -1}, {1, 1, 1}};
-  const FieldPlan plan = choose_plan(box, {20, 0.01, 0.1}, Coverage::step, 1 << 24);
+  const FieldPlan plan = choose_plan(box, {20, 0.01, 0.1}, 1 << 24);
   CHECK(plan.thickness >= 0.2 + 2 * plan.grid.cell);
   CHECK(plan.grid.cell <= 0.05 * (1 + 1e-12));
   CHECK(plan.blur.radius * plan.blur.rounds * plan.grid.cell >= plan.thickness);
-  const FieldPlan swept = choose_plan(box, {2000, 0.01, 0.1}, Coverage::swept, 1 << 24);
+  const FieldPlan swept = choose_plan(box, {0, 0.01, 0.1}, 1 << 24);
   CHECK(swept.thickness < plan.thickness);
-  CHECK_FALSE(refusal([&] {
-                (void)choose_plan(box, {2000, 0.01, 0.1}, Coverage::step, 1 << 24);
-              }).empty());
+  CHECK_FALSE(refusal([&] { (void)choose_plan(box, {2000, 0.01, 0.1}, 1 << 24); }).empty());
   CHECK(refusal([&] { require_blur({5, 2}); }).find("2 to 4") != std::string::npos);
   CHECK(refusal([&] { require_blur({3, 0}); }).find("at least one") != std::string::npos);
 }

@@ -1,5 +1,4 @@
-#include "collide/dn_field/build_blurred.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
@@ -37,8 +36,9 @@ Surface with_share_flipped(Surface surface, double part) {
 Field field_of(const Surface& surface, const Grid& grid, Method method) {
   const double thickness = 4 * grid.cell;
   if (method == Method::exact)
-    return build_exact(surface, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
-  return build_blurred(surface, grid, {method, Sides::one, thickness, {}, {}});
+    return build_field(surface, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
+  return build_field(surface, grid,
+                     {Sides::one, Content::distance_and_normal, thickness, method, {}});
 }
 
 TEST_CASE("a closed mesh turned inside out is what it bounds, normals too", "[dn_field]") {
@@ -67,7 +67,7 @@ TEST_CASE("a closed mesh turned inside out is what it bounds, normals too", "[dn
 TEST_CASE("normals on a mesh turned inside out point out of it where they are the triangles' own",
           "[dn_field]") {
   const Surface box = inverted(make_box({0.5, 0.5, 0.5}));
-  const Field field = build_exact(box, {{-1, -1, -1}, 0.25, {9, 9, 9}});  // faces in voxel layers
+  const Field field = build_field(box, {{-1, -1, -1}, 0.25, {9, 9, 9}});  // faces in voxel layers
   CHECK(decoded(field.normal[field.grid.index(6, 4, 4)]).x == Approx(1));
   CHECK(decoded(field.normal[field.grid.index(4, 2, 4)]).y == Approx(-1));
   CHECK(field.distance[field.grid.index(4, 4, 4)] == Approx(-0.5));
@@ -76,7 +76,7 @@ TEST_CASE("normals on a mesh turned inside out point out of it where they are th
 TEST_CASE("a mesh turned inside out stays what it bounds where some triangles were not",
           "[dn_field]") {
   const Surface mostly = inverted(with_flipped(make_sphere(1, 16), 10));
-  const Field field = build_exact(mostly, grid_around(bounds(mostly), 21, 0.3));
+  const Field field = build_field(mostly, grid_around(bounds(mostly), 21, 0.3));
   int wrong = 0;
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
     if (norm(p) < 0.75) wrong += field.distance[at] > 0;
@@ -88,7 +88,7 @@ TEST_CASE("a mesh turned inside out stays what it bounds where some triangles we
 TEST_CASE("an open dish keeps its hollow outside, whichever way it faces", "[dn_field]") {
   const Surface dish = without_last(make_sphere(1, 16), 160);
   for (const Surface& surface : {inverted(dish), inverted(without_last(make_box({1, 1, 1}), 2))}) {
-    const Field field = build_exact(surface, grid_around(bounds(surface), 21, 0.3));
+    const Field field = build_field(surface, grid_around(bounds(surface), 21, 0.3));
     int inside = 0;
     for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
       inside += norm(p) < 0.8 && field.distance[at] < 0;
@@ -100,10 +100,10 @@ TEST_CASE("an open dish keeps its hollow outside, whichever way it faces", "[dn_
 TEST_CASE("however many triangles are flipped, the sign is the winding number's", "[dn_field]") {
   const Surface ball = make_sphere(1, 24);
   const Grid grid = grid_around(bounds(ball), 40, 0.4);
-  const ExactOptions options{Sides::one, Content::distance, 3 * grid.cell, {}};
+  const FieldOptions options{Sides::one, Content::distance, 3 * grid.cell, {}};
   for (const double part : {0.02, 0.1, 0.2, 0.3, 0.4}) {
     const Surface flipped = with_share_flipped(ball, part);
-    const Field field = build_exact(flipped, grid, options);
+    const Field field = build_field(flipped, grid, options);
     const Bvh tree(flipped);
     int wrong = 0;
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {

@@ -1,5 +1,4 @@
-#include "collide/dn_field/build_exact.hpp"
-
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/plan.hpp"
@@ -25,7 +24,7 @@ double box_distance(Vec3 p, Vec3 half) {
 
 TEST_CASE("distances to a box are those of the formula at every voxel", "[dn_field]") {
   const Vec3 half{0.5, 0.3, 0.7};
-  const Field field = build_exact(make_box(half), grid_around({-half, half}, 33, 0.4));
+  const Field field = build_field(make_box(half), grid_around({-half, half}, 33, 0.4));
   double worst = 0;
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
     worst =
@@ -56,7 +55,7 @@ TEST_CASE("the tree's closest point and winding number are those of brute force"
 
 TEST_CASE("the fast sign of a closed mesh is that of the winding number", "[dn_field]") {
   const Surface torus = make_torus(1, 0.4, 40);  // vertices on voxel lines: every tie-break is met
-  const Field field = build_exact(torus, grid_around(bounds(torus), 29, 0.2));
+  const Field field = build_field(torus, grid_around(bounds(torus), 29, 0.2));
   const Bvh tree(torus);
   int wrong = 0;
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
@@ -70,12 +69,12 @@ TEST_CASE("the fast sign of a closed mesh is that of the winding number", "[dn_f
 TEST_CASE("a mesh with a hole and one with flipped triangles keep their inside", "[dn_field]") {
   Surface holed = make_sphere(1, 16);
   holed.triangles.resize(holed.triangles.size() - 60);
-  const Field field = build_exact(holed, grid_around(bounds(holed), 21, 0.3));
+  const Field field = build_field(holed, grid_around(bounds(holed), 21, 0.3));
   CHECK_FALSE(is_closed(holed));
   Surface flipped = make_sphere(1, 16);
   for (std::size_t t = 0; t < flipped.triangles.size(); t += 50)
     std::swap(flipped.triangles[t][0], flipped.triangles[t][1]);
-  const Field turned = build_exact(flipped, field.grid);
+  const Field turned = build_field(flipped, field.grid);
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
     if (norm(p) < 0.75 && p.z < 0.3) CHECK(field.distance[at] < 0);
     if (norm(p) > 1.05) CHECK(field.distance[at] > 0);
@@ -86,7 +85,7 @@ TEST_CASE("a mesh with a hole and one with flipped triangles keep their inside",
 
 TEST_CASE("normals of a sphere are radial and of unit length", "[dn_field]") {
   const Surface sphere = make_sphere(1, 64);
-  const Field field = build_exact(sphere, grid_around(bounds(sphere), 24, 0.5));
+  const Field field = build_field(sphere, grid_around(bounds(sphere), 24, 0.5));
   double worst = 0;
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
     if (norm(p) < 0.3) return;  // near the medial axis the tessellation decides
@@ -115,7 +114,7 @@ TEST_CASE("an encoded normal is met to 6.6e-5 rad", "[dn_field]") {
 TEST_CASE("a plate built two-sided has positive distances and opposite normals on its sides",
           "[dn_field]") {
   const Grid grid{{-1, -1, -0.95}, 0.1, {21, 21, 20}};
-  const Field field = build_exact(make_plate(0.8, 4), grid,
+  const Field field = build_field(make_plate(0.8, 4), grid,
                                   {Sides::two, Content::distance_and_normal, HUGE_VAL, {}});
   CHECK(field.distance[grid.index(10, 10, 12)] == Approx(0.25));
   CHECK(field.distance[grid.index(10, 10, 7)] == Approx(0.25));
@@ -126,8 +125,8 @@ TEST_CASE("a plate built two-sided has positive distances and opposite normals o
 TEST_CASE("a field cut off at its thickness agrees with the whole one within it", "[dn_field]") {
   const Surface torus = make_torus(1, 0.4, 32);
   const Grid grid = grid_around(bounds(torus), 32, 0.4);
-  const Field whole = build_exact(torus, grid);
-  const Field thin = build_exact(torus, grid, {Sides::one, Content::distance, 0.25, {}});
+  const Field whole = build_field(torus, grid);
+  const Field thin = build_field(torus, grid, {Sides::one, Content::distance, 0.25, {}});
   CHECK(thin.normal.empty());
   int different = 0;
   for (std::size_t at = 0; at < grid.size(); ++at)
@@ -141,7 +140,7 @@ TEST_CASE("real meshes: spot and env, the sign off the surface is that of the ex
     const Surface surface = read_obj(tess::test::shared_data(name));
     const Bvh tree(surface);
     const Grid grid = grid_around(bounds(surface), 14, 0.05 * norm(bounds(surface).size()));
-    const Field field = build_exact(surface, grid);
+    const Field field = build_field(surface, grid);
     int wrong = 0;
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
       wrong += (field.distance[at] < 0) != (tree.winding_number(p, 0) > 0.5);
@@ -153,19 +152,19 @@ TEST_CASE("real meshes: spot and env, the sign off the surface is that of the ex
 
 TEST_CASE("bad surfaces and grids are refused with a reason", "[dn_field]") {
   const Grid grid{{0, 0, 0}, 0.1, {8, 8, 8}};
-  CHECK_THROWS_AS(build_exact({}, grid), tess::Error);
+  CHECK_THROWS_AS(build_field({}, grid), tess::Error);
   Surface broken = make_box({1, 1, 1});
   broken.vertices[3].y = std::nan("");
-  CHECK(refusal([&] { (void)build_exact(broken, grid); }).find("vertex 3") != std::string::npos);
+  CHECK(refusal([&] { (void)build_field(broken, grid); }).find("vertex 3") != std::string::npos);
   broken.vertices[3].y = 1;
   broken.triangles[0][0] = 99;
-  CHECK(refusal([&] { (void)build_exact(broken, grid); }).find("vertex 99 of 8") !=
+  CHECK(refusal([&] { (void)build_field(broken, grid); }).find("vertex 99 of 8") !=
         std::string::npos);
-  CHECK_THROWS_AS(build_exact(make_box({1, 1, 1}), grid, {Sides::one, Content::distance, 0.1, {}}),
+  CHECK_THROWS_AS(build_field(make_box({1, 1, 1}), grid, {Sides::one, Content::distance, 0.1, {}}),
                   tess::Error);
   CHECK_THROWS_AS(grid_around({{0, 0, 0}, {1, 1, 1}}, 100000, 0.1), tess::Error);
   CHECK(refusal([&] {
-          (void)choose_plan({{0, 0, 0}, {1, 1, 1}}, {100, 1, 0.1}, Coverage::step, 1 << 20);
+          (void)choose_plan({{0, 0, 0}, {1, 1, 1}}, {100, 1, 0.1}, 1 << 20);
         }).find("above the limit") != std::string::npos);
 }
 

@@ -1,4 +1,5 @@
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/collide/dn_field/triangle_distance.hpp"
@@ -30,7 +31,7 @@ TEST_CASE("distances to any triangles, degenerate ones too, are those of brute f
     const Grid grid = grid_around(bounds(surface), 14, 0.2);
     const double thickness = seed == 1 ? HUGE_VAL : 2.5 * grid.cell;
     const Field field =
-        build_exact(surface, grid, {Sides::two, Content::distance_and_normal, thickness, {}});
+        build_field(surface, grid, {Sides::two, Content::distance_and_normal, thickness, {}});
     double worst = 0;
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
       const double truth = std::min(brute_force(surface, p), thickness);
@@ -46,29 +47,20 @@ TEST_CASE("a field does not depend on how its layers are split, in which order, 
   const Surface surface = with_flipped(without_last(make_torus(1, 0.4, 30), 40), 37);
   const Grid grid = grid_around(bounds(surface), 27, 0.3);
   for (const double thickness : {HUGE_VAL, 3 * grid.cell}) {
-    const ExactOptions options{Sides::one, Content::distance_and_normal, thickness, {}};
-    const Field whole = build_exact(surface, grid, options);
-    const ExactBuilder builder(surface, grid, options);
+    const FieldOptions options{Sides::one, Content::distance_and_normal, thickness, {}};
+    const Field whole = build_field(surface, grid, options);
     for (const auto& cuts : {std::vector{0, 27}, {0, 5, 6, 17, 27}, {0, 8, 16, 27}}) {
-      Field field = builder.empty_field();
-      std::vector<BuiltSlab> built(cuts.size());
-      std::vector<std::thread> threads;
+      FieldBuilder builder(surface, grid, options);
+      std::vector<std::jthread> threads;
       for (std::size_t c = cuts.size() - 1; c > 0; --c)
-        threads.emplace_back(
-            [&, c] { built[c] = builder.build(slab_of(field, cuts[c - 1], cuts[c])); });
-      for (std::thread& t : threads) t.join();
-      builder.finish(field, built);
+        threads.emplace_back([&, c] { builder.build(0, cuts[c - 1], cuts[c]); });
+      threads.clear();
+      const Field field = builder.finish();
       CHECK(field.distance == whole.distance);
       CHECK(field.normal == whole.normal);
       CHECK(field.thickness == whole.thickness);
       CHECK(field.jump == greatest_jump(whole));
     }
-    // A jump from one slab to the next is in neither.
-    Field step = builder.empty_field();
-    const auto upper = slab_of(step, 9, 27).distance;
-    std::fill(upper.begin(), upper.end(), 1.0F);
-    builder.finish(step, std::array{BuiltSlab{9, 27, 1, 0}, BuiltSlab{0, 9, 0, 0}});
-    CHECK(step.jump == 1);
   }
 }
 
@@ -81,7 +73,7 @@ TEST_CASE("the sign of open, flipped and torn meshes is that of the exact windin
         make_plate(1, 6)}) {
     const Grid grid = grid_around(bounds(surface), 15, 0.25);
     const Bvh tree(surface);
-    const Field field = build_exact(surface, grid);
+    const Field field = build_field(surface, grid);
     int wrong = 0, inside = 0;
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
       const double w = tree.winding_number(p, 0);
@@ -98,12 +90,12 @@ TEST_CASE("a field of a mesh twenty doublings larger or smaller is the same fiel
           "[dn_field]") {
   const Surface surface = with_flipped(without_last(make_torus(1, 0.4, 24), 60), 31);
   const Grid grid = grid_around(bounds(surface), 20, 0.3);
-  const Field field = build_exact(surface, grid);
+  const Field field = build_field(surface, grid);
   for (const int doublings : {-20, 20}) {
     const double scale = std::ldexp(1.0, doublings);
     Surface scaled = surface;
     for (Vec3& p : scaled.vertices) p = scale * p;
-    const Field other = build_exact(scaled, {scale * grid.origin, scale * grid.cell, grid.n});
+    const Field other = build_field(scaled, {scale * grid.origin, scale * grid.cell, grid.n});
     int different = 0;
     for (std::size_t at = 0; at < grid.size(); ++at)
       different += other.distance[at] != std::ldexp(field.distance[at], doublings);
@@ -136,7 +128,7 @@ TEST_CASE("beyond its thickness a field is a lower bound of the distance, with t
   const Surface surface = make_sphere(1, 24);
   const Grid grid = grid_around(bounds(surface), 30, 0.4);
   const Field field =
-      build_exact(surface, grid, {Sides::one, Content::distance, 2.5 * grid.cell, {}});
+      build_field(surface, grid, {Sides::one, Content::distance, 2.5 * grid.cell, {}});
   int wrong = 0;
   for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
     const double truth = norm(p) - 1, found = static_cast<double>(field.distance[at]);
@@ -149,7 +141,7 @@ TEST_CASE("beyond its thickness a field is a lower bound of the distance, with t
 TEST_CASE("off the medial axis the distance between voxels converges with order 2", "[dn_field]") {
   const auto worst_error = [](bool sphere, int n) {
     const Surface surface = sphere ? make_sphere(1, 2 * n) : make_torus(1, 0.45, 4 * n);
-    const Field field = build_exact(surface, grid_around(bounds(surface), n, 0.25),
+    const Field field = build_field(surface, grid_around(bounds(surface), n, 0.25),
                                     {Sides::one, Content::distance, 0.8, {}});
     std::mt19937 random(5);
     std::uniform_real_distribution<double> at(-1.4, 1.4);
@@ -177,7 +169,7 @@ TEST_CASE("off the medial axis the distance between voxels converges with order 
 TEST_CASE("grids that cannot be built are refused in one line", "[dn_field]") {
   const Surface box = make_box({1, 1, 1});
   const auto refused = [&](const Grid& grid) {
-    const std::string message = refusal([&] { (void)build_exact(box, grid); });
+    const std::string message = refusal([&] { (void)build_field(box, grid); });
     CHECK(message.find('\n') == std::string::npos);
     return message;
   };
@@ -188,7 +180,7 @@ TEST_CASE("grids that cannot be built are refused in one line", "[dn_field]") {
   Surface flat = box;
   for (Vec3& p : flat.vertices) p = 0.0 * p;
   CHECK(refusal([&] {
-          (void)build_exact(flat, {{0, 0, 0}, 0.1, {8, 8, 8}});
+          (void)build_field(flat, {{0, 0, 0}, 0.1, {8, 8, 8}});
         }).find("extent 0") != std::string::npos);
 }
 

@@ -46,9 +46,9 @@ TEST_CASE("eight look-ups at once have the bits of one by one", "[dn_field][comp
   for (float& distance : field.distance) distance *= 20 / 3.0F;
   field.thickness = 40;
   for (const ErrorBound bound : {ErrorBound{0.125, 0.05}, ErrorBound{0.01, 1e-6}}) {
-    const CompressedField compressed = compress(field, bound);
-    CHECK(compressed.layout.wide == (bound.angle < 1e-3));
-    const PlaneSampler sampler = sampler_of(compressed);
+    const Field compressed = compress(field, bound);
+    CHECK(compressed.planes->layout.wide == (bound.angle < 1e-3));
+    const PlaneSampler sampler = plane_sampler_of(compressed);
     std::mt19937 random(1);
     std::uniform_real_distribution<float> place(-1, 22);
     for (int round = 0; round < 300; ++round) {
@@ -61,7 +61,7 @@ TEST_CASE("eight look-ups at once have the bits of one by one", "[dn_field][comp
           sampler, {lanes::load<lanes::F>(x.data()), lanes::load<lanes::F>(y.data()),
                     lanes::load<lanes::F>(z.data())});
       // A float normal has three digits more than its code: wide ones are normalised differently.
-      const float off = compressed.layout.wide ? 1e-6F : 0;
+      const float off = compressed.planes->layout.wide ? 1e-6F : 0;
       const lanes::F distance = found.distance_or_far();
       for (int i = 0; i < lanes::width; ++i) {
         const auto at = static_cast<std::size_t>(i);
@@ -95,13 +95,12 @@ Rules surface_rules(LookUp kind, Sweep sweep) {
 TEST_CASE("in fields compressed without loss particles move as in flat ones, bit for bit",
           "[dn_field][compressed]") {
   const Field flat = ball_field(24);
-  const CompressedField compressed = compress(flat, {0, 0});
-  const Field sizes = outline(compressed);
+  const Field compressed = compress(flat, {0, 0});
   for (const LookUp kind : {LookUp::nearest, LookUp::tangent})
     for (const Sweep sweep : {Sweep::off, Sweep::on})
       for (const bool moves : {false, true}) {
         std::vector<Object> one{{&flat, {}}};
-        std::vector<Object> other{{&sizes, {}, &compressed}};
+        std::vector<Object> other{{&compressed, {}}};
         if (moves) {
           for (std::vector<Object>* objects : {&one, &other}) {
             objects->push_back(objects->front());
@@ -128,11 +127,11 @@ TEST_CASE("in a compressed field nothing passes at any speed, and bounces are of
   Field wall = plane_field(cube_grid(1, 33), {0, 0, 1});
   wall.thickness = 2;
   const double cell = wall.grid.cell;
-  const CompressedField compressed = compress(wall, {0.125 * cell, 0.05});
+  const Field compressed = compress(wall, {0.125 * cell, 0.05});
   CHECK(compressed.bytes() * 5 < wall.bytes());
   Rules rules;
   rules.impact = Impact{1, 0, Sweep::on};
-  const std::array objects{Object{&wall, {}, &compressed}};
+  const std::array objects{Object{&compressed, {}}};
   for (const double speed : {0.5, 50.0, 5e4}) {
     Particles particles;
     std::mt19937 random(3);
@@ -147,7 +146,7 @@ TEST_CASE("in a compressed field nothing passes at any speed, and bounces are of
       CHECK(particles.velocity(p).z == Approx(speed).epsilon(1e-2));
       // Down to the wall and up again: 2 in all.
       const double off = particles.position(p).z - (2 - before.position(p).z);
-      CHECK(std::abs(off) <= 2 * (compressed.measured.distance + 0.05 * cell));
+      CHECK(std::abs(off) <= 2 * (compressed.planes->measured.distance + 0.05 * cell));
     }
   }
 }
@@ -155,7 +154,7 @@ TEST_CASE("in a compressed field nothing passes at any speed, and bounces are of
 TEST_CASE("compressed fields that cannot serve are refused with a reason",
           "[dn_field][compressed]") {
   const Field flat = ball_field(12);
-  const CompressedField compressed = compress(flat, {0.01, 0.05});
+  const Field compressed = compress(flat, {0.01, 0.05});
   const auto refusal = [](const Rules& rules, std::vector<Object> objects) -> std::string {
     try {
       validate(rules, objects);
@@ -165,15 +164,16 @@ TEST_CASE("compressed fields that cannot serve are refused with a reason",
     return "accepted";
   };
   const Rules tangent = surface_rules(LookUp::tangent, Sweep::on);
-  CHECK(refusal(tangent, {{&flat, {}, &compressed}}) == "accepted");
-  CHECK(refusal(surface_rules(LookUp::trilinear, Sweep::on), {{&flat, {}, &compressed}})
-            .find("trilinear") != std::string::npos);
-  CHECK(refusal(tangent, {{&flat, {}, &compressed}, {&flat, {}}}).find("compress all") !=
+  CHECK(refusal(tangent, {{&compressed, {}}}) == "accepted");
+  CHECK(
+      refusal(surface_rules(LookUp::trilinear, Sweep::on), {{&compressed, {}}}).find("trilinear") !=
+      std::string::npos);
+  CHECK(refusal(tangent, {{&compressed, {}}, {&flat, {}}}).find("compress all") !=
         std::string::npos);
   Field distances = flat;
   distances.normal = {};
-  const CompressedField bare = compress(distances, {0.01, 0.05});
-  CHECK(refusal(tangent, {{&distances, {}, &bare}}).find("no normals") != std::string::npos);
+  const Field bare = compress(distances, {0.01, 0.05});
+  CHECK(refusal(tangent, {{&bare, {}}}).find("no normals") != std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "collide/dn_field/compressed.hpp"
 
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
@@ -16,7 +17,7 @@ struct Columns {
 };
 
 /// The greatest differences at the centres of all voxels, seen through the look-ups.
-ErrorBound worst_seen(const Field& flat, const CompressedField& field) {
+ErrorBound worst_seen(const Field& flat, const Field& field) {
   const std::size_t n = flat.grid.size();
   Columns at(n), normal(n);
   for_each_voxel(flat.grid, [&](std::size_t v, Vec3 p) {
@@ -57,20 +58,20 @@ TEST_CASE(
         for (const Content content : {Content::distance_and_normal, Content::distance}) {
           const Grid grid = grid_around(bounds(surface), n, 0.3);
           const Sides sides = surface.triangles.size() == 128 ? Sides::two : Sides::one;
-          const Field flat = build_exact(surface, grid, {sides, content, cells * grid.cell, {}});
+          const Field flat = build_field(surface, grid, {sides, content, cells * grid.cell, {}});
           for (const auto& [distance, angle] :
                {std::pair{0.2, 8.0}, {0.05, 2.0}, {0.01, 10.0}, {0.001, 0.1}, {0.0, 0.0}}) {
             const ErrorBound bound{distance * grid.cell, angle * degree};
-            const CompressedField field = compress(flat, bound);
+            const Field field = compress(flat, bound);
             const ErrorBound seen = worst_seen(flat, field);
             INFO(surface.triangles.size() << " triangles, " << n << "³, " << cells << " cells, "
                                           << distance << " cells, " << angle << "°");
-            CHECK(field.measured.distance <= bound.distance);
-            CHECK(field.measured.angle <= bound.angle);
-            CHECK(seen.distance <= field.measured.distance + 1e-6 * grid.cell);
-            CHECK(seen.angle <= field.measured.angle + 1e-6);
-            CHECK(seen.distance >= field.measured.distance - 1e-6 * grid.cell);
-            CHECK(seen.angle >= field.measured.angle - 1e-6);
+            CHECK(field.planes->measured.distance <= bound.distance);
+            CHECK(field.planes->measured.angle <= bound.angle);
+            CHECK(seen.distance <= field.planes->measured.distance + 1e-6 * grid.cell);
+            CHECK(seen.angle <= field.planes->measured.angle + 1e-6);
+            CHECK(seen.distance >= field.planes->measured.distance - 1e-6 * grid.cell);
+            CHECK(seen.angle >= field.planes->measured.angle - 1e-6);
           }
         }
 }
@@ -80,8 +81,8 @@ TEST_CASE("a compressed field takes at most a fifth of the flat one's memory", "
        {make_sphere(1, 60), make_torus(1, 0.4, 80), make_box({1, 0.7, 0.5})}) {
     const Grid grid = grid_around(bounds(surface), 60, 0.3);
     const Field flat =
-        build_exact(surface, grid, {Sides::one, Content::distance_and_normal, 4 * grid.cell, {}});
-    const CompressedField field = compress(flat, {0.05 * grid.cell, 2 * degree});
+        build_field(surface, grid, {Sides::one, Content::distance_and_normal, 4 * grid.cell, {}});
+    const Field field = compress(flat, {0.05 * grid.cell, 2 * degree});
     INFO(flat.bytes() << " bytes flat, " << field.bytes() << " compressed");
     CHECK(5 * field.bytes() <= flat.bytes());
   }
@@ -91,11 +92,11 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
           "[dn_field]") {
   const Surface torus = make_torus(1, 0.4, 40);
   const Grid grid = grid_around(bounds(torus), 30, 0.3);
-  const Field flat = build_exact(torus, grid);
+  const Field flat = build_field(torus, grid);
   const ErrorBound bound{0.05 * grid.cell, 3 * degree};
   for (const int block_shift : {2, 3, 4}) {
-    const CompressedField field = compress(flat, bound, block_shift);
-    CHECK(field.block_shift == block_shift);
+    const Field field = compress(flat, bound, block_shift);
+    CHECK(field.planes->block_shift == block_shift);
     const std::size_t n = 5001;
     Columns at(n), normal(n);
     std::mt19937 random(5);
@@ -123,7 +124,7 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
 
 TEST_CASE("bounds that mean nothing are refused", "[dn_field]") {
   const Surface box = make_box({1, 1, 1});
-  const Field flat = build_exact(box, grid_around(bounds(box), 12, 0.5));
+  const Field flat = build_field(box, grid_around(bounds(box), 12, 0.5));
   CHECK(refusal([&] { (void)compress(flat, {-1, 0.1}); }).find("distance -1") != std::string::npos);
   CHECK_FALSE(refusal([&] { (void)compress(flat, {0.1, std::nan("")}); }).empty());
   CHECK(refusal([&] { (void)compress(flat, {0.1, 0.1}, 7); }).find("2^7") != std::string::npos);

@@ -1,6 +1,6 @@
 #include "collide/dn_field/field_file.hpp"
 
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
@@ -40,7 +40,7 @@ class TemporaryFile {
 
 Field small_field(Content content) {
   const Surface sphere = make_sphere(1, 8);
-  return build_exact(sphere, grid_around(bounds(sphere), 7, 1),
+  return build_field(sphere, grid_around(bounds(sphere), 7, 1),
                      {Sides::one, content, HUGE_VAL, {}});
 }
 

@@ -1,4 +1,4 @@
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "runtime/core/error.hpp"

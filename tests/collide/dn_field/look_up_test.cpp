@@ -1,7 +1,6 @@
 #include "collide/dn_field/look_up.hpp"
 
-#include "collide/dn_field/build_blurred.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/support/catch.hpp"
@@ -16,7 +15,7 @@ TEST_CASE(
     "the nearest look-up returns the voxel's distance, and is out of reach outside and for NaN",
     "[dn_field]") {
   const Surface box = make_box({0.5, 0.5, 0.5});
-  const Field field = build_exact(box, grid_around(bounds(box), 20, 0.3));
+  const Field field = build_field(box, grid_around(bounds(box), 20, 0.3));
   std::mt19937 random(5);
   std::uniform_real_distribution<float> anywhere(-1.2F, 1.2F);
   std::vector<float> x(1001), y(1001), z(1001), found(1001);
@@ -60,16 +59,17 @@ TEST_CASE("no two voxels that touch differ by more than the field's jump, howeve
           "[dn_field]") {
   const Surface box = make_box({0.5, 0.3, 0.2});
   const Grid grid = grid_around(bounds(box), 19, 0.3);
-  std::vector<Field> fields{build_exact(box, grid)};
+  std::vector<Field> fields{build_field(box, grid)};
   for (const double thickness : {HUGE_VAL, 3 * grid.cell})
     for (const Method method : {Method::normals, Method::potential})
-      fields.push_back(build_blurred(box, grid, {method, Sides::one, thickness, {}, {}}));
+      fields.push_back(build_field(
+          box, grid, {Sides::one, Content::distance_and_normal, thickness, method, {}}));
   for (const Field& field : fields) {
     CHECK(field.jump == jump_by_brute_force(field));
     CHECK(static_cast<double>(field.jump) < 1.7321 * grid.cell);
   }
-  const CompressedField compressed = compress(fields[0], {0.2 * grid.cell, 0.1});
-  CHECK(outline(compressed).jump == fields[0].jump);
+  const Field compressed = compress(fields[0], {0.2 * grid.cell, 0.1});
+  CHECK(compressed.jump == fields[0].jump);
   const Field seen = expanded(compressed);
   CHECK(seen.jump == jump_by_brute_force(seen));
 }

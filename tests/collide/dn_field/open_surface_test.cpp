@@ -1,4 +1,4 @@
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
@@ -82,10 +82,10 @@ TEST_CASE("no particle leaves a room of open surfaces through its joints", "[dn_
             const bool springs = n_scenes++ % 3 == 0;
             const WedgeRoom room(angle);
             const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
-            const Field field = build_exact(room.surface, grid,
+            const Field field = build_field(room.surface, grid,
                                             {Sides::two, Content::distance_and_normal, 0.3, {}});
             const Bvh triangles(room.surface);
-            Object object{&field, {}, nullptr, &triangles};
+            Object object{&field, {}, &triangles};
             object.frame.axes = rotation({anywhere(random), anywhere(random), anywhere(random)});
             if (spins) object.frame.angular_velocity = {1, -2, 3};
             Rules rules;
@@ -131,9 +131,9 @@ TEST_CASE("a particle that flies into the joint of open surfaces comes out again
       const WedgeRoom room(angle);
       const Grid grid = grid_around(bounds(room.surface), 41, 0.3);
       const Field field =
-          build_exact(room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
+          build_field(room.surface, grid, {Sides::two, Content::distance_and_normal, 0.3, {}});
       const Bvh triangles(room.surface);
-      const Object object{&field, {}, nullptr, &triangles};
+      const Object object{&field, {}, &triangles};
       Rules rules;
       rules.look_up = look_up;
       rules.impact = Impact{1, 0, Sweep::on};

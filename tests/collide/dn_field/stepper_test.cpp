@@ -1,6 +1,6 @@
 #include "collide/dn_field/stepper.hpp"
 
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
@@ -77,7 +77,8 @@ TEST_CASE("trajectories are bit-identical however particles and steps are cut",
       CHECK(singles.position(p) == whole.position(p));
       CHECK(singles.velocity(p) == whole.velocity(p));
     }
-    CHECK(count_nonfinite(whole.span()) == 0);
+    for (std::size_t p = 0; p < whole.size(); ++p)
+      CHECK((is_finite(whole.position(p)) && is_finite(whole.velocity(p))));
   }
 }
 
@@ -162,7 +163,7 @@ TEST_CASE("particles outside every field fly straight", "[dn_field][rules]") {
 
 TEST_CASE("bounces off a built box are those of the exact box", "[dn_field][rules]") {
   const Surface box = make_box({0.5, 0.5, 0.5});
-  const Field field = build_exact(box, grid_around(bounds(box), 40, 0.5));
+  const Field field = build_field(box, grid_around(bounds(box), 40, 0.5));
   const Object object{&field, {}};
   Rules rules;
   rules.impact = Impact{1, 0, Sweep::on};
