@@ -22,6 +22,8 @@ namespace tess {
 
 template <class T>
 class Future {
+  using Value = std::conditional_t<std::is_void_v<T>, NoValue, T>;
+
  public:
   Future() : pe_(&current_pe()), id_(pe_->enter_future(this)) {}
   Future(const Future&) = delete;
@@ -42,7 +44,7 @@ class Future {
   /// The target that receives the result.
   [[nodiscard]] Callback<T> callback() const {
     TESS_CHECK(id_ != 0, "a future that was moved from has no callback: use the one it moved to");
-    return Callback<T>(kind_, to_bytes(std::tuple(pe_->id(), id_)));
+    return detail::as_target(Callback<Value>(kind_, to_bytes(std::tuple(pe_->id(), id_))));
   }
 
   [[nodiscard]] bool await_ready() const { return value_.has_value(); }
@@ -54,20 +56,20 @@ class Future {
   }
   T await_resume() {
     waiting_ = nullptr;
-    return std::move(*value_);
+    if constexpr (!std::is_void_v<T>) return std::move(*value_);
   }
 
  private:
   struct Result {
     std::uint64_t id = 0;
-    T value{};
+    Value value{};
     using GivesMembers = void;
     template <class Ar>
     void serialize(Ar& ar) {
       ar(id, value);
     }
   };
-  static void give(const Callback<T>& callback, T&& value) {
+  static void give(const Callback<Value>& callback, Value&& value) {
     const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
     Pe& here = current_pe();
     here.completion().sent(here.context().epoch);
@@ -84,12 +86,12 @@ class Future {
     if (future->waiting_) resume_later(future->waiting_);
     pe.completion().processed(pe.context().epoch);
   }
-  static std::string describe(const Callback<T>& callback) {
+  static std::string describe(const Callback<Value>& callback) {
     const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
     return text("future ", id, " of ", pe);
   }
-  static inline const typename Callback<T>::Kind kind_{naming::name_of<&Future::give>(),
-                                                       &Future::give, &Future::describe};
+  static inline const typename Callback<Value>::Kind kind_{naming::name_of<&Future::give>(),
+                                                           &Future::give, &Future::describe};
 
   void take(Future& other) {
     TESS_CHECK(!other.waiting_, "a future is moved while a coroutine waits for it");
@@ -103,22 +105,8 @@ class Future {
 
   Pe* pe_;
   std::uint64_t id_ = 0;  // 0: moved from
-  std::optional<T> value_;
+  std::optional<Value> value_;
   Task::Handle waiting_;
-};
-
-/// A result without a value: the news that something is done.
-template <>
-class Future<void> {
- public:
-  [[nodiscard]] Callback<void> callback() const { return Callback<void>(news_.callback()); }
-
-  [[nodiscard]] bool await_ready() const { return news_.await_ready(); }
-  void await_suspend(Task::Handle task) { news_.await_suspend(task); }
-  void await_resume() { (void)news_.await_resume(); }
-
- private:
-  Future<NoValue> news_;
 };
 
 }  // namespace tess

@@ -32,7 +32,7 @@ class Trial {
   Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_processes = 1);
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  [[nodiscard]] std::int32_t tess::n_pes() const { return n_pes_; }
+  [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
   [[nodiscard]] bool on_threads() const { return machine_ == On::threads; }
   /// Draws of the scenario itself; not for use on a PE.
   [[nodiscard]] Random& random() { return random_; }
