@@ -1,4 +1,5 @@
 #include "runtime/base/pool.hpp"
+
 #include "tests/support/catch.hpp"
 
 #include <cstring>

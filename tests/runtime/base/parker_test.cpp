@@ -1,6 +1,7 @@
+#include "runtime/base/parker.hpp"
+
 #include "runtime/base/backoff.hpp"
 #include "runtime/base/mpsc_queue.hpp"
-#include "runtime/base/parker.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
