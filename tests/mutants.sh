@@ -56,7 +56,8 @@ try() {
   local name=$1 file=$2
   shift 2
   if [[ -z ${passes[$*]:-} ]]; then
-    cmake --build --preset release -j "$(nproc)" --target "$1" >../build.log 2>&1
+    cmake --build --preset release -j "$(nproc)" --target "$1" >../build.log 2>&1 ||
+      { grep -m 3 "error:" ../build.log; echo "does not compile without a bug: $1"; exit 1; }
     timeout 120 "build/release/bin/$1" "${@:2}" >../test.log 2>&1 || { echo "fails without a bug: $*"; exit 1; }
     passes[$*]=yes
   fi
