@@ -1,9 +1,17 @@
 #!/usr/bin/env bash
 # Checks every include against layers.txt; `--picture` prints rooms, floors and upward arrows of each module instead.
+# `cmake/layers.sh --root ROOT` checks the tree at ROOT, without git.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*.[hc]pp' 'apps/*.[hc]pp' 'tests/*.[hc]pp' |
+sources() { git ls-files -co --exclude-standard 'runtime/*.[hc]pp' 'collide/*.[hc]pp' 'm2m/*.[hc]pp' 'apps/*.[hc]pp' 'tests/*.[hc]pp'; }
+if [[ ${1:-} == --root ]]; then
+  cd "$2"
+  sources() { find runtime collide m2m apps tests -name '*.[hc]pp'; }
+  shift 2
+fi
+
+sources |
   xargs grep -nE '^#include "(runtime|collide|m2m|apps|tests)/' /dev/null |
   awk -v picture="${1:-}" -v lines="cmake/layers.txt" '
     function room_of(path,  folder) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Plants bugs, one at a time, in a copy of the sources, and reports which test catches each. By hand: a minute per bug.
 #
-#   tests/mutants.sh [TEXT]      those of which the list's or the bug's name contains TEXT (all by default)
+#   tests/mutants.sh [TEXT…]     those of which the list's or the bug's name contains one TEXT (all by default)
 #
 # tests/mutants/*.mutants hold the bugs: a name, the file, the program that should fail, and the lines that are
 # replaced (they must occur once):
@@ -13,7 +13,8 @@
 #   + new line
 set -euo pipefail
 cd "$(dirname "$0")/.."
-pattern=${1:-}
+patterns=("${@:-}")
+export CCACHE_DISABLE=1  # together with a precompiled header it returns objects of older sources
 
 copy=build/mutants/source
 rm -rf "$copy"
@@ -25,6 +26,21 @@ cmake --preset release -DCMAKE_UNITY_BUILD=OFF -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DT
 n=0
 survivors=()
 declare -A passes  # without a bug
+# chosen NAME: whether it contains one of the patterns.
+chosen() {
+  local one
+  for one in "${patterns[@]}"; do
+    if [[ $1 == *"$one"* ]]; then return 0; fi
+  done
+  return 1
+}
+# first_failure: the first case, seed or check that the test's log names.
+first_failure() {
+  awk '
+    /^(FAILED protocol_fuzz|protocol_fuzz: repeat with)/ { sub(/^[^:]*: |^FAILED /, ""); print; exit }
+    rule { sub(/^ +/, ""); print; exit }
+    /^-----/ { rule = 1 }' ../test.log
+}
 # plant FILE: reads the replaced lines from old and new; exits with 1 unless they occur once.
 plant() {
   perl -e '
@@ -40,7 +56,8 @@ try() {
   local name=$1 file=$2
   shift 2
   if [[ -z ${passes[$*]:-} ]]; then
-    cmake --build --preset release -j "$(nproc)" --target "$1" >../build.log 2>&1
+    cmake --build --preset release -j "$(nproc)" --target "$1" >../build.log 2>&1 ||
+      { grep -m 3 "error:" ../build.log; echo "does not compile without a bug: $1"; exit 1; }
     timeout 120 "build/release/bin/$1" "${@:2}" >../test.log 2>&1 || { echo "fails without a bug: $*"; exit 1; }
     passes[$*]=yes
   fi
@@ -50,7 +67,7 @@ try() {
     return
   fi
   n=$((n + 1))
-  local begin=$SECONDS verdict
+  local begin=$SECONDS verdict by=
   if ! cmake --build --preset release -j "$(nproc)" --target "$1" >../build.log 2>&1; then
     verdict="does not compile"
     survivors+=("$name (does not compile)")
@@ -59,14 +76,15 @@ try() {
     survivors+=("$name")
   else
     verdict="caught"
+    by=$(first_failure)
   fi
-  printf '%-16s %-24s %3d s  %s\n' "$verdict" "$1" $((SECONDS - begin)) "$name"
+  printf '%-16s %-24s %3d s  %s%s\n' "$verdict" "$1" $((SECONDS - begin)) "$name" "${by:+ ($by)}"
   cp ../kept "$file"
 }
 
 name=
 flush() {
-  if [[ -n $name && "$list: $name" == *"$pattern"* ]]; then try "$name" "$file" "${test[@]}"; fi
+  if [[ -n $name ]] && chosen "$list: $name"; then try "$name" "$file" "${test[@]}"; fi
   name=
 }
 for list in tests/mutants/*.mutants; do

@@ -71,7 +71,8 @@ struct Job {
   [[nodiscard]] bool speaks() const { return !first || first->process().value == 0; }
 };
 
-bool passes(const Job& job, const Scenario& scenario, std::uint64_t seed, std::int32_t n_pes) {
+bool passes(const Job& job, const Scenario& scenario, std::uint64_t seed, std::int32_t n_pes,
+            std::uint64_t& n_checks) {
   repeat = fmt::format("protocol_fuzz --scenario {} --seeds {}:{} --pes {}", scenario.name, seed,
                        seed, n_pes);
   if (job.first) {
@@ -82,6 +83,7 @@ bool passes(const Job& job, const Scenario& scenario, std::uint64_t seed, std::i
   running = &trial;
   scenario.run(trial);
   running = nullptr;
+  n_checks += trial.n_checks();
   if (trial.failures().empty()) return true;
   std::printf("FAILED %s\n", repeat.c_str());
   print_failures(trial);
@@ -113,11 +115,19 @@ int fuzz(int argc, char** argv) {
   std::uint64_t n_passed = 0, n_failed = 0;
   for (const Scenario& one : tess::fuzz::scenarios()) {
     if (name != "all" ? name != one.name : job.first && !one.in_jobs) continue;
+    std::uint64_t n_checks = 0;
     for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
       const std::int32_t drawn =
           job.first ? 1 + static_cast<std::int32_t>(seed % 3) : tess::fuzz::pes_of_seed(seed);
-      ++(passes(job, one, seed, n_pes != 0 ? n_pes : drawn) ? n_passed : n_failed);
+      ++(passes(job, one, seed, n_pes != 0 ? n_pes : drawn, n_checks) ? n_passed : n_failed);
     }
+    // A process of a job checks a part, and a given number of PEs may leave little to check.
+    if (job.first || n_pes != 0) continue;
+    const std::string too_few =
+        tess::fuzz::too_few_checks(one, seeds.last - seeds.first + 1, n_checks);
+    if (too_few.empty()) continue;
+    std::printf("FAILED %s\n", too_few.c_str());
+    ++n_failed;
   }
   if (job.speaks() || n_failed != 0)
     std::printf("%llu passed, %llu failed\n", static_cast<unsigned long long>(n_passed),

@@ -6,6 +6,7 @@
 #include "apps/protocol_fuzz/trial.hpp"
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace tess::fuzz {
@@ -42,8 +43,16 @@ struct Scenario {
   std::string_view name;
   std::string_view claim;
   void (*run)(Trial&);
-  bool in_jobs = false;  ///< its oracle needs no memory that processes share
+  std::uint64_t usual_checks;  ///< of a trial in one process: the mean over 30 seeds is no less
+  bool in_jobs = false;        ///< its oracle needs no memory that processes share
 };
+
+/// usual_checks holds from this number of seeds on.
+inline constexpr std::uint64_t many_seeds = 30;
+
+/// Empty, or a sentence if these trials checked less than the scenario does: it tests nothing then.
+[[nodiscard]] std::string too_few_checks(const Scenario& scenario, std::uint64_t n_trials,
+                                         std::uint64_t n_checks);
 
 [[nodiscard]] std::span<const Scenario> scenarios();
 /// The scenario of this name. Throws Error that lists the names for an unknown one.

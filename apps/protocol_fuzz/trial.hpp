@@ -10,6 +10,7 @@
 
 #include "runtime/runtime.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -63,10 +64,13 @@ class Trial {
   /// States what must hold; any thread.
   template <class... Parts>
   void expect(bool holds, const Parts&... parts) {
+    n_checks_.fetch_add(1, std::memory_order_relaxed);  // read after the run
     if (!holds) [[unlikely]]
       add_failure(text(parts...));
   }
   [[nodiscard]] const std::vector<std::string>& failures() const { return failures_; }
+  /// How many statements were checked; a scenario that stops checking is no test.
+  [[nodiscard]] std::uint64_t n_checks() const { return n_checks_; }
 
  private:
   Ending run_message(std::function<void()> main);
@@ -80,6 +84,7 @@ class Trial {
   std::uint64_t n_runs_ = 0;
   std::uint64_t message_memory_ = 0;
   bool forced_migration_ = true;
+  std::atomic<std::uint64_t> n_checks_{0};
   std::mutex mutex_;
   std::vector<std::string> failures_;
 };

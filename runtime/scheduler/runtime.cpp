@@ -30,7 +30,7 @@ void stopped_arrives(Pe& pe, Code&& code) {
   pe.runtime().on_stopped(pe, code.value);
 }
 void leave_arrives(Pe& pe, Code&& code) {
-  pe.runtime().on_leave(pe, code.value);
+  pe.runtime().on_leave(code.value);
 }
 void census_asked_arrives(Pe& pe, Nothing&& /*nothing*/) {
   pe.runtime().on_census_asked(pe);
@@ -213,11 +213,14 @@ void Runtime::on_stop(Pe& pe) {
 
 void Runtime::on_stopped(Pe& pe, int code) {
   exit_code_ = std::max(exit_code_.load(), code);
-  if (--n_answers_ == 0) send_to_all<&leave_arrives>(pe, Code{exit_code_});
+  if (--n_answers_ != 0) return;
+  send_to_all<&leave_arrives>(pe, Code{exit_code_});
+  // At once: as soon as another PE of this process receives its message, it stops the process, and
+  // this PE would leave with the packed messages for the other processes.
+  pe.flush();
 }
 
-void Runtime::on_leave(Pe& pe, int code) {
-  pe.flush();  // PE 0 still holds the packed messages that make other processes leave
+void Runtime::on_leave(int code) {
   exit_code_ = code;
   left_ = true;
   machine_.stop();

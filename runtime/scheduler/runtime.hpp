@@ -97,7 +97,7 @@ class Runtime final : public Program {
   void on_exit_asked(Pe& pe, int code);
   void on_stop(Pe& pe);
   void on_stopped(Pe& pe, int code);
-  void on_leave(Pe& pe, int code);
+  void on_leave(int code);
   void on_census_asked(Pe& pe);
   void on_census(Pe& pe, Census&& census);
 

@@ -2,6 +2,7 @@
 
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/compressed.hpp"
+#include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/support/catch.hpp"
 
@@ -38,6 +39,28 @@ TEST_CASE(
     CHECK(found[p] == (in ? field.distance[field.grid.index(i, j, k)] : out_of_reach));
   }
   CHECK(inside > 100);
+}
+
+TEST_CASE("between opposite normals the blend is zero, and of unit length a thousandth beside it",
+          "[dn_field]") {
+  Field field;
+  field.grid = {{0, 0, 0}, 1, {2, 2, 2}};
+  for (std::size_t at = 0; at < 8; ++at) {
+    field.distance.push_back(0.5F);
+    field.normal.push_back(encode_normal({at % 2 == 0 ? -1.0 : 1.0, 0, 0}));
+  }
+  // The blend at x is 2x - 1.
+  const std::vector<float> x{0.49F, 0.4992F, 0.4998F, 0.5F, 0.5002F, 0.5008F, 0.51F},
+      middle(x.size(), 0.5F);
+  std::vector<float> nx(x.size(), 7.0F), ny(nx), nz(nx);
+  look_up(field, LookUp::trilinear, {x, middle, middle}, {{}, nx, ny, nz});
+  const std::vector<float> expected{-1, -1, 0, 0, 0, 1, 1};
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    INFO("x = " << x[p]);
+    CHECK(nx[p] == Approx(expected[p]));
+    CHECK(ny[p] == 0);
+    CHECK(nz[p] == 0);
+  }
 }
 
 /// The greatest difference of voxels that touch, at faces, edges or corners.

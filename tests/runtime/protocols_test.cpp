@@ -21,17 +21,19 @@ std::uint64_t n_seeds() {
 void run_seeds(std::string_view name,
                std::int32_t (*pes_of)(std::uint64_t) = &tess::fuzz::pes_of_seed) {
   const auto& scenario = tess::fuzz::scenario(name);
+  std::uint64_t n_checks = 0;
   for (std::uint64_t seed = 0; seed < n_seeds(); ++seed) {
     const std::int32_t n_pes = pes_of(seed);
     Trial trial(seed, n_pes, Trial::On::simulated);
     scenario.run(trial);
+    n_checks += trial.n_checks();
     if (trial.failures().empty()) continue;
     FAIL_CHECK("protocol_fuzz --scenario " << name << " --seeds " << seed << ":" << seed
                                            << " --pes " << n_pes << "\n"
                                            << trial.failures().front());
     return;
   }
-  SUCCEED();
+  CHECK(tess::fuzz::too_few_checks(scenario, n_seeds(), n_checks) == "");
 }
 
 /// Each number of PEs from 2 to 8 in turn.
@@ -128,6 +130,14 @@ TEST_CASE("a group has one member on each PE", "[runtime][protocol]") {
   run_seeds("groups");
 }
 
+TEST_CASE("a scenario that checks too little does not pass", "[runtime][protocol]") {
+  const tess::fuzz::Scenario ten{"ten", "makes ten checks in each trial", nullptr, 10};
+  CHECK(tess::fuzz::too_few_checks(ten, 30, 300) == "");
+  CHECK_THAT(tess::fuzz::too_few_checks(ten, 30, 299), Catch::Contains("ten checked 299"));
+  CHECK(tess::fuzz::too_few_checks(ten, 3, 3) == "");
+  CHECK(tess::fuzz::too_few_checks(ten, 3, 2) != "");
+}
+
 TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
   // Not the scenarios whose report depends on one order of events, and not balance_first_round,
   // whose loads are those of the simulated clock.
@@ -144,6 +154,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
         tess::fuzz::scenario(name).run(trial);
         INFO(name << " on " << n_pes << " PEs, seed " << seed);
         for (const std::string& failure : trial.failures()) FAIL_CHECK(failure);
+        CHECK(trial.n_checks() > 0);
       }
     }
   }

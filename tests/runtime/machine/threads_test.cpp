@@ -1,5 +1,6 @@
-#include "runtime/core/error.hpp"
 #include "runtime/machine/threads.hpp"
+
+#include "runtime/core/error.hpp"
 #include "tests/runtime/machine/mock_program.hpp"
 #include "tests/support/catch.hpp"
 

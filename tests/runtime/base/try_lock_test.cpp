@@ -1,4 +1,5 @@
 #include "runtime/base/try_lock.hpp"
+
 #include "tests/support/catch.hpp"
 
 #include <mutex>

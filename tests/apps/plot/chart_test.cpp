@@ -1,6 +1,7 @@
 // Reads back the files of the plot library: the CSV has the data bit for bit; the SVG is
 // well-formed and has a curve per series, for any name of a series.
 #include "apps/plot/chart.hpp"
+
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/timeline.hpp"
 #include "tests/apps/xml.hpp"

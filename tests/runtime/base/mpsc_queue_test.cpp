@@ -1,4 +1,5 @@
 #include "runtime/base/mpsc_queue.hpp"
+
 #include "tests/support/catch.hpp"
 
 #include <thread>

@@ -1,4 +1,5 @@
 #include "runtime/base/interval_set.hpp"
+
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 

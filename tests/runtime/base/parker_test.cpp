@@ -1,24 +1,53 @@
+#include "runtime/base/parker.hpp"
+
 #include "runtime/base/backoff.hpp"
 #include "runtime/base/mpsc_queue.hpp"
-#include "runtime/base/parker.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <thread>
 #include <vector>
 
 namespace tess::detail {
 namespace {
 
-TEST_CASE("a parker does not sleep when there is work already", "[runtime][base]") {
-  Parker parker;
-  parker.park(Parker::forever, [] { return true; });
-  SUCCEED("park() returned");
+using namespace std::chrono_literals;
+
+std::chrono::nanoseconds time_of(auto&& action) {
+  const auto begin = std::chrono::steady_clock::now();
+  action();
+  return std::chrono::steady_clock::now() - begin;
 }
 
-TEST_CASE("a parker returns when its time is over", "[runtime][base]") {
+TEST_CASE("a parker does not sleep when there is work already", "[runtime][base]") {
   Parker parker;
-  parker.park(std::chrono::microseconds(50), [] { return false; });
-  SUCCEED("park() returned");
+  int n_asked = 0;
+  const auto ready = [&] { return ++n_asked > 0; };
+  CHECK(time_of([&] { parker.park(30s, ready); }) < 15s);
+  CHECK(n_asked == 1);
+}
+
+// It may return early without a reason, but not three times in a row.
+TEST_CASE("a parker without work sleeps until its time is over, and no longer", "[runtime][base]") {
+  Parker parker;
+  std::chrono::nanoseconds longest{0};
+  for (int i = 0; i < 3; ++i) {
+    const auto slept = time_of([&] { parker.park(5ms, [] { return false; }); });
+    CHECK(slept < 15s);
+    longest = std::max(longest, slept);
+  }
+  CHECK(longest >= 5ms);
+}
+
+TEST_CASE("a wake-up that comes after the last look at the queue ends the sleep",
+          "[runtime][base]") {
+  Parker parker;
+  const auto woken_before_sleep = [&] {
+    parker.wake();
+    return false;
+  };
+  CHECK(time_of([&] { parker.park(30s, woken_before_sleep); }) < 15s);
 }
 
 // A lost wake-up shows as a hang: neither side goes on without the other.

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# lint_refuses.sh layers|words|test_names ROOT: cmake/CHECK.sh accepts a small tree, and refuses it with each planted fault.
+set -euo pipefail
+check=$1 root=$2
+
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+mkdir -p "$tree"/{cmake,runtime/core,runtime/scheduler,collide/serial,m2m,apps/hello,tests/runtime/core}
+cp "$root/cmake/layers.txt" "$tree/cmake"
+cd "$tree"
+
+# The small tree; each fault is planted in it afresh.
+sound() {
+  echo '// A number.' >runtime/core/number.hpp
+  echo '#include "runtime/core/number.hpp"' >runtime/scheduler/queue.hpp
+  echo '#include "runtime/chare.hpp"' >apps/hello/main.cpp
+  echo '#include "runtime/core/number.hpp"  // Elements, nowhere a person: whose, "whole".' >collide/serial/grid.cpp
+  echo 'int nobody = 0;' >m2m/mesh.cpp  # a name is not prose
+  echo 'Says "who" in a quotation.' >m2m/README.md
+  echo 'TEST_CASE("a number") {}' >tests/runtime/core/number_test.cpp
+  echo 'int shared();' >tests/runtime/core/shared.cpp
+}
+run_check() {
+  case $check in
+    layers) bash "$root/cmake/layers.sh" --root "$tree" ;;
+    words) bash "$root/cmake/words.sh" "$tree"/*/*/*.[hc]pp "$tree"/m2m/* ;;
+    test_names) bash "$root/cmake/test_names.sh" "$tree" ;;
+  esac
+}
+
+n_failed=0
+# refuses FILE LINE TEXT: with this line in the file the check fails, and its output contains the text.
+refuses() {
+  sound
+  echo "$2" >"$1"
+  if run_check >out 2>&1; then
+    echo "accepted: $1: $2"
+  elif ! grep -qF -- "$3" out; then
+    echo "refused, but without \"$3\": $1: $2"
+    cat out
+  else
+    rm -f "$1"
+    return
+  fi
+  rm -f "$1"
+  n_failed=$((n_failed + 1))
+}
+
+sound
+run_check || { echo "refuses the sound tree"; exit 1; }
+case $check in
+  layers)
+    refuses runtime/core/number.hpp '#include "runtime/scheduler/pe.hpp"' 'runtime/core may not include runtime/scheduler'
+    refuses runtime/scheduler/queue.hpp '#include "runtime/collections/array_of.hpp"' 'runtime/scheduler may not include runtime/collections'
+    refuses runtime/scheduler/queue.hpp '#include "runtime/chare.hpp"' 'runtime/scheduler may not include runtime'
+    refuses collide/serial/grid.cpp '#include "m2m/mesh.hpp"' 'collide/serial may not include m2m/vocabulary'
+    refuses apps/hello/main.cpp '#include "runtime/scheduler/pe.hpp"' 'apps/hello may not include runtime/scheduler'
+    refuses apps/hello/main.cpp '#include "tests/support/catch.hpp"' 'only tests include tests'
+    mkdir runtime/new
+    refuses runtime/new/room.hpp '#include "runtime/core/number.hpp"' 'has no line for runtime/new'
+    # A table with a circle: each line names earlier lines only.
+    cp "$root/cmake/layers.txt" cmake
+    sed -i 's|^runtime/core :$|runtime/core : runtime/scheduler|' cmake/layers.txt
+    refuses runtime/core/other.hpp '// Nothing.' 'runtime/core may not stand on runtime/scheduler'
+    ;;
+  words)
+    refuses runtime/core/number.hpp '// Waits for nobody.' '"nobody" in:'
+    refuses runtime/core/number.hpp 'int n = 0;  // the element Who sent it' '"who" in:'
+    refuses apps/hello/main.cpp 'fail("the PE to whom it went");' '"whom" in:'
+    refuses m2m/README.md 'Somebody has to ask.' '"somebody" in:'
+    ;;
+  test_names)
+    refuses tests/runtime/core/registry.cpp 'TEST_CASE("a name") {}' 'should end in _test.cpp'
+    refuses tests/runtime/core/shared_test.cpp 'int shared();' 'holds no test case'
+    mkdir tests/elsewhere
+    refuses tests/elsewhere/number_test.cpp 'TEST_CASE("a number") {}' 'there is no folder elsewhere'
+    ;;
+  *)
+    echo "unknown check $check"
+    exit 2
+    ;;
+esac
+exit $((n_failed > 0))
