@@ -33,9 +33,7 @@ class Appointment : public tess::Chare<Appointment, Day> {
   static tess::PeId place(const Day& index, std::int32_t n_pes) {
     return tess::PeId{index.month < "July" ? 0 : n_pes - 1};
   }
-  void show() {
-    tess::print(index().month, " ", index().day, " is on PE ", tess::current_pe().id().value, "\n");
-  }
+  void show() { tess::print(index().month, " ", index().day, " is on ", tess::my_pe(), "\n"); }
 };
 
 int main(int argc, char** argv) {

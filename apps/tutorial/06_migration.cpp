@@ -4,11 +4,10 @@
 class Traveller : public tess::Chare<Traveller> {
  public:
   void visit(int n_left) {
-    visited_.push_back(tess::current_pe().id().value);
+    visited_.push_back(tess::my_pe().value);
     if (n_left == 0) return report();
-    const int n_pes = tess::current_pe().n_pes();
-    migrate_to(tess::PeId{(visited_.back() + 1) % n_pes});  // after this entry method
-    array()[index()].send<&Traveller::visit>(n_left - 1);   // wherever the element then is
+    migrate_to(tess::PeId{(tess::my_pe().value + 1) % tess::n_pes()});  // after this entry method
+    self().send<&Traveller::visit>(n_left - 1);  // wherever the element then is
   }
 
   template <class Ar>

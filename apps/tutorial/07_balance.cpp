@@ -7,7 +7,7 @@ constexpr int n_phases = 20;
 
 class Worker : public tess::Chare<Worker> {
  public:
-  void begin(tess::Callback<int> done) {
+  void begin(tess::Callback<void> done) {
     done_ = done;
     work();
   }
@@ -19,7 +19,7 @@ class Worker : public tess::Chare<Worker> {
   }
   void resume_from_sync() {  // all have reached the end, and the round of the balancer is over
     if (phase_ < n_phases) return work();
-    contribute(tess::sum, 1, done_);
+    contribute(done_);  // without a value: all are there
   }
 
   template <class Ar>
@@ -29,21 +29,20 @@ class Worker : public tess::Chare<Worker> {
 
  private:
   int phase_ = 0;
-  tess::Callback<int> done_;
+  tess::Callback<void> done_;
 };
 
 tess::Task measure() {
   for (const char* strategy : {"none", "greedy_refine"}) {
     const auto workers = tess::create<Worker>(tess::range(16));
     const auto balancer = tess::start_balancing(workers, {.strategy = strategy});
-    const tess::Time begin = tess::current_pe().now();
-    tess::Future<int> n_done;
-    workers.broadcast<&Worker::begin>(n_done.callback());
-    const int n = co_await n_done;
+    const tess::Time begin = tess::now();
+    tess::Future<void> done;
+    workers.broadcast<&Worker::begin>(done.callback());
+    co_await done;
     std::size_t n_moves = 0;
     for (const auto& round : balancer.history()) n_moves += round.n_moved;
-    tess::print(strategy, ": ", n, " workers, ", n_moves, " moves, ",
-                tess::seconds(tess::current_pe().now() - begin), " s\n");
+    tess::print(strategy, ": ", n_moves, " moves, ", tess::seconds(tess::now() - begin), " s\n");
   }
 }
 

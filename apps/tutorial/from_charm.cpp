@@ -29,7 +29,7 @@ class Cell : public tess::Chare<Cell> {
   void receive(Value value) { values_.put(value); }
   void decide(double change) {
     if (change > 1e-6)
-      array()[index()].send<&Cell::step>();
+      self().send<&Cell::step>();
     else if (index().x == 0)
       done_(step_);
   }
