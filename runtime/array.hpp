@@ -582,8 +582,10 @@ CollectionId create_collection(const Range& range, Args&&... args) {
 /// yet.
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
+  // Without coordinates there are no initial elements, and insert() has its own arguments.
   static_assert(
-      std::is_constructible_v<C, const std::decay_t<Args>&...>,
+      (!Coordinates<typename C::Index> && sizeof...(Args) == 0) ||
+          std::is_constructible_v<C, const std::decay_t<Args>&...>,
       "the chare has no constructor that takes these arguments (each element gets a copy)");
   if constexpr (Coordinates<typename C::Index>) {
     TESS_CHECK(range.n_axes == 0 || range.n_axes == n_axes_of<typename C::Index>, "a range of ",

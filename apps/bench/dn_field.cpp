@@ -130,8 +130,8 @@ class Bench {
   [[nodiscard]] bool wanted(std::string_view name) const {
     return name.find(options_.only) != std::string_view::npos;
   }
-  void row(const std::string& name, const Samples& samples, double reference = 0) const {
-    report_.row(name, samples, "ps/particle/step", reference);
+  void row(const std::string& name, const Samples& samples) const {
+    report_.row(name, samples, "ps/particle/step");
   }
   /// The fastest of `samples` in percent of the fastest of `base`.
   void share(const std::string& name, const Samples& samples, const Samples& base) const {
@@ -148,42 +148,42 @@ class Bench {
           measured(options_.repeat, spread_, {stepped({}, steps_a_call)}).front();
       require(std::abs(found.end.x[0] - (spread_.x[0] + n_steps * step * spread_.vx[0])) < 1e-12,
               "free flight");
-      row(name, found.samples, steps_a_call == 1 ? 0 : 800);
+      row(name, found.samples);
     }
   }
 
   void bounce(const std::string& name, Particles& from, const Rules& rules, double depth,
-              double reference, int steps_a_call = n_steps) {
+              int steps_a_call = n_steps) {
     if (!wanted(name)) return;
     Measured found = measured(options_.repeat, from, {stepped(rules, steps_a_call)}).front();
     require(all_finite(found.end), name + ", not finite");
     require(std::abs(loss(from, found.end)) < 1e-12, name + ", energy");
     require(deepest(found.end) < depth * cell(),
             tess::text(name, ", ", deepest(found.end) / cell(), " cells deep"));
-    row(name, found.samples, reference);
+    row(name, found.samples);
   }
 
   void impacts(Sweep sweep) {
     if (sweep == Sweep::on) {
       const Rules swept = impact(LookUp::tangent, sweep);
-      bounce("dn tangent + swept impact; spread", spread_, swept, 0.1, 0);
-      bounce("dn tangent + swept impact; near", near_, swept, 0.1, 0);
+      bounce("dn tangent + swept impact; spread", spread_, swept, 0.1);
+      bounce("dn tangent + swept impact; near", near_, swept, 0.1);
       // Up to 1.6 voxels per step: particles that may meet the surface are traced. Across an edge a
       // voxel may have only the other face.
       Particles fast = spread_;
       for (auto* v : {&fast.vx, &fast.vy, &fast.vz})
         for (double& component : *v) component *= 100;
-      bounce("dn tangent + swept impact; fast", fast, swept, 0.5, 0);
+      bounce("dn tangent + swept impact; fast", fast, swept, 0.5);
       return;
     }
     const Rules nearest = impact(LookUp::nearest), trilinear = impact(LookUp::trilinear);
-    bounce("dn nearest + impact; spread", spread_, nearest, 0.9, 3500);
-    bounce("dn nearest + impact; spread; one step a call", spread_, nearest, 0.9, 3500, 1);
-    bounce("dn nearest + impact; near", near_, nearest, 0.9, 3500);
+    bounce("dn nearest + impact; spread", spread_, nearest, 0.9);
+    bounce("dn nearest + impact; spread; one step a call", spread_, nearest, 0.9, 1);
+    bounce("dn nearest + impact; near", near_, nearest, 0.9);
     // Between the voxels about a corner of the box blended distances are up to 0.31 cells too
     // large.
-    bounce("dn trilinear + impact; spread", spread_, trilinear, 0.31, 0);
-    bounce("dn trilinear + impact; near", near_, trilinear, 0.31, 0);
+    bounce("dn trilinear + impact; spread", spread_, trilinear, 0.31);
+    bounce("dn trilinear + impact; near", near_, trilinear, 0.31);
   }
 
   void every_rule() {
@@ -192,7 +192,7 @@ class Bench {
       if (!wanted(name)) continue;
       Measured found = measured(options_.repeat, *from, {stepped(all_rules(cell()))}).front();
       require(all_finite(found.end) && deepest(found.end) < 0.9 * cell(), name);
-      row(name, found.samples, 5500);
+      row(name, found.samples);
     }
   }
 

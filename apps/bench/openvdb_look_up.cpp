@@ -55,8 +55,8 @@ void look_up_beside_openvdb(const Report& report, const Surface& surface, const 
     }
     TESS_CHECK(compared > count / 100, "only ", compared, " points near the surface");
     const auto row = [&, n = grid.n[0], what = name](const char* whose, const Samples& samples,
-                                                     const char* unit, double reference) {
-      report.row(fmt::format("{} distance {}^3{}", what, n, whose), samples, unit, reference);
+                                                     const char* unit, double limit) {
+      report.row(fmt::format("{} distance {}^3{}", what, n, whose), samples, unit, limit);
     };
     row("; all over the grid", our_time, "ns", 0);
     row(" by OpenVDB", their_time, "ns", 0);

@@ -54,4 +54,13 @@ for component in "${components[@]}"; do
     prints "${answers[$component]}" "$MPIEXEC" --allow-run-as-root --oversubscribe -n 2 "$program" --pes 1
   fi
 done
+
+# The project of README.md, with hello as its main.cpp.
+if [[ $way == installed ]]; then
+  cp -r "$here/small" "$scratch/small"
+  cp "$here/../../apps/hello/main.cpp" "$scratch/small/main.cpp"
+  cmake -S "$scratch/small" -B "$scratch/small/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+  cmake --build "$scratch/small/build" >"$scratch/log" 2>&1 || { tail -40 "$scratch/log"; exit 1; }
+  prints "element 0: hello after 0 hops" bash -c "'$scratch/small/build/my_program' --pes 2 | head -1"
+fi
 exit $failed

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Checks the kept results of benchmarks, keep.sh, and that rows have no ratio to a figure of another machine.
+
+    bench_results.py ROOT BIN
+"""
+import csv
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+root, built = pathlib.Path(sys.argv[1]), sys.argv[2]
+COLUMNS = "name,median,unit,pes,ranks,system,version,machine,date,note".split(",")
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert rows, f"{path} has no rows"
+    for row in rows:
+        assert list(row) == COLUMNS and None not in row.values(), f"{path}: columns of {row}"
+        assert float(row["median"]) == float(row["median"]) and int(row["pes"]) >= int(row["ranks"]) >= 1, f"{path}: {row}"
+        for key in ("name", "unit", "system", "version", "machine", "date"):
+            assert row[key], f"{path}: {row['name']} has no {key}"
+    return rows
+
+
+kept = sorted((root / "apps/bench/results").iterdir())
+assert kept, "no result is kept"
+n_rows = sum(len(rows_of(path)) for path in kept)
+
+# keep.sh writes such a file, with the rows of one PE, two PEs and two processes.
+with tempfile.TemporaryDirectory() as into:
+    subprocess.run(["bash", root / "apps/bench/keep.sh", "--built", built, "--into", into, "--quick", "message"],
+                   check=True, stdout=subprocess.DEVNULL)
+    (path,) = pathlib.Path(into).iterdir()
+    places = {(row["pes"], row["ranks"]) for row in rows_of(path) if row["name"] == "message"}
+    assert places == {("1", "1"), ("2", "1"), ("2", "2")}, places
+    assert "_tessera_" in path.name, path
+
+# A time of a particle's step has no limit; a share, of two times of the same run, has one.
+table = subprocess.run([built + "/bench_dn_field", "--particles", "20000", "--repeat", "1", "--only", "impact"], check=True,
+                       text=True, stdout=subprocess.PIPE).stdout
+rows = list(csv.DictReader(line for line in table.splitlines() if not line.startswith("#")))
+assert len(rows) > 5, table
+for row in rows:
+    assert (row["ratio"] != "") == (row["unit"] == "%"), row
+
+print(f"bench results: {n_rows} rows in {len(kept)} files, {len(rows)} rows of a run")
