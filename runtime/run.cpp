@@ -5,6 +5,7 @@
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/scheduler/pe.hpp"
+#include "runtime/service/service.hpp"
 
 #include <charconv>
 #include <cstdio>
@@ -62,7 +63,7 @@ constexpr std::uint64_t refused = 0x7265667573656421U;
 /// Handles an Error before the run. If all processes have one, process 0 prints it. Otherwise the
 /// other processes wait at the start of the run, and this process ends the job.
 void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
-  if (!setup.machine && under_mpirun()) {
+  if (!setup.machine && (under_mpirun() || program_owns_mpi())) {
     try {
       setup.machine = make_mpi_machine(argc, argv, {});
     } catch (const Error&) {  // then each process prints its own
@@ -136,7 +137,7 @@ Setup take_options(int& argc, char** argv) {
     setup.machine = make_simulated_machine(options);
     setup.options.seed = options.seed.value_or(1);
     setup.options.migration_chance = migration_chance(options);
-  } else if (under_mpirun()) {
+  } else if (under_mpirun() || program_owns_mpi()) {
     setup.machine = make_mpi_machine(argc, argv, MpiOptions{.pes_per_process = pes});
   } else {
     setup.machine = make_threads_machine(pes);
@@ -147,6 +148,8 @@ Setup take_options(int& argc, char** argv) {
 int run_on(Setup& setup, std::function<void()> main) {
   setup.started = true;
   detail::Runtime runtime(*setup.machine, setup.options, &detail::element_text, std::move(main));
+  detail::Service service(runtime, setup.options.signals);
+  runtime.serve(service);
   return runtime.run();
 }
 

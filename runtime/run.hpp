@@ -13,6 +13,10 @@
 //     --message-memory SIZE   most bytes under way from one process to another (default 32MiB)
 //     --stats                 print the counters of each PE at the end
 //     --trace FILE            write what each PE ran, as JSON for Perfetto
+//
+// SIGINT and SIGTERM end the run on all processes with exit code 128 + signal, and each process
+// reports what waits on its PEs; SIGUSR1 reports it and the run goes on. A signal that the program
+// handles or ignores itself is left alone; RuntimeOptions::signals turns this off.
 #pragma once
 
 #include "runtime/core/error.hpp"

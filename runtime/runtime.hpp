@@ -19,3 +19,4 @@
 #include "runtime/run.hpp"
 #include "runtime/shared_array.hpp"
 #include "runtime/task.hpp"
+#include "runtime/timer.hpp"

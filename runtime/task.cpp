@@ -27,6 +27,7 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
     task.resume();
     return;
   }
+  pe.begins(context.action);
   const ElementScope scope(pe, *context.element, context.action, context.epoch, context.led_by);
   account.release();
   task.resume();

@@ -32,6 +32,8 @@ constexpr std::array known{
              &epoch_migrations, 40},
     Scenario{"flood_exit", "exit in mid flood: the greatest code, nothing leaks", &flood_exit, 250},
     Scenario{"mailboxes", "coroutines and early messages under migration", &mailboxes, 200},
+    Scenario{"timers", "every timer runs once, not too early, and its epoch waits for it", &timers,
+             20, true},
     Scenario{"payloads", "values of every kind arrive as they were sent", &payloads, 40},
     Scenario{"floods", "messages without credit wait, and no budget is too small", &floods, 1000},
     Scenario{"deadlocks", "a run that cannot continue reports what each wait is for", &deadlocks,

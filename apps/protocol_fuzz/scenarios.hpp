@@ -25,6 +25,7 @@ void pauses(Trial& trial);               // pauses.cpp
 void epoch_migrations(Trial& trial);     // epoch_migrations.cpp
 void flood_exit(Trial& trial);           // exits.cpp
 void mailboxes(Trial& trial);            // mailboxes.cpp
+void timers(Trial& trial);               // timers.cpp
 void payloads(Trial& trial);             // payloads.cpp
 void floods(Trial& trial);               // floods.cpp
 void deadlocks(Trial& trial);            // ends.cpp

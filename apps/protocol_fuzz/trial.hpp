@@ -35,6 +35,7 @@ class Trial {
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   [[nodiscard]] std::int32_t n_pes() const { return n_pes_; }
   [[nodiscard]] bool on_threads() const { return machine_ == On::threads; }
+  [[nodiscard]] bool in_job() const { return machine_ == On::job; }
   /// Draws of the scenario itself; not for use on a PE.
   [[nodiscard]] Random& random() { return random_; }
   /// A number of least … most.

@@ -17,7 +17,8 @@ namespace tess::detail {
 struct Patience {
   std::chrono::nanoseconds spin{0};
   std::chrono::nanoseconds yield{0};
-  std::chrono::nanoseconds sleep{-1};  // limit of one sleep; negative: until woken
+  std::chrono::nanoseconds sleep{-1};         // limit of one sleep; negative: until woken
+  std::chrono::nanoseconds longest_sleep{0};  // the limit grows to this with the time since work
 };
 
 /// Lets the other hyperthread run for some ten cycles.
@@ -65,7 +66,12 @@ class Backoff {
     return true;
   }
 
-  [[nodiscard]] std::chrono::nanoseconds sleep() const noexcept { return patience_.sleep; }
+  /// The limit of the next sleep: a sixteenth of the time since the last work, so that what arrives
+  /// during a sleep waits for a small part of the time that it was awaited.
+  [[nodiscard]] std::chrono::nanoseconds sleep() const noexcept {
+    const std::chrono::nanoseconds grown = (last_look_ - idle_since_) / 16;
+    return std::max(patience_.sleep, std::min(grown, patience_.longest_sleep));
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

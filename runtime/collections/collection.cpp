@@ -86,6 +86,7 @@ void Collection::postpone_new_elements() {
 
 void Collection::call(Element& element, const NumberedCall& call) {
   element.state_.seen_broadcast = call.number;
+  pe_.begins(&call.call->action());
   const ElementScope scope(pe_, element, &call.call->action(), call.epoch,
                            static_cast<std::uint32_t>(call.number));
   try {

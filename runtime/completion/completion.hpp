@@ -149,6 +149,15 @@ class Completion {
   /// is due. Returns true if anything was sent or done.
   bool report_run() { return report(EpochId{}, run_); }
 
+  /// The messages of epoch 0 that this PE has sent.
+  [[nodiscard]] std::uint64_t run_sent() const { return run_.own.sent; }
+  /// On PE 0: the messages of epoch 0 that all PEs had sent when it was found to be done.
+  [[nodiscard]] std::uint64_t run_sent_by_all() const {
+    return coordinated_.at(EpochId{}).processed_before_wave;
+  }
+  /// On PE 0: epoch 0 was found to be done, but messages were sent since.
+  void check_run_again() { check_later(EpochId{}); }
+
   /// The number of epochs that this PE keeps counters of.
   [[nodiscard]] std::size_t n_epochs() const { return tallies_.size(); }
   /// Appends one line for each unfinished epoch that this PE opened.

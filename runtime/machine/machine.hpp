@@ -124,6 +124,16 @@ class Machine {
   /// Passes several messages to a PE of this process; takes ownership.
   virtual void post_bundle(PeId /*to*/, Bundle* /*bundle*/) {}
 
+  /// Passes a message to a PE of this process; takes ownership. Any thread may call it, also one
+  /// that runs no PE, between the start of run() and stop().
+  virtual void hand_in(PeId to, Link* message) = 0;
+
+  /// Passes a message to a PE once the delay is over, in virtual time; takes ownership. Returns
+  /// false, and does nothing, on a machine in real time.
+  [[nodiscard]] virtual bool post_after(PeId /*to*/, Link* /*message*/, Time /*delay*/) {
+    return false;
+  }
+
   /// Sends bytes to another process. Any PE thread may call it; it does not block. Afterwards the
   /// caller may only clear() and refill `bytes`, which may keep its memory.
   virtual void send(PeId from, ProcessId to, Buffer&& bytes) = 0;
@@ -141,6 +151,10 @@ class Machine {
   /// Ends all processes of the job immediately with this exit code; does not return. The caller has
   /// flushed its output.
   [[noreturn]] virtual void abort(int exit_code) = 0;
+
+  /// The run ended because the process was told to end: what follows must not keep it alive.
+  /// Any PE thread.
+  virtual void hurry(int /*exit_code*/) {}
 
   /// Compares 64 bits across all processes before the first message; true if all are equal. It
   /// detects processes that run different binaries.

@@ -54,6 +54,7 @@ class MpiMachine final : public Machine, private Network {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_->post(to, message);
   }
+  void hand_in(PeId to, Link* message) override { team_->post(to, message); }
   [[nodiscard]] bool takes_bundles() const override { return pes_per_process_ > 1; }
   void post_bundle(PeId to, Bundle* bundle) override { team_->post(to, bundle); }
   void send(PeId, ProcessId to, Buffer&& bytes) override { transport_->send(to, bytes); }
@@ -75,6 +76,7 @@ class MpiMachine final : public Machine, private Network {
     std::_Exit(exit_code);
   }
 
+  void hurry(int exit_code) override { session_.hurry(exit_code); }
   bool agree(std::uint64_t mine) override { return session_.agree(mine); }
   Time now(PeId) const override { return std::chrono::steady_clock::now() - start_; }
 

@@ -24,12 +24,18 @@ struct MpiOptions {
 /// True if mpirun started this process. Reads the environment, not MPI.
 [[nodiscard]] bool under_mpirun();
 
+/// True between MPI_Init and MPI_Finalize of the program: a run then uses its processes, through a
+/// communicator of its own.
+[[nodiscard]] bool program_owns_mpi();
+
 /// True for process 0 under mpirun, and for a process that was started alone: this process prints
 /// what a job prints once, before MPI is initialised.
 [[nodiscard]] bool speaks_for_job();
 
-/// Initialises MPI unless the program has done so, and then finalises it when destroyed. Every
-/// process of the job calls it; the calling thread drives the process's first PE. Throws Error for
+/// Initialises MPI, and finalises it when destroyed. If the program has initialised MPI, it remains
+/// the program's: the machine communicates through a duplicate of MPI_COMM_WORLD, which it frees,
+/// and several machines may follow one another. Every process of the job calls it; the calling
+/// thread drives the process's first PE. Throws Error for
 /// options that are invalid or that differ between processes.
 [[nodiscard]] std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv,
                                                         MpiOptions options);
@@ -40,6 +46,7 @@ namespace tess {
 
 using detail::make_mpi_machine;
 using detail::MpiOptions;
+using detail::program_owns_mpi;
 using detail::speaks_for_job;
 using detail::under_mpirun;
 

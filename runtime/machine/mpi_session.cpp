@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
 #include <vector>
 
 namespace tess::detail {
@@ -24,6 +29,44 @@ void must(int result, const char* call) {
   std::_Exit(1);
 }
 
+namespace {
+
+/// Ends the process with this exit code unless it is destroyed in time.
+class EndAfter {
+ public:
+  EndAfter(std::chrono::milliseconds time, int exit_code)
+      : thread_([this, time, exit_code](const std::stop_token& stop) {
+          std::unique_lock lock(mutex_);
+          if (changed_.wait_for(lock, stop, time, [] { return false; }) || stop.stop_requested())
+            return;
+          std::fflush(nullptr);
+          std::_Exit(exit_code);
+        }) {}
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::jthread thread_;
+};
+
+constexpr std::chrono::milliseconds finalize_time{200};
+
+const char* name_of_level(int level) {
+  return level == MPI_THREAD_SINGLE     ? "MPI_THREAD_SINGLE"
+         : level == MPI_THREAD_FUNNELED ? "MPI_THREAD_FUNNELED"
+                                        : "below MPI_THREAD_SERIALIZED";
+}
+
+}  // namespace
+
+bool program_owns_mpi() {
+  int initialised = 0;
+  int over = 0;
+  MPI_Initialized(&initialised);
+  MPI_Finalized(&over);
+  return initialised != 0 && over == 0;
+}
+
 Session::Session(int& argc, char**& argv) {
   int over = 0;
   MPI_Finalized(&over);
@@ -37,8 +80,12 @@ Session::Session(int& argc, char**& argv) {
   else
     must(MPI_Query_thread(&provided), "MPI_Query_thread");
   if (provided < MPI_THREAD_SERIALIZED)
-    fail(ErrorCode::environment, "MPI gives thread level ", provided,
-         ", but MPI_THREAD_SERIALIZED is needed: use an MPI built with threads");
+    fail(ErrorCode::environment,
+         ours_ ? "MPI gives thread level " : "this program initialised MPI with thread level ",
+         name_of_level(provided), ", but PEs call MPI from several threads: ",
+         ours_ ? "use an MPI built with threads"
+               : "initialise it by MPI_Init_thread with MPI_THREAD_SERIALIZED or "
+                 "MPI_THREAD_MULTIPLE");
   must(MPI_Comm_dup(MPI_COMM_WORLD, &comm_), "MPI_Comm_dup");
   must(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   set_check_abort([] { MPI_Abort(MPI_COMM_WORLD, 1); });
@@ -47,7 +94,10 @@ Session::Session(int& argc, char**& argv) {
 Session::~Session() {
   set_check_abort(nullptr);
   MPI_Comm_free(&comm_);
-  if (ours_) MPI_Finalize();
+  if (!ours_) return;
+  std::optional<EndAfter> limit;
+  if (hurried_code_ >= 0) limit.emplace(finalize_time, hurried_code_);
+  MPI_Finalize();
 }
 
 std::int32_t Session::n_processes() const {

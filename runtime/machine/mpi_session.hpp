@@ -6,6 +6,7 @@
 
 #include <mpi.h>
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 
@@ -29,6 +30,9 @@ class Session {
   [[nodiscard]] std::int32_t n_processes() const;
   [[nodiscard]] std::int32_t process() const;
 
+  /// MPI_Finalize does not return while mpirun ends the job: then the process ends with this code.
+  void hurry(int exit_code) { hurried_code_ = exit_code; }
+
   /// True on all processes if all passed the same number; otherwise false on all.
   [[nodiscard]] bool agree(std::uint64_t mine) const;
   /// The smallest number that any process passed.
@@ -45,6 +49,7 @@ class Session {
  private:
   MPI_Comm comm_ = MPI_COMM_NULL;
   bool ours_ = false;
+  std::atomic<int> hurried_code_{-1};  // -1: no hurry
 };
 
 }  // namespace tess::detail

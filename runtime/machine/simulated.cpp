@@ -1,5 +1,6 @@
 #include "runtime/machine/simulated.hpp"
 
+#include "runtime/base/mpsc_queue.hpp"
 #include "runtime/core/cpu_clock.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
@@ -23,6 +24,12 @@ struct Event {
   friend bool operator<(const Event& a, const Event& b) {
     return a.time != b.time ? a.time > b.time : a.order > b.order;
   }
+};
+
+/// A message of a thread that is no PE.
+struct Outside : Link {
+  PeId to;
+  Link* message = nullptr;
 };
 
 class SimulatedMachine final : public Machine {
@@ -58,6 +65,19 @@ class SimulatedMachine final : public Machine {
 
   void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) override {
     push(arrival(from, bytes, traffic), to.value, message, nullptr);
+  }
+  void hand_in(PeId to, Link* message) override {
+    auto* outside = new Outside;
+    outside->to = to;
+    outside->message = message;
+    outside_.push(outside);
+  }
+  [[nodiscard]] bool post_after(PeId to, Link* message, Time delay) override {
+    // With a seed it is late by the time that a message to itself takes.
+    const std::int64_t late =
+        options_.seed ? arrival(to, 0, Traffic::user) - now(to).count() : std::int64_t{0};
+    push(now(to).count() + delay.count() + late, to.value, message, nullptr);
+    return true;
   }
   void send(PeId from, ProcessId to, Buffer&& bytes) override {
     const std::int64_t time = arrival(from, bytes.size(), Traffic::user);
@@ -120,12 +140,14 @@ class SimulatedMachine final : public Machine {
   }
 
   static void deliver(Program& program, PeId pe, const Parcel& parcel);
+  void take_outside(Program& program);
 
   const SimulatedOptions options_;
   Random random_;
   std::vector<Clock> clocks_;
   std::array<double, 4> slowness_{};
   std::priority_queue<Event> events_;
+  MpscQueue outside_;
   std::uint64_t n_posted_ = 0;
   std::int32_t running_ = -1;
   std::int64_t step_began_ = 0;  // CPU time of this thread, in ns
@@ -146,6 +168,8 @@ void SimulatedMachine::run(Program& program) {
                    static_cast<unsigned long long>(options_.most_events));
       break;
     }
+    if (!outside_.empty()) [[unlikely]]
+      take_outside(program);
     const Event event = events_.top();
     events_.pop();
     const PeId pe{event.pe};
@@ -176,6 +200,7 @@ void SimulatedMachine::run(Program& program) {
     }
   }
   // Messages still under way belong to the program, which frees them.
+  take_outside(program);
   for (; !events_.empty(); events_.pop()) {
     const Event& event = events_.top();
     delete event.parcel;
@@ -184,6 +209,16 @@ void SimulatedMachine::run(Program& program) {
     program.accept(PeId{event.pe}, event.message);
   }
   for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
+}
+
+void SimulatedMachine::take_outside(Program& program) {
+  for (Link* link = outside_.take_all(); link != nullptr;) {
+    const std::unique_ptr<Outside> outside(static_cast<Outside*>(link));
+    link = link->next;
+    outside->message->next = nullptr;
+    program.accept(outside->to, outside->message);
+    look(outside->to.value);
+  }
 }
 
 void SimulatedMachine::deliver(Program& program, PeId pe, const Parcel& parcel) {

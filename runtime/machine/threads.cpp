@@ -21,6 +21,7 @@ class ThreadsMachine final : public Machine {
   void post(PeId, PeId to, Link* message, std::size_t, Traffic) override {
     team_.post(to, message);
   }
+  void hand_in(PeId to, Link* message) override { team_.post(to, message); }
   [[nodiscard]] bool takes_bundles() const override { return pes_per_process_ > 1; }
   void post_bundle(PeId to, Bundle* bundle) override { team_.post(to, bundle); }
   void send(PeId from, ProcessId to, Buffer&&) override {

@@ -4,6 +4,10 @@
 
 namespace tess::detail {
 
+bool program_owns_mpi() {
+  return false;
+}
+
 std::unique_ptr<Machine> make_mpi_machine(int& /*argc*/, char**& /*argv*/, MpiOptions /*options*/) {
   fail(
       ErrorCode::environment,

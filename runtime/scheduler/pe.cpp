@@ -68,6 +68,11 @@ void Pe::route(PeId to, Envelope* message) {
   }
 }
 
+void Pe::post_after(Time delay, Envelope* message) {
+  message->target = id_;
+  if (!machine_.post_after(id_, message, delay)) runtime_.post_after(id_, message, delay);
+}
+
 void Pe::pass(PeId to, Envelope* message, std::size_t n_bytes) {
   if (bundles_.empty()) {
     machine_.post(id_, to, message, n_bytes, message->action->traffic);
@@ -150,7 +155,7 @@ void Pe::run(Envelope* message) {
   const PeId sender = message->sender;
   message->charge = 0;  // it is paid, wherever it goes next
   // Assigned member by member: a copy of a context that was just written would stall.
-  of_message_.action = message->action;
+  begins(message->action);
   of_message_.epoch = message->epoch;
   try {
     message->action->run(*this, message);
@@ -166,7 +171,7 @@ void Pe::run(Envelope* message) {
     exception("an exception that is not a std::exception", 1);
   }
   of_message_.element = nullptr;
-  of_message_.action = nullptr;
+  begins(nullptr);
   of_message_.epoch = EpochId{};
   of_message_.led_by = 0;
   if (charge != 0) [[unlikely]]
@@ -366,6 +371,16 @@ std::vector<std::string> Pe::census() const {
     lines.push_back(
         text(messages.size(), " messages on ", id_, " wait for ", id, ", which was never created"));
   completion_.describe_open(lines);
+  return lines;
+}
+
+std::vector<std::string> Pe::census_of_running() const {
+  std::vector<std::string> lines = census();
+  if (const std::size_t n = ready_.size(); n != 0)
+    lines.push_back(
+        text(id_, n == 1 ? ": 1 message is" : text(": ", n, " messages are"), " ready to run"));
+  if (const std::size_t n = timers_.n_waiting(); n != 0)
+    lines.push_back(text(id_, n == 1 ? ": 1 timer is" : text(": ", n, " timers are"), " set"));
   return lines;
 }
 

@@ -15,10 +15,12 @@
 #include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
+#include "runtime/scheduler/timers.hpp"
 #include "runtime/scheduler/trace.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -75,6 +77,7 @@ class Pe {
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
+  [[nodiscard]] Timers& timers() { return timers_; }
   [[nodiscard]] Time now() const { return machine_.now(id_); }
   /// Measures this PE's code; null if nothing requests it.
   [[nodiscard]] Meter* meter() { return meter_.get(); }
@@ -118,6 +121,13 @@ class Pe {
       ready_.push(message);
     }
   }
+  /// Sends a stamped message to this PE once the delay is over.
+  void send_after(Time delay, Envelope* message) {
+    completion_.hop_sent();
+    post_after(delay, message);
+  }
+  /// The same for a message that epoch 0 does not count.
+  void post_after(Time delay, Envelope* message);
   /// Sends a message that epoch 0 does not count.
   void send_uncounted(PeId to, Envelope* message) {
     message->counted = false;
@@ -186,6 +196,17 @@ class Pe {
 
   /// One line for each object on this PE that waits for something from elsewhere.
   [[nodiscard]] std::vector<std::string> census() const;
+  /// The same while the run goes on: also what is about to run.
+  [[nodiscard]] std::vector<std::string> census_of_running() const;
+  /// The action that runs now; null if none does. Any thread.
+  [[nodiscard]] const Action* running() {
+    // Partner: begins(). It points to a static object.
+    return std::atomic_ref(of_message_.action).load(std::memory_order_relaxed);
+  }
+  /// The running message calls this action now.
+  void begins(const Action* action) {
+    std::atomic_ref(of_message_.action).store(action, std::memory_order_relaxed);
+  }
 
   /// On a simulated machine that forces migrations: the PE that an element must move to now, or
   /// this PE.
@@ -316,6 +337,7 @@ class Pe {
   boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
   EndedCollections ended_;
   std::vector<Ending> ending_;
+  Timers timers_{*this};
 };
 
 inline thread_local Pe* the_current_pe = nullptr;

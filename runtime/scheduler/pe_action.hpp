@@ -48,4 +48,16 @@ void send_uncounted(Pe& pe, PeId to, typename PeAction<Handler>::Payload payload
   pe.send_uncounted(to, pe.stamp(Held::make(pe, PeAction<Handler>::action, std::move(payload))));
 }
 
+/// A message for Machine::hand_in(), made by a thread that runs no PE. No epoch counts it.
+template <auto Handler>
+Envelope* make_outside(PeId to, typename PeAction<Handler>::Payload payload) {
+  using Held = Message<typename PeAction<Handler>::Payload>;
+  auto* message = new (Pool::allocate(sizeof(Held), nullptr)) Held(std::move(payload));
+  message->action = &PeAction<Handler>::action;
+  message->source = to;
+  message->target = to;
+  message->counted = false;
+  return message;
+}
+
 }  // namespace tess::detail

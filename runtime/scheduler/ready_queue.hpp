@@ -18,6 +18,7 @@ class ReadyQueue {
   ~ReadyQueue() = default;
 
   [[nodiscard]] bool empty() const { return head_ == tail_; }
+  [[nodiscard]] std::size_t size() const { return tail_ - head_; }
 
   void push(Link* link) {
     if (tail_ - head_ > mask_) [[unlikely]]

@@ -13,6 +13,13 @@ namespace {
 struct Code {
   int value = 0;
 };
+struct ExitAsked {
+  int code = 0;
+  int signal = 0;  // 0: none
+};
+struct Stop {
+  int signal = 0;
+};
 struct Nothing {
   std::uint8_t none = 0;
 };
@@ -20,11 +27,14 @@ struct Nothing {
 void main_arrives(Pe& pe, Nothing&& /*nothing*/) {
   pe.runtime().run_main(pe);
 }
-void exit_asked_arrives(Pe& pe, Code&& code) {
-  pe.runtime().on_exit_asked(pe, code.value);
+void exit_asked_arrives(Pe& pe, ExitAsked&& asked) {
+  pe.runtime().on_exit_asked(pe, asked.code, asked.signal);
 }
-void stop_arrives(Pe& pe, Nothing&& /*nothing*/) {
-  pe.runtime().on_stop(pe);
+void stop_arrives(Pe& pe, Stop&& stop) {
+  pe.runtime().on_stop(pe, stop.signal);
+}
+void thaw_arrives(Pe& pe, Nothing&& /*nothing*/) {
+  pe.timers().thaw();
 }
 void stopped_arrives(Pe& pe, Code&& code) {
   pe.runtime().on_stopped(pe, code.value);
@@ -53,6 +63,15 @@ std::string context_of_this_thread() {
 }
 
 }  // namespace
+
+std::string list_of_waiting(std::vector<std::string> lines) {
+  constexpr std::size_t most = 40;
+  std::sort(lines.begin(), lines.end());
+  std::string list = text(lines.size(), " wait:");
+  for (std::size_t i = 0; i < std::min(most, lines.size()); ++i) list += "\n  " + lines[i];
+  if (lines.size() > most) list += text("\n  … and ", lines.size() - most, " more");
+  return list;
+}
 
 Runtime::Runtime(Machine& machine, const RuntimeOptions& options, ElementText name_of,
                  std::function<void()> main)
@@ -185,27 +204,35 @@ void Runtime::out_of_memory(Pe& pe, const std::string& place) {
   exit(pe, 2);
 }
 
-void Runtime::exit(Pe& pe, int code) {
+void Runtime::post_after(PeId to, Envelope* message, Time delay) {
+  TESS_CHECK(service_ != nullptr, "this run has no service, which timers need");
+  service_->post_after(to, message, delay);
+}
+
+void Runtime::exit(Pe& pe, int code, int signal) {
   int& asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
   const bool first = asked < 0;
   asked = std::max(asked, code);
   pe.stop_user_code();
-  if (first) send_uncounted<&exit_asked_arrives>(pe, PeId{0}, Code{code});
+  if (first) send_uncounted<&exit_asked_arrives>(pe, PeId{0}, ExitAsked{code, signal});
 }
 
-void Runtime::on_exit_asked(Pe& pe, int code) {
-  end_with(pe, code);
+void Runtime::on_exit_asked(Pe& pe, int code, int signal) {
+  end_with(pe, code, signal);
 }
 
-void Runtime::end_with(Pe& pe, int code) {
+void Runtime::end_with(Pe& pe, int code, int signal) {
   exit_code_ = std::max(exit_code_.load(), code);
   if (stopping_) return;
   stopping_ = true;
   n_answers_ = pe.n_pes();
-  send_to_all<&stop_arrives>(pe, Nothing{});
+  send_to_all<&stop_arrives>(pe, Stop{signal});
 }
 
-void Runtime::on_stop(Pe& pe) {
+void Runtime::on_stop(Pe& pe, int signal) {
+  if (signal != 0) machine_.hurry(128 + signal);
+  if (signal != 0 && service_ != nullptr)
+    service_->ends_by_signal(signal, pe.id(), pe.census_of_running());
   pe.stop_user_code();
   const int asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
   send_uncounted<&stopped_arrives>(pe, PeId{0}, Code{std::max(asked, 0)});
@@ -223,11 +250,14 @@ void Runtime::on_stopped(Pe& pe, int code) {
 void Runtime::on_leave(int code) {
   exit_code_ = code;
   left_ = true;
+  if (service_ != nullptr) service_->close();
   machine_.stop();
 }
 
 void Runtime::quiescent(Pe& pe) {
-  if (stopping_) return;
+  // A census that is under way sees that messages were sent since, and has epoch 0 checked again.
+  if (stopping_ || takes_census_) return;
+  takes_census_ = true;
   n_answers_ = pe.n_pes();
   census_ = Census{};
   empty_on_.clear();
@@ -241,7 +271,8 @@ void Runtime::on_census_asked(Pe& pe) {
       empty.push_back({collection->id(), collection->name()});
   send_uncounted<&census_arrives>(
       pe, PeId{0},
-      Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped()});
+      Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
+             pe.timers().freeze(), pe.completion().run_sent()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
@@ -251,19 +282,26 @@ void Runtime::on_census(Pe& pe, Census&& census) {
   for (EmptyArray& array : census.empty)
     if (++empty_on_[array.id] == pe.n_pes()) census_.empty.push_back(std::move(array));
   census_.exits = census_.exits || census.exits;
-  if (--n_answers_ != 0 || census_.exits) return;
+  census_.n_periodic += census.n_periodic;
+  census_.n_sent += census.n_sent;
+  if (--n_answers_ != 0) return;
+  takes_census_ = false;
+  if (census_.exits) return;
+  if (census_.n_periodic != 0 && census_.n_sent != pe.completion().run_sent_by_all()) {
+    send_to_all<&thaw_arrives>(pe, Nothing{});
+    pe.completion().check_run_again();
+    return;
+  }
+  end_with_census(pe);
+}
+
+void Runtime::end_with_census(Pe& pe) {
   if (census_.dead_letters != 0)
     error_line(text("tessera: ", census_.dead_letters,
                     " messages to elements that had been destroyed were not delivered"));
   if (!census_.lines.empty()) {
-    constexpr std::size_t most = 40;
-    std::sort(census_.lines.begin(), census_.lines.end());
-    std::string report = text("tessera: deadlock: nothing runs and nothing is under way, but ",
-                              census_.lines.size(), " wait:");
-    for (std::size_t i = 0; i < std::min(most, census_.lines.size()); ++i)
-      report += "\n  " + census_.lines[i];
-    if (census_.lines.size() > most)
-      report += text("\n  … and ", census_.lines.size() - most, " more");
+    std::string report = "tessera: deadlock: nothing runs and nothing is under way, but " +
+                         list_of_waiting(std::move(census_.lines));
     // A waiter for such a result does not know the array that it comes from.
     for (const EmptyArray& array : census_.empty)
       report += text("\n  note: ", array.name, " has no elements: its reductions have no result");

@@ -5,16 +5,19 @@
 //   1       quiescence while something waits: a deadlock; what waits for what is reported
 //   code    the program called exit(code)
 //   1 or 2  an exception; 2 for bad input and for exhausted memory
+//   128 + n signal n (SIGINT or SIGTERM); each process reports what waited there
 //
 // The end by exit():
 //
 //     exit asked -> PE 0: Stop to all PEs -> each stops user code, answers with the greatest code
-//                                            that it was given
+//                                            that it was given; after a signal it first hands its
+//                                            census to the service of its process
 //                -> PE 0: Leave(code) to all PEs -> each stops its machine
 #pragma once
 
 #include "runtime/machine/machine.hpp"
 #include "runtime/scheduler/pe.hpp"
+#include "runtime/scheduler/process_service.hpp"
 
 #include <atomic>
 #include <cstddef>
@@ -33,10 +36,15 @@ struct RuntimeOptions {
   bool statistics = false;      ///< print the counters of each PE
   MessageOptions messages;
   std::string trace;  ///< the file of the trace; empty: no trace
+  /// Takes SIGINT, SIGTERM and SIGUSR1, where the program has left them to the system.
+  bool signals = true;
   /// Receives the lines of reports (deadlock, exception, statistics); if empty, they go to standard
   /// error.
   std::function<void(const std::string&)> report;
 };
+
+/// "3 wait:" and a line for each, sorted; the last ones of very many are left out.
+[[nodiscard]] std::string list_of_waiting(std::vector<std::string> lines);
 
 class Runtime final : public Program {
  public:
@@ -46,14 +54,20 @@ class Runtime final : public Program {
   Runtime& operator=(const Runtime&) = delete;
   ~Runtime() override;
 
+  /// Called before run(). The service lives until the run has ended.
+  void serve(ProcessService& service) { service_ = &service; }
+  [[nodiscard]] ProcessService& service() { return *service_; }
+  /// Posts a message to a PE of this process once the delay is over.
+  void post_after(PeId to, Envelope* message, Time delay);
+
   /// Drives this process until the run ends; returns the exit code.
   int run();
 
   [[nodiscard]] Machine& machine() { return machine_; }
   [[nodiscard]] Pe& pe(PeId id) { return *pes_[static_cast<std::size_t>(id.value - first_.value)]; }
 
-  /// The program requests the end of the run; the greatest exit code wins.
-  void exit(Pe& pe, int code);
+  /// The program, or a signal, requests the end of the run; the greatest exit code wins.
+  void exit(Pe& pe, int code, int signal = 0);
   /// Epoch 0 is done. Called on PE 0.
   void quiescent(Pe& pe);
   /// Memory is exhausted: prints one line per process, however many PEs notice it; the exit code is
@@ -92,22 +106,27 @@ class Runtime final : public Program {
     std::uint64_t dead_letters = 0;
     std::vector<EmptyArray> empty;  // arrays without elements on this PE that got a broadcast
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
+    std::uint64_t n_periodic = 0;  // periodic timers on this PE, which are frozen now
+    std::uint64_t n_sent = 0;      // messages of epoch 0 that this PE has sent
   };
   void run_main(Pe& pe);
-  void on_exit_asked(Pe& pe, int code);
-  void on_stop(Pe& pe);
+  void on_exit_asked(Pe& pe, int code, int signal);
+  void on_stop(Pe& pe, int signal);
   void on_stopped(Pe& pe, int code);
   void on_leave(int code);
   void on_census_asked(Pe& pe);
   void on_census(Pe& pe, Census&& census);
 
  private:
-  void end_with(Pe& pe, int code);
+  void end_with(Pe& pe, int code, int signal = 0);
+  /// Reports what waits at the end of the run, and ends it.
+  void end_with_census(Pe& pe);
   void print_statistics(PeId id);
   [[nodiscard]] std::string trace_path() const;
   void write_traces();
 
   Machine& machine_;
+  ProcessService* service_ = nullptr;
   const RuntimeOptions options_;
   const ElementText element_text_;
   const std::function<void()> main_;
@@ -123,6 +142,7 @@ class Runtime final : public Program {
 
   // Only on PE 0.
   bool stopping_ = false;
+  bool takes_census_ = false;
   std::int32_t n_answers_ = 0;
   Census census_;
   std::map<CollectionId, std::int32_t> empty_on_;  // number of PEs per collection

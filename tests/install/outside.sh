@@ -24,8 +24,7 @@ if [[ $way == installed ]]; then
   fi
   options+=("-DCMAKE_PREFIX_PATH=$scratch/prefix")
 else
-  # Without optimisation: what is tested is the way, not the speed.
-  options+=("-DTESSERA=$from" -DCMAKE_BUILD_TYPE=Debug)
+  options+=("-DTESSERA=$from")
 fi
 
 cmake -S "$here/outside" -B "$scratch/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }

@@ -104,6 +104,9 @@ TEST_CASE("exit in mid flood gives the greatest code and leaks nothing", "[runti
 TEST_CASE("early messages migrate with their mailbox", "[runtime][protocol]") {
   run_seeds("mailboxes");
 }
+TEST_CASE("every timer runs once, and its epoch waits for it", "[runtime][protocol][timers]") {
+  run_seeds("timers");
+}
 TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]") {
   run_seeds("payloads");
 }
@@ -142,12 +145,11 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
   // Not the scenarios whose report depends on one order of events, and not balance_first_round,
   // whose loads are those of the simulated clock.
   for (const char* name :
-       {"create_at_once",   "message_first",    "lives",           "broadcasts",
-        "rounds",           "newborns",         "refinement",      "tour",
-        "epochs",           "epoch_migrations", "flood_exit",      "mailboxes",
-        "destroyed",        "constructors",     "payloads",        "floods",
-        "groups",           "balance_rounds",   "balance_barrier", "balance_rotate",
-        "balance_periodic", "balance_epochs"}) {
+       {"create_at_once", "message_first",    "lives",         "broadcasts",     "rounds",
+        "newborns",       "refinement",       "tour",          "epochs",         "epoch_migrations",
+        "flood_exit",     "mailboxes",        "destroyed",     "constructors",   "timers",
+        "payloads",       "floods",           "groups",        "balance_rounds", "balance_barrier",
+        "balance_rotate", "balance_periodic", "balance_epochs"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

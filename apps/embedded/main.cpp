@@ -1,0 +1,106 @@
+// A program that owns MPI and uses Tessera for two of its phases. Its own messages and those of the
+// runs do not meet: a run uses a communicator of its own. Each process draws some numbers; the
+// program adds them up with MPI_Allreduce, and a run adds them up with a reduction of chares.
+//
+//     mpirun -n 2 embedded --pes 2
+#include "runtime/runtime.hpp"
+
+#include <mpi.h>
+
+#include <array>
+#include <cstdio>
+#include <string_view>
+
+namespace {
+
+/// One per PE: contributes the number of its process, once per process.
+class Share : public tess::Group<Share> {
+ public:
+  void give(tess::Callback<std::int64_t> target);
+};
+
+std::int64_t my_number = 0;  // of this process
+
+void Share::give(tess::Callback<std::int64_t> target) {
+  const auto& machine = tess::current_pe().machine();
+  const bool first = pe().value % machine.pes_per_process() == 0;
+  contribute(tess::sum, first ? my_number : 0, std::move(target));
+}
+
+std::int64_t total;  // on process 0: what the run has found
+
+tess::Task add_up() {
+  const auto shares = tess::create_group<Share>();
+  tess::Future<std::int64_t> sum;
+  shares.broadcast<&Share::give>(sum.callback());
+  total = co_await sum;
+}
+
+/// The program's own messages: to the next process, from any.
+struct Ring {
+  int rank = 0, n = 1;
+  int sent = 0, received = -1;
+  std::array<MPI_Request, 2> requests{};
+
+  void begin(int value) {
+    sent = value + rank;
+    received = -1;
+    MPI_Irecv(&received, 1, MPI_INT, MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &requests[0]);
+  }
+  /// True if the neighbour's message has arrived, and nothing else.
+  bool end(int value) {
+    MPI_Isend(&sent, 1, MPI_INT, (rank + 1) % n, 7, MPI_COMM_WORLD, &requests[1]);
+    MPI_Waitall(2, requests.data(), MPI_STATUSES_IGNORE);
+    return received == value + (rank + n - 1) % n;
+  }
+};
+
+int phases(int argc, char** argv, const Ring& of_all) {
+  Ring ring = of_all;
+  const std::array<const std::string_view, 2> names{"first", "second"};
+  int n_wrong = 0;
+  for (int phase = 0; phase < 2; ++phase) {
+    my_number = 10 * (phase + 1) + ring.rank;
+    std::int64_t expected = 0;
+    MPI_Allreduce(&my_number, &expected, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+    ring.begin(phase);  // a receive is pending while the run communicates
+
+    std::vector<char*> arguments(argv, argv + argc);
+    arguments.push_back(nullptr);
+    const int code = tess::run(argc, arguments.data(), [] { return add_up(); });
+
+    const bool ring_is_right = ring.end(phase);
+    const bool is_right = code == 0 && ring_is_right && (ring.rank != 0 || total == expected);
+    if (!is_right) ++n_wrong;
+    if (ring.rank == 0)
+      tess::print(names[static_cast<std::size_t>(phase)], " run: the numbers of ", ring.n,
+                  " processes add up to ", total, ", as MPI_Allreduce says: ", expected, "\n");
+  }
+  int all_wrong = 0;
+  MPI_Allreduce(&n_wrong, &all_wrong, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  return all_wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+/// `--level single` and `--level funneled` show what a run says of a level that is too low.
+int main(int argc, char** argv) {
+  int level = MPI_THREAD_SERIALIZED;
+  if (argc > 2 && std::string_view(argv[1]) == "--level") {
+    level = std::string_view(argv[2]) == "single" ? MPI_THREAD_SINGLE : MPI_THREAD_FUNNELED;
+    for (int i = 3; i <= argc; ++i) argv[i - 2] = argv[i];
+    argc -= 2;
+  }
+  int provided = 0;
+  MPI_Init_thread(&argc, &argv, level, &provided);
+  Ring ring;
+  MPI_Comm_rank(MPI_COMM_WORLD, &ring.rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ring.n);
+  int code = 0;
+  if (level < MPI_THREAD_SERIALIZED)
+    code = tess::run(argc, argv, [] { return add_up(); });
+  else
+    code = phases(argc, argv, ring);
+  MPI_Finalize();
+  return code;
+}

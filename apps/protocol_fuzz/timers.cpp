@@ -1,0 +1,157 @@
+// Timers of elements that migrate, nested and inside epochs, and periodic timers that are cancelled
+// on their PE, cancelled from another PE, or never cancelled. The oracle is the elements' own
+// record: every timer that was set has run once when the epoch returns, none too early, and the
+// messages of periodic timers have all arrived when the run has ended.
+#include "apps/protocol_fuzz/scenarios.hpp"
+
+#include <array>
+#include <atomic>
+
+namespace tess::fuzz {
+namespace {
+
+struct Shop {
+  Trial& trial;
+  int n_elements = 0;
+  std::uint64_t longest = 0;  // ns of a delay
+  double move_chance = 0;
+  int n_rounds = 0;
+  std::atomic<std::int64_t> n_tick_messages{0}, n_tick_arrivals{0};
+};
+Shop* shop = nullptr;
+
+/// A tree of timers: each one that runs may set others.
+struct Fuse {
+  std::uint64_t id = 0;
+  int energy = 0;
+};
+
+class Clock : public Chare<Clock, Index1> {
+ public:
+  void light(Fuse fuse) {
+    Random random(mix(fuse.id ^ static_cast<std::uint64_t>(index().x)));
+    set(fuse.energy, random);
+  }
+  /// A timer has run.
+  void ring(Fuse fuse) {
+    record_[1] += 1;
+    record_[3] += fuse.id >> 8U;
+    Random random(mix(fuse.id));
+    if (fuse.energy > 0) set(fuse.energy - 1, random);
+    if (random.chance(shop->move_chance))
+      migrate_to(PeId{static_cast<std::int32_t>(
+          random.below(static_cast<std::uint64_t>(current_pe().n_pes())))});
+  }
+  void report(Callback<std::array<std::uint64_t, 4>> target) {
+    contribute(sum, record_, std::move(target));
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(record_);
+  }
+
+ private:
+  void set(int energy, Random& random) {
+    for (int n = 1 + static_cast<int>(random.below(2)); n > 0; --n) {
+      const Fuse fuse{random(), energy};
+      record_[0] += 1;
+      record_[2] += fuse.id >> 8U;
+      const Time delay(static_cast<std::int64_t>(random.below(shop->longest)));
+      const auto to =
+          array()[{static_cast<int>(random.below(static_cast<std::uint64_t>(shop->n_elements)))}];
+      if (random.chance(0.5)) {
+        after(delay, to.target<&Clock::ring>(), fuse);
+        continue;
+      }
+      const PeId pe = current_pe().id();
+      const Time due = current_pe().now() + delay;
+      after(delay, [to, fuse, pe, due] {
+        shop->trial.expect(current_pe().id() == pe, "a timer of ", pe, " runs on ",
+                           current_pe().id());
+        shop->trial.expect(current_pe().now() >= due, "a timer runs ",
+                           (due - current_pe().now()).count(), " ns too early");
+        to.send<&Clock::ring>(fuse);
+      });
+    }
+  }
+
+  std::array<std::uint64_t, 4> record_{};  // set, run, and the sums of their ids
+};
+
+class Ticker : public Group<Ticker> {
+ public:
+  void begin(std::uint64_t seed) {
+    Random random(mix(seed ^ static_cast<std::uint64_t>(pe().value)));
+    for (int n = static_cast<int>(random.below(4)); n > 0; --n) start(random);
+  }
+  void tick(int n_more) {
+    ++shop->n_tick_arrivals;
+    if (n_more == 0) return;
+    ++shop->n_tick_messages;
+    group()[pe()].send<&Ticker::tick>(n_more - 1);
+  }
+  void stop(Timer timer) const { timer.cancel(); }
+
+ private:
+  struct State {
+    Timer timer;
+    bool cancelled = false;
+    int n_ticks = 0;
+  };
+  void start(Random& random) {
+    const Time period(static_cast<std::int64_t>(1 + random.below(shop->longest)));
+    const auto n_pes = static_cast<std::uint64_t>(current_pe().n_pes());
+    const PeId to{static_cast<std::int32_t>(random.below(n_pes))};
+    const auto kind = static_cast<int>(random.below(3));
+    const int n_last = 1 + static_cast<int>(random.below(5));
+    auto state = std::make_shared<State>();
+    state->timer = every(period, [group = group(), to, kind, n_last, state] {
+      shop->trial.expect(!state->cancelled, "a timer runs after it was cancelled");
+      const int n = ++state->n_ticks;
+      // Those that are never cancelled come to send nothing, so that the run becomes quiescent.
+      if (n > 2 * n_last) return;
+      ++shop->n_tick_messages;
+      group[to].send<&Ticker::tick>(n % 3);
+      if (n != n_last || kind == 0) return;
+      if (kind == 1) {
+        state->timer.cancel();
+        state->cancelled = true;
+      } else {
+        group[to].send<&Ticker::stop>(state->timer);
+      }
+    });
+  }
+};
+
+Task drive(std::uint64_t seed) {
+  const auto clocks = tess::create<Clock>(range(shop->n_elements));
+  const auto tickers = create_group<Ticker>();
+  for (int round = 0; round < shop->n_rounds; ++round) {
+    const std::uint64_t of_round = mix(seed + static_cast<std::uint64_t>(round));
+    co_await epoch([&] {
+      if (round == 0) tickers.broadcast<&Ticker::begin>(of_round);
+      clocks.broadcast<&Clock::light>(Fuse{of_round, static_cast<int>(of_round % 4)});
+    });
+    Future<std::array<std::uint64_t, 4>> total;
+    clocks.broadcast<&Clock::report>(total.callback());
+    const auto [n_set, n_run, set, run] = co_await total;
+    shop->trial.expect(n_set == n_run, n_set, " timers were set, ", n_run, " have run");
+    shop->trial.expect(set == run, "other timers have run than were set");
+  }
+}
+
+}  // namespace
+
+void timers(Trial& trial) {
+  Shop here{trial, trial.draw(1, 12), 100ULL << trial.draw(0, 12), 0.3 * trial.draw(0, 2),
+            trial.draw(1, 4)};
+  shop = &here;
+  const std::uint64_t seed = trial.random()();
+  trial.run_clean([&]() -> Task { return drive(seed); });
+  if (trial.in_job()) return;  // the messages of one process arrive in another
+  trial.expect(here.n_tick_messages == here.n_tick_arrivals, here.n_tick_messages.load(),
+               " messages of periodic timers were sent, ", here.n_tick_arrivals.load(),
+               " have arrived");
+}
+
+}  // namespace tess::fuzz

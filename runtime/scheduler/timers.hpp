@@ -1,0 +1,69 @@
+// The timers of one PE. A timer that runs once is a message that arrives later: it is sent when the
+// timer is set and processed when it has run, so its epoch and the run wait for it.
+//
+// A periodic timer belongs to no epoch, and neither epochs nor the run wait for its next tick. What
+// a tick sends is counted in epoch 0. So that the run does not end while such a message is under
+// way, the timers are frozen while PE 0 takes the census of a quiescent run:
+//
+//     wave: quiescent, S messages sent  ->  each PE: freeze, answer with its number of messages sent
+//     all answers: sum = S  no PE has sent anything since, and none will: the run is over
+//                  sum > S  a tick has sent something: thaw, and check again
+#pragma once
+
+#include "runtime/machine/machine.hpp"
+
+#include <boost/unordered/unordered_flat_map.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace tess::detail {
+
+class Pe;
+
+class Timers {
+ public:
+  using Call = std::function<void()>;
+
+  explicit Timers(Pe& pe) : pe_(pe) {}
+
+  /// Calls `call` on this PE after the delay, in the current epoch.
+  void after(Time delay, Call call);
+  /// Calls `call` on this PE after each period, until the timer is cancelled; returns its number.
+  std::uint64_t every(Time period, Call call);
+  /// `call` is not called again.
+  void cancel(std::uint64_t timer) { periodic_.erase(timer); }
+
+  /// No tick runs until thaw(). Returns the number of periodic timers.
+  std::size_t freeze();
+  void thaw();
+
+  /// The number of timers that run once and have not run yet.
+  [[nodiscard]] std::size_t n_waiting() const { return n_waiting_; }
+
+  // Handlers of the messages.
+  void on_expired(const Call& call);
+  void on_tick(std::uint64_t timer);
+
+ private:
+  struct Periodic {
+    Time period{0};
+    Time due{0};
+    Call call;
+  };
+  void set_tick(std::uint64_t timer, Time due);
+
+  Pe& pe_;
+  std::size_t n_waiting_ = 0;
+  std::uint64_t n_made_ = 0;
+  boost::unordered_flat_map<std::uint64_t, Periodic> periodic_;
+  bool frozen_ = false;
+  std::vector<std::uint64_t> kept_;  // timers whose tick came while they were frozen
+};
+
+/// Cancels a periodic timer of any PE: on this PE at once, on another soon.
+void cancel_timer(PeId pe, std::uint64_t timer);
+
+}  // namespace tess::detail

@@ -1,0 +1,200 @@
+// Timers: exactly, in the virtual time of the simulated machine, and on threads.
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+#include <atomic>
+#include <csignal>
+
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Ending {
+  int exit_code = 0;
+  std::string report;
+};
+
+template <class Main>
+Ending run_on(std::unique_ptr<tess::Machine> machine, Main main) {
+  Ending ending;
+  tess::Setup setup;
+  setup.machine = std::move(machine);
+  setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
+  ending.exit_code = tess::run(setup, std::move(main));
+  return ending;
+}
+template <class Main>
+Ending simulate(Main main, std::int32_t n_pes = 4) {
+  tess::SimulatedOptions options;
+  options.n_pes = n_pes;
+  options.cost = 0ns;
+  return run_on(tess::make_simulated_machine(options), std::move(main));
+}
+template <class Main>
+Ending on_threads(Main main, std::int32_t n_pes = 2) {
+  return run_on(tess::make_threads_machine(n_pes), std::move(main));
+}
+
+/// The test framework handles signals itself; in this scope the system does.
+class DefaultAction {
+ public:
+  explicit DefaultAction(int signal) : signal_(signal), before_(std::signal(signal, SIG_DFL)) {}
+  DefaultAction(const DefaultAction&) = delete;
+  DefaultAction& operator=(const DefaultAction&) = delete;
+  ~DefaultAction() { std::signal(signal_, before_); }
+
+ private:
+  int signal_;
+  void (*before_)(int);
+};
+
+class Sink : public tess::Chare<Sink, tess::Index1> {
+ public:
+  void take(tess::Callback<std::int64_t> to) { to(tess::current_pe().now().count()); }
+};
+
+}  // namespace
+
+TEST_CASE("a timer on the simulated machine runs at its virtual time", "[runtime][timers]") {
+  std::vector<std::int64_t> times;
+  const Ending ending = simulate([&] {
+    for (const auto delay : {5ms, 2ms, 0ms, 3ms})
+      tess::after(delay, [&] { times.push_back(tess::current_pe().now().count()); });
+  });
+  CHECK(ending.exit_code == 0);
+  CHECK(times == std::vector<std::int64_t>{0, 2'000'000, 3'000'000, 5'000'000});
+}
+
+TEST_CASE("a target gets its value after the delay", "[runtime][timers]") {
+  std::int64_t at = 0;
+  const Ending ending = simulate([&]() -> tess::Task {
+    const auto sinks = tess::create<Sink>(tess::range(4));
+    tess::Future<std::int64_t> result;
+    tess::after(7ms, sinks[{0}].target<&Sink::take>(), result.callback());
+    at = co_await result;
+  });
+  CHECK(ending.exit_code == 0);
+  CHECK(at >= 7'000'000);
+}
+
+TEST_CASE("an epoch and the run wait for a timer", "[runtime][timers][threads]") {
+  for (const bool threads : {false, true}) {
+    bool in_epoch = false, in_run = false, was_done = false;
+    const auto main = [&]() -> tess::Task {
+      co_await tess::epoch([&] { tess::after(20ms, [&] { in_epoch = true; }); });
+      was_done = in_epoch;
+      tess::after(20ms, [&] { in_run = true; });
+    };
+    const Ending ending = threads ? on_threads(main) : simulate(main);
+    CHECK(ending.exit_code == 0);
+    CHECK(was_done);
+    CHECK(in_run);
+  }
+}
+
+TEST_CASE("a periodic timer ticks at multiples of its period until it is cancelled",
+          "[runtime][timers]") {
+  std::vector<std::int64_t> times;
+  const Ending ending = simulate([&] {
+    const auto timer = std::make_shared<tess::Timer>();
+    *timer = tess::every(1ms, [&times, timer] {
+      times.push_back(tess::current_pe().now().count());
+      tess::charge(times.size() == 2 ? 2500us : 0us);  // the third and fourth are missed
+      if (times.size() == 4) timer->cancel();
+    });
+    tess::after(20ms, [] {});
+  });
+  CHECK(ending.exit_code == 0);
+  CHECK(times == std::vector<std::int64_t>{1'000'000, 2'000'000, 5'000'000, 6'000'000});
+}
+
+TEST_CASE("a run ends, or reports its deadlock, beside a periodic timer",
+          "[runtime][timers][threads]") {
+  for (const bool threads : {false, true}) {
+    const auto done = [] { (void)tess::every(1ms, [] {}); };
+    CHECK((threads ? on_threads(done) : simulate(done)).exit_code == 0);
+    const auto waits = []() -> tess::Task {
+      (void)tess::every(1ms, [] {});
+      tess::Future<int> never;
+      co_await never;
+    };
+    const Ending ending = threads ? on_threads(waits) : simulate(waits);
+    CHECK(ending.exit_code == 1);
+    CHECK(ending.report.find("the main program on PE 0: ") != std::string::npos);
+    CHECK(ending.report.find(" waits for a future of int") != std::string::npos);
+  }
+}
+
+TEST_CASE("an epoch ends although a periodic timer was made in it", "[runtime][timers]") {
+  bool ended = false;
+  const Ending ending = simulate([&]() -> tess::Task {
+    co_await tess::epoch([] { (void)tess::every(1us, [] {}); });
+    ended = true;
+  });
+  CHECK(ending.exit_code == 0);
+  CHECK(ended);
+}
+
+TEST_CASE("thousands of timers on threads run once each, none too early",
+          "[runtime][timers][threads]") {
+  std::atomic<int> n_run{0}, n_early{0};
+  constexpr int n_timers = 5000;
+  const Ending ending = on_threads([&] {
+    tess::Random random(7);
+    for (int i = 0; i < n_timers; ++i) {
+      const tess::Time delay(static_cast<std::int64_t>(random.below(50'000'000)));
+      const tess::Time due = tess::current_pe().now() + delay;
+      tess::after(delay, [&n_run, &n_early, due] {
+        ++n_run;
+        if (tess::current_pe().now() < due) ++n_early;
+      });
+    }
+  });
+  CHECK(ending.exit_code == 0);
+  CHECK(n_run == n_timers);
+  CHECK(n_early == 0);
+}
+
+TEST_CASE("exit ends a run whose timers have not run", "[runtime][timers][threads]") {
+  for (const bool threads : {false, true}) {
+    const auto main = [] {
+      for (int i = 0; i < 10; ++i) tess::after(std::chrono::hours(1), [] { std::abort(); });
+      (void)tess::every(10us, [] {});
+      tess::after(5ms, [] { tess::exit(3); });
+    };
+    CHECK((threads ? on_threads(main) : simulate(main)).exit_code == 3);
+  }
+}
+
+TEST_CASE("a signal ends a run with its number and a census", "[runtime][signals][threads]") {
+  const DefaultAction action(SIGTERM);
+  const Ending ending = on_threads([]() -> tess::Task {
+    tess::after(5ms, [] { ::raise(SIGTERM); });
+    tess::after(std::chrono::hours(1), [] {});  // otherwise it may be reported as a deadlock first
+    tess::Future<int> never;
+    co_await never;
+  });
+  CHECK(ending.exit_code == 128 + SIGTERM);
+  CHECK(ending.report.find(
+            "SIGTERM ends the run; 2 wait:\n  PE 0: 1 timer is set\n  the main program") !=
+        std::string::npos);
+  struct sigaction now {};
+  ::sigaction(SIGTERM, nullptr, &now);
+  CHECK(now.sa_handler == SIG_DFL);
+}
+
+TEST_CASE("a signal during a simulated run gets its census", "[runtime][signals]") {
+  const DefaultAction action(SIGINT);
+  const Ending ending = simulate([] {
+    (void)tess::every(1ms, [] {});
+    const auto again = std::make_shared<std::function<void()>>();
+    *again = [weak = std::weak_ptr(again)] { tess::after(1us, *weak.lock()); };
+    tess::after(1us, [again] { (*again)(); });
+    (void)tess::every(1s, [again] {});
+    tess::after(1ms, [] { ::raise(SIGINT); });
+  });
+  CHECK(ending.exit_code == 128 + SIGINT);
+  CHECK(ending.report.find("SIGINT ends the run; 1 wait:\n  PE 0: ") != std::string::npos);
+}
