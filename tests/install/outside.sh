@@ -24,7 +24,8 @@ if [[ $way == installed ]]; then
   fi
   options+=("-DCMAKE_PREFIX_PATH=$scratch/prefix")
 else
-  options+=("-DTESSERA=$from")
+  # Without optimisation: what is tested is the way, not the speed.
+  options+=("-DTESSERA=$from" -DCMAKE_BUILD_TYPE=Debug)
 fi
 
 cmake -S "$here/outside" -B "$scratch/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }

@@ -1,7 +1,7 @@
 #include "collide/dn_field/rules.hpp"
 
 #include "apps/particles/stability/parts.hpp"
-#include "collide/dn_field/build_exact.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
