@@ -89,7 +89,7 @@ class Chare : public detail::IndexedElement<IndexType> {
     detail::Contribution::give(index(), *this, op, std::move(value), std::move(target));
   }
   /// Contributes to a reduction without values: the target learns that all elements are there.
-  void contribute(Callback<void> target) {
+  void contribute(const Callback<void>& target) {
     contribute(detail::AllThere{}, NoValue{}, target.of_no_value());
   }
   template <class Op, class T, class U>

@@ -29,8 +29,8 @@ class Future {
   Future(const Future&) = delete;
   Future& operator=(const Future&) = delete;
   /// Not while a coroutine waits for it, and on its own PE only. The other can only be assigned to.
-  Future(Future&& other) : pe_(other.pe_) { take(other); }
-  Future& operator=(Future&& other) {
+  Future(Future&& other) noexcept : pe_(other.pe_) { take(other); }
+  Future& operator=(Future&& other) noexcept {
     if (this == &other) return *this;
     TESS_CHECK(!waiting_, "a future is overwritten while a coroutine waits for it");
     if (id_ != 0) pe_->leave_future(id_);

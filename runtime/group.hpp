@@ -40,7 +40,7 @@ class Group : public detail::IndexedElement<Index1> {
     detail::Contribution::give(this->index_, *this, op, std::move(value), std::move(target));
   }
   /// Contributes to a reduction without values: the target learns that all members are there.
-  void contribute(Callback<void> target) {
+  void contribute(const Callback<void>& target) {
     contribute(detail::AllThere{}, NoValue{}, target.of_no_value());
   }
 };

@@ -1,15 +1,19 @@
 // What the environment says of mpirun and srun, in builds with and without MPI.
 #include "runtime/machine/mpi.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string_view>
 
 namespace tess::detail {
 
 bool under_mpirun() {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): asked before there are threads
-  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr ||
-         std::getenv("PMI_RANK") != nullptr;
+  return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"},
+                             [](const char* name) {
+                               // NOLINTNEXTLINE(concurrency-mt-unsafe): asked before there are threads
+                               return std::getenv(name) != nullptr;
+                             });
 }
 
 bool speaks_for_job() {
