@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -48,7 +50,9 @@ class TargetName {
 
   friend bool operator==(const TargetName& a, const TargetName& b) {
     if (a.long_ || b.long_) return std::ranges::equal(a.view(), b.view());
-    return a.n_ == b.n_ && a.short_ == b.short_;
+    using Words = std::array<std::uint64_t, n_short / 8>;  // no call of memcmp
+    const auto of_a = std::bit_cast<Words>(a.short_), of_b = std::bit_cast<Words>(b.short_);
+    return ((a.n_ ^ b.n_) | (of_a[0] ^ of_b[0]) | (of_a[1] ^ of_b[1]) | (of_a[2] ^ of_b[2])) == 0;
   }
 
   [[nodiscard]] std::span<const std::byte> view() const {
