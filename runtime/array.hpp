@@ -323,10 +323,9 @@ class ElementProxy {
   [[nodiscard]] auto target() const {
     using T = typename decltype(detail::target_value<F, NoValue>())::type;
     if constexpr (Bitwise<Index>) {
-      return detail::as_target(Callback<T>(target_kind<F, T>, std::in_place, collection_, index_));
+      return detail::make_target<T>(target_kind<F, T>, std::in_place, collection_, index_);
     } else {
-      return detail::as_target(
-          Callback<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_))));
+      return detail::make_target<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
     }
   }
 
@@ -485,7 +484,7 @@ class ArrayProxy {
   template <auto F>
   [[nodiscard]] auto target() const {
     using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    return detail::as_target(Callback<T>(target_kind<F, T>, std::in_place, id_));
+    return detail::make_target<T>(target_kind<F, T>, std::in_place, id_);
   }
 
   /// The part of the array on this PE with its local elements, for libraries and tests.

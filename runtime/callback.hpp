@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -49,10 +48,17 @@ class TargetName {
   }
 
   friend bool operator==(const TargetName& a, const TargetName& b) {
-    if (a.long_ || b.long_) return std::ranges::equal(a.view(), b.view());
-    using Words = std::array<std::uint64_t, n_short / 8>;  // no call of memcmp
-    const auto of_a = std::bit_cast<Words>(a.short_), of_b = std::bit_cast<Words>(b.short_);
-    return ((a.n_ ^ b.n_) | (of_a[0] ^ of_b[0]) | (of_a[1] ^ of_b[1]) | (of_a[2] ^ of_b[2])) == 0;
+    if (a.n_ != b.n_) return false;
+    if (a.long_) return std::ranges::equal(a.view(), b.view());
+    // In pieces as they were written: a load across two that were just written would stall.
+    std::size_t at = 0;
+    for (; at + 8 <= a.n_; at += 8)
+      if (piece<std::uint64_t>(a, at) != piece<std::uint64_t>(b, at)) return false;
+    for (; at + 4 <= a.n_; at += 4)
+      if (piece<std::uint32_t>(a, at) != piece<std::uint32_t>(b, at)) return false;
+    for (; at < a.n_; ++at)
+      if (a.short_[at] != b.short_[at]) return false;
+    return true;
   }
 
   [[nodiscard]] std::span<const std::byte> view() const {
@@ -70,6 +76,13 @@ class TargetName {
   }
 
  private:
+  template <class Piece>
+  [[nodiscard]] static Piece piece(const TargetName& of, std::size_t at) {
+    Piece bytes{};
+    std::memcpy(&bytes, of.short_.data() + at, sizeof bytes);
+    return bytes;
+  }
+
   std::size_t n_ = 0;
   static constexpr std::size_t n_short = 24;
   std::array<std::byte, n_short> short_{};
@@ -158,13 +171,14 @@ class Callback<void> {
 };
 
 namespace detail {
-/// The Callback whose values have type T.
-template <class T>
-[[nodiscard]] auto as_target(Callback<T> callback) {
+/// The target of values of type T, made in place: a copy of bytes that were just written would
+/// stall.
+template <class T, class... Where>
+[[nodiscard]] auto make_target(const typename Callback<T>::Kind& kind, const Where&... where) {
   if constexpr (std::is_same_v<T, NoValue>) {
-    return Callback<void>(std::move(callback));
+    return Callback<void>(Callback<T>(kind, where...));
   } else {
-    return callback;
+    return Callback<T>(kind, where...);
   }
 }
 }  // namespace detail

@@ -23,7 +23,7 @@ template <class C>
 concept ResumesFromSync = requires(C& chare) { chare.resume_from_sync(); };
 
 template <class Derived, class IndexType = Index1>
-class Chare : public detail::IndexedElement<IndexType> {
+class Chare : public detail::Contributor<IndexType> {
  public:
   using Index = IndexType;
 
@@ -84,19 +84,7 @@ class Chare : public detail::IndexedElement<IndexType> {
   /// and messages between elements of the array that follow from it. If rounds overlap (a broadcast
   /// is started before the result of the last one is known), insert elements while no round is
   /// under way.
-  template <class Op, class T>
-  void contribute(Op op, T value, Callback<T> target) {
-    detail::Contribution::give(index(), *this, op, std::move(value), std::move(target));
-  }
-  /// Contributes to a reduction without values: the target learns that all elements are there.
-  void contribute(const Callback<void>& target) {
-    contribute(detail::AllThere{}, NoValue{}, target.of_no_value());
-  }
-  template <class Op, class T, class U>
-  void contribute(Op /*op*/, T /*value*/, Callback<U> /*target*/) {
-    static_assert(std::is_same_v<T, U>,
-                  "the value has another type than the target's: Callback<T>");
-  }
+  using detail::Contributor<IndexType>::contribute;
 };
 
 }  // namespace tess

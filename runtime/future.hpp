@@ -44,7 +44,7 @@ class Future {
   /// The target that receives the result.
   [[nodiscard]] Callback<T> callback() const {
     TESS_CHECK(id_ != 0, "a future that was moved from has no callback: use the one it moved to");
-    return detail::as_target(Callback<Value>(kind_, to_bytes(std::tuple(pe_->id(), id_))));
+    return detail::make_target<Value>(kind_, to_bytes(std::tuple(pe_->id(), id_)));
   }
 
   [[nodiscard]] bool await_ready() const { return value_.has_value(); }

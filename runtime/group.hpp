@@ -18,7 +18,7 @@ class GroupProxy;
 
 /// The base class of a group's members.
 template <class Derived>
-class Group : public detail::IndexedElement<Index1> {
+class Group : public detail::Contributor<Index1> {
  public:
   using Index = Index1;
   /// For Array: there is one element per PE, and the element with index i is on PE i.
@@ -35,14 +35,7 @@ class Group : public detail::IndexedElement<Index1> {
 
   /// Contributes this member's value to the next reduction of the group; every member contributes
   /// one value. in_order(op) combines the values in the order of PEs.
-  template <class Op, class T>
-  void contribute(Op op, T value, Callback<T> target) {
-    detail::Contribution::give(this->index_, *this, op, std::move(value), std::move(target));
-  }
-  /// Contributes to a reduction without values: the target learns that all members are there.
-  void contribute(const Callback<void>& target) {
-    contribute(detail::AllThere{}, NoValue{}, target.of_no_value());
-  }
+  using detail::Contributor<Index1>::contribute;
 };
 
 /// The proxy of a group's member on one PE.

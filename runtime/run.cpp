@@ -56,6 +56,11 @@ const Error& out_of_memory() {
   return error;
 }
 
+/// True if other processes may belong to this run.
+bool is_in_job() {
+  return under_mpirun() || program_owns_mpi();
+}
+
 /// The number that a process that refuses its input passes to Machine::agree(); others pass the
 /// fingerprint of the program.
 constexpr std::uint64_t refused = 0x7265667573656421U;
@@ -63,7 +68,7 @@ constexpr std::uint64_t refused = 0x7265667573656421U;
 /// Handles an Error before the run. If all processes have one, process 0 prints it. Otherwise the
 /// other processes wait at the start of the run, and this process ends the job.
 void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
-  if (!setup.machine && (under_mpirun() || program_owns_mpi())) {
+  if (!setup.machine && is_in_job()) {
     try {
       setup.machine = make_mpi_machine(argc, argv, {});
     } catch (const Error&) {  // then each process prints its own
@@ -137,7 +142,7 @@ Setup take_options(int& argc, char** argv) {
     setup.machine = make_simulated_machine(options);
     setup.options.seed = options.seed.value_or(1);
     setup.options.migration_chance = migration_chance(options);
-  } else if (under_mpirun() || program_owns_mpi()) {
+  } else if (is_in_job()) {
     setup.machine = make_mpi_machine(argc, argv, MpiOptions{.pes_per_process = pes});
   } else {
     setup.machine = make_threads_machine(pes);

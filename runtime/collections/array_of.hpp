@@ -51,6 +51,8 @@ class IndexedElement : public Element {
   friend class ArrayOf;
   template <class>
   friend class Array;
+  template <class>
+  friend class Contributor;
   template <class, class>
   friend class tess::Chare;
   template <class>

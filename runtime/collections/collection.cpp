@@ -86,7 +86,6 @@ void Collection::postpone_new_elements() {
 
 void Collection::call(Element& element, const NumberedCall& call) {
   element.state_.seen_broadcast = call.number;
-  pe_.begins(&call.call->action());
   const ElementScope scope(pe_, element, &call.call->action(), call.epoch,
                            static_cast<std::uint32_t>(call.number));
   try {
@@ -101,6 +100,7 @@ void Collection::apply(const NumberedCall& call) {
   ++applying_;
   // If the call makes an element migrate, the broadcast's epoch waits for it.
   const EpochId before = std::exchange(pe_.context().epoch, call.epoch);
+  pe_.begins(&call.call->action());
   const std::size_t n =
       elements_
           .size();  // later ones were created after this broadcast or arrived after receiving it

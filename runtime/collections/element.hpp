@@ -63,7 +63,8 @@ class Element {
   friend class tess::Chare;
   template <class>
   friend class tess::Group;
-  friend struct Contribution;
+  template <class>
+  friend class Contributor;
   friend struct TaskAccount;
   friend std::string element_text(const Element& element);
 

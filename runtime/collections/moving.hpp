@@ -37,6 +37,7 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from) {
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
     if (element->destroy_requested_ || pe_.stopped()) break;
+    pe_.begins(&call.call->action());
     this->call(*element, call);
     // The epoch of the call that requests the next migration waits for it.
     if (element->migrate_to_.value >= 0) pe_.context().epoch = call.epoch;

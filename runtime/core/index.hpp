@@ -73,11 +73,6 @@ concept Coordinates =
 template <Coordinates Index>
 inline constexpr std::int32_t n_axes_of = static_cast<std::int32_t>(sizeof(Index) / 4);
 
-template <Coordinates Index>
-[[nodiscard]] auto coordinates(const Index& index) {
-  return std::bit_cast<std::array<std::int32_t, sizeof(Index) / 4>>(index);
-}
-
 /// The hash of an index. It is the same in every process, since homes are computed from it.
 template <class Index>
 struct IndexHash {
@@ -106,10 +101,6 @@ template <class Index>
     return text("[\"", std::string_view(index), "\"]");
   } else if constexpr (Writable<Index>) {
     return text("[", index, "]");
-  } else if constexpr (Coordinates<Index>) {
-    std::string out = "[";
-    for (const std::int32_t at : coordinates(index)) out += text(out.size() > 1 ? "," : "", at);
-    return out + "]";
   } else if constexpr (std::is_aggregate_v<Index>) {
     std::string out = "[";
     const auto add = [&out](const auto& field) {
@@ -188,7 +179,7 @@ inline constexpr Range sparse{};
 template <Coordinates Index>
 [[nodiscard]] std::int64_t rank_in(const Range& range, const Index& index) {
   if (range.n_axes != n_axes_of<Index>) return -1;
-  const auto at = coordinates(index);
+  const auto at = std::bit_cast<std::array<std::int32_t, sizeof(Index) / 4>>(index);
   std::int64_t rank = 0;
   for (std::size_t axis = 0; axis < at.size(); ++axis) {
     if (at[axis] < 0 || at[axis] >= range.extent[axis]) return -1;

@@ -15,9 +15,9 @@ constexpr std::size_t step_most = 64;
 /// A busy PE polls the network with this period; its steps are kept shorter than that.
 constexpr auto network_period = 30us;
 
-/// A network has to be polled, so sleeps are short there, and grow while nothing comes; an inbox wakes its PE by itself. Waking a
-/// thread costs about 5 us and a yield among yielding threads 0.5 us, so yielding comes first and
-/// lasts longer.
+/// A network has to be polled, so sleeps are short there, and grow while nothing comes; an inbox
+/// wakes its PE by itself. Waking a thread costs about 5 us and a yield among yielding threads
+/// 0.5 us, so yielding comes first and lasts longer.
 Patience patience(bool oversubscribed, bool network) {
   const auto sleep = network ? std::chrono::nanoseconds(50us) : Parker::forever;
   const auto longest = network ? std::chrono::nanoseconds(5ms) : Parker::forever;

@@ -34,24 +34,28 @@ struct PeAction {
                                     Traffic::control};
 };
 
+/// The message that passes its payload to `Handler`.
+template <auto Handler>
+auto* make_message(Pe& pe, typename PeAction<Handler>::Payload payload) {
+  return PeAction<Handler>::Held::make(pe, PeAction<Handler>::action, std::move(payload));
+}
+
 /// Sends a payload to a handler on a PE. It counts as a hop of epoch 0 and for no other epoch.
 template <auto Handler>
 void send_system(Pe& pe, PeId to, typename PeAction<Handler>::Payload payload) {
-  using Held = Message<typename PeAction<Handler>::Payload>;
-  pe.send(to, pe.stamp(Held::make(pe, PeAction<Handler>::action, std::move(payload))));
+  pe.send(to, pe.stamp(make_message<Handler>(pe, std::move(payload))));
 }
 
 /// The same, but not counted in epoch 0 either: for messages that measure epoch 0 or end the run.
 template <auto Handler>
 void send_uncounted(Pe& pe, PeId to, typename PeAction<Handler>::Payload payload) {
-  using Held = Message<typename PeAction<Handler>::Payload>;
-  pe.send_uncounted(to, pe.stamp(Held::make(pe, PeAction<Handler>::action, std::move(payload))));
+  pe.send_uncounted(to, pe.stamp(make_message<Handler>(pe, std::move(payload))));
 }
 
 /// A message for Machine::hand_in(), made by a thread that runs no PE. No epoch counts it.
 template <auto Handler>
 Envelope* make_outside(PeId to, typename PeAction<Handler>::Payload payload) {
-  using Held = Message<typename PeAction<Handler>::Payload>;
+  using Held = typename PeAction<Handler>::Held;
   auto* message = new (Pool::allocate(sizeof(Held), nullptr)) Held(std::move(payload));
   message->action = &PeAction<Handler>::action;
   message->source = to;

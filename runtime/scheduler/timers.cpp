@@ -35,11 +35,6 @@ void timer_is_cancelled(Pe& pe, Cancel&& cancel) {
   pe.timers().cancel(cancel.timer);
 }
 
-template <auto Handler>
-auto* make_message(Pe& pe, typename PeAction<Handler>::Payload payload) {
-  return PeAction<Handler>::Held::make(pe, PeAction<Handler>::action, std::move(payload));
-}
-
 }  // namespace
 
 void Timers::after(Time delay, Call call) {

@@ -299,15 +299,15 @@ double Balancer::speed() const {
   return plan_.speeds.empty() ? 1 : plan_.speeds[slot(pe())];
 }
 
-void Balancer::sum_up(Callback<PhaseSums> target) {
-  contribute(MergeSums{}, measured_.sums(speed()), std::move(target));
+void Balancer::sum_up(const Callback<PhaseSums>& target) {
+  contribute(MergeSums{}, measured_.sums(speed()), target);
 }
 
-void Balancer::collect(Callback<std::vector<PeReport>> target) {
+void Balancer::collect(const Callback<std::vector<PeReport>>& target) {
   ++n_rounds_seen_;
   std::vector<PeReport> mine;
   mine.push_back(measured_.report(n_collected_++));
-  contribute(in_order(concatenate), std::move(mine), std::move(target));
+  contribute(in_order(concatenate), std::move(mine), target);
 }
 
 void Balancer::move(const std::vector<Move>& moves) {
@@ -319,12 +319,12 @@ void Balancer::resume(std::uint32_t round) {
   barrier_.resume(round);
 }
 
-void Balancer::forget(Callback<std::uint64_t> done) {
+void Balancer::forget(const Callback<std::uint64_t>& done) {
   measured_.clear();
-  contribute(sum, std::uint64_t{0}, std::move(done));
+  contribute(sum, std::uint64_t{0}, done);
 }
 
-void Balancer::prepare(Callback<PhaseSums> target) {
+void Balancer::prepare(const Callback<PhaseSums>& target) {
   ++n_rounds_seen_;
   const PhaseSums before = measured_.sums(speed());
   const PeReport report = measured_.report(n_collected_++);
@@ -333,7 +333,7 @@ void Balancer::prepare(Callback<PhaseSums> target) {
   plan_.exchange.local().hold(report, speed(), limit);
   outcome_ = {};
   outcome_.n_elements = report.keys.size();
-  contribute(MergeSums{}, before, std::move(target));
+  contribute(MergeSums{}, before, target);
 }
 
 void Balancer::fetch() {
@@ -343,10 +343,10 @@ void Balancer::fetch() {
   for (auto& [origin, moves] : wanted) group()[origin].send<&Balancer::move>(std::move(moves));
 }
 
-void Balancer::sum_outcome(Callback<Outcome> target) {
+void Balancer::sum_outcome(const Callback<Outcome>& target) {
   const PeSummary& summary = plan_.exchange.local().summary();
   outcome_.phase = {summary.time(), summary.time() * summary.speed, summary.speed};
-  contribute(MergeOutcomes{}, outcome_, std::move(target));
+  contribute(MergeOutcomes{}, outcome_, target);
 }
 
 void Balancer::alarm() {

@@ -75,14 +75,14 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void begin();
   Task reached(std::uint64_t n_elements);
   Task due(std::uint64_t round);
-  void sum_up(Callback<PhaseSums> target);
-  void collect(Callback<std::vector<PeReport>> target);
+  void sum_up(const Callback<PhaseSums>& target);
+  void collect(const Callback<std::vector<PeReport>>& target);
   void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
-  void forget(Callback<std::uint64_t> done);
-  void prepare(Callback<PhaseSums> target);
+  void forget(const Callback<std::uint64_t>& done);
+  void prepare(const Callback<PhaseSums>& target);
   void fetch();
-  void sum_outcome(Callback<Outcome> target);
+  void sum_outcome(const Callback<Outcome>& target);
 
  private:
   // ElementWatcher.

@@ -94,7 +94,7 @@ Task Exchange::sweep(Sweep sweep, Callback<std::uint64_t> n_trades) {
     const PeId other = pe_at(partner(slot(pe()), stage, n_pes));
     if (other != pe()) co_await diffuse_with(other, sweep.number * stages + stage);
   }
-  contribute(sum, n_trades_, std::move(n_trades));
+  contribute(sum, n_trades_, n_trades);
 }
 
 Task Exchange::diffuse_with(PeId other, std::uint64_t stage) {
@@ -166,22 +166,22 @@ Task Exchange::run_gossip(Order order) {
   }
 }
 
-void Exchange::begin_gossip(Order order, Callback<std::uint64_t> done) {
+void Exchange::begin_gossip(Order order, const Callback<std::uint64_t>& done) {
   weigh_unknown(order.mean_load);
   gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), order.average_time, 1);
-  contribute(sum, std::uint64_t{0}, std::move(done));
+  contribute(sum, std::uint64_t{0}, done);
 }
 
-void Exchange::begin_iteration(Callback<std::uint64_t> done) {
+void Exchange::begin_iteration(const Callback<std::uint64_t>& done) {
   gossip_->begin_iteration();
-  contribute(sum, std::uint64_t{0}, std::move(done));
+  contribute(sum, std::uint64_t{0}, done);
 }
 
-void Exchange::spread(Callback<std::uint64_t> done) {
+void Exchange::spread(const Callback<std::uint64_t>& done) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   for (std::size_t k = 0; k < fanout && !gossip_->tell().empty(); ++k)
     group()[pe_at(gossip_->random_peer(n_pes))].send<&Exchange::rumour>(gossip_->tell());
-  contribute(sum, std::uint64_t{0}, std::move(done));
+  contribute(sum, std::uint64_t{0}, done);
 }
 
 void Exchange::rumour(const std::vector<Rumour>& rumours) {
@@ -201,7 +201,7 @@ Task Exchange::offer_all(Callback<std::uint64_t> n_trades) {
     }
     gossip_->learn(*offer, answer.taken != 0, answer.receiver);
   }
-  contribute(sum, n_trades_, std::move(n_trades));
+  contribute(sum, n_trades_, n_trades);
 }
 
 void Exchange::propose(Proposal proposal) {

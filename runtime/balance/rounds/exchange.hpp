@@ -82,9 +82,9 @@ class Exchange final : public Group<Exchange> {
   };
   Task sweep(Sweep sweep, Callback<std::uint64_t> n_trades);
   void hear(Talk talk);
-  void begin_gossip(Order order, Callback<std::uint64_t> done);
-  void begin_iteration(Callback<std::uint64_t> done);
-  void spread(Callback<std::uint64_t> done);
+  void begin_gossip(Order order, const Callback<std::uint64_t>& done);
+  void begin_iteration(const Callback<std::uint64_t>& done);
+  void spread(const Callback<std::uint64_t>& done);
   void rumour(const std::vector<Rumour>& rumours);
   Task offer_all(Callback<std::uint64_t> n_trades);
   void propose(Proposal proposal);
