@@ -376,9 +376,13 @@ std::vector<std::string> Pe::census() const {
 
 std::vector<std::string> Pe::census_of_running() const {
   std::vector<std::string> lines = census();
-  if (const std::size_t n = ready_.size(); n != 0)
-    lines.push_back(
-        text(id_, n == 1 ? ": 1 message is" : text(": ", n, " messages are"), " ready to run"));
+  std::size_t n_ready = 0;  // without those that end the run or ask for this census
+  ready_.for_each(
+      [&](const Link* one) { n_ready += static_cast<const Envelope*>(one)->counted ? 1U : 0U; });
+  if (n_ready != 0)
+    lines.push_back(text(id_,
+                         n_ready == 1 ? ": 1 message is" : text(": ", n_ready, " messages are"),
+                         " ready to run"));
   if (const std::size_t n = timers_.n_waiting(); n != 0)
     lines.push_back(text(id_, n == 1 ? ": 1 timer is" : text(": ", n, " timers are"), " set"));
   return lines;

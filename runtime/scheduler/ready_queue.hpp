@@ -19,6 +19,10 @@ class ReadyQueue {
 
   [[nodiscard]] bool empty() const { return head_ == tail_; }
   [[nodiscard]] std::size_t size() const { return tail_ - head_; }
+  /// Calls visit(link) for every message, the oldest first.
+  void for_each(const auto& visit) const {
+    for (std::size_t at = head_; at != tail_; ++at) visit(ring_[at & mask_]);
+  }
 
   void push(Link* link) {
     if (tail_ - head_ > mask_) [[unlikely]]
