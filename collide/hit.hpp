@@ -3,7 +3,7 @@
 // them are exact. The collision uses only the model of an id; owner and number are opaque to it.
 #pragma once
 
-#include "collide/aabb.hpp"
+#include "collide/box.hpp"
 
 #include <compare>
 #include <cstdint>

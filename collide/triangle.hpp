@@ -2,7 +2,7 @@
 // intersect is left to the caller.
 #pragma once
 
-#include "collide/aabb.hpp"
+#include "collide/box.hpp"
 
 namespace tess::collide {
 

@@ -5,7 +5,7 @@
 // 2^31 - 1 vertices.
 #pragma once
 
-#include "collide/aabb.hpp"
+#include "collide/box.hpp"
 
 #include <array>
 #include <cstddef>

@@ -8,7 +8,7 @@
 // lose 15 % of the pairs use a second formula, k * size + origin, which rounds differently.
 #pragma once
 
-#include "collide/aabb.hpp"
+#include "collide/box.hpp"
 #include "collide/serial/conversion.hpp"
 
 #include <compare>

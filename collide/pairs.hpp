@@ -1,0 +1,205 @@
+// All pairs of objects that intersect, in one thread and without the runtime. The same words serve
+// boxes, shapes and types of the user; collider.hpp does it on chares.
+//
+// Sample: tests/samples/pairs.cpp
+//
+//     const std::vector<Pair> touching = pairs(std::span(boxes));
+//     const std::uint64_t n = count_pairs(std::span(planes), std::span(rockets), {.statistics = &report});
+//
+// An object is a Box<float or double, 2 to 4>, or any type with two functions that are found beside
+// it:
+//
+//     Box<Real, D> box_of(const Object&);                          contains the object
+//     bool intersect(const Object&, const Object&, Touching);      decides a pair whose boxes overlap
+//
+// Every pair is reported once, in no particular order. The voxels that the objects are sorted into
+// have no influence on the answer (Lawlor and Kalé 2002).
+#pragma once
+
+#include "collide/box.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace tess::collide {
+
+/// The positions of two objects. Within one set, first < second; otherwise `first` is a position in
+/// the first set and `second` one in the second.
+struct Pair {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+  friend auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+/// How the pairs of one voxel are found. `automatic` chooses by measured costs; all of them find the
+/// same pairs. `bisection` is the paper's recursive coordinate bisection.
+enum class PairMethod { automatic, all_pairs, sweep, bisection };
+
+/// What a search did.
+struct PairStatistics {
+  double voxel_size = 0;           ///< the longest edge; of the level with the smallest voxels
+  std::uint64_t n_levels = 0;      ///< grids for objects of different sizes
+  std::uint64_t n_voxels = 0;      ///< that were searched
+  std::uint64_t n_entries = 0;     ///< objects in voxels: an object counts in each that it touches
+  std::uint64_t n_left_out = 0;    ///< of them, in voxels that one model alone touches
+  std::uint64_t n_candidates = 0;  ///< pairs whose boxes overlap
+  std::uint64_t n_pairs = 0;       ///< pairs that intersect
+  std::size_t bytes = 0;           ///< memory beside the objects
+};
+
+struct PairOptions {
+  Touching touching = Touching::counts;
+  /// One model per object, for searches within one set; pairs within a model are not tested.
+  /// Empty: all pairs are tested.
+  std::span<const std::uint32_t> models = {};
+  bool within_model = false;  ///< with models: tests pairs within a model, too
+  double voxel_size = 0;      ///< 0: chosen by expected cost
+  PairMethod method = PairMethod::automatic;
+  PairStatistics* statistics = nullptr;  ///< is filled
+};
+
+namespace detail {
+
+/// Receives n pairs (objects[p], partners[p]). With two sets and `swapped`, the objects are of the
+/// second.
+struct PairSink {
+  void* context;
+  void (*call)(void* context, const std::uint32_t* objects, const std::uint32_t* partners,
+               std::size_t n, bool swapped);
+};
+
+template <class Real, std::size_t D>
+void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& options, PairSink sink);
+template <class Real, std::size_t D>
+void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
+                  const PairOptions& options, PairSink sink);
+
+template <class T>
+inline constexpr bool is_box = false;
+template <class Real, std::size_t D>
+inline constexpr bool is_box<Box<Real, D>> = true;
+
+template <class Object>
+using BoxOf = std::remove_cvref_t<decltype(box_of(std::declval<const Object&>()))>;
+
+/// The boxes of objects that are no boxes.
+template <class Object>
+auto boxes_of(std::span<const Object> objects) {
+  if constexpr (is_box<Object>) {
+    return objects;
+  } else {
+    std::vector<BoxOf<Object>> boxes;
+    boxes.reserve(objects.size());
+    for (const Object& object : objects) boxes.push_back(box_of(object));
+    return boxes;
+  }
+}
+
+/// A sink that calls found(i, j) per pair for which test(i, j) holds; i is of the first set.
+template <class Test, class Found>
+struct TestedPairs {
+  const Test& test;
+  Found& found;
+  std::uint64_t n = 0;
+
+  static void call(void* context, const std::uint32_t* objects, const std::uint32_t* partners,
+                   std::size_t n_pairs, bool swapped) {
+    auto& self = *static_cast<TestedPairs*>(context);
+    const std::uint32_t* const first = swapped ? partners : objects;
+    const std::uint32_t* const second = swapped ? objects : partners;
+    for (std::size_t p = 0; p < n_pairs; ++p) {
+      if (!self.test(first[p], second[p])) continue;
+      ++self.n;
+      self.found(first[p], second[p]);
+    }
+  }
+};
+
+template <class Test, class Found, class Search>
+void for_each_tested(const PairOptions& options, const Test& test, Found& found,
+                     const Search& search) {
+  TestedPairs<Test, Found> pairs{test, found};
+  search(PairSink{&pairs, &TestedPairs<Test, Found>::call});
+  if (options.statistics != nullptr) options.statistics->n_pairs = pairs.n;
+}
+
+}  // namespace detail
+
+/// Calls found(i, j) once per pair of objects that intersect, with i < j. Throws Error (bad_value)
+/// before the first call, with the position of an object whose box is not valid, or if the voxel
+/// size is too small for the memory.
+template <class Object, class Found>
+void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found) {
+  const auto boxes = detail::boxes_of(objects);
+  auto ordered = [&](std::uint32_t i, std::uint32_t j) { i < j ? found(i, j) : found(j, i); };
+  const auto test = [&]([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t j) {
+    if constexpr (detail::is_box<Object>) {
+      return true;
+    } else {
+      return intersect(objects[i], objects[j], options.touching);
+    }
+  };
+  detail::for_each_tested(options, test, ordered, [&](detail::PairSink sink) {
+    detail::search_pairs(std::span<const detail::BoxOf<Object>>(boxes), options, sink);
+  });
+}
+
+/// The same, for pairs of an object `i` of the first set and an object `j` of the second.
+template <class A, class B, class Found>
+void for_each_pair(std::span<const A> a, std::span<const B> b, const PairOptions& options,
+                   Found&& found) {
+  static_assert(std::is_same_v<detail::BoxOf<A>, detail::BoxOf<B>>,
+                "the boxes of the two sets have different types");
+  const auto boxes_a = detail::boxes_of(a);
+  const auto boxes_b = detail::boxes_of(b);
+  const auto test = [&]([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t j) {
+    if constexpr (detail::is_box<A> && detail::is_box<B>) {
+      return true;
+    } else {
+      return intersect(a[i], b[j], options.touching);
+    }
+  };
+  detail::for_each_tested(options, test, found, [&](detail::PairSink sink) {
+    detail::search_pairs(std::span<const detail::BoxOf<A>>(boxes_a),
+                         std::span<const detail::BoxOf<B>>(boxes_b), options, sink);
+  });
+}
+
+/// The pairs as a list.
+template <class Object>
+[[nodiscard]] std::vector<Pair> pairs(std::span<const Object> objects,
+                                      const PairOptions& options = {}) {
+  std::vector<Pair> out;
+  for_each_pair(objects, options, [&](std::uint32_t i, std::uint32_t j) { out.push_back({i, j}); });
+  return out;
+}
+template <class A, class B>
+[[nodiscard]] std::vector<Pair> pairs(std::span<const A> a, std::span<const B> b,
+                                      const PairOptions& options = {}) {
+  std::vector<Pair> out;
+  for_each_pair(a, b, options, [&](std::uint32_t i, std::uint32_t j) { out.push_back({i, j}); });
+  return out;
+}
+
+/// The number of pairs.
+template <class Object>
+[[nodiscard]] std::uint64_t count_pairs(std::span<const Object> objects,
+                                        const PairOptions& options = {}) {
+  std::uint64_t n = 0;
+  for_each_pair(objects, options, [&](std::uint32_t, std::uint32_t) { ++n; });
+  return n;
+}
+template <class A, class B>
+[[nodiscard]] std::uint64_t count_pairs(std::span<const A> a, std::span<const B> b,
+                                        const PairOptions& options = {}) {
+  std::uint64_t n = 0;
+  for_each_pair(a, b, options, [&](std::uint32_t, std::uint32_t) { ++n; });
+  return n;
+}
+
+}  // namespace tess::collide

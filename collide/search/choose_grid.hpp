@@ -1,0 +1,61 @@
+// Chooses the voxels for a search: the size that costs least (Lawlor and Kalé 2002, section 5.1,
+// leave it to the user). Small voxels get each object many times; large ones compare many pairs. A
+// sample of the objects says how many share a voxel at each size, on whatever surface or cluster
+// they lie. The choice affects the speed only.
+#pragma once
+
+#include "collide/search/entry.hpp"
+#include "collide/search/grid.hpp"
+
+#include <span>
+#include <vector>
+
+namespace tess::collide::search {
+
+/// The objects of a search: pairs of `a` with `b`, and with `within_a` also pairs within `a`. The
+/// entries refer to boxes_a and boxes_b.
+template <class Real, std::size_t D>
+struct Problem {
+  const Box<Real, D>* boxes_a;
+  const Box<Real, D>* boxes_b;
+  std::span<const Entry> a;
+  std::span<const Entry> b;
+  bool within_a;
+
+  [[nodiscard]] double n_comparisons() const noexcept {
+    const auto n_a = static_cast<double>(a.size()), n_b = static_cast<double>(b.size());
+    return n_a * ((within_a ? n_a / 2 : 0) + n_b);
+  }
+};
+
+template <std::size_t D>
+struct Choice {
+  CellAt<D> n_cells;
+  double cost;  ///< expected, in nanoseconds
+};
+
+/// Keeps its memory from choice to choice.
+template <class Real, std::size_t D>
+class GridChooser {
+ public:
+  /// For a region that is as wide as the objects of `a` in it; with `as_points` as if the objects
+  /// had no extents.
+  [[nodiscard]] Choice<D> choose(const Problem<Real, D>& problem, const Box<Real, D>& region,
+                                 bool as_points = false);
+
+ private:
+  struct Sample {
+    std::uint64_t code;  // the bits of the cells, interleaved; then 1 for objects of b
+    std::array<float, D> extent;
+  };
+  void take(const Box<Real, D>* boxes, std::span<const Entry> entries, const Box<Real, D>& region,
+            Real widest, bool is_b);
+
+  std::vector<Sample> samples_;
+};
+
+/// The cells of the given size that cover the region; fewer if they were more than `most_cells`.
+template <class Real, std::size_t D>
+[[nodiscard]] CellAt<D> cells_of_size(const Box<Real, D>& region, double size, double most_cells);
+
+}  // namespace tess::collide::search

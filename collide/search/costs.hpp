@@ -1,0 +1,19 @@
+// What the steps of a search cost, in nanoseconds on the machine that they were measured on
+// (bench_collide). The voxel size and the method within a voxel follow from them; no answer does.
+#pragma once
+
+#include <cstddef>
+
+namespace tess::collide::search::costs {
+
+inline constexpr double per_entry = 20;  ///< an object in a voxel: sorted, gathered
+inline constexpr double per_probe = 4;   ///< a box that is compared with others
+inline constexpr double per_vector = 3;  ///< a comparison of a box with a vector of boxes
+inline constexpr double per_cell = 1.2;  ///< a cell, also an empty one
+/// So many objects are compared without a look for a better way.
+inline constexpr std::size_t few_objects = 512;
+/// A sweep pays from here on.
+inline constexpr std::size_t sweep_from = 96;
+inline constexpr double per_grid = 3000;  ///< a grid: its choice and its memory
+
+}  // namespace tess::collide::search::costs

@@ -1,0 +1,141 @@
+// A grid over a region: it maps a coordinate to a cell per axis. Cells at the border reach to
+// infinity, so every coordinate has one, and
+//
+//     x <= y  =>  cell(x) <= cell(y)
+//
+// holds for every rounding, which is all that entry.hpp needs. The border is no limit of the method:
+// a border cell that receives too much is divided again.
+//
+// The conversion is a clamp and a truncation; bench_collide compares it with the floor and with the
+// trick of the paper's appendix A.
+#pragma once
+
+#include "collide/box.hpp"
+
+#include <cmath>
+#include <cstdint>
+#ifdef __AVX512VL__
+#include <immintrin.h>
+#endif
+
+namespace tess::collide::search {
+
+/// A cell per axis.
+template <std::size_t D>
+using CellAt = std::array<std::int32_t, D>;
+
+/// The cells from lo to hi, inclusive.
+template <std::size_t D>
+struct CellRange {
+  CellAt<D> lo, hi;
+};
+
+template <class Real, std::size_t D>
+class Grid {
+ public:
+  /// n_cells: at least 1 per axis, at most 2^20. An axis without an extent has one cell.
+  Grid(const Box<Real, D>& region, const CellAt<D>& n_cells) : lo_(region.lo), n_cells_(n_cells) {
+    for (std::size_t k = 0; k < D; ++k) {
+      per_length_[k] = static_cast<Real>(n_cells[k]) / (region.hi[k] - region.lo[k]);
+      if (!std::isfinite(per_length_[k]) || !(per_length_[k] > 0)) {
+        per_length_[k] = 0;
+        n_cells_[k] = 1;
+      }
+      last_[k] = static_cast<Real>(n_cells_[k] - 1);
+      for (const std::size_t lane : {k, k + D}) {
+        lanes_lo_[lane] = lo_[k];
+        lanes_per_length_[lane] = per_length_[k];
+        lanes_last_[lane] = last_[k];
+      }
+    }
+  }
+
+  [[nodiscard]] std::int32_t cell(Real x, std::size_t k) const noexcept {
+    const Real at = (x - lo_[k]) * per_length_[k];
+    const Real above = at > 0 ? at : Real{0};  // also for NaN, if x - lo_ overflows
+    return static_cast<std::int32_t>(above < last_[k] ? above : last_[k]);
+  }
+  /// The cells of both corners, with vectors where the processor has them; the same operations.
+  [[nodiscard]] CellRange<D> cells(const Box<Real, D>& box) const noexcept {
+    CellRange<D> out;
+#ifdef __AVX512VL__
+    constexpr __mmask8 used = (1U << 2 * D) - 1;
+    const Real* const x = box.lo.data();
+    alignas(32) std::int32_t all[8];
+    if constexpr (sizeof(Real) == sizeof(float)) {
+      __m256 at = _mm256_sub_ps(_mm256_maskz_loadu_ps(used, x), _mm256_load_ps(lanes_lo_));
+      at = _mm256_mul_ps(at, _mm256_load_ps(lanes_per_length_));
+      // max and min give their second operand if one is NaN.
+      at = _mm256_min_ps(_mm256_max_ps(at, _mm256_setzero_ps()), _mm256_load_ps(lanes_last_));
+      _mm256_store_si256(reinterpret_cast<__m256i*>(all), _mm256_cvttps_epi32(at));
+    } else {
+      __m512d at = _mm512_sub_pd(_mm512_maskz_loadu_pd(used, x), _mm512_load_pd(lanes_lo_));
+      at = _mm512_mul_pd(at, _mm512_load_pd(lanes_per_length_));
+      at = _mm512_maskz_max_pd(0xFF, at, _mm512_setzero_pd());
+      at = _mm512_maskz_min_pd(0xFF, at, _mm512_load_pd(lanes_last_));
+      _mm256_store_si256(reinterpret_cast<__m256i*>(all), _mm512_maskz_cvttpd_epi32(0xFF, at));
+    }
+    for (std::size_t k = 0; k < D; ++k) {
+      out.lo[k] = all[k];
+      out.hi[k] = all[k + D];
+    }
+#else
+    for (std::size_t k = 0; k < D; ++k) {
+      out.lo[k] = cell(box.lo[k], k);
+      out.hi[k] = cell(box.hi[k], k);
+    }
+#endif
+    return out;
+  }
+
+  [[nodiscard]] const CellAt<D>& n_cells() const noexcept { return n_cells_; }
+  [[nodiscard]] std::size_t size() const noexcept {
+    std::size_t n = 1;
+    for (std::size_t k = 0; k < D; ++k) n *= static_cast<std::size_t>(n_cells_[k]);
+    return n;
+  }
+  [[nodiscard]] std::uint32_t number(const CellAt<D>& at) const noexcept {
+    std::uint32_t out = 0;
+    for (std::size_t k = 0; k < D; ++k)
+      out = out * static_cast<std::uint32_t>(n_cells_[k]) + static_cast<std::uint32_t>(at[k]);
+    return out;
+  }
+  /// What a step along each axis adds to the number.
+  [[nodiscard]] std::array<std::uint32_t, D> strides() const noexcept {
+    std::array<std::uint32_t, D> out;
+    std::uint32_t stride = 1;
+    for (std::size_t k = D; k-- > 0;) {
+      out[k] = stride;
+      stride *= static_cast<std::uint32_t>(n_cells_[k]);
+    }
+    return out;
+  }
+  /// About the region of a cell: choices depend on it, but no answer.
+  [[nodiscard]] Box<Real, D> region(std::uint32_t number) const noexcept {
+    Box<Real, D> out;
+    for (std::size_t k = D; k-- > 0;) {
+      const auto n = static_cast<std::uint32_t>(n_cells_[k]);
+      const auto at = static_cast<Real>(number % n);
+      number /= n;
+      const Real length = per_length_[k] > 0 ? 1 / per_length_[k] : Real{0};
+      out.lo[k] = lo_[k] + at * length;
+      out.hi[k] = lo_[k] + (at + 1) * length;
+    }
+    return out;
+  }
+  /// The longest edge of a cell.
+  [[nodiscard]] Real cell_size() const noexcept {
+    Real size = 0;
+    for (std::size_t k = 0; k < D; ++k)
+      if (per_length_[k] > 0) size = std::max(size, 1 / per_length_[k]);
+    return size;
+  }
+
+ private:
+  std::array<Real, D> lo_, per_length_, last_;
+  // The same for both corners of a box.
+  alignas(64) Real lanes_lo_[8]{}, lanes_per_length_[8]{}, lanes_last_[8]{};
+  CellAt<D> n_cells_;
+};
+
+}  // namespace tess::collide::search

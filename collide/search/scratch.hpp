@@ -1,0 +1,61 @@
+// An array that grows and is not filled with zeros: memory that a search writes before it reads.
+// Large ones ask for large pages, of which a search of a million objects touches some tens instead
+// of ten thousand.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <type_traits>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace tess::collide::search {
+
+template <class T>
+class Scratch {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  /// `size` values; what was there remains, the rest is not set.
+  void resize(std::size_t size) {
+    if (size > capacity_) grow(std::max(size, capacity_ + capacity_ / 2));
+    size_ = size;
+  }
+  /// Room for `n` values behind data(), of which size() are in use.
+  void reserve(std::size_t n) {
+    if (n > capacity_) grow(std::max(n, capacity_ + capacity_ / 2));
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+  [[nodiscard]] T* data() noexcept { return data_.get(); }
+  [[nodiscard]] const T* data() const noexcept { return data_.get(); }
+  [[nodiscard]] std::size_t bytes() const noexcept { return capacity_ * sizeof(T); }
+
+ private:
+  struct Free {
+    void operator()(T* data) const noexcept { std::free(data); }
+  };
+  void grow(std::size_t n) {
+    constexpr std::size_t large_page = std::size_t{1} << 21, line = 64;
+    const std::size_t aligned_to = n * sizeof(T) >= large_page ? large_page : line;
+    const std::size_t bytes = (n * sizeof(T) + aligned_to - 1) / aligned_to * aligned_to;
+    std::unique_ptr<T[], Free> larger(static_cast<T*>(std::aligned_alloc(aligned_to, bytes)));
+    if (larger == nullptr) throw std::bad_alloc();
+#ifdef __linux__
+    if (aligned_to == large_page) madvise(larger.get(), bytes, MADV_HUGEPAGE);
+#endif
+    if (capacity_ != 0) std::memcpy(larger.get(), data_.get(), capacity_ * sizeof(T));
+    data_ = std::move(larger);
+    capacity_ = bytes / sizeof(T);
+  }
+
+  std::unique_ptr<T[], Free> data_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace tess::collide::search

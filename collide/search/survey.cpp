@@ -1,0 +1,70 @@
+#include "collide/search/survey.hpp"
+
+#include "runtime/core/error.hpp"
+
+#include <cstring>
+#include <string>
+
+namespace tess::collide::search {
+namespace {
+
+template <class Real, std::size_t D>
+[[noreturn]] void refuse(std::span<const Box<Real, D>> boxes, const char* set) {
+  std::size_t i = 0;
+  while (is_valid(boxes[i])) ++i;
+  std::string box;
+  for (std::size_t k = 0; k < D; ++k)
+    box += text(k == 0 ? "[" : " x [", boxes[i].lo[k], ", ", boxes[i].hi[k], "]");
+  fail(ErrorCode::bad_value, "pairs: box ", box, " of object ", i, set,
+       " is not valid; give finite numbers with lo <= hi");
+}
+
+}  // namespace
+
+template <class Real, std::size_t D>
+Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set) {
+  Box<Real, D> bounds = no_box<Real, D>();
+  if (boxes.empty()) return bounds;
+  // Eight numbers at a time: a box, and of the next one what fits.
+  using Eight [[gnu::vector_size(8 * sizeof(Real))]] = Real;
+  using Bits = decltype(Eight{} < Eight{});
+  Bits ends;  // the upper end beside each lower end
+  for (std::size_t k = 0; k < 8; ++k) ends[k] = static_cast<int>(k < D ? k + D : k);
+  Eight least = Eight{} + std::numeric_limits<Real>::infinity(), greatest = -least;
+  Bits bad{};
+  const Real* at = boxes[0].lo.data();
+  const Real* const last = boxes.back().lo.data();
+  for (; at + 8 <= last + 2 * D; at += 2 * D) {
+    Eight x;
+    std::memcpy(&x, at, sizeof x);
+    least = x < least ? x : least;
+    greatest = x > greatest ? x : greatest;
+    bad |= ~(x <= __builtin_shuffle(x, ends));  // also for NaN
+  }
+  bool good = true;
+  for (std::size_t k = 0; k < D; ++k) {
+    bounds.lo[k] = least[k];
+    bounds.hi[k] = greatest[k + D];
+    good = good && bad[k] == 0;
+  }
+  for (; at <= last; at += 2 * D)
+    for (std::size_t k = 0; k < D; ++k) {
+      good = good && at[k] <= at[k + D];
+      bounds.lo[k] = std::min(bounds.lo[k], at[k]);
+      bounds.hi[k] = std::max(bounds.hi[k], at[k + D]);
+    }
+  if (!good || !is_valid(bounds)) refuse(boxes, set);
+  return bounds;
+}
+
+#define TESS_INSTANTIATE(Real, D) \
+  template Box<Real, D> checked_bounds(std::span<const Box<Real, D>>, const char*)
+TESS_INSTANTIATE(float, 2);
+TESS_INSTANTIATE(float, 3);
+TESS_INSTANTIATE(float, 4);
+TESS_INSTANTIATE(double, 2);
+TESS_INSTANTIATE(double, 3);
+TESS_INSTANTIATE(double, 4);
+#undef TESS_INSTANTIATE
+
+}  // namespace tess::collide::search

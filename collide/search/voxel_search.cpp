@@ -1,0 +1,319 @@
+#include "collide/search/voxel_search.hpp"
+
+#include "collide/search/costs.hpp"
+
+#include <algorithm>
+
+namespace tess::collide::search {
+namespace {
+
+constexpr std::size_t most_depth = 32;
+constexpr std::uint32_t no_place = ~std::uint32_t{0};
+constexpr std::uint64_t several_models = ~std::uint64_t{0};
+
+template <class Real, std::size_t D>
+[[nodiscard]] Box<Real, D> clipped(const Box<Real, D>& box, const Box<Real, D>& to) {
+  Box<Real, D> out;
+  for (std::size_t k = 0; k < D; ++k) {
+    out.lo[k] = std::max(box.lo[k], to.lo[k]);
+    out.hi[k] = std::min(box.hi[k], to.hi[k]);
+  }
+  return out;
+}
+
+template <class Real, std::size_t D>
+void prefetch(const Box<Real, D>& box) {
+  __builtin_prefetch(&box);
+  __builtin_prefetch(&box.hi[D - 1]);
+}
+
+/// The bounds of the parts of the objects that lie in the region.
+template <class Real, std::size_t D>
+Box<Real, D> bounds_in(const Box<Real, D>* boxes, std::span<const Entry> entries,
+                       const Box<Real, D>& region) {
+  Box<Real, D> bounds = no_box<Real, D>();
+  for (const Entry entry : entries) bounds = merged(bounds, boxes[object_of(entry)]);
+  return clipped(bounds, region);
+}
+
+}  // namespace
+
+template <class Real, std::size_t D>
+bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, bool swapped) {
+  swapped_ = swapped;
+  if (!solve(problem, region, std::size_t{0})) return false;
+  pairs_.flush();
+  statistics_.n_candidates = pairs_.n_total();
+  statistics_.bytes = 0;
+  for (const Level& level : levels_)
+    statistics_.bytes += level.cells.capacity() * sizeof(Cell) + level.cell_of.bytes() +
+                         level.entry_of.bytes() + level.sorted.bytes() +
+                         level.voxels.capacity() * sizeof(Voxel) + level.models.capacity() * 8;
+  return true;
+}
+
+template <class Real, std::size_t D>
+bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region,
+                                 std::size_t depth) {
+  if (problem.n_comparisons() == 0) return true;
+  const std::size_t n = problem.a.size() + problem.b.size();
+  const bool is_chosen = options_.voxel_size > 0;
+  if ((n <= costs::few_objects && !is_chosen) || depth == most_depth) {
+    compare(problem);
+    return true;
+  }
+  const TheBox bounds = depth == 0 ? region : bounds_in(problem.boxes_a, problem.a, region);
+  const Grid<Real, D> grid(bounds, choose(problem, bounds, depth));
+  if (grid.size() == 1) {
+    compare(problem);
+    return true;
+  }
+
+  if (levels_.size() == depth) levels_.emplace_back();
+  Level& level = levels_[depth];
+  if (!sort_into_voxels(problem, bounds, grid, level)) return false;
+  const auto cell_size = static_cast<double>(grid.cell_size());
+  if (statistics_.voxel_size == 0 || cell_size < statistics_.voxel_size)
+    statistics_.voxel_size = cell_size;
+  const bool again = is_chosen ? cell_size > 1.01 * options_.voxel_size
+                               : options_.method == PairMethod::automatic ||
+                                     options_.method == PairMethod::bisection;
+  for (std::size_t v = 0; v < level.voxels.size(); ++v) {
+    const Voxel& voxel = level.voxels[v];
+    if (v + 1 < level.voxels.size()) {
+      const Voxel& next = level.voxels[v + 1];
+      const Entry* const entries = level.sorted.data() + next.begin;
+      for (std::uint32_t i = 0; i < next.n_a; ++i) prefetch(problem.boxes_a[object_of(entries[i])]);
+      for (std::uint32_t i = next.n_a; i < next.n_a + next.n_b; ++i)
+        prefetch(problem.boxes_b[object_of(entries[i])]);
+    }
+    const TheProblem part{problem.boxes_a,
+                          problem.boxes_b,
+                          {level.sorted.data() + voxel.begin, voxel.n_a},
+                          {level.sorted.data() + voxel.begin + voxel.n_a, voxel.n_b},
+                          problem.within_a};
+    if (again && voxel.n_a + voxel.n_b > costs::few_objects) {
+      static_cast<void>(solve(part, clipped(grid.region(voxel.cell), bounds), depth + 1));
+    } else {
+      compare(part);
+    }
+  }
+  return true;
+}
+
+template <class Real, std::size_t D>
+CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& bounds,
+                                       std::size_t depth) {
+  const double n = static_cast<double>(problem.a.size() + problem.b.size());
+  if (options_.voxel_size > 0)
+    return cells_of_size(bounds, options_.voxel_size, std::max(4 * n, 4096.0));
+  if (options_.method == PairMethod::bisection && depth > 0) {
+    CellAt<D> n_cells;
+    n_cells.fill(1);
+    std::size_t widest = 0;
+    for (std::size_t k = 1; k < D; ++k)
+      if (bounds.hi[k] - bounds.lo[k] > bounds.hi[widest] - bounds.lo[widest]) widest = k;
+    n_cells[widest] = 2;
+    return n_cells;
+  }
+  return chooser_.choose(problem, bounds).n_cells;
+}
+
+/// Writes the cells that the boxes touch, in the order of the boxes; false if they are too many.
+template <class Real, std::size_t D>
+template <bool is_b>
+bool VoxelSearch<Real, D>::spread(const TheBox* boxes, std::span<const Entry> entries,
+                                  const TheBox& bounds, const Grid<Real, D>& grid, Level& level) {
+  constexpr std::size_t ahead = 24;
+  const Corners<D> corners(grid.strides());
+  const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
+  std::size_t n = level.n_entries, room = 0;
+  const auto make_room = [&](std::size_t more) {
+    level.cell_of.reserve(n + more);
+    level.entry_of.reserve(n + more);
+    room = std::min(level.cell_of.capacity(), level.entry_of.capacity());
+  };
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (i + ahead < entries.size()) prefetch(boxes[object_of(entries[i + ahead])]);
+    const Entry entry = entries[i];
+    const TheBox& box = boxes[object_of(entry)];
+    if (is_b && !overlap(box, bounds, Touching::counts)) continue;
+    const CellRange<D> cells = grid.cells(box);
+    std::uint32_t two = 0, longest = 0;
+    for (std::size_t k = 0; k < D; ++k) {
+      const auto more = static_cast<std::uint32_t>(cells.hi[k] - cells.lo[k]);
+      two |= (more & 1U) << k;
+      longest |= more;
+    }
+    if (n + Corners<D>::room > room) make_room(Corners<D>::room);
+    if (longest < 2) [[likely]] {
+      n += corners.write(grid.number(cells.lo), static_cast<std::uint32_t>(entry), two,
+                         level.cell_of.data() + n, level.entry_of.data() + n);
+      continue;
+    }
+    std::size_t n_cells = 1;
+    for (std::size_t k = 0; k < D; ++k)
+      n_cells *= static_cast<std::size_t>(cells.hi[k] - cells.lo[k] + 1);
+    if (n + n_cells > most) return false;
+    make_room(n_cells);
+    CellAt<D> at = cells.lo;
+    for (std::size_t c = 0; c < n_cells; ++c) {
+      std::uint32_t below = below_of(entry);
+      for (std::size_t k = 0; k < D; ++k) below |= (at[k] != cells.lo[k] ? 1U : 0U) << k;
+      level.cell_of.data()[n] = grid.number(at);
+      level.entry_of.data()[n++] = static_cast<std::uint32_t>(make_entry(object_of(entry), below));
+      for (std::size_t k = D; k-- > 0;) {
+        if (at[k] < cells.hi[k]) {
+          ++at[k];
+          break;
+        }
+        at[k] = cells.lo[k];
+      }
+    }
+  }
+  level.n_entries = n;
+  return true;
+}
+
+template <class Real, std::size_t D>
+bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const TheBox& bounds,
+                                            const Grid<Real, D>& grid, Level& level) {
+  level.n_entries = 0;
+  const std::size_t n_objects = problem.a.size() + problem.b.size();
+  level.cell_of.reserve(n_objects + n_objects / 2);
+  level.entry_of.reserve(n_objects + n_objects / 2);
+  if (!spread<false>(problem.boxes_a, problem.a, bounds, grid, level)) return false;
+  const std::size_t n_of_a = level.n_entries;
+  if (!spread<true>(problem.boxes_b, problem.b, bounds, grid, level)) return false;
+  const std::size_t n = level.n_entries;
+  statistics_.n_entries += n;
+
+  const std::size_t n_cells = grid.size();
+  level.cells.assign(n_cells, Cell{});
+  Cell* const cells = level.cells.data();
+  const std::uint32_t* const cell_of = level.cell_of.data();
+  for (std::size_t i = 0; i < n_of_a; ++i) ++cells[cell_of[i]].a;
+  for (std::size_t i = n_of_a; i < n; ++i) ++cells[cell_of[i]].b;
+  if (by_model_) note_models(level, n_cells);
+
+  // Where the objects of each voxel stand: first those of a, then those of b.
+  level.voxels.clear();
+  std::uint32_t end = 0;
+  for (std::uint32_t c = 0; c < n_cells; ++c) {
+    const auto [n_a, n_b] = cells[c];
+    if (n_a + n_b == 0) continue;
+    const bool one_model =
+        by_model_ ? level.models[c] != several_models : !problem.within_a && (n_a == 0 || n_b == 0);
+    if (one_model) statistics_.n_left_out += n_a + n_b;
+    if (one_model || n_a == 0 || n_b + (problem.within_a ? n_a - 1 : 0) == 0) {
+      cells[c] = {no_place, no_place};
+      continue;
+    }
+    level.voxels.push_back({c, end, n_a, n_b});
+    cells[c] = {end, end + n_a};
+    end += n_a + n_b;
+  }
+  statistics_.n_voxels += level.voxels.size();
+  level.sorted.resize(end);
+  Entry* const sorted = level.sorted.data();
+  const std::uint32_t* const entry_of = level.entry_of.data();
+  for (std::size_t i = 0; i < n; ++i) {
+    Cell& cell = cells[cell_of[i]];
+    std::uint32_t& place = i < n_of_a ? cell.a : cell.b;
+    if (place != no_place) sorted[place++] = static_cast<Entry>(entry_of[i]);
+  }
+  return true;
+}
+
+template <class Real, std::size_t D>
+void VoxelSearch<Real, D>::note_models(Level& level, std::size_t n_cells) {
+  level.models.assign(n_cells, 0);
+  for (std::size_t i = 0; i < level.n_entries; ++i) {
+    const std::uint32_t object = object_of(static_cast<Entry>(level.entry_of.data()[i]));
+    const std::uint64_t code = std::uint64_t{options_.models[object]} + 1;
+    std::uint64_t& state = level.models[level.cell_of.data()[i]];
+    state = state == 0 || state == code ? code : several_models;
+  }
+}
+
+template <class Real, std::size_t D>
+bool VoxelSearch<Real, D>::sweeps(std::size_t n) const noexcept {
+  return options_.method == PairMethod::sweep ||
+         (n >= costs::sweep_from && options_.method != PairMethod::all_pairs);
+}
+
+template <class Real, std::size_t D>
+void VoxelSearch<Real, D>::compare(const TheProblem& problem) {
+  if (options_.touching == Touching::counts)
+    by_model_ ? compare_as<Touching::counts, true>(problem)
+              : compare_as<Touching::counts, false>(problem);
+  else
+    by_model_ ? compare_as<Touching::does_not_count, true>(problem)
+              : compare_as<Touching::does_not_count, false>(problem);
+}
+
+template <class Real, std::size_t D>
+template <Touching touching, bool by_model>
+void VoxelSearch<Real, D>::compare_as(const TheProblem& problem) {
+  if (problem.within_a) within<touching, by_model>(problem);
+  if (!problem.b.empty()) across<touching, by_model>(problem);
+}
+
+template <class Real, std::size_t D>
+template <bool by_model>
+void VoxelSearch<Real, D>::fill(const TheBox* boxes, std::span<const Entry> entries,
+                                bool in_slices) {
+  if (in_slices) slices_.sort(boxes, entries);
+  lanes_.resize(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::uint32_t object = object_of(entries[i]);
+    lanes_.set(in_slices ? slices_.place(i) : i, boxes[object], entries[i],
+               by_model ? options_.models[object] : 0);
+  }
+  if (in_slices) slices_.find_firsts();
+}
+
+/// All pairs of a, or a sweep.
+template <class Real, std::size_t D>
+template <Touching touching, bool by_model>
+void VoxelSearch<Real, D>::within(const TheProblem& problem) {
+  const std::size_t n = problem.a.size();
+  const bool in_slices = sweeps(n);
+  fill<by_model>(problem.boxes_a, problem.a, in_slices);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto probe = lanes_.probe(i);
+    pairs_.prepare(n, swapped_);
+    lanes_.template compare<touching, by_model>(probe, i + 1,
+                                                in_slices ? slices_.end(probe.box.hi) : n, pairs_);
+  }
+}
+
+/// Compares each box of the smaller set with the larger set, or with the slices that it reaches.
+template <class Real, std::size_t D>
+template <Touching touching, bool by_model>
+void VoxelSearch<Real, D>::across(const TheProblem& problem) {
+  const bool b_is_smaller = problem.b.size() < problem.a.size();
+  const std::span<const Entry> few = b_is_smaller ? problem.b : problem.a;
+  const std::span<const Entry> many = b_is_smaller ? problem.a : problem.b;
+  const TheBox* const boxes = b_is_smaller ? problem.boxes_b : problem.boxes_a;
+  const bool in_slices = few.size() > 1 && sweeps(many.size());
+  fill<by_model>(b_is_smaller ? problem.boxes_a : problem.boxes_b, many, in_slices);
+  for (const Entry entry : few) {
+    const std::uint32_t object = object_of(entry);
+    const TheBox& box = boxes[object];
+    pairs_.prepare(many.size(), swapped_ != b_is_smaller);
+    lanes_.template compare<touching, by_model>(
+        {box, below_of(entry), by_model ? options_.models[object] : 0, object},
+        in_slices ? slices_.first(box.lo) : 0, in_slices ? slices_.end(box.hi) : many.size(),
+        pairs_);
+  }
+}
+
+template class VoxelSearch<float, 2>;
+template class VoxelSearch<float, 3>;
+template class VoxelSearch<float, 4>;
+template class VoxelSearch<double, 2>;
+template class VoxelSearch<double, 3>;
+template class VoxelSearch<double, 4>;
+
+}  // namespace tess::collide::search
