@@ -1,27 +1,36 @@
 #include "collide/collider.hpp"
 
+#include <exception>
+
 namespace tess::collide {
 
 Collider make_collider(const ColliderOptions& options) {
-  const VoxelGrid checked(options.origin, options.size);
+  if (options.size != Point{0, 0, 0})
+    static_cast<void>(VoxelGrid(options.origin, options.size));  // throws
   const auto voxels = create<Voxel>(sparse);
-  return {voxels, create_group<Manager>(checked.origin(), checked.size(), voxels), options};
-}
-
-void start_delivery(const Collider& collider) {
-  collider.managers.broadcast<&Manager::deliver>();
-}
-
-void start_collision(const Collider& collider, const Report& report) {
-  const ColliderOptions& o = collider.options;
-  collider.voxels.broadcast<&Voxel::start_collision>(Collision{o.origin, o.size, o.rules, report});
+  return {voxels, create_group<Manager>(voxels), options};
 }
 
 Task run_collision(Collider collider, Report report) {
-  const auto deliver = [&collider] { start_delivery(collider); };
-  const auto collide_all = [&collider, &report] { start_collision(collider, report); };
-  co_await epoch(deliver);
-  co_await epoch(collide_all);
+  const ColliderOptions& o = collider.options;
+  const std::uint64_t step = collider.managers.local().new_step();
+  Future<Summary> known;
+  collider.managers.broadcast<&Manager::prepare>(step, known.callback());
+  const Summary summary = co_await known;
+  Plan plan;
+  std::exception_ptr refused;
+  try {
+    plan = make_plan(summary, o.origin, o.size, o.rules, step);
+  } catch (...) {
+    refused = std::current_exception();
+  }
+  const auto body = [&] { collider.managers.broadcast<&Manager::begin>(step, plan, report); };
+  co_await epoch(body);
+  if (refused) std::rethrow_exception(refused);
+}
+
+void retire(const Collider& collider) {
+  collider.voxels.broadcast<&Voxel::retire>();
 }
 
 }  // namespace tess::collide

@@ -17,13 +17,14 @@
 //     co_await tess::collide::run_collision(collider, report);
 //
 // submit() is a call to the local Manager. Before a collision, the main coroutine awaits an epoch
-// in which the clients submit. run_collision() awaits two epochs: the delivery of the boxes to the
-// voxels, then the search in the voxels together with the handling of the hits by the owners. The
-// voxels remain for the next collision; a voxel that has no boxes then is destroyed.
+// in which the clients submit. run_collision() collides what was submitted: it chooses the voxels
+// from all objects, and is done when the owners have handled all hits. A voxel starts as soon as
+// its objects are there. Several collisions, of one collider or of several, may overlap.
 //
-// The voxels can be balanced: call tess::start_balancing(collider.voxels, options) before the first
-// collision, and co_await balancer.round() between two collisions. Measured loads are stored by the
-// index of the voxel.
+// The voxels remain for the next collision; retire() ends those that are idle. They can be
+// balanced: call tess::start_balancing(collider.voxels, options) before the first collision, and
+// co_await balancer.round() between two collisions. Measured loads are stored by the index of the
+// voxel.
 #pragma once
 
 #include "collide/parallel/manager.hpp"
@@ -36,10 +37,11 @@
 
 namespace tess::collide {
 
-/// The grid, and the pairs that are hits.
+/// The voxels, and the pairs that are hits.
 struct ColliderOptions {
   Point origin{0, 0, 0};
-  Point size{1, 1, 1};
+  /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
+  Point size{0, 0, 0};
   PairRules rules{};
 };
 
@@ -49,8 +51,9 @@ struct Collider {
   GroupProxy<Manager> managers;
   ColliderOptions options;
 
-  /// Passes objects of a client on this PE to the local Manager. Throws Error as it does.
-  void submit(std::vector<Item> items) const { managers.local().submit(std::move(items)); }
+  /// Pass objects of a client on this PE to the local Manager. They throw Error as it does.
+  void submit(Objects objects) const { managers.local().submit(std::move(objects)); }
+  void submit(const std::vector<Item>& items) const { managers.local().submit(items); }
 
   /// Frees the voxels, their balancer and the Managers on all PEs. No collision may be running. The
   /// enclosing epoch includes this.
@@ -61,15 +64,15 @@ struct Collider {
 };
 
 /// Creates the Managers and an empty array of voxels. Throws Error for a voxel size that is not
-/// positive.
+/// positive, or zero on some axes only.
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all
-/// hits.
+/// hits. Throws Error (bad_value) if the voxel size takes too much memory, or a coordinate exceeds
+/// the range of cells; then the objects are dropped.
 Task run_collision(Collider collider, Report report);
 
-/// The two halves of run_collision(), for callers that time them. Await an epoch around each.
-void start_delivery(const Collider& collider);
-void start_collision(const Collider& collider, const Report& report);
+/// Ends the voxels that had no objects since the last call. No collision may be running.
+void retire(const Collider& collider);
 
 }  // namespace tess::collide

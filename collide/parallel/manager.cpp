@@ -1,39 +1,92 @@
 #include "collide/parallel/manager.hpp"
 
+#include "collide/parallel/voxel_home.hpp"
+
 #include <utility>
 
 namespace tess::collide {
 
-void Manager::submit(std::vector<Item> items) {
-  serial::CellBounds bounds = bounds_;
-  for (const Item& item : items) bounds.add(serial::cells_of(item, grid_), item);
-  bounds_ = bounds;
-  if (!items.empty()) lists_.push_back(std::move(items));
+void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
+  const ObjectList& objects = prepared_[step] = std::exchange(pending_, {});
+  Summary summary;
+  for (const Aabb& box : objects.boxes()) summary.add(box);
+  objects.for_each_model([&](ModelId model) { summary.add(model); });
+  summary.add_sample(objects.boxes(), n_pes());
+  contribute(in_order(JoinSummaries{}), std::move(summary), target);
 }
 
-void Manager::deliver() {
-  const auto lists = std::exchange(lists_, {});
-  serial::CellNumbers numbers(std::exchange(bounds_, {}));
-  const auto for_each_entry = [&](auto&& visit) {
-    for (const std::vector<Item>& items : lists)
-      for (const Item& item : items)
-        numbers.for_each(serial::cells_of(item, grid_), [&](std::uint32_t v) { visit(v, item); });
-  };
+void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) {
+  ObjectList objects = std::move(prepared_.extract(step).mapped());
+  if (plan.nothing) {
+    n_left_out_ += objects.boxes().size();
+    return;
+  }
+  Round& r = round(step);
+  r.delivery = std::make_shared<Delivery>(Delivery{plan, report, std::move(objects), {}});
+  r.sort = VoxelSort(plan, r.delivery->objects);
+  const std::vector<VoxelRecord>& all = r.sort.records();
+  const auto n = static_cast<std::size_t>(n_pes());
+  std::vector<std::vector<VoxelRecord>> records(n);
+  r.records_of.resize(n);
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    const std::size_t home = home_of(all[i].voxel, n);
+    records[home].push_back(all[i]);
+    r.records_of[home].push_back(i);
+  }
+  r.answers.resize(all.size());
+  const WithinModel within_model = plan.rules.within_model;
+  for (std::size_t home = 0; home < n; ++home)
+    group()[PeId{static_cast<std::int32_t>(home)}].send<&Manager::receive_records>(
+        step, pe(), within_model, std::move(records[home]));
+}
 
-  std::vector<std::uint32_t> n_items;
-  for_each_entry([&](std::uint32_t v, const Item& /*item*/) {
-    if (v >= n_items.size()) n_items.resize(numbers.size());
-    ++n_items[v];
-  });
-  std::vector<std::vector<Item>> by_voxel(n_items.size());
-  for (std::size_t v = 0; v < by_voxel.size(); ++v) by_voxel[v].reserve(n_items[v]);
-  for_each_entry([&](std::uint32_t v, const Item& item) { by_voxel[v].push_back(item); });
+Manager::Round& Manager::round(std::uint64_t step) {
+  Round& r = rounds_[step];
+  r.received.resize(static_cast<std::size_t>(n_pes()));
+  return r;
+}
 
-  for (std::uint32_t v = 0; v < by_voxel.size(); ++v) {
-    if (by_voxel[v].empty()) continue;
-    n_delivered_ += by_voxel[v].size();
-    const Cell cell = numbers.cell(v);
-    voxels_[{cell.x, cell.y, cell.z}].send_or_create_here<&Voxel::add>(std::move(by_voxel[v]));
+void Manager::receive_records(std::uint64_t step, PeId from, WithinModel within_model,
+                              std::vector<VoxelRecord> records) {
+  Round& r = round(step);
+  r.received[static_cast<std::size_t>(from.value)] = std::move(records);
+  if (++r.n_received != n_pes()) return;
+  std::vector<std::vector<VoxelAnswer>> answers = answers_to(r.received, within_model);
+  for (std::int32_t to = 0; to < n_pes(); ++to)
+    group()[PeId{to}].send<&Manager::receive_answers>(
+        step, pe(), std::move(answers[static_cast<std::size_t>(to)]));
+}
+
+void Manager::receive_answers(std::uint64_t step, PeId home, std::vector<VoxelAnswer> answers) {
+  Round& r = round(step);
+  const std::vector<std::uint32_t>& asked = r.records_of[static_cast<std::size_t>(home.value)];
+  for (std::size_t i = 0; i < asked.size(); ++i) r.answers[asked[i]] = answers[i];
+  if (++r.n_answers != n_pes()) return;
+  deliver(r);
+  rounds_.erase(step);  // its own home has answered, too
+}
+
+void Manager::deliver(Round& r) {
+  r.delivery->sorted = r.sort.sorted(r.answers);
+  const std::vector<VoxelRecord>& records = r.sort.records();
+  std::uint32_t begin = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const VoxelRecord& record = records[i];
+    const std::uint32_t n = record.n_natives + record.n_visitors;
+    const VoxelAnswer& answer = r.answers[i];
+    if (answer.n_senders == 0) {
+      n_left_out_ += n;
+      continue;
+    }
+    n_delivered_ += n;
+    Part part(r.delivery, begin, record.n_natives, record.n_visitors);
+    const std::uint32_t n_senders = answer.n_senders;
+    if (answer.makes_it != 0) {
+      voxels_[record.voxel].send_or_create_here<&Voxel::add>(std::move(part), n_senders);
+    } else {
+      voxels_[record.voxel].send<&Voxel::add>(std::move(part), n_senders);
+    }
+    begin += n;
   }
 }
 

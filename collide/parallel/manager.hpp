@@ -1,39 +1,74 @@
 // A group with one member per PE (Lawlor and Kalé 2002, section 3.3). Clients on the PE pass their
-// objects to it. It finds the voxels that each object touches, and sends one message per voxel.
+// objects to it. In a collision the Managers
+//
+//     prepare    say what they have; one PE makes the plan
+//     begin      sort their objects into voxels, and tell the home of each voxel how many there are
+//     answer     as homes, leave out voxels that can have no pair, and say how many PEs send to a
+//                voxel, and which of them makes it
+//     deliver    send one message per voxel, which starts at once when it has heard from all
+//
+// There is no barrier: a voxel does not wait for other voxels, and several collisions may overlap.
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/parallel/part.hpp"
+#include "collide/parallel/plan.hpp"
 #include "collide/parallel/voxel.hpp"
-#include "collide/serial/cell_numbers.hpp"
-#include "collide/serial/voxel_grid.hpp"
+#include "collide/parallel/voxel_sort.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <vector>
 
 namespace tess::collide {
 
 class Manager : public Group<Manager> {
  public:
-  Manager(const Point& origin, const Point& size, ArrayProxy<Voxel> voxels)
-      : grid_(origin, size), voxels_(voxels) {}
+  explicit Manager(ArrayProxy<Voxel> voxels) : voxels_(voxels) {}
 
-  /// Accepts objects of a client on this PE. Throws Error with the object if a box is not valid or
-  /// exceeds the range of cell indices; then no object of the list is accepted.
-  void submit(std::vector<Item> items);
+  /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid;
+  /// then no object of the list is accepted.
+  void submit(Objects objects) { pending_.append(std::move(objects)); }
+  void submit(const std::vector<Item>& items) { pending_.append(items); }
 
-  /// Sends the submitted objects to the voxels that they touch, one message per voxel.
-  void deliver();
+  /// A number for a collision that starts on this PE.
+  [[nodiscard]] std::uint64_t new_step() {
+    return static_cast<std::uint64_t>(pe().value) << 40 | ++n_steps_;
+  }
 
-  /// Number of (object, voxel) pairs sent so far.
+  void prepare(std::uint64_t step, const Callback<Summary>& target);
+  /// Without a plan: the objects are dropped.
+  void begin(std::uint64_t step, const Plan& plan, const Report& report);
+  void receive_records(std::uint64_t step, PeId from, WithinModel within_model,
+                       std::vector<VoxelRecord> records);
+  void receive_answers(std::uint64_t step, PeId home, std::vector<VoxelAnswer> answers);
+
+  /// Number of (object, voxel) pairs sent so far, and of those that were left out.
   [[nodiscard]] std::uint64_t n_delivered() const { return n_delivered_; }
+  [[nodiscard]] std::uint64_t n_left_out() const { return n_left_out_; }
 
  private:
-  const VoxelGrid grid_;
+  /// A collision, as its sender and as the home of voxels.
+  struct Round {
+    std::shared_ptr<Delivery> delivery;
+    VoxelSort sort;
+    std::vector<std::vector<std::uint32_t>> records_of;  // by home: positions in sort.records()
+    std::vector<VoxelAnswer> answers;                    // per record
+    std::int32_t n_answers = 0;                          // homes that have answered
+
+    std::vector<std::vector<VoxelRecord>> received;  // by PE
+    std::int32_t n_received = 0;
+  };
+  Round& round(std::uint64_t step);
+  void deliver(Round& round);
+
   const ArrayProxy<Voxel> voxels_;
-  std::vector<std::vector<Item>> lists_;  // one per call of submit()
-  serial::CellBounds bounds_;             // of the cells of all lists
-  std::uint64_t n_delivered_ = 0;
+  ObjectList pending_;
+  std::map<std::uint64_t, ObjectList> prepared_;  // by step
+  std::map<std::uint64_t, Round> rounds_;
+  std::uint64_t n_steps_ = 0, n_delivered_ = 0, n_left_out_ = 0;
 };
 
 }  // namespace tess::collide

@@ -1,78 +1,148 @@
 #include "collide/parallel/voxel.hpp"
 
-#include "collide/serial/pair_search.hpp"
+#include "collide/parallel/hit_sorter.hpp"
+#include "collide/search/voxel_search.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
-
-#include <optional>
+#include <algorithm>
 #include <utility>
 
 namespace tess::collide {
 namespace {
 
-/// Sorts the hits of one voxel by (owner, other). Most hits have the same owners as the hit before,
-/// so the list is looked up again only if the owners change.
-class Sorter {
+using Search = search::VoxelSearch<double, 3>;
+using Problem = search::Problem<double, 3>;
+using Entries = std::vector<search::Entry>;
+
+/// The objects of a voxel, and how they are searched. The memory is kept from voxel to voxel.
+class VoxelProblem {
  public:
-  void add(const ObjectId& mine, const ObjectId& theirs) {
-    if (pairs_ == nullptr || mine.owner != owner_ || theirs.owner != other_) [[unlikely]]
-      select(mine.owner, theirs.owner);
-    pairs_->push_back({mine.local, theirs.local});
-  }
-  void send(const Callback<Hits>& call) {
-    for (Hits& hits : lists_) call(std::move(hits));
+  /// The parts remain where they are until the search is done.
+  void gather(std::span<const Part> parts) {
+    const Part& first = parts.front();
+    if (parts.size() == 1) {
+      objects_ = &first.delivery().objects;
+      natives_ = first.natives();
+      visitors_ = first.visitors();
+      return;
+    }
+    merged_ = {};
+    entries_.clear();
+    for (const Part& part : parts) add(part, part.natives());
+    const std::size_t n_natives = entries_.size();
+    for (const Part& part : parts) add(part, part.visitors());
+    objects_ = &merged_;
+    natives_ = std::span(entries_).first(n_natives);
+    visitors_ = std::span(entries_).subspan(n_natives);
   }
 
- private:
-  using Key = std::pair<OwnerId, OwnerId>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      return mix(static_cast<std::uint64_t>(key.first) ^
-                 mix(static_cast<std::uint64_t>(key.second)));
+  /// Calls run(problem) for the sets whose pairs count: those of different models, or all.
+  template <class Run>
+  void for_each_search(WithinModel within_model, const Run& run) {
+    const Aabb* const boxes = objects_->boxes().data();
+    if (within_model == WithinModel::test)
+      return run(Problem{boxes, boxes, natives_, visitors_, true});
+    by_model(natives_, natives_by_model_);
+    by_model(visitors_, visitors_by_model_);
+    for (std::size_t m = 0; m < natives_by_model_.size(); ++m) {
+      const auto& [model, natives] = natives_by_model_[m];
+      // With the natives of the models after it, and with the visitors of all others.
+      for (std::size_t other = m + 1; other < natives_by_model_.size(); ++other)
+        run(Problem{boxes, boxes, natives, natives_by_model_[other].second, false});
+      for (const auto& [visiting, visitors] : visitors_by_model_)
+        if (visiting != model) run(Problem{boxes, boxes, natives, visitors, false});
     }
-  };
-  void select(OwnerId owner, OwnerId other) {
-    constexpr std::size_t capacity = 64;
-    const auto [at, is_new] = where_.try_emplace({owner, other}, lists_.size());
-    if (is_new) lists_.push_back(Hits{owner, other, {}});
-    pairs_ = &lists_[at->second].pairs;
-    if (is_new) pairs_->reserve(capacity);
-    owner_ = owner;
-    other_ = other;
   }
-  boost::unordered_flat_map<Key, std::size_t, Hash> where_;
-  std::vector<Hits> lists_;
-  OwnerId owner_{}, other_{};
-  std::vector<LocalPair>* pairs_ = nullptr;
+  [[nodiscard]] const ObjectList& objects() const { return *objects_; }
+
+ private:
+  using ByModel = std::vector<std::pair<ModelId, Entries>>;
+
+  void add(const Part& part, std::span<const search::Entry> entries) {
+    for (const search::Entry entry : entries) {
+      const auto n = static_cast<std::uint32_t>(merged_.boxes().size());
+      merged_.append(part.delivery().objects, search::object_of(entry));
+      entries_.push_back(search::make_entry(n, search::below_of(entry)));
+    }
+  }
+  void by_model(std::span<const search::Entry> entries, ByModel& out) const {
+    for (auto& [model, of_model] : out) of_model.clear();
+    std::size_t at = 0;
+    for (const search::Entry entry : entries) {
+      const ModelId model = objects_->model(search::object_of(entry));
+      if (at >= out.size() || out[at].first != model) {
+        const auto known = std::find_if(out.begin(), out.end(),
+                                        [&](const auto& one) { return one.first == model; });
+        at = static_cast<std::size_t>(known - out.begin());
+        if (known == out.end()) out.emplace_back(model, Entries());
+      }
+      out[at].second.push_back(entry);
+    }
+    std::erase_if(out, [](const auto& one) { return one.second.empty(); });
+  }
+
+  const ObjectList* objects_ = nullptr;
+  std::span<const search::Entry> natives_, visitors_;
+  ObjectList merged_;
+  Entries entries_;
+  ByModel natives_by_model_, visitors_by_model_;
 };
+
+/// The scratch memory of a thread.
+struct Scratch {
+  VoxelProblem problem;
+  Search search{{}, false, {nullptr, nullptr}};
+};
+
+/// Sends the pairs to the owners of the objects.
+struct Receiver {
+  const ObjectList& objects;
+  const Report& report;
+  HitSorter hits;
+
+  static void call(void* context, const std::uint32_t* first, const std::uint32_t* second,
+                   std::size_t n, bool /*swapped*/) {
+    auto& self = *static_cast<Receiver*>(context);
+    for (std::size_t i = 0; i < n; ++i)
+      self.hits.add(self.objects.id(first[i]), self.objects.id(second[i]), self.report.only);
+  }
+};
+
+void search_pairs(std::span<const Part> parts) {
+  static thread_local Scratch scratch;
+  const Delivery& delivery = parts.front().delivery();
+  const PairRules rules = delivery.plan.rules;
+  scratch.problem.gather(parts);
+  Receiver receiver{scratch.problem.objects(), delivery.report, {}};
+  PairOptions options;
+  options.touching = rules.touching;
+  scratch.search.restart(options, false, {&receiver, &Receiver::call});
+  scratch.problem.for_each_search(rules.within_model, [&](const Problem& problem) {
+    Aabb bounds = no_box<double, 3>();
+    for (const search::Entry entry : problem.a)
+      bounds = merged(bounds, problem.boxes_a[search::object_of(entry)]);
+    static_cast<void>(scratch.search.solve(problem, bounds, false));
+  });
+  receiver.hits.send(delivery.report.call);
+}
 
 }  // namespace
 
-void Voxel::add(std::vector<Item> items) {
-  if (items_.empty()) {
-    items_ = std::move(items);
-  } else {
-    items_.insert(items_.end(), items.begin(), items.end());
-  }
+void Voxel::add(Part part, std::uint32_t n_senders) {
+  is_idle_ = false;
+  const std::uint64_t step = part.delivery().plan.step;
+  std::vector<Part>& parts = waiting_[step];
+  parts.push_back(std::move(part));
+  if (parts.size() < n_senders) return;
+  search_pairs(parts);
+  waiting_.erase(step);
 }
 
-void Voxel::start_collision(const Collision& collision) {
-  const std::vector<Item> items = std::exchange(items_, {});
-  if (items.empty()) {
+void Voxel::retire() {
+  if (is_idle_) {
     destroy();
-    return;
+  } else {
+    is_idle_ = true;
   }
-  const VoxelGrid grid(collision.origin, collision.size);
-  const Cell here{index().x, index().y, index().z};
-  const std::optional<ModelId> only = collision.report.only;
-  serial::PairSearch search(collision.rules);
-  Sorter sorter;
-  search.for_each_pair(items, here, grid, [&](const Item& a, const Item& b) {
-    if (!only || a.id.model == *only) sorter.add(a.id, b.id);
-    if ((!only && a.id.owner != b.id.owner) || (only && b.id.model == *only))
-      sorter.add(b.id, a.id);
-  });
-  sorter.send(collision.report.call);
 }
 
 }  // namespace tess::collide

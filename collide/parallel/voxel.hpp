@@ -1,54 +1,42 @@
-// A voxel is an element of a sparse three-dimensional array. The first objects that touch it create
-// it, on the PE that they come from (Lawlor and Kalé 2002, section 3.3). When all objects are
-// delivered, each voxel solves a serial problem of its own. Empty space costs nothing: it has no
-// voxels, and a voxel that is empty in a collision, because its objects have moved on, is
-// destroyed. A voxel with objects of a single model skips the search if pairs within a model do not
-// count (section 4.2).
+// A voxel is an element of a sparse array: a cell, and the level that it belongs to. The objects
+// that touch it create it (Lawlor and Kalé 2002, section 3.3). When it has heard from all PEs that
+// send to it, it solves a serial problem of its own, without waiting for other voxels. Empty space
+// costs nothing: it has no voxels.
 #pragma once
 
 #include "collide/hit.hpp"
-#include "collide/parallel/report.hpp"
+#include "collide/parallel/part.hpp"
 #include "runtime/runtime.hpp"
 
 #include <array>
+#include <cmath>
+#include <map>
 #include <vector>
 
 namespace tess::collide {
 
-/// The parameters of a collision, the same for all voxels.
-struct Collision {
-  Point origin{};  ///< of the grid
-  Point size{};    ///< of a voxel
-  PairRules rules;
-  Report report;
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(origin, size, rules, report);
-  }
-};
-
-class Voxel : public Chare<Voxel, Index3> {
+class Voxel : public Chare<Voxel, Index4> {
  public:
-  /// Adds objects that touch this voxel.
-  void add(std::vector<Item> items);
+  /// Adds the objects of one of `n_senders` PEs; the last one starts the search.
+  void add(Part part, std::uint32_t n_senders);
 
-  /// Finds the pairs that this voxel is responsible for, sends them to the owners, and drops the
-  /// objects. A voxel without objects is destroyed.
-  void start_collision(const Collision& collision);
+  /// Ends the voxel if it has been idle since the last call. No collision may be running.
+  void retire();
 
-  /// The position for load balancing, in units of voxels.
+  /// The position for load balancing, in units of the smallest voxels.
   [[nodiscard]] std::array<double, 3> balance_position() const {
-    return {1.0 * index().x, 1.0 * index().y, 1.0 * index().z};
+    const int up = 3 * index().w;
+    return {std::ldexp(index().x, up), std::ldexp(index().y, up), std::ldexp(index().z, up)};
   }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(items_);
+    ar(waiting_, is_idle_);
   }
 
  private:
-  std::vector<Item> items_;
+  std::map<std::uint64_t, std::vector<Part>> waiting_;  // by step of the collider
+  bool is_idle_ = false;
 };
 
 }  // namespace tess::collide

@@ -17,12 +17,6 @@ constexpr int n_bits = D == 2   ? 20
                        : D == 3 ? 16
                                 : 12;
 
-/// A position in the sample that does not follow a period of the input.
-std::size_t scattered(std::size_t i, std::size_t n_samples, std::size_t n) {
-  const std::size_t begin = i * n / n_samples, end = (i + 1) * n / n_samples;
-  return begin + (i * 0x9E3779B97F4A7C15U >> 32) % (end - begin);
-}
-
 template <std::size_t D>
 std::uint64_t interleaved(const std::array<std::uint32_t, D>& cell) {
   std::uint64_t out = 0;
@@ -81,11 +75,11 @@ void GridChooser<Real, D>::take(const Box<Real, D>* boxes, std::span<const Entry
 
 template <class Real, std::size_t D>
 Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                                       bool as_points) {
+                                       bool as_points, double scale) {
   Real widest = 0;
   for (std::size_t k = 0; k < D; ++k) widest = std::max(widest, region.hi[k] - region.lo[k]);
-  const auto n_a = static_cast<double>(problem.a.size());
-  const auto n_b = static_cast<double>(problem.b.size());
+  const auto n_a = scale * static_cast<double>(problem.a.size());
+  const auto n_b = scale * static_cast<double>(problem.b.size());
   const double lanes = Wide<Real>::width;
   const auto cost_of = [&](double in_a, double in_b, const Sharing& sharing) {  // entries of each
     const double partners =

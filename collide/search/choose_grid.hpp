@@ -28,6 +28,12 @@ struct Problem {
   }
 };
 
+/// A position in a sample that does not follow a period of the input.
+[[nodiscard]] inline std::size_t scattered(std::size_t i, std::size_t n_samples, std::size_t n) {
+  const std::size_t begin = i * n / n_samples, end = (i + 1) * n / n_samples;
+  return begin + (i * 0x9E3779B97F4A7C15U >> 32) % (end - begin);
+}
+
 template <std::size_t D>
 struct Choice {
   CellAt<D> n_cells;
@@ -39,9 +45,9 @@ template <class Real, std::size_t D>
 class GridChooser {
  public:
   /// For a region that is as wide as the objects of `a` in it; with `as_points` as if the objects
-  /// had no extents.
+  /// had no extents; as if there were `scale` objects for each.
   [[nodiscard]] Choice<D> choose(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                                 bool as_points = false);
+                                 bool as_points = false, double scale = 1);
 
  private:
   struct Sample {

@@ -11,6 +11,9 @@ namespace tess::collide::search {
 class PairBuffer {
  public:
   explicit PairBuffer(detail::PairSink sink) : sink_(sink) {}
+  /// Takes the memory of another one.
+  PairBuffer(detail::PairSink sink, PairBuffer&& other)
+      : sink_(sink), objects_(std::move(other.objects_)), partners_(std::move(other.partners_)) {}
 
   /// Makes room for a comparison with `n` boxes; passes the pairs on if they are many. The pairs
   /// that follow have the same order of sets.

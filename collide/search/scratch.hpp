@@ -21,6 +21,12 @@ class Scratch {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
+  Scratch() = default;
+  Scratch(Scratch&& other) noexcept { swap(other); }
+  Scratch& operator=(Scratch&& other) noexcept {
+    swap(other);
+    return *this;
+  }
   /// `size` values; what was there remains, the rest is not set.
   void resize(std::size_t size) {
     if (size > capacity_) grow(std::max(size, capacity_ + capacity_ / 2));
@@ -52,6 +58,12 @@ class Scratch {
     if (capacity_ != 0) std::memcpy(larger.get(), data_.get(), capacity_ * sizeof(T));
     data_ = std::move(larger);
     capacity_ = bytes / sizeof(T);
+  }
+
+  void swap(Scratch& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
   }
 
   std::unique_ptr<T[], Free> data_;

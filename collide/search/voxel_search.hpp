@@ -26,6 +26,13 @@ class VoxelSearch {
   VoxelSearch(const PairOptions& options, bool by_model, detail::PairSink sink)
       : options_(options), by_model_(by_model), pairs_(sink) {}
 
+  /// For a next search; the memory is kept.
+  void restart(const PairOptions& options, bool by_model, detail::PairSink sink) {
+    options_ = options;
+    by_model_ = by_model;
+    pairs_ = PairBuffer(sink, std::move(pairs_));
+    statistics_ = {};
+  }
   /// Finds the pairs of a problem. `region` contains the objects of `a`. With `swapped` the sink is
   /// told that `a` is the second set. Returns false, without a pair, if more than the greatest
   /// number of entries were needed.
@@ -78,8 +85,8 @@ class VoxelSearch {
   void fill(const TheBox* boxes, std::span<const Entry> entries, bool in_slices);
   [[nodiscard]] bool sweeps(std::size_t n) const noexcept;
 
-  const PairOptions options_;
-  const bool by_model_;
+  PairOptions options_;
+  bool by_model_;
   bool swapped_ = false;
   std::size_t most_entries_ = ~std::size_t{0};  // of the first grid
   PairStatistics statistics_;

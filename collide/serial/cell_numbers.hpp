@@ -62,20 +62,21 @@ class CellNumbers {
   }
   [[nodiscard]] Cell cell(std::uint32_t number) const noexcept;
 
-  /// Calls visit(number) per cell of `range`, x slowest. A cell without a number gets one.
+  /// Calls visit(number, below) per cell of `range`, x slowest; below has bit k set if the cell is
+  /// above range.lo on axis k. A cell without a number gets one.
   template <class Visit>
   void for_each(const CellRange& range, Visit&& visit) {
     for (std::int64_t x = range.lo.x; x <= range.hi.x; ++x)
       for (std::int64_t y = range.lo.y; y <= range.hi.y; ++y) {
-        if (slots_.empty()) {
-          const std::int64_t row = ((x - low_.x) * n_y_ + (y - low_.y)) * n_z_ - low_.z;
-          for (std::int64_t z = range.lo.z; z <= range.hi.z; ++z)
-            visit(static_cast<std::uint32_t>(row + z));
-        } else {
-          for (std::int64_t z = range.lo.z; z <= range.hi.z; ++z)
-            visit(number(Cell{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                              static_cast<std::int32_t>(z)}));
-        }
+        const std::uint32_t below = (x > range.lo.x ? 1U : 0U) | (y > range.lo.y ? 2U : 0U);
+        const std::int64_t row =
+            slots_.empty() ? ((x - low_.x) * n_y_ + (y - low_.y)) * n_z_ - low_.z : 0;
+        for (std::int64_t z = range.lo.z; z <= range.hi.z; ++z)
+          visit(slots_.empty()
+                    ? static_cast<std::uint32_t>(row + z)
+                    : number(Cell{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                  static_cast<std::int32_t>(z)}),
+                below | (z > range.lo.z ? 4U : 0U));
       }
   }
 

@@ -21,7 +21,8 @@ struct Scene {
   std::int32_t n_clients = 1;
   std::int32_t n_boxes = 0;  ///< per client
   std::int32_t n_models = 1;
-  std::int32_t round = 0;  ///< boxes move from round to round
+  std::int32_t round = 0;    ///< boxes move from round to round
+  std::int32_t n_large = 0;  ///< boxes per client that are 40 times as large, so on a higher level
 };
 
 /// The boxes of a client, as a function of the scene, so that the oracle can compute them too. In
@@ -41,7 +42,7 @@ std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
       double lo = place(random), width = i % 4 == 0 ? 0 : extent(random);
       if (on_lattice) lo = std::round(4 * lo) / 4, width = std::round(4 * width) / 4;
       item.box.lo[k] = lo;
-      item.box.hi[k] = lo + width;
+      item.box.hi[k] = lo + (i < scene.n_large ? 40 : 1) * width;
     }
     items.push_back(item);
   }
@@ -199,12 +200,20 @@ int run_with(const std::string& option, Problem& problem, Task (*program)(Proble
 /// Varies the numbers of clients and models, the rules and the voxel size with the seed.
 Problem problem_of(std::uint64_t seed) {
   Problem problem;
-  problem.scene = {seed, static_cast<std::int32_t>(1 + seed % 7),
+  problem.scene = {seed,
+                   static_cast<std::int32_t>(1 + seed % 7),
                    static_cast<std::int32_t>(20 + seed % 3 * 10),
-                   static_cast<std::int32_t>(1 + seed % 3), 0};
+                   static_cast<std::int32_t>(1 + seed % 3),
+                   0,
+                   0};
   const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0}[seed % 5];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
-  problem.options.size = {size, size, 2 * size};
+  if (seed % 3 == 0) {  // chosen; the scene has a few large boxes
+    problem.options.size = {0, 0, 0};
+    problem.scene.n_large = static_cast<std::int32_t>(seed % 4);
+  } else {
+    problem.options.size = {size, size, 2 * size};
+  }
   problem.options.rules.touching = seed % 11 < 7 ? Touching::counts : Touching::does_not_count;
   problem.options.rules.within_model =
       problem.scene.n_models == 1 || seed % 13 < 4 ? WithinModel::test : WithinModel::skip;

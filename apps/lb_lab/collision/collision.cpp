@@ -3,8 +3,7 @@
 #include "apps/lb_lab/collision/owner.hpp"
 #include "apps/lb_lab/run/balanced.hpp"
 #include "apps/lb_lab/run/stepped.hpp"
-#include "collide/collide_serial.hpp"
-#include "collide/voxel_size.hpp"
+#include "collide/pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -37,9 +36,8 @@ class Collision final : public Stepped {
   }
   tess::Task end() override {
     co_await tess::epoch([this] { owners_.broadcast<&Owner::end>(); });
-    // Nothing is submitted: every voxel is empty, and ends.
-    const tess::collide::Report none;
-    co_await tess::collide::run_collision(collider_, none);
+    // Idle for two calls: every voxel ends.
+    for (int i = 0; i < 2; ++i) co_await tess::epoch([this] { tess::collide::retire(collider_); });
   }
 
  private:
@@ -62,11 +60,13 @@ std::uint64_t serial_answer_of_collision(const Problem& p) {
   std::uint64_t answer = 0;
   for (std::int32_t t = 0; t < p.n_iterations; ++t) {
     const std::vector<tess::collide::Item> items = clusters.items(0, clusters.n_objects(), {}, t);
-    const tess::collide::VoxelGrid grid(tess::collide::suggested_voxel_size(items));
-    const auto found = [&](const tess::collide::Item& a, const tess::collide::Item& b) {
-      answer += answer_of_pair(a.id.local, b.id.local, t);
-    };
-    tess::collide::collide_serial(items, grid, pair_rules, found);
+    std::vector<tess::collide::Aabb> boxes;
+    boxes.reserve(items.size());
+    for (const tess::collide::Item& item : items) boxes.push_back(item.box);
+    tess::collide::for_each_pair(
+        std::span<const tess::collide::Aabb>(boxes), {}, [&](std::uint32_t a, std::uint32_t b) {
+          answer += answer_of_pair(items[a].id.local, items[b].id.local, t);
+        });
   }
   return answer;
 }

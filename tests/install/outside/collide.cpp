@@ -1,19 +1,13 @@
-#include <collide/collide_serial.hpp>
+#include <collide/pairs.hpp>
 #include <cstdio>
 #include <vector>
 
 using namespace tess::collide;
 
 int main() {
-  std::vector<Item> items;
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    Item item{};
-    item.box = {{0.8 * i, 0, 0}, {0.8 * i + 1, 1, 1}};
-    item.id = {OwnerId{1}, LocalId(i), ModelId(i)};
-    items.push_back(item);
-  }
-  int pairs = 0;
-  collide_serial(items, VoxelGrid({0, 0, 0}, {1, 1, 1}), {},
-                 [&](const Item&, const Item&) { ++pairs; });
-  std::printf("pairs %d\n", pairs);
+  std::vector<Aabb> boxes;
+  for (int i = 0; i < 4; ++i) boxes.push_back({{0.8 * i, 0, 0}, {0.8 * i + 1, 1, 1}});
+  for_each_pair(std::span<const Aabb>(boxes), {},
+                [](std::uint32_t a, std::uint32_t b) { std::printf("%u touches %u\n", a, b); });
+  std::printf("pairs %zu\n", pairs(std::span<const Aabb>(boxes)).size());
 }

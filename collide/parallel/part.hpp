@@ -1,0 +1,81 @@
+// What a Manager sends to a voxel: the objects of its PE that touch it. Within a process the boxes
+// stay where they are, and a part is a range of a list that all voxels share; to another process the
+// boxes of the part are sent alone.
+#pragma once
+
+#include "collide/parallel/object_list.hpp"
+#include "collide/parallel/plan.hpp"
+#include "collide/parallel/report.hpp"
+#include "collide/search/entry.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tess::collide {
+
+/// The objects of a PE in a collision, and which of them are in which voxel.
+struct Delivery {
+  Plan plan;
+  Report report;
+  ObjectList objects;
+  std::vector<search::Entry> sorted;  ///< by voxel
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(plan, report, objects, sorted);
+  }
+};
+
+class Part {
+ public:
+  Part() = default;
+  /// Objects from `begin` on: those of the voxel's level, then smaller ones that visit it.
+  Part(std::shared_ptr<const Delivery> delivery, std::uint32_t begin, std::uint32_t n_natives,
+       std::uint32_t n_visitors)
+      : delivery_(std::move(delivery)),
+        begin_(begin),
+        n_natives_(n_natives),
+        n_visitors_(n_visitors) {}
+
+  [[nodiscard]] const Delivery& delivery() const noexcept { return *delivery_; }
+  [[nodiscard]] std::span<const search::Entry> natives() const noexcept {
+    return {delivery_->sorted.data() + begin_, n_natives_};
+  }
+  [[nodiscard]] std::span<const search::Entry> visitors() const noexcept {
+    return {delivery_->sorted.data() + begin_ + n_natives_, n_visitors_};
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (Ar::is_reading) {
+      auto alone = std::make_shared<Delivery>();
+      ar(n_natives_, n_visitors_, *alone);
+      begin_ = 0;
+      delivery_ = std::move(alone);
+    } else {
+      make_alone();
+      ar(n_natives_, n_visitors_, *delivery_);
+    }
+  }
+
+ private:
+  /// Copies the objects of this part.
+  void make_alone() {
+    if (delivery_->sorted.size() == n_natives_ + n_visitors_) return;
+    auto alone = std::make_shared<Delivery>(Delivery{delivery_->plan, delivery_->report, {}, {}});
+    for (const auto entries : {natives(), visitors()})
+      for (const search::Entry entry : entries) {
+        const auto n = static_cast<std::uint32_t>(alone->sorted.size());
+        alone->objects.append(delivery_->objects, search::object_of(entry));
+        alone->sorted.push_back(search::make_entry(n, search::below_of(entry)));
+      }
+    delivery_ = std::move(alone);
+    begin_ = 0;
+  }
+
+  std::shared_ptr<const Delivery> delivery_;
+  std::uint32_t begin_ = 0, n_natives_ = 0, n_visitors_ = 0;
+};
+
+}  // namespace tess::collide

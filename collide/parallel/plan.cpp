@@ -1,0 +1,128 @@
+#include "collide/parallel/plan.hpp"
+
+#include "collide/search/choose_grid.hpp"
+#include "collide/search/survey.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace tess::collide {
+
+void Summary::add(const Aabb& box) {
+  ++n;
+  bounds = merged(bounds, box);
+  const std::uint32_t octave = search::octave_of(search::longest_extent(box));
+  octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
+}
+
+void Summary::add(ModelId model) {
+  if (models.size() < 3 && std::find(models.begin(), models.end(), model) == models.end())
+    models.push_back(model);
+}
+
+void Summary::add_sample(std::span<const Aabb> boxes, std::int32_t n_pes) {
+  const std::size_t wanted = std::max<std::size_t>(8, 4096 / static_cast<std::size_t>(n_pes));
+  const std::size_t n_taken = std::min(boxes.size(), wanted);
+  for (std::size_t i = 0; i < n_taken; ++i)
+    sample.push_back(boxes[search::scattered(i, n_taken, boxes.size())]);
+}
+
+Summary JoinSummaries::operator()(Summary a, const Summary& b) const {
+  a.n += b.n;
+  a.bounds = merged(a.bounds, b.bounds);
+  a.sample.insert(a.sample.end(), b.sample.begin(), b.sample.end());
+  for (std::size_t i = 0; i < a.octaves.size(); ++i) a.octaves[i] |= b.octaves[i];
+  for (const ModelId model : b.models) a.add(model);
+  return a;
+}
+
+VoxelGrid Plan::grid(Level level) const {
+  Point scaled = size;
+  for (double& edge : scaled) edge = std::ldexp(edge, 3 * level);
+  return {origin, scaled};
+}
+
+Level Plan::level_of(double longest_extent) const noexcept {
+  Level level = 0;
+  double most = 2 * std::min({size[0], size[1], size[2]});
+  for (; longest_extent > most && level + 1 < most_levels; most *= 8) ++level;
+  return level;
+}
+
+namespace {
+
+/// A number of entries per object, from the sample.
+double entries_per_object(const Summary& summary, const Plan& plan) {
+  double n = 0;
+  for (const Aabb& box : summary.sample) {
+    const Point size = plan.grid(plan.level_of(search::longest_extent(box))).size();
+    double cells = 1;
+    for (std::size_t k = 0; k < 3; ++k) cells *= 1 + (box.hi[k] - box.lo[k]) / size[k];
+    n += cells;
+  }
+  return n / std::max<double>(1, static_cast<double>(summary.sample.size()));
+}
+
+double chosen_size(const Summary& summary) {
+  std::vector<search::Entry> all(summary.sample.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = search::make_entry(i, 0);
+  const search::Problem<double, 3> problem{
+      summary.sample.data(), summary.sample.data(), all, {}, true};
+  search::GridChooser<double, 3> chooser;
+  const double scale =
+      static_cast<double>(summary.n) / std::max<double>(1, static_cast<double>(all.size()));
+  const auto edge_of = [&](const search::Choice<3>& choice) {
+    double edge = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      edge = std::max(edge, (summary.bounds.hi[k] - summary.bounds.lo[k]) / choice.n_cells[k]);
+    return edge;
+  };
+  const search::Choice<3> whole = chooser.choose(problem, summary.bounds, false, scale);
+  const search::Choice<3> points = chooser.choose(problem, summary.bounds, true, scale);
+  double size = edge_of(whole);
+  if (whole.cost > 2 * points.cost) {
+    // The smallest objects decide, and the others stand on higher levels.
+    std::uint32_t least = 0;
+    while ((summary.octaves[least / 64] >> least % 64 & 1U) == 0) ++least;
+    size = std::min(size, std::max(edge_of(points), search::size_of_octave<double>(least)));
+  }
+  return size;
+}
+
+}  // namespace
+
+Plan make_plan(const Summary& summary, const Point& origin, const Point& size, PairRules rules,
+               std::uint64_t step) {
+  Plan plan{step, origin, size, 0, true, rules};
+  if (summary.n < 2 || (rules.within_model == WithinModel::skip && summary.models.size() == 1))
+    return plan;
+  plan.nothing = false;
+  const bool is_chosen = size == Point{0, 0, 0};
+  double widest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    widest = std::max(widest, summary.bounds.hi[k] - summary.bounds.lo[k]);
+  if (is_chosen) {
+    plan.origin = summary.bounds.lo;
+    double edge = chosen_size(summary);
+    // Indices have 32 bits, with a margin for what rounding does.
+    edge = std::clamp(std::max(edge, std::ldexp(widest, -30)), 1e-300, 1e300);
+    plan.size = {edge, edge, edge};
+  } else if (const double n = entries_per_object(summary, plan); n > 64) {
+    const double all = n * static_cast<double>(summary.n);
+    fail(ErrorCode::bad_value, "collider: voxel size ", size[0], " x ", size[1], " x ", size[2],
+         " puts ", summary.n, " objects into about ", all, " voxels, which takes ", 12e-9 * all,
+         " GB; give a larger one, or 0 to have it chosen");
+  }
+  for (std::uint32_t octave = 0; octave < 2048; ++octave) {
+    if ((summary.octaves[octave / 64] >> octave % 64 & 1U) == 0) continue;
+    // From its least to its greatest size.
+    const double least = octave == 0 ? 0 : search::size_of_octave<double>(octave);
+    for (Level l = plan.level_of(least); l <= plan.level_of(2 * least); ++l) plan.levels |= 1U << l;
+  }
+  static_cast<void>(plan.grid(0).cells_of(summary.bounds));  // throws
+  return plan;
+}
+
+}  // namespace tess::collide

@@ -1,0 +1,61 @@
+// The plan of a collision: the voxels of each level. It is made on one PE from summaries of what
+// was submitted on all PEs, so a collider follows a scene that changes.
+//
+// Level l has the objects whose longest extent is at most 2 * 8^l voxel sizes, and voxels of 8^l
+// sizes. All smaller objects visit its voxels (search/size_classes.hpp).
+#pragma once
+
+#include "collide/hit.hpp"
+#include "collide/serial/voxel_grid.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tess::collide {
+
+/// What a PE knows of the objects that were submitted to it.
+struct Summary {
+  std::uint64_t n = 0;
+  Aabb bounds = no_box<double, 3>();
+  std::vector<Aabb> sample;
+  std::array<std::uint64_t, 32> octaves{};  ///< a bit per octave of the longest extents
+  std::vector<ModelId> models;              ///< at most three different ones
+
+  void add(const Aabb& box);
+  void add(ModelId model);
+  /// Adds a sample of the boxes.
+  void add_sample(std::span<const Aabb> boxes, std::int32_t n_pes);
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n, bounds, sample, octaves, models);
+  }
+};
+struct JoinSummaries {
+  Summary operator()(Summary a, const Summary& b) const;
+};
+
+/// One of the levels: 0 is the finest.
+using Level = std::int32_t;
+inline constexpr Level most_levels = 32;
+
+struct Plan {
+  std::uint64_t step = 0;  ///< of the collider; unique
+  Point origin{};
+  Point size{};              ///< of the voxels of level 0
+  std::uint32_t levels = 0;  ///< a bit per level that has objects
+  bool nothing = true;       ///< no pair is possible
+  PairRules rules;
+
+  [[nodiscard]] bool has(Level level) const noexcept { return (levels >> level & 1U) != 0; }
+  [[nodiscard]] VoxelGrid grid(Level level) const;
+  [[nodiscard]] Level level_of(double longest_extent) const noexcept;
+};
+
+/// With a size of zero, the size that is expected to cost least. Throws Error (bad_value) for a
+/// size that takes too much memory, or for which a coordinate has no 32-bit cell.
+[[nodiscard]] Plan make_plan(const Summary& summary, const Point& origin, const Point& size,
+                             PairRules rules, std::uint64_t step);
+
+}  // namespace tess::collide
