@@ -52,7 +52,6 @@ struct PeStatistics {
   std::uint64_t forwards = 0;      ///< messages that met an element's former PE
   std::uint64_t migrations = 0;    ///< elements that left
   std::uint64_t dead_letters = 0;  ///< undeliverable messages to destroyed elements
-  Time busy{0};
 };
 
 class Pe {
