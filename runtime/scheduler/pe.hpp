@@ -32,7 +32,8 @@
 
 namespace tess::detail {
 
-class Element;
+class TessElement;
+using Element = TessElement;
 class Runtime;
 
 /// The context of running code: its element, its epoch, and the broadcast of the element's
