@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks that all sources are formatted, written in plain English (words.sh), include what their room may include
-# (layers.sh), and that tests mirror the tree (test_names.sh). `cmake/lint.sh --fix` formats them; `--tidy` runs clang-tidy (tidy.sh) on the given sources, or on the
+# (layers.sh), that programs use the runtime's public functions (internals.sh), and that tests mirror the tree (test_names.sh). `cmake/lint.sh --fix` formats them; `--tidy` runs clang-tidy (tidy.sh) on the given sources, or on the
 # runtime's core as far as it changed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -19,6 +19,7 @@ case "${1:-}" in
     echo "lint: ${#sources[@]} sources are formatted"
     bash cmake/words.sh
     bash cmake/layers.sh
+    bash cmake/internals.sh
     bash cmake/test_names.sh
     ;;
   *)

@@ -479,6 +479,9 @@ class ArrayProxy {
   /// The current epoch waits until all PEs have freed the array. Ending an array again has no
   /// effect.
   void destroy() const { detail::end_collection(id_); }
+  /// True if the array was destroyed and this PE has freed its part, or does so once the waiting
+  /// coroutines of its elements are done.
+  [[nodiscard]] bool ended() const { return current_pe().ended(id_); }
 
   /// A target for results: entry method F of all elements.
   template <auto F>

@@ -23,7 +23,7 @@ template <class C>
 concept ResumesFromSync = requires(C& chare) { chare.resume_from_sync(); };
 
 template <class Derived, class IndexType = Index1>
-class Chare : public detail::Contributor<IndexType> {
+class Chare : public detail::TessContributor<IndexType> {
  public:
   using Index = IndexType;
 
@@ -84,7 +84,7 @@ class Chare : public detail::Contributor<IndexType> {
   /// and messages between elements of the array that follow from it. If rounds overlap (a broadcast
   /// is started before the result of the last one is known), insert elements while no round is
   /// under way.
-  using detail::Contributor<IndexType>::contribute;
+  using detail::TessContributor<IndexType>::contribute;
 };
 
 }  // namespace tess

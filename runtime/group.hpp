@@ -18,7 +18,7 @@ class GroupProxy;
 
 /// The base class of a group's members.
 template <class Derived>
-class Group : public detail::Contributor<Index1> {
+class Group : public detail::TessContributor<Index1> {
  public:
   using Index = Index1;
   /// For Array: there is one element per PE, and the element with index i is on PE i.
@@ -35,7 +35,7 @@ class Group : public detail::Contributor<Index1> {
 
   /// Contributes this member's value to the next reduction of the group; every member contributes
   /// one value. in_order(op) combines the values in the order of PEs.
-  using detail::Contributor<Index1>::contribute;
+  using detail::TessContributor<Index1>::contribute;
 };
 
 /// The proxy of a group's member on one PE.

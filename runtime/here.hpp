@@ -4,6 +4,9 @@
 
 #include "runtime/scheduler/pe.hpp"
 
+#include <chrono>
+#include <cstddef>
+
 namespace tess {
 
 /// The PE of the calling code.
@@ -25,6 +28,20 @@ namespace tess {
 /// The counters of this PE since the start.
 [[nodiscard]] inline const detail::PeStatistics& statistics() {
   return current_pe().statistics();
+}
+/// How long this PE has run messages, up to the last time that it looked into its queue (the
+/// running message is not included). The first call on a PE starts the measurement, which then
+/// costs two readings of a clock per look; a balancer, a trace or --stats may have started it
+/// before. So only the difference of two calls has a meaning. Time in which another thread used the
+/// core is subtracted, to about a millisecond; on the simulated machine the clock is virtual.
+[[nodiscard]] inline Time busy_time() {
+  const detail::Meter& meter = current_pe().start_meter();
+  return std::chrono::round<Time>(std::chrono::duration<double>(meter.seconds(meter.busy())));
+}
+/// The number of arrays and groups that this PE knows: those that were created and have not been
+/// freed by destroy() here.
+[[nodiscard]] inline std::size_t n_collections() {
+  return current_pe().collections().size();
 }
 
 }  // namespace tess

@@ -45,3 +45,13 @@ void RoomAwait::await_suspend(Task::Handle task) const {
 }
 
 }  // namespace tess::detail
+
+namespace tess {
+
+bool has_room(PeId to) {
+  Pe& pe = current_pe();
+  return pe.machine().same_process(pe.id(), to) ||
+         pe.outbox().has_room(pe.machine().process_of(to));
+}
+
+}  // namespace tess

@@ -31,6 +31,10 @@ class [[nodiscard]] RoomAwait {
 
 }  // namespace detail
 
+/// True if no messages from this PE to the process of that PE are held back. Within a process
+/// nothing is ever held back.
+[[nodiscard]] bool has_room(PeId to);
+
 /// When awaited, completes once there is room for a message to this PE.
 [[nodiscard]] inline detail::RoomAwait room(PeId to) {
   return detail::RoomAwait(to);

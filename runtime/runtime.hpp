@@ -17,6 +17,7 @@
 #include "runtime/reduction.hpp"
 #include "runtime/room.hpp"
 #include "runtime/run.hpp"
+#include "runtime/scoped.hpp"
 #include "runtime/shared_array.hpp"
 #include "runtime/task.hpp"
 #include "runtime/timer.hpp"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# lint_refuses.sh layers|words|test_names ROOT: cmake/CHECK.sh accepts a small tree, and refuses it with each planted fault.
+# lint_refuses.sh layers|words|internals|test_names ROOT: cmake/CHECK.sh accepts a small tree, and refuses it with each planted fault.
 set -euo pipefail
 check=$1 root=$2
 
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree"/{cmake,runtime/core,runtime/scheduler,collide/serial,m2m,apps/hello,tests/runtime/core}
+mkdir -p "$tree"/{cmake,runtime/core,runtime/scheduler,collide/serial,m2m,apps/hello,apps/bench,tests/runtime/core}
 cp "$root/cmake/layers.txt" "$tree/cmake"
 cd "$tree"
 
@@ -15,6 +15,7 @@ sound() {
   echo '#include "runtime/core/number.hpp"' >runtime/scheduler/queue.hpp
   echo '#include "runtime/chare.hpp"' >apps/hello/main.cpp
   echo '#include "runtime/core/number.hpp"  // Elements, nowhere a person: whose, "whole".' >collide/serial/grid.cpp
+  echo 'Pe& here = current_pe();' >apps/bench/inside.cpp
   echo 'int nobody = 0;' >m2m/mesh.cpp  # a name is not prose
   echo 'Says "who" in a quotation.' >m2m/README.md
   echo 'TEST_CASE("a number") {}' >tests/runtime/core/number_test.cpp
@@ -24,6 +25,7 @@ run_check() {
   case $check in
     layers) bash "$root/cmake/layers.sh" --root "$tree" ;;
     words) bash "$root/cmake/words.sh" "$tree"/*/*/*.[hc]pp "$tree"/m2m/* ;;
+    internals) bash "$root/cmake/internals.sh" "$tree" ;;
     test_names) bash "$root/cmake/test_names.sh" "$tree" ;;
   esac
 }
@@ -68,6 +70,12 @@ case $check in
     refuses runtime/core/number.hpp 'int n = 0;  // the element Who sent it' '"who" in:'
     refuses apps/hello/main.cpp 'fail("the PE to whom it went");' '"whom" in:'
     refuses m2m/README.md 'Somebody has to ask.' '"somebody" in:'
+    ;;
+  internals)
+    refuses apps/hello/main.cpp 'const auto here = tess::current_pe().id();' 'apps/hello/main.cpp:1:'
+    refuses m2m/mesh.cpp 'if (current_pe_or_null() != nullptr) send();' 'm2m/mesh.cpp:1:'
+    refuses collide/serial/grid.hpp 'void end(Pe& pe);' 'collide/serial/grid.hpp:1:'
+    refuses apps/hello/main.cpp 'tess::detail::Meter* meter = nullptr;' 'runtime/here.hpp'
     ;;
   test_names)
     refuses tests/runtime/core/registry.cpp 'TEST_CASE("a name") {}' 'should end in _test.cpp'

@@ -22,7 +22,7 @@ class Share : public tess::Group<Share> {
 std::int64_t my_number = 0;  // of this process
 
 void Share::give(tess::Callback<std::int64_t> target) {
-  const auto& machine = tess::current_pe().machine();
+  const auto& machine = tess::machine();
   const bool first = pe().value % machine.pes_per_process() == 0;
   contribute(tess::sum, first ? my_number : 0, std::move(target));
 }

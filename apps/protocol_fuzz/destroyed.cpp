@@ -115,13 +115,13 @@ class Clerk : public Group<Clerk> {
     if (n_hops != 0) group()[next].send<&Clerk::pass>(n_hops - 1);
   }
   void add(int /*sum*/) {}
-  void check_end(CollectionId array) {
-    remains->trial.expect(current_pe().ended(array) && current_pe().find(array) == nullptr,
-                          "the epoch of the end is done, but ", pe(), " still has the array");
+  void check_end(ArrayProxy<Mayfly> flies) {
+    remains->trial.expect(flies.ended(), "the epoch of the end is done, but ", pe(),
+                          " still has the array");
   }
   void count_collections() {
     const std::lock_guard lock(remains->mutex);
-    remains->n_collections[pe()] = current_pe().collections().size();
+    remains->n_collections[pe()] = tess::n_collections();
   }
 };
 
@@ -279,10 +279,10 @@ Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
       make();
       flood();
       co_await epoch(end);
-      clerks.broadcast<&Clerk::check_end>(flies.id());
+      clerks.broadcast<&Clerk::check_end>(flies);
       co_return;
   }
-  clerks.broadcast<&Clerk::check_end>(flies.id());
+  clerks.broadcast<&Clerk::check_end>(flies);
   const std::lock_guard lock(remains->mutex);
   remains->over[flies.id()] = true;
   // A balancer's migrations belong to no epoch of the user: elements may arrive, and end, later.

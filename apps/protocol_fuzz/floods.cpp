@@ -62,10 +62,7 @@ class Basin : public Group<Basin> {
           random.chance(0.5) ? fixed : PeId{static_cast<std::int32_t>(random.below(n_pes))};
       if (deluge->asks_for_room) {
         co_await room(group()[to]);
-        Pe& here = current_pe();
-        if (!here.machine().same_process(here.id(), to))
-          deluge->trial.expect(here.outbox().has_room(here.machine().process_of(to)),
-                               "a producer goes on without room");
+        deluge->trial.expect(has_room(to), "a producer goes on without room");
       }
       Freight freight{pe(), {}};
       freight.values.assign(random.below(static_cast<std::uint64_t>(deluge->most_numbers)), 2.5);

@@ -32,12 +32,12 @@ namespace tess::detail {
 
 /// An element with its index. The constructor takes the index from the PE's current construction.
 template <class Index>
-class IndexedElement : public Element {
+class TessIndexedElement : public Element {
  public:
-  virtual ~IndexedElement() = default;
+  virtual ~TessIndexedElement() = default;
 
  protected:
-  IndexedElement() : index_(*static_cast<const Index*>(constructed())) {}
+  TessIndexedElement() : index_(*static_cast<const Index*>(constructed())) {}
 
   /// The collection of this element; also valid in its constructor, where it is not listed yet.
   [[nodiscard]] CollectionId collection_id() const {
@@ -52,7 +52,7 @@ class IndexedElement : public Element {
   template <class>
   friend class Array;
   template <class>
-  friend class Contributor;
+  friend class TessContributor;
   template <class, class>
   friend class tess::Chare;
   template <class>
@@ -83,7 +83,7 @@ enum class DeadLetters : std::uint8_t {
 template <class Index>
 class ArrayOf : public Collection {
  public:
-  using Indexed = IndexedElement<Index>;
+  using Indexed = TessIndexedElement<Index>;
   using CallMessage = ElementMessage<Index>;
 
   ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)

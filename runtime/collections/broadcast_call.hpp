@@ -17,7 +17,8 @@ class BroadcastCall;
 /// per call, and the thread sanitizer sees the count (that of std::shared_ptr is changed in a
 /// library).
 using SharedCall = boost::intrusive_ptr<const BroadcastCall>;
-class Element;
+class TessElement;
+using Element = TessElement;
 class Pe;
 struct Action;
 

@@ -53,7 +53,7 @@ void contribute_as(const Key& key, Element& element, Collection& collection, InO
 /// The part of a chare's or group member's base class that contributes. The target is passed by
 /// reference: all contributions but the first only compare it.
 template <class Index>
-class Contributor : public IndexedElement<Index> {
+class TessContributor : public TessIndexedElement<Index> {
  protected:
   /// Contributes a value; a constructor's contribution waits until the element is listed.
   template <class Op, class T>

@@ -1,5 +1,9 @@
 // The runtime's part of a chare: its collection, its incarnation and version, the broadcasts it has
 // received, and its next reduction. The user's class derives from it through Chare or Group.
+//
+// In a class the names of its base classes are visible before the names around it. So the classes
+// between a chare and this one have names that no program has: a chare may use its program's own
+// type Element. The runtime calls this one Element too.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -37,14 +41,14 @@ struct ElementState {
   std::uint64_t seen_broadcast = 0;
 };
 
-class Element {
+class TessElement {
  public:
-  Element(const Element&) = delete;
-  Element& operator=(const Element&) = delete;
+  TessElement(const TessElement&) = delete;
+  TessElement& operator=(const TessElement&) = delete;
 
  protected:
-  Element() = default;
-  ~Element() = default;
+  TessElement() = default;
+  ~TessElement() = default;
 
   /// Runs `call` once the element under construction is known to its collection. `what` names the
   /// function that needs this.
@@ -57,16 +61,16 @@ class Element {
   template <class>
   friend class Array;
   template <class>
-  friend class IndexedElement;
+  friend class TessIndexedElement;
   friend class ElementScope;
   template <class, class>
   friend class tess::Chare;
   template <class>
   friend class tess::Group;
   template <class>
-  friend class Contributor;
+  friend class TessContributor;
   friend struct TaskAccount;
-  friend std::string element_text(const Element& element);
+  friend std::string element_text(const TessElement& element);
 
   Collection* collection_ = nullptr;
   std::unique_ptr<BalanceRecord, EndRecord> balance_;  // if a balancer watches its array
@@ -77,6 +81,8 @@ class Element {
   bool destroy_requested_ = false;  // to be destroyed once none of its code runs or waits
   bool has_run_ = false;            // code other than its constructor has run here
 };
+
+using Element = TessElement;
 
 /// "Block[3,4]".
 [[nodiscard]] std::string element_text(const Element& element);

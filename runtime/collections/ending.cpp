@@ -49,6 +49,11 @@ void end_collection(CollectionId id) {
   }
 }
 
+bool in_running_program() {
+  const Pe* const pe = current_pe_or_null();
+  return pe != nullptr && !pe->stopped() && !pe->dropping();
+}
+
 void free_later(Collection& collection) {
   Pe& pe = collection.pe();
   send_system<&freeing_arrives>(pe, pe.id(), Free{collection.id()});

@@ -16,6 +16,9 @@ class Collection;
 /// Ends a collection on all PEs. Ending it again has no effect.
 void end_collection(CollectionId id);
 
+/// True on a PE of a run that has not begun to end. Otherwise a destructor need not end anything.
+[[nodiscard]] bool in_running_program();
+
 /// The last element of an ended collection is gone: frees the collection after the running code.
 void free_later(Collection& collection);
 

@@ -20,7 +20,8 @@
 
 namespace tess::detail {
 
-class Element;
+class TessElement;
+using Element = TessElement;
 class Pe;
 struct Action;
 

@@ -11,7 +11,8 @@
 
 namespace tess::detail {
 
-class Element;
+class TessElement;
+using Element = TessElement;
 
 class HostedCollection {
  public:

@@ -32,7 +32,8 @@
 
 namespace tess::detail {
 
-class Element;
+class TessElement;
+using Element = TessElement;
 class Runtime;
 
 /// The context of running code: its element, its epoch, and the broadcast of the element's
@@ -52,7 +53,6 @@ struct PeStatistics {
   std::uint64_t forwards = 0;      ///< messages that met an element's former PE
   std::uint64_t migrations = 0;    ///< elements that left
   std::uint64_t dead_letters = 0;  ///< undeliverable messages to destroyed elements
-  Time busy{0};
 };
 
 class Pe {

@@ -10,7 +10,8 @@
 
 namespace tess::detail {
 
-class Element;
+class TessElement;
+using Element = TessElement;
 struct Action;
 
 /// One suspended coroutine.

@@ -1,4 +1,5 @@
 // expect: unable to deduce
+// expect of clang: no matching member function for call to 'send'
 #include "runtime/runtime.hpp"
 
 class Block : public tess::Chare<Block> {

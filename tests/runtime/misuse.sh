@@ -65,6 +65,6 @@ for kind in short long; do
   says simulated ${kind}_broadcast "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
   says simulated ${kind}_sum "MergedPartial<Uneven<[01]>, Sum>: " "serialize()"
 done
-says processes short_element "Uneven<0> >\[0\]\|Uneven<0>: " "serialize()"
+says processes short_element "Uneven<0> \?>\[0\]\|Uneven<0>: " "serialize()"
 
 finish

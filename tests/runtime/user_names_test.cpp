@@ -5,6 +5,8 @@
 #include "runtime/shared_array.hpp"
 #include "tests/support/catch.hpp"
 
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace tess {
@@ -48,6 +50,10 @@ using namespace tess;
 struct Topology {
   int n_links = 0;
 };
+// As the names of the classes between Chare or Group and the runtime's own.
+struct IndexedElement {};
+struct Contributor {};
+struct Member {};
 struct Counter {
   Topology topology;
   std::vector<Link> links;
@@ -60,6 +66,34 @@ class Station : public Chare<Station> {
     contribute(sum, counter.topology.n_links, target);
   }
 };
+
+/// True if the names mean the program's types, in the scope where this is instantiated.
+template <class... Named>
+constexpr bool are_mine =
+    std::is_same_v<std::tuple<Named...>, std::tuple<tess::Element, IndexedElement, Contributor,
+                                                    Member, tess::Collection, tess::Array>>;
+
+class Atom : public Chare<Atom, Index3> {
+ public:
+  static constexpr bool sees_mine =
+      are_mine<Element, IndexedElement, Contributor, Member, Collection, Array>;
+  void be(Element element) { element_ = element; }
+
+ private:
+  Element element_;
+};
+class Chemist : public Group<Chemist> {
+ public:
+  static constexpr bool sees_mine =
+      are_mine<Element, IndexedElement, Contributor, Member, Collection, Array>;
+};
+
+TEST_CASE(
+    "in a chare and in a member of a group, names of the program are not hidden by base classes",
+    "[runtime]") {
+  CHECK(Atom::sees_mine);
+  CHECK(Chemist::sees_mine);
+}
 
 TEST_CASE("a program in namespace tess may use the names of internals", "[runtime]") {
   Setup setup;

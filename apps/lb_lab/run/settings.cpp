@@ -35,10 +35,10 @@ double parse_time(std::string_view option, std::string_view value) {
   const char* const last = value.data() + value.size();
   const auto [end, error] = std::from_chars(value.data(), last, count);
   const std::string_view unit(end, static_cast<std::size_t>(last - end));
-  const double factor = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" ? 1 : 0;
-  if (error != std::errc() || !(count * factor > 0) || count * factor > 1e6)
+  const double unit_seconds = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" ? 1 : 0;
+  if (error != std::errc() || !(count * unit_seconds > 0) || count * unit_seconds > 1e6)
     refuse(option, ": ", value, " is not a time above 0; give 250us, 1ms, 0.5s or the like");
-  return count * factor;
+  return count * unit_seconds;
 }
 
 tess::BalanceWhen parse_when(std::string_view value) {

@@ -89,15 +89,15 @@ void Station::worked(double measured_seconds, double nominal_seconds) {
 
 void Station::first_begins() {
   began_ = clock();
-  tess::detail::Meter& meter = tess::current_pe().start_meter();
-  busy_at_begin_ = meter.seconds(meter.busy());
+  busy_at_begin_ = tess::seconds(tess::busy_time());
   cpu_at_begin_ = cpu();
 }
 
 void Station::iteration_ends(std::int32_t iteration) {
   const double busy_before = busy_at_begin_, cpu_before = cpu_at_begin_, began = began_;
   first_begins();
-  // CPU time includes the search for messages; the meter's time includes what other threads took.
+  // CPU time includes the search for messages; of what other threads took, busy time may include up
+  // to a millisecond.
   const double busy = std::min(busy_at_begin_ - busy_before, cpu_at_begin_ - cpu_before);
   entry(record_.seconds, iteration, 0) += busy;
   draw(iteration, {began, std::min(began + busy, began_)});

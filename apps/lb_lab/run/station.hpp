@@ -78,7 +78,7 @@ class Station : public tess::Group<Station> {
   bool fixed_cost_ = false;  // a simulated machine whose clock does not count the cost of code
   PeRecord record_;
   double began_ = 0, cpu_at_begin_ = 0;
-  double busy_at_begin_ = 0;  // as the PE's meter has it
+  double busy_at_begin_ = 0;  // tess::busy_time()
   std::uint64_t answer_ = 0;
   std::uint64_t walked_ = 0;
 };

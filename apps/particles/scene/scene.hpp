@@ -56,16 +56,18 @@ struct Emitter {
   std::uint64_t seed = 1;
 };
 
+/// A plane in which the field of an object is drawn.
+struct Slice {
+  std::size_t object = 0;
+  double at = 0;  ///< on the axis, in the object's units
+};
+
 /// The output of a run besides its table.
 struct Outputs {
   int statistics = 0;          ///< a row of the table every so many steps; 0: first and last only
   int trajectories = 0;        ///< positions every so many steps; 0: none
   std::uint64_t traced = 200;  ///< how many particles, evenly spread over the ids
   std::vector<int> axes{2};    ///< the pictures look along these; that of the field along the first
-  struct Slice {
-    std::size_t object = 0;
-    double at = 0;  ///< on the axis, in the object's units
-  };
   std::optional<Slice> slice;  ///< a picture of the field
   bool fields = false;         ///< files of the fields, for runs to come
   std::uint64_t audited = 0;   ///< how many particles are checked for tunnelling in each step

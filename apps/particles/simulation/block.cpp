@@ -22,13 +22,15 @@ bool explodes_within(const Scene& scene, const Stretch& stretch) {
 
 /// Whether any particle is outside of the box: one pass without branches, since usually none is.
 bool any_outside(const tess::dn::Particles& motion, const tess::dn::Bounds& box) {
-  const auto [low, high] = box;
-  std::size_t n = 0;
+  const auto& [low, high] = box;
+  const auto is_within = [](double at, double least, double most) {
+    return static_cast<std::size_t>(at >= least) & static_cast<std::size_t>(at < most);
+  };
+  std::size_t n_within = 0;
   for (std::size_t p = 0; p < motion.size(); ++p)
-    n += static_cast<std::size_t>(!((motion.x[p] >= low.x) & (motion.x[p] < high.x) &
-                                    (motion.y[p] >= low.y) & (motion.y[p] < high.y) &
-                                    (motion.z[p] >= low.z) & (motion.z[p] < high.z)));
-  return n != 0;
+    n_within += is_within(motion.x[p], low.x, high.x) & is_within(motion.y[p], low.y, high.y) &
+                is_within(motion.z[p], low.z, high.z);
+  return n_within != motion.size();
 }
 
 }  // namespace

@@ -265,7 +265,7 @@ TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negati
   const double radius = 0.5, reach = scene.rules.surface_flow->distance;
   const Ran ran = run_scene(std::move(scene), "--pes=1");
   const auto& path = ran.result.trajectories;
-  std::size_t n_in = 0, n_out = 0, n_close = 0;
+  std::size_t n_in = 0, n_out = 0;
   for (std::size_t i = 1; i < path.size(); ++i)
     for (std::size_t p = 0; p < path[i].samples.size(); ++p) {
       const Sample &from = path[i - 1].samples[p], &to = path[i].samples[p];
@@ -281,7 +281,6 @@ TEST_CASE("a positive coefficient of the flow turns toward the tangent, a negati
       if (std::abs(along) < 0.2 || std::abs(along) > 0.98) continue;  // at the tangent, head on
       ++(along < 0 ? n_in : n_out);
       CHECK((along < 0 ? turned * regime.in : -turned * regime.out) > 0);
-      n_close += static_cast<std::size_t>(i + 1 == path.size());
     }
   CHECK(n_in > 100);
   CHECK(n_out > 100);

@@ -1,0 +1,59 @@
+// Colliders that end leave no memory behind, as the system sees it.
+#include "collide/collider.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/resident.hpp"
+
+namespace {
+
+using namespace tess;
+using namespace tess::collide;
+
+/// Owns one box in a row in which each box overlaps the next.
+class Client : public Chare<Client> {
+ public:
+  void submit(const Collider& collider) {
+    const double x = index().x;
+    const auto model = static_cast<ModelId>(index().x % 2);
+    collider.submit({{{{x, 0, 0}, {x + 1.5, 1, 1}}, {owner_of(index()), {}, model}}});
+  }
+  void receive(const Hits& hits) { n_pairs_ += hits.pairs.size(); }
+  void count(Callback<std::uint64_t> target) { contribute(sum, n_pairs_, std::move(target)); }
+
+ private:
+  std::uint64_t n_pairs_ = 0;
+};
+
+constexpr int n_clients = 8;
+
+Task collide_once(ArrayProxy<Client> clients) {
+  const Scoped collider(make_collider({.size = {1, 1, 1}}));
+  co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
+  const Report report{report_to<&Client::receive>(clients), {}};
+  co_await run_collision(collider, report);
+}
+
+Task collide_often(tess::test::Growth& growth, std::uint64_t& n_pairs) {
+  const auto clients = create<Client>(range(n_clients));
+  for (int round = 1; round <= growth.n_rounds(); ++round) {
+    co_await epoch([&] { const Task work = collide_once(clients); });
+    growth.after(round);
+  }
+  CHECK(n_collections() == 1);
+  Future<std::uint64_t> total;
+  clients.broadcast<&Client::count>(total.callback());
+  n_pairs = co_await total;
+}
+
+TEST_CASE("colliders in a loop leave memory flat", "[collide]") {
+  tess::test::Growth growth(8000);
+  std::uint64_t n_pairs = 0;
+  Setup setup{make_threads_machine(2), {}};
+  REQUIRE(run(setup, [&]() -> Task { return collide_often(growth, n_pairs); }) == 0);
+  CHECK(n_pairs == 8000 * 2 * (n_clients - 1));  // both owners receive each pair
+  INFO("grows by " << growth.bytes() << " bytes from round 2000 to 8000");
+  REQUIRE(growth.bytes() >= 0);
+  CHECK(growth.bytes() < 1 << 20);
+}
+
+}  // namespace
