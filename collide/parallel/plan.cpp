@@ -82,8 +82,9 @@ double chosen_size(const Summary& summary) {
   const search::Choice<3> whole = chooser.choose(problem, summary.bounds, false, scale);
   const search::Choice<3> points = chooser.choose(problem, summary.bounds, true, scale);
   double size = edge_of(whole);
-  if (whole.cost > 2 * points.cost) {
-    // The smallest objects decide, and the others stand on higher levels.
+  if (whole.cost > 4 * points.cost) {
+    // Large objects ask for large voxels, in which too many small ones meet: the smallest objects
+    // decide, and the others stand on higher levels.
     std::uint32_t least = 0;
     while ((summary.octaves[least / 64] >> least % 64 & 1U) == 0) ++least;
     size = std::min(size, std::max(edge_of(points), search::size_of_octave<double>(least)));

@@ -1,7 +1,7 @@
 #include "collide/parallel/voxel_sort.hpp"
 
 #include "collide/search/survey.hpp"
-#include "collide/serial/cell_numbers.hpp"
+#include "collide/search/wide.hpp"
 
 namespace tess::collide {
 
@@ -11,42 +11,85 @@ VoxelSort::VoxelSort(const Plan& plan, const ObjectList& objects) {
   note_models(objects);
 }
 
+namespace {
+
+/// As find_cells(), for objects that a plan has accepted.
+CellRange cells_in(const VoxelGrid& grid, const Aabb& box) {
+  CellRange range;
+  if (!grid.find_cells(box, range)) [[unlikely]]
+    range = grid.cells_of(box);  // throws
+  return range;
+}
+
+}  // namespace
+
+template <class IsWanted>
+void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
+                       serial::CellNumbers& numbers, const IsWanted& is_wanted) {
+  using Corners = search::Corners<3>;
+  const Corners corners(numbers.strides());
+  const bool is_dense = numbers.is_dense();
+  std::size_t n = n_entries_;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    if (!is_wanted(i)) continue;
+    const CellRange range = cells_in(grid, boxes[i]);
+    const auto more = [](std::int32_t lo, std::int32_t hi) {
+      return static_cast<std::uint32_t>(hi) - static_cast<std::uint32_t>(lo);
+    };
+    const std::uint32_t x = more(range.lo.x, range.hi.x), y = more(range.lo.y, range.hi.y),
+                        z = more(range.lo.z, range.hi.z);
+    if (is_dense && (x | y | z) < 2) [[likely]] {
+      n += corners.write(numbers.dense_number(range.lo),
+                         static_cast<std::uint32_t>(search::make_entry(i, 0)), x | y << 1 | z << 2,
+                         slot_of_.data() + n, entry_of_.data() + n);
+      continue;
+    }
+    numbers.for_each(range, [&](std::uint32_t number, std::uint32_t below) {
+      slot_of_.data()[n] = number;
+      entry_of_.data()[n++] = static_cast<std::uint32_t>(search::make_entry(i, below));
+    });
+  }
+  n_entries_ = n;
+}
+
 void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level level) {
   const std::vector<Aabb>& boxes = objects.boxes();
   const VoxelGrid grid = plan.grid(level);
   const bool one_level = plan.levels == 1U << level;
   const auto level_of = [&](std::uint32_t i) {
-    return one_level ? level : plan.level_of(search::longest_extent(boxes[i]));
+    return plan.level_of(search::longest_extent(boxes[i]));
   };
-  const auto n = static_cast<std::uint32_t>(boxes.size());
+  const auto is_native = [&](std::uint32_t i) { return one_level || level_of(i) == level; };
+  const auto is_visitor = [&](std::uint32_t i) { return level_of(i) < level; };
   serial::CellBounds bounds;
-  for (std::uint32_t i = 0; i < n; ++i)
-    if (level_of(i) <= level)
-      bounds.add(serial::cells_of({boxes[i], objects.id(i)}, grid), {boxes[i], objects.id(i)});
+  for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    if (one_level || level_of(i) <= level)
+      bounds.add(cells_in(grid, boxes[i]), [&] { return Item{boxes[i], objects.id(i)}; });
   serial::CellNumbers numbers(bounds);
-  constexpr std::uint32_t none = ~std::uint32_t{0};
-  std::vector<std::uint32_t> record_of(numbers.size(), none);  // per number
-  const auto needed = n_entries_ + static_cast<std::size_t>(bounds.n_entries);
-  slot_of_.resize(needed);
-  entry_of_.resize(needed);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const Level at = level_of(i);
-    if (at > level) continue;
-    const std::uint32_t visits = at == level ? 0 : 1;
-    const CellRange range = serial::cells_of({boxes[i], objects.id(i)}, grid);
-    numbers.for_each(range, [&](std::uint32_t number, std::uint32_t below) {
-      if (number >= record_of.size()) record_of.resize(2 * number + 1, none);
-      std::uint32_t& r = record_of[number];
-      if (r == none) {
-        r = static_cast<std::uint32_t>(records_.size());
-        const Cell cell = numbers.cell(number);
-        records_.push_back({{cell.x, cell.y, cell.z, level}});
-      }
-      ++(visits != 0 ? records_[r].n_visitors : records_[r].n_natives);
-      slot_of_.data()[n_entries_] = 2 * r + visits;
-      entry_of_.data()[n_entries_++] = static_cast<std::uint32_t>(search::make_entry(i, below));
-    });
+
+  const std::size_t begin = n_entries_;
+  const std::size_t room =
+      begin + static_cast<std::size_t>(bounds.n_entries) + search::Corners<3>::room;
+  slot_of_.reserve(room);
+  entry_of_.reserve(room);
+  spread(boxes, grid, numbers, is_native);
+  const std::size_t first_visitor = n_entries_;
+  if (!one_level) spread(boxes, grid, numbers, is_visitor);
+
+  // Per number: how many natives and visitors; then the position of the record.
+  std::vector<std::array<std::uint32_t, 2>> counts(numbers.size());
+  std::uint32_t* const slot_of = slot_of_.data();
+  for (std::size_t e = begin; e < first_visitor; ++e) ++counts[slot_of[e]][0];
+  for (std::size_t e = first_visitor; e < n_entries_; ++e) ++counts[slot_of[e]][1];
+  for (std::uint32_t number = 0; number < counts.size(); ++number) {
+    const auto [n_natives, n_visitors] = counts[number];
+    if (n_natives + n_visitors == 0) continue;
+    counts[number][0] = static_cast<std::uint32_t>(records_.size());
+    const Cell cell = numbers.cell(number);
+    records_.push_back({{cell.x, cell.y, cell.z, level}, n_natives, n_visitors, {}, 0});
   }
+  for (std::size_t e = begin; e < n_entries_; ++e)
+    slot_of[e] = 2 * counts[slot_of[e]][0] + (e < first_visitor ? 0U : 1U);
 }
 
 void VoxelSort::note_models(const ObjectList& objects) {

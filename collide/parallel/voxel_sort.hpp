@@ -5,6 +5,7 @@
 #include "collide/parallel/plan.hpp"
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
+#include "collide/serial/cell_numbers.hpp"
 #include "runtime/core/index.hpp"
 
 #include <cstdint>
@@ -41,6 +42,10 @@ class VoxelSort {
 
  private:
   void sort_level(const Plan& plan, const ObjectList& objects, Level level);
+  /// Writes the numbers of the cells that objects touch, to slot_of_, and their entries.
+  template <class IsWanted>
+  void spread(std::span<const Aabb> boxes, const VoxelGrid& grid, serial::CellNumbers& numbers,
+              const IsWanted& is_wanted);
   void note_models(const ObjectList& objects);
 
   std::vector<VoxelRecord> records_;

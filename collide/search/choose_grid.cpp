@@ -52,9 +52,9 @@ CellAt<D> cells_of_size(const Box<Real, D>& region, double size, double most_cel
 
 template <class Real, std::size_t D>
 void GridChooser<Real, D>::take(const Box<Real, D>* boxes, std::span<const Entry> entries,
-                                const Box<Real, D>& region, Real widest, bool is_b) {
-  const std::size_t n =
-      std::min(entries.size(), std::clamp<std::size_t>(entries.size() / 64, 128, 2048));
+                                const Box<Real, D>& region, Real widest, bool is_b, double scale) {
+  const double wanted = std::clamp(scale * static_cast<double>(entries.size()) / 64, 128.0, 2048.0);
+  const std::size_t n = std::min(entries.size(), static_cast<std::size_t>(wanted));
   const Real per_cell = static_cast<Real>(std::uint32_t{1} << n_bits<D>) / widest;
   const Real last = static_cast<Real>((std::uint32_t{1} << n_bits<D>)-1);
   for (std::size_t i = 0; i < n; ++i) {
@@ -93,9 +93,9 @@ Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Bo
   if (!(widest > 0) || !std::isfinite(widest) || !std::isfinite(1 / widest)) return best;
 
   samples_.clear();
-  take(problem.boxes_a, problem.a, region, widest, false);
+  take(problem.boxes_a, problem.a, region, widest, false, scale);
   const double samples_a = static_cast<double>(samples_.size());
-  take(problem.boxes_b, problem.b, region, widest, true);
+  take(problem.boxes_b, problem.b, region, widest, true, scale);
   const double samples_b = static_cast<double>(samples_.size()) - samples_a;
   std::sort(samples_.begin(), samples_.end(),
             [](const Sample& x, const Sample& y) { return x.code < y.code; });

@@ -55,7 +55,7 @@ class GridChooser {
     std::array<float, D> extent;
   };
   void take(const Box<Real, D>* boxes, std::span<const Entry> entries, const Box<Real, D>& region,
-            Real widest, bool is_b);
+            Real widest, bool is_b, double scale);
 
   std::vector<Sample> samples_;
 };

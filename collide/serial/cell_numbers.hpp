@@ -9,6 +9,7 @@
 #include "collide/serial/voxel_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -35,12 +36,14 @@ struct CellBounds {
        std::numeric_limits<std::int32_t>::min()}};
   double n_entries = 0;
 
-  /// Throws Error if the item has more than 2^24 cells, or all items together 2^32.
-  void add(const CellRange& cells, const Item& item) {
+  /// Throws Error if the item that item() gives has more than 2^24 cells, or all items together
+  /// 2^32.
+  template <class GiveItem>
+  void add(const CellRange& cells, const GiveItem& item) {
     const double n_cells = cells.n_cells();
     n_entries += n_cells;
     if (n_cells > 0x1p24 || n_entries >= 0x1p32) [[unlikely]]
-      refuse(n_cells, item);
+      refuse(n_cells, item());
     range.lo = {std::min(range.lo.x, cells.lo.x), std::min(range.lo.y, cells.lo.y),
                 std::min(range.lo.z, cells.lo.z)};
     range.hi = {std::max(range.hi.x, cells.hi.x), std::max(range.hi.y, cells.hi.y),
@@ -61,6 +64,17 @@ class CellNumbers {
     return slots_.empty() ? n_dense_ : cells_.size();
   }
   [[nodiscard]] Cell cell(std::uint32_t number) const noexcept;
+
+  /// In a dense numbering: the number of a cell in the range, and what a step along each axis adds.
+  [[nodiscard]] bool is_dense() const noexcept { return slots_.empty(); }
+  [[nodiscard]] std::uint32_t dense_number(const Cell& c) const noexcept {
+    return static_cast<std::uint32_t>(
+        ((std::int64_t{c.x} - low_.x) * n_y_ + (std::int64_t{c.y} - low_.y)) * n_z_ +
+        (std::int64_t{c.z} - low_.z));
+  }
+  [[nodiscard]] std::array<std::uint32_t, 3> strides() const noexcept {
+    return {static_cast<std::uint32_t>(n_y_ * n_z_), static_cast<std::uint32_t>(n_z_), 1};
+  }
 
   /// Calls visit(number, below) per cell of `range`, x slowest; below has bit k set if the cell is
   /// above range.lo on axis k. A cell without a number gets one.
