@@ -32,6 +32,17 @@ using Triangle = TriangleOf<double>;
 /// triangles do not lie in one plane or in parallel planes.
 [[nodiscard]] bool intersect(const Triangle& a, const Triangle& b, Touching touching) noexcept;
 
+/// The same tests for a point or a segment and a triangle.
+[[nodiscard]] bool intersect(const Point& a, const Triangle& b, Touching touching) noexcept;
+[[nodiscard]] bool intersect(const Segment& a, const Triangle& b, Touching touching) noexcept;
+[[nodiscard]] inline bool intersect(const Triangle& a, const Point& b, Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+[[nodiscard]] inline bool intersect(const Triangle& a, const Segment& b,
+                                    Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+
 /// Floats are converted to double, which is exact.
 [[nodiscard]] inline Triangle in_double(const TriangleOf<float>& t) noexcept {
   Triangle out{};

@@ -129,6 +129,16 @@ bool intersect(const Segment& a, const Segment& b, Touching touching) noexcept {
   return shapes::hulls_intersect(std::array{a.from, a.to}, std::array{b.from, b.to});
 }
 
+bool intersect(const Point& a, const Triangle& b, Touching touching) noexcept {
+  return touching == Touching::counts && shapes::hulls_intersect({&a, 1}, b.corners);
+}
+
+bool intersect(const Segment& a, const Triangle& b, Touching touching) noexcept {
+  const std::array ends{a.from, a.to};
+  return touching == Touching::counts ? shapes::hulls_intersect(ends, b.corners)
+                                      : shapes::hulls_cross(ends, b.corners);
+}
+
 bool intersect(const Triangle& a, const Triangle& b, Touching touching) noexcept {
   const Sides plane_b = plane_of(b);
   Signs a_signs = certain_sides(plane_b, a);

@@ -12,6 +12,8 @@
 
 namespace tess::collide::testing {
 
+inline constexpr std::array both{Touching::counts, Touching::does_not_count};
+
 using Integer = std::int64_t;
 using Vector = std::array<Integer, 3>;
 

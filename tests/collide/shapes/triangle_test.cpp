@@ -12,8 +12,6 @@ using namespace tess::collide::testing;
 
 namespace {
 
-constexpr std::array both{Touching::counts, Touching::does_not_count};
-
 template <class Map>
 Triangle mapped(const Triangle& t, const Map& map) {
   Triangle out = t;
@@ -70,7 +68,7 @@ TEST_CASE("triangles intersect as the oracle says, degenerate and coplanar ones 
           "[collide][shapes]") {
   SmallPoints random(1);
   std::array<std::array<std::size_t, 2>, 2> n{};
-  for (std::size_t i = 0; i < 100'000; ++i) {
+  for (std::size_t i = 0; i < 60'000; ++i) {
     const auto [a, b] = some_pair(random, 2 + int(i % 5), i / 5);
     for (const Touching touching : both) {
       const bool expected = oracle(a.corners, b.corners, touching);
@@ -79,9 +77,9 @@ TEST_CASE("triangles intersect as the oracle says, degenerate and coplanar ones 
       ++n[touching == Touching::counts ? 1U : 0U][expected ? 1U : 0U];
     }
   }
-  CHECK(n[1][1] > 25'000);
-  CHECK(n[1][0] > 25'000);
-  CHECK(n[0][1] > 2'500);
+  CHECK(n[1][1] > 15'000);
+  CHECK(n[1][0] > 15'000);
+  CHECK(n[0][1] > 1'500);
 }
 
 TEST_CASE("exchange, order of corners, exact translation and scaling do not change an answer",
@@ -215,7 +213,7 @@ double distance2(const Exact& a, const Exact& b) {
 TEST_CASE("a contact segment ends where edges meet faces, within 2^-48", "[collide][shapes]") {
   SmallPoints random(5);
   std::size_t n_segments = 0, n_points = 0;
-  for (std::size_t i = 0; i < 3000; ++i) {
+  for (std::size_t i = 0; i < 1500; ++i) {
     auto [a, b] = some_pair(random, 4, i % 2 == 0 ? 0 : 4);
     double largest = 4;
     if (i % 3 == 0) {  // almost in one plane, with coordinates that are not whole
@@ -243,8 +241,8 @@ TEST_CASE("a contact segment ends where edges meet faces, within 2^-48", "[colli
     CHECK(std::sqrt(length2) == Approx(std::sqrt(longest2)).margin(std::ldexp(largest, -46)));
     ++(longest2 > 0 ? n_segments : n_points);
   }
-  CHECK(n_segments > 150);
-  CHECK(n_points > 100);
+  CHECK(n_segments > 75);
+  CHECK(n_points > 50);
 }
 
 TEST_CASE("no contact segment: apart, in one plane, or degenerate", "[collide][shapes]") {
