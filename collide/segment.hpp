@@ -15,7 +15,7 @@ struct Segment {
 
 /// The smallest box that contains the segment.
 [[nodiscard]] inline Aabb box_of(const Segment& segment) noexcept {
-  return merged(box_of(segment.from), box_of(segment.to));
+  return box_around(std::array{segment.from, segment.to});
 }
 
 /// Whether two segments have a common point: exact for all finite coordinates. If touching does not

@@ -28,9 +28,17 @@ struct Sphere {
 /// If touching does not count, a ball of radius zero must be strictly inside of the box.
 [[nodiscard]] bool intersect(const Sphere& a, const Aabb& b, Touching touching) noexcept;
 
-template <class Shape>
-  requires requires(const Shape& a, const Sphere& b) { intersect(b, a, Touching::counts); }
-[[nodiscard]] bool intersect(const Shape& a, const Sphere& b, Touching touching) noexcept {
+[[nodiscard]] inline bool intersect(const Point& a, const Sphere& b, Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+[[nodiscard]] inline bool intersect(const Segment& a, const Sphere& b, Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+[[nodiscard]] inline bool intersect(const Triangle& a, const Sphere& b,
+                                    Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+[[nodiscard]] inline bool intersect(const Aabb& a, const Sphere& b, Touching touching) noexcept {
   return intersect(b, a, touching);
 }
 

@@ -12,7 +12,7 @@ namespace tess::collide {
 
 /// A box whose corners move along straight lines, from `start` at time 0 to `end` at time 1. Both
 /// have the same type, and are valid (is_valid()).
-template <class Box>
+template <class Box = Aabb>
 struct Swept {
   Box start;
   Box end;
@@ -20,9 +20,12 @@ struct Swept {
   friend bool operator==(const Swept&, const Swept&) = default;
 };
 
-/// The smallest box that contains the moving box at all times of the step.
+/// The smallest box that contains the moving box at all times of the step; not valid if `start` or
+/// `end` is not.
 template <class Box>
 [[nodiscard]] Box box_of(const Swept<Box>& swept) noexcept {
+  if (!is_valid(swept.start)) return swept.start;
+  if (!is_valid(swept.end)) return swept.end;
   return merged(swept.start, swept.end);
 }
 

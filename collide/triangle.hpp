@@ -20,9 +20,9 @@ struct TriangleOf {
 using Triangle = TriangleOf<double>;
 
 /// The smallest box that contains the triangle.
-[[nodiscard]] inline Aabb box_of(const Triangle& triangle) noexcept {
-  const auto& [a, b, c] = triangle.corners;
-  return merged(merged(box_of(a), box_of(b)), box_of(c));
+template <class Real>
+[[nodiscard]] Box<Real, 3> box_of(const TriangleOf<Real>& triangle) noexcept {
+  return box_around(triangle.corners);
 }
 
 /// Whether two triangles have a common point (Devillers and Guigue 2003, on exact signs).
@@ -58,7 +58,7 @@ using Triangle = TriangleOf<double>;
 /// The segment that two triangles in different planes have in common; both ends are equal if they
 /// touch in one point. Nothing if the triangles do not intersect, lie in one plane, or if one is
 /// degenerate. Exact signs decide between which edges it lies; each coordinate is then within
-/// 2^-48 of the largest coordinate of the two triangles, however small the angle between them.
+/// 2^-42 of the largest coordinate of the two triangles, however small the angle between them.
 [[nodiscard]] std::optional<Segment> contact_segment(const Triangle& a, const Triangle& b) noexcept;
 
 }  // namespace tess::collide

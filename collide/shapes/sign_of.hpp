@@ -45,4 +45,20 @@ template <class Formula>
   return formula([](double x) noexcept { return ExactNumber(x); }).sign();
 }
 
+/// over / under to a relative error below 2^-44, however much cancels. `under` is not zero.
+template <class Over, class Under>
+[[nodiscard]] double ratio(const Over& over, const Under& under) noexcept {
+  const auto rounded = [](double x) noexcept { return RoundedNumber{x, 0}; };
+  const RoundedNumber a = over(rounded), b = under(rounded);
+  if (a.is_within(0x1p-46) && b.is_within(0x1p-46)) return a.value / b.value;
+  const auto exact = [](double x) noexcept { return ExactNumber(x); };
+  return ExactNumber::quotient(over(exact), under(exact));
+}
+
+/// The value of a formula to a relative error below 2^-44.
+template <class Formula>
+[[nodiscard]] double value_of(const Formula& formula) noexcept {
+  return ratio(formula, [](auto number) { return number(1); });
+}
+
 }  // namespace tess::collide::shapes

@@ -2,50 +2,17 @@
 
 #include "collide/shapes/orientation.hpp"
 #include "collide/shapes/sign_of.hpp"
+#include "collide/shapes/vector.hpp"
 
 namespace tess::collide {
 namespace {
 
 using shapes::sign_of;
-
-/// A vector of numbers of any kind.
-template <class Number>
-struct Vec {
-  Number x, y, z;
-
-  friend Vec operator-(const Vec& a, const Vec& b) noexcept {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-  }
-  friend Number dot(const Vec& a, const Vec& b) noexcept {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-  }
-  friend Vec cross(const Vec& a, const Vec& b) noexcept {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  }
-};
-
-/// to - from.
-template <class MakeNumber>
-auto way(const MakeNumber& number, const Point& from, const Point& to) noexcept {
-  return Vec<decltype(number(0))>{number(to[0]) - number(from[0]), number(to[1]) - number(from[1]),
-                                  number(to[2]) - number(from[2])};
-}
+using shapes::way;
 
 /// Whether a squared distance minus a squared radius, of this sign, is an intersection.
 bool is_within(int sign, Touching touching) noexcept {
   return touching == Touching::counts ? sign <= 0 : sign < 0;
-}
-
-/// Whether the nearest point of the plane of `t`, which has an area, is on the triangle.
-bool projects_onto(const Triangle& t, const Point& p) noexcept {
-  const auto& [a, b, c] = t.corners;
-  const auto is_inside_edge = [&](const Point& from, const Point& to) {
-    return sign_of([&](auto number) {
-             const auto normal = cross(way(number, a, b), way(number, a, c));
-             return dot(normal, cross(way(number, from, to), way(number, from, p)));
-           }) >= 0;
-  };
-  return is_inside_edge(a, b) && is_inside_edge(b, c) && is_inside_edge(c, a);
 }
 
 bool is_strictly_inside(const Point& p, const Aabb& box) noexcept {
@@ -66,7 +33,7 @@ double rounded_sum(double a, double b, double limit) noexcept {
 }  // namespace
 
 Aabb box_of(const Sphere& sphere) noexcept {
-  if (!(sphere.radius >= 0)) return box_around({});
+  if (!(sphere.radius >= 0)) return no_box<double, 3>();
   Aabb out{};
   for (std::size_t k = 0; k < 3; ++k) {
     out.lo[k] = rounded_sum(sphere.centre[k], -sphere.radius, -HUGE_VAL);
@@ -107,7 +74,7 @@ bool intersect(const Sphere& a, const Segment& b, Touching touching) noexcept {
 
 bool intersect(const Sphere& s, const Triangle& t, Touching touching) noexcept {
   const auto& [a, b, c] = t.corners;
-  if (!shapes::are_collinear(a, b, c) && projects_onto(t, s.centre)) {
+  if (!shapes::are_collinear(a, b, c) && shapes::projects_onto(a, b, c, s.centre)) {
     const int sign = sign_of([&](auto number) {
       const auto normal = cross(way(number, a, b), way(number, a, c));
       const auto height = dot(normal, way(number, a, s.centre));

@@ -2,6 +2,7 @@
 
 #include "collide/shapes/convex.hpp"
 #include "collide/shapes/determinant.hpp"
+#include "collide/shapes/sign_of.hpp"
 
 namespace tess::collide {
 namespace {
@@ -104,10 +105,14 @@ bool intersect_flat(const Triangle& a, const Triangle& b) noexcept {
 /// Where from-to meets the plane of a triangle. The ends are on different sides, or one is on it.
 Point meeting_point(const Point& from, const Point& to, const Triangle& plane) noexcept {
   const auto& [a, b, c] = plane.corners;
-  const auto number = [](double x) noexcept { return shapes::ExactNumber(x); };
-  const auto above = shapes::determinant(number, {a, b}, {a, c}, {a, from});
-  const auto below = shapes::determinant(number, {a, b}, {a, c}, {a, to});
-  const double t = shapes::ExactNumber::quotient(above, above - below);
+  // Of the heights of the two ends above the plane.
+  const double t = shapes::ratio(
+      [&](auto number) {
+        return shapes::determinant(number, {a, b}, {a, c}, {a, from});
+      },
+      [&](auto number) {
+        return shapes::determinant(number, {a, b}, {a, c}, {to, from});
+      });
   if (t == 0) return from;
   if (t == 1) return to;
   Point out{};

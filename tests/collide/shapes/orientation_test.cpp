@@ -1,33 +1,24 @@
 #include "collide/shapes/orientation.hpp"
 
-#include "tests/collide/shapes/oracle.hpp"
+#include "tests/collide/shapes/rational.hpp"
 #include "tests/support/catch.hpp"
-
-#include <boost/multiprecision/cpp_int.hpp>
 
 #include <bit>
 
 using namespace tess::collide;
 using namespace tess::collide::shapes;
-using boost::multiprecision::cpp_rational;
+using namespace tess::collide::testing;
 
 namespace {
 
 int exact_orient3d(const Point& a, const Point& b, const Point& c, const Point& d) {
-  std::array<std::array<cpp_rational, 3>, 3> m;
-  const std::array<const Point*, 3> others{&b, &c, &d};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      m[i][k] = cpp_rational((*others[i])[k]) - cpp_rational(a[k]);
-  const cpp_rational det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return det.sign();
+  const Exact o = exact(a);
+  return dot(cross(exact(b) - o, exact(c) - o), exact(d) - o).sign();
 }
 
 int exact_orient2d(const Point& a, const Point& b, const Point& c, std::size_t i, std::size_t j) {
-  const auto r = [](double x) { return cpp_rational(x); };
-  const cpp_rational det =
+  const auto r = [](double x) { return Rational(x); };
+  const Rational det =
       (r(b[i]) - r(a[i])) * (r(c[j]) - r(a[j])) - (r(b[j]) - r(a[j])) * (r(c[i]) - r(a[i]));
   return det.sign();
 }

@@ -1,9 +1,8 @@
 #include "collide/swept.hpp"
 
 #include "tests/collide/shapes/oracle.hpp"
+#include "tests/collide/shapes/rational.hpp"
 #include "tests/support/catch.hpp"
-
-#include <boost/multiprecision/cpp_int.hpp>
 
 #include <cmath>
 
@@ -12,7 +11,6 @@ using namespace tess::collide::testing;
 
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
 using MovingBox = Swept<Aabb>;
 
 Rational at(double start, double end, const Rational& t) {

