@@ -1,6 +1,5 @@
 #include "collide/distance.hpp"
 
-#include "collide/shapes/orientation.hpp"
 #include "collide/shapes/vector.hpp"
 
 #include <algorithm>
@@ -36,14 +35,25 @@ Point point_at(const Segment& s, double t) noexcept {
   return out;
 }
 
-bool nearest_is_on_face(const Triangle& t, const Point& p) noexcept {
-  const auto& [a, b, c] = t.corners;
-  return !shapes::are_collinear(a, b, c) && shapes::projects_onto(a, b, c, p);
+Segment edge(const Triangle& t, std::size_t i) noexcept {
+  return {t.corners[i], t.corners[(i + 1) % 3]};
 }
 
-std::array<Segment, 3> edges(const Triangle& t) noexcept {
-  const auto& [a, b, c] = t.corners;
-  return {Segment{a, b}, Segment{b, c}, Segment{c, a}};
+/// The edge on which the nearest point is, if it is not on the face.
+struct NearestEdge {
+  Segment edge{};
+  double distance2 = HUGE_VAL;
+};
+
+NearestEdge nearest_edge(const Triangle& t, const std::array<int, 3>& sides,
+                         const Point& p) noexcept {
+  NearestEdge nearest{edge(t, 0)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!shapes::may_be_on_edge(sides, i)) continue;
+    const double d = distance2(edge(t, i), p);
+    if (d < nearest.distance2) nearest = {edge(t, i), d};
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -75,10 +85,8 @@ double distance2(const Segment& object, const Point& p) noexcept {
 }
 
 double distance2(const Triangle& object, const Point& p) noexcept {
-  if (!nearest_is_on_face(object, p)) {
-    const auto [ab, bc, ca] = edges(object);
-    return std::min({distance2(ab, p), distance2(bc, p), distance2(ca, p)});
-  }
+  const std::array<int, 3> sides = shapes::edge_sides(object.corners, p);
+  if (!shapes::is_over_face(sides)) return nearest_edge(object, sides, p).distance2;
   const auto& [a, b, c] = object.corners;
   return ratio(
       [&](auto number) {
@@ -107,14 +115,12 @@ double distance2(const Tetrahedron& object, const Point& p) noexcept {
 }
 
 Point nearest_point(const Triangle& triangle, const Point& p) noexcept {
-  const auto& [a, b, c] = triangle.corners;
-  if (!nearest_is_on_face(triangle, p)) {
-    const auto all = edges(triangle);
-    const Segment& nearest = *std::min_element(
-        all.begin(), all.end(),
-        [&](const Segment& x, const Segment& y) { return distance2(x, p) < distance2(y, p); });
+  const std::array<int, 3> sides = shapes::edge_sides(triangle.corners, p);
+  if (!shapes::is_over_face(sides)) {
+    const Segment nearest = nearest_edge(triangle, sides, p).edge;
     return point_at(nearest, nearest_fraction(nearest, p));
   }
+  const auto& [a, b, c] = triangle.corners;
   Point out = p;
   for (std::size_t k = 0; k < 3; ++k)
     out[k] -= ratio(

@@ -1,6 +1,5 @@
 #include "collide/sphere.hpp"
 
-#include "collide/shapes/orientation.hpp"
 #include "collide/shapes/sign_of.hpp"
 #include "collide/shapes/vector.hpp"
 
@@ -74,7 +73,8 @@ bool intersect(const Sphere& a, const Segment& b, Touching touching) noexcept {
 
 bool intersect(const Sphere& s, const Triangle& t, Touching touching) noexcept {
   const auto& [a, b, c] = t.corners;
-  if (!shapes::are_collinear(a, b, c) && shapes::projects_onto(a, b, c, s.centre)) {
+  const std::array<int, 3> sides = shapes::edge_sides(t.corners, s.centre);
+  if (shapes::is_over_face(sides)) {
     const int sign = sign_of([&](auto number) {
       const auto normal = cross(way(number, a, b), way(number, a, c));
       const auto height = dot(normal, way(number, a, s.centre));
@@ -83,8 +83,11 @@ bool intersect(const Sphere& s, const Triangle& t, Touching touching) noexcept {
     });
     return is_within(sign, touching);
   }
-  return intersect(s, Segment{a, b}, touching) || intersect(s, Segment{b, c}, touching) ||
-         intersect(s, Segment{c, a}, touching);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (shapes::may_be_on_edge(sides, i) &&
+        intersect(s, Segment{t.corners[i], t.corners[(i + 1) % 3]}, touching))
+      return true;
+  return false;
 }
 
 bool intersect(const Sphere& a, const Aabb& b, Touching touching) noexcept {

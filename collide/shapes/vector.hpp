@@ -33,16 +33,42 @@ template <class MakeNumber>
   return vector(number, to) - vector(number, from);
 }
 
-/// Whether the nearest point of the plane through a, b, c, which has a normal, is in the triangle.
-[[nodiscard]] inline bool projects_onto(const Point& a, const Point& b, const Point& c,
-                                        const Point& p) noexcept {
-  const auto is_inside_edge = [&](const Point& from, const Point& to) {
-    return sign_of([&](auto number) {
-             const auto normal = cross(way(number, a, b), way(number, a, c));
-             return dot(normal, cross(way(number, from, to), way(number, from, p)));
-           }) >= 0;
+/// Within the plane of a triangle: on which side of each edge (from a, b and c) the nearest point to
+/// `p` is; 1 is inside. All are 0 if and only if the triangle is degenerate.
+[[nodiscard]] inline std::array<int, 3> edge_sides(const std::array<Point, 3>& corners,
+                                                   const Point& p) noexcept {
+  const auto normal = [&](auto number) {
+    return cross(way(number, corners[0], corners[1]), way(number, corners[0], corners[2]));
   };
-  return is_inside_edge(a, b) && is_inside_edge(b, c) && is_inside_edge(c, a);
+  const auto over_edge = [&](auto number, std::size_t i) {
+    const Point &from = corners[i], &to = corners[(i + 1) % 3];
+    return cross(way(number, from, to), way(number, from, p));
+  };
+  const auto rounded = [](double x) noexcept { return RoundedNumber{x, 0}; };
+  const auto rounded_normal = normal(rounded);
+  std::array<int, 3> sides{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const RoundedNumber side = dot(rounded_normal, over_edge(rounded, i));
+    if (side.is_within(1)) {
+      sides[i] = side.value > 0 ? 1 : -1;
+      continue;
+    }
+    const auto exact = [](double x) noexcept { return ExactNumber(x); };
+    sides[i] = dot(normal(exact), over_edge(exact, i)).sign();
+  }
+  return sides;
+}
+
+/// Whether the nearest point of a triangle is on its face, by edge_sides().
+[[nodiscard]] inline bool is_over_face(const std::array<int, 3>& sides) noexcept {
+  const bool has_face = sides[0] != 0 || sides[1] != 0 || sides[2] != 0;
+  return has_face && sides[0] >= 0 && sides[1] >= 0 && sides[2] >= 0;
+}
+
+/// Whether it may be on an edge if it is not on the face: beyond the edge, or the triangle is
+/// degenerate.
+[[nodiscard]] inline bool may_be_on_edge(const std::array<int, 3>& sides, std::size_t i) noexcept {
+  return sides[i] < 0 || (sides[0] == 0 && sides[1] == 0 && sides[2] == 0);
 }
 
 }  // namespace tess::collide::shapes
