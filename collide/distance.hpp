@@ -16,8 +16,11 @@ namespace tess::collide {
 [[nodiscard]] double distance2(const Sphere& object, const Point& p) noexcept;
 [[nodiscard]] double distance2(const Tetrahedron& object, const Point& p) noexcept;
 
-/// The point of a triangle that is nearest to `p`. Each coordinate is within 2^-43 of the largest
-/// coordinate of the triangle and `p`.
+/// The way from `p` to the nearest point of a triangle. The relative error of each component is below
+/// 2^-43, however near `p` is.
+[[nodiscard]] Point offset_to(const Triangle& triangle, const Point& p) noexcept;
+
+/// The point of a triangle that is nearest to `p`: p + offset_to(), rounded.
 [[nodiscard]] Point nearest_point(const Triangle& triangle, const Point& p) noexcept;
 
 }  // namespace tess::collide

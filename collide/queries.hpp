@@ -106,6 +106,10 @@ class Index {
   explicit Index(std::span<const Object> objects);
 
   [[nodiscard]] std::size_t size() const { return objects_.size(); }
+  /// The object at a position of the input.
+  [[nodiscard]] const Object& object(std::uint32_t position) const {
+    return objects_[places_[position]];
+  }
 
   /// The objects of which a point is at most `radius` from `p`, by position. For the library's
   /// shapes this is decided exactly.
@@ -131,7 +135,8 @@ class Index {
                                std::size_t place) const;
 
   BoxTree<Aabb, 3> tree_;
-  std::vector<Object> objects_;  // by place
+  std::vector<Object> objects_;        // by place
+  std::vector<std::uint32_t> places_;  // by position
 };
 
 template <class Object>
@@ -144,8 +149,11 @@ Index<Object>::Index(std::span<const Object> objects) {
   }
   tree_ = detail::tree_over(boxes);
   objects_.reserve(objects.size());
-  for (std::size_t place = 0; place < objects.size(); ++place)
+  places_.resize(objects.size());
+  for (std::uint32_t place = 0; place < objects.size(); ++place) {
     objects_.push_back(objects[tree_.object(place)]);
+    places_[tree_.object(place)] = place;
+  }
 }
 
 template <class Object>

@@ -15,23 +15,35 @@ double squared_length(double x, double y, double z) noexcept {
   return x * x + y * y + z * z;
 }
 
-/// How far along a segment the nearest point is: 0 or 1 at an end.
-double nearest_fraction(const Segment& s, const Point& p) noexcept {
+/// On which part of a segment the nearest point is.
+enum class Part { from, between, to };
+
+Part nearest_part(const Segment& s, const Point& p) noexcept {
   const auto ahead_of = [&](const Point& end) {
-    return [&](auto number) { return dot(way(number, s.from, s.to), way(number, end, p)); };
+    return sign_of(
+        [&](auto number) { return dot(way(number, s.from, s.to), way(number, end, p)); });
   };
-  if (sign_of(ahead_of(s.from)) <= 0) return 0;
-  if (sign_of(ahead_of(s.to)) >= 0) return 1;
-  return ratio(ahead_of(s.from), [&](auto number) {
-    const auto along = way(number, s.from, s.to);
-    return dot(along, along);
-  });
+  if (ahead_of(s.from) <= 0) return Part::from;
+  return ahead_of(s.to) >= 0 ? Part::to : Part::between;
 }
 
-Point point_at(const Segment& s, double t) noexcept {
-  if (t == 1) return s.to;
-  Point out = s.from;
-  for (std::size_t k = 0; k < 3; ++k) out[k] += t * (s.to[k] - s.from[k]);
+/// The way from `p` to the nearest point.
+Point offset_to(const Segment& s, const Point& p) noexcept {
+  const Part part = nearest_part(s, p);
+  if (part == Part::from) return {s.from[0] - p[0], s.from[1] - p[1], s.from[2] - p[2]};
+  if (part == Part::to) return {s.to[0] - p[0], s.to[1] - p[1], s.to[2] - p[2]};
+  Point out{};
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = ratio(
+        [&](auto number) {
+          const auto along = way(number, s.from, s.to);
+          return (number(s.from[k]) - number(p[k])) * dot(along, along) +
+                 (number(s.to[k]) - number(s.from[k])) * dot(along, way(number, s.from, p));
+        },
+        [&](auto number) {
+          const auto along = way(number, s.from, s.to);
+          return dot(along, along);
+        });
   return out;
 }
 
@@ -70,9 +82,9 @@ double distance2(const Aabb& object, const Point& p) noexcept {
 }
 
 double distance2(const Segment& object, const Point& p) noexcept {
-  const double t = nearest_fraction(object, p);
-  if (t == 0) return distance2(object.from, p);
-  if (t == 1) return distance2(object.to, p);
+  const Part part = nearest_part(object, p);
+  if (part == Part::from) return distance2(object.from, p);
+  if (part == Part::to) return distance2(object.to, p);
   return ratio(
       [&](auto number) {
         const auto off = cross(way(number, object.from, p), way(number, object.from, object.to));
@@ -114,26 +126,24 @@ double distance2(const Tetrahedron& object, const Point& p) noexcept {
   return least;
 }
 
-Point nearest_point(const Triangle& triangle, const Point& p) noexcept {
+Point offset_to(const Triangle& triangle, const Point& p) noexcept {
   const std::array<int, 3> sides = shapes::edge_sides(triangle.corners, p);
-  if (!shapes::is_over_face(sides)) {
-    const Segment nearest = nearest_edge(triangle, sides, p).edge;
-    return point_at(nearest, nearest_fraction(nearest, p));
-  }
+  if (!shapes::is_over_face(sides)) return offset_to(nearest_edge(triangle, sides, p).edge, p);
   const auto& [a, b, c] = triangle.corners;
-  Point out = p;
-  for (std::size_t k = 0; k < 3; ++k)
-    out[k] -= ratio(
-        [&](auto number) {
-          const auto normal = cross(way(number, a, b), way(number, a, c));
-          const auto along_axis = k == 0 ? normal.x : k == 1 ? normal.y : normal.z;
-          return dot(normal, way(number, a, p)) * along_axis;
-        },
-        [&](auto number) {
-          const auto normal = cross(way(number, a, b), way(number, a, c));
-          return dot(normal, normal);
-        });
-  return out;
+  const auto normal = [&](auto number) { return cross(way(number, a, b), way(number, a, c)); };
+  return {
+      ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).x; },
+            [&](auto n) { return dot(normal(n), normal(n)); }),
+      ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).y; },
+            [&](auto n) { return dot(normal(n), normal(n)); }),
+      ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).z; },
+            [&](auto n) { return dot(normal(n), normal(n)); }),
+  };
+}
+
+Point nearest_point(const Triangle& triangle, const Point& p) noexcept {
+  const Point offset = offset_to(triangle, p);
+  return {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]};
 }
 
 }  // namespace tess::collide

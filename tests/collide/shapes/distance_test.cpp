@@ -60,9 +60,12 @@ TEST_CASE("distances to triangles and segments have a relative error below 2^-43
     INFO(i);
     const Exact nearest = exact_nearest(t, p);
     REQUIRE(is_relative_error_below(distance2(t, p), distance2(nearest, exact(p)), 0x1p-43));
-    const Point found = nearest_point(t, p);
-    for (std::size_t k = 0; k < 3; ++k)
-      REQUIRE(abs(Rational(found[k]) - nearest[k]) <= Rational((offset + 4) * 0x1p-43));
+    const Point way = offset_to(t, p), found = nearest_point(t, p);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Rational expected = nearest[k] - Rational(p[k]);
+      REQUIRE(abs(Rational(way[k]) - expected) <= abs(expected) * Rational(0x1p-43));
+      REQUIRE(found[k] == p[k] + way[k]);
+    }
     const Segment s{t.corners[0], t.corners[1]};
     const Exact on_segment = exact_nearest({{s.from, s.to, s.to}}, p);
     REQUIRE(is_relative_error_below(distance2(s, p), distance2(on_segment, exact(p)), 0x1p-43));
