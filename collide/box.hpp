@@ -67,6 +67,20 @@ template <class Real, std::size_t D>
   return out;
 }
 
+/// The smallest box that contains all corners of a shape. Not valid (is_valid()) if a coordinate is
+/// NaN or infinite, wherever it stands.
+template <class Real, std::size_t D, std::size_t N>
+[[nodiscard]] Box<Real, D> box_around(const std::array<std::array<Real, D>, N>& corners) noexcept {
+  Box<Real, D> out = box_of(corners[0]);
+  for (std::size_t i = 1; i < N; ++i)
+    for (std::size_t k = 0; k < D; ++k) {
+      const Real x = corners[i][k];
+      out.lo[k] = x < out.lo[k] || std::isnan(x) ? x : out.lo[k];
+      out.hi[k] = x > out.hi[k] || std::isnan(x) ? x : out.hi[k];
+    }
+  return out;
+}
+
 /// False if a number is NaN or infinite, or if lo > hi on an axis.
 template <class Real, std::size_t D>
 [[nodiscard]] bool is_valid(const Box<Real, D>& box) noexcept {

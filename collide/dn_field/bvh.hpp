@@ -3,10 +3,9 @@
 // nearest triangles. Immutable once made; queries may run on any thread.
 #pragma once
 
+#include "collide/box_tree.hpp"
 #include "collide/dn_field/prepared_triangle.hpp"
 #include "collide/dn_field/surface.hpp"
-
-#include <utility>
 
 namespace tess::dn {
 
@@ -81,12 +80,8 @@ class Bvh {
   }
 
  private:
-  static constexpr std::size_t max_depth = 64;  // above log2 of the number of triangles
-  struct Node {
-    Bounds box;
-    std::uint32_t first = 0;  // leaf: first triangle; inner: first of two children
-    std::uint32_t count = 0;  // leaf: number of triangles; inner: 0
-  };
+  using Tree = collide::BoxTree<Bounds, 3>;
+  using Node = Tree::Node;
   struct Moment {       // a cluster as a dipole
     Vec3 centre;        // of area
     Vec3 area_normal;   // sum over the triangles below
@@ -96,55 +91,9 @@ class Bvh {
 
   void summarise();
 
-  /// Calls visit(number) for nodes from the root down; it returns whether to visit the children.
-  template <class Visit>
-  void descend(const Visit& visit) const {
-    std::array<std::uint32_t, max_depth> stack;
-    std::size_t height = 0;
-    stack[height++] = 0;
-    while (height > 0) {
-      const std::uint32_t at = stack[--height];
-      if (!visit(at) || nodes_[at].count != 0) continue;
-      stack[height++] = nodes_[at].first;
-      stack[height++] = nodes_[at].first + 1;
-    }
-  }
-  /// Calls visit(leaf) for leaves within sqrt(`limit2`) of `from`, a point or a box, near ones
-  /// first; a visit may reduce the limit.
-  template <class From, class Visit>
-  void descend_near(const From& from, const double& limit2, const Visit& visit) const {
-    struct Pending {
-      std::uint32_t node;
-      double distance2;
-    };
-    std::array<Pending, max_depth> stack;
-    std::size_t height = 0;
-    stack[height++] = {0, nodes_[0].box.distance2(from)};
-    while (height > 0) {
-      const Pending top = stack[--height];
-      if (top.distance2 > limit2) continue;
-      const Node& node = nodes_[top.node];
-      if (node.count != 0) {
-        visit(node);
-        continue;
-      }
-      Pending near{node.first, nodes_[node.first].box.distance2(from)};
-      Pending far{node.first + 1, nodes_[node.first + 1].box.distance2(from)};
-      if (far.distance2 < near.distance2) std::swap(near, far);
-      if (far.distance2 <= limit2) stack[height++] = far;
-      if (near.distance2 <= limit2) stack[height++] = near;
-    }
-  }
-  /// Calls visit(place) for the triangles of a leaf.
-  template <class Visit>
-  static void each_triangle(const Node& leaf, const Visit& visit) {
-    for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) visit(i);
-  }
-
-  std::vector<Node> nodes_;  // children follow their parent
+  Tree tree_;  // its objects are triangles of the surface
   std::vector<Moment> moments_;
-  std::vector<PreparedTriangle> prepared_;  // in leaf order
-  std::vector<std::uint32_t> order_;        // leaf order -> triangle of the surface
+  std::vector<PreparedTriangle> prepared_;  // by place
   std::vector<Vec3> normals_;
 };
 

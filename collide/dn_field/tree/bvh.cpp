@@ -4,19 +4,15 @@
 
 namespace tess::dn {
 namespace {
-constexpr std::uint32_t leaf_size = 4;
 constexpr double slack = 1 + 1e-9;  // so that rounding never prunes the nearest box
 
-struct Centroid {
-  std::array<float, 3> at;  // in units of the surface's box: no offset is lost in float
-  std::uint32_t triangle;
-};
+using Centre = collide::BoxTree<Bounds, 3>::Centre;
 
-std::vector<Centroid> centroids(const Surface& surface) {
+std::vector<Centre> centres(const Surface& surface) {
   const Bounds box = bounds(surface);
   const Vec3 size = box.size();
   const double scale = 1 / std::max({size.x, size.y, size.z});
-  std::vector<Centroid> all(surface.triangles.size());
+  std::vector<Centre> all(surface.triangles.size());
   for (std::size_t t = 0; t < all.size(); ++t) {
     const auto [a, b, c] = surface.corners(t);
     const Vec3 at = scale / 3 * ((a - box.low) + (b - box.low) + (c - box.low));
@@ -26,78 +22,36 @@ std::vector<Centroid> centroids(const Surface& surface) {
   return all;
 }
 
-std::size_t widest_axis(const Centroid* first, const Centroid* last) {
-  std::array<float, 3> low = first->at, high = first->at;
-  for (; first != last; ++first)
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], first->at[a]);
-      high[a] = std::max(high[a], first->at[a]);
-    }
-  const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-}
-
 }  // namespace
 
-Bvh::Bvh(const Surface& surface) {
-  const auto n = static_cast<std::uint32_t>(surface.triangles.size());
-  std::vector<Centroid> all = centroids(surface);
-  struct Range {
-    std::uint32_t node, first, last;
-  };
-  std::vector<Range> open{{0, 0, n}};
-  nodes_.reserve(n);
-  nodes_.emplace_back();
-  while (!open.empty()) {
-    const Range range = open.back();
-    open.pop_back();
-    if (range.last - range.first <= leaf_size) {
-      nodes_[range.node].first = range.first;
-      nodes_[range.node].count = range.last - range.first;
-      continue;
-    }
-    Centroid* const begin = all.data();
-    const std::uint32_t middle = range.first + (range.last - range.first) / 2;
-    const std::size_t axis = widest_axis(begin + range.first, begin + range.last);
-    std::nth_element(begin + range.first, begin + middle, begin + range.last,
-                     [axis](const Centroid& a, const Centroid& b) {
-                       return a.at[axis] < b.at[axis] ||
-                              (a.at[axis] == b.at[axis] && a.triangle < b.triangle);
-                     });
-    const auto child = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[range.node].first = child;
-    nodes_.emplace_back();
-    nodes_.emplace_back();
-    open.push_back({child + 1, middle, range.last});
-    open.push_back({child, range.first, middle});
-  }
-  order_.reserve(n);
-  prepared_.reserve(n);
-  normals_.resize(n);
-  for (const Centroid& c : all) {
-    order_.push_back(c.triangle);
-    prepared_.push_back(prepare(surface.corners(c.triangle)));
-    normals_[c.triangle] = prepared_.back().normal;
+Bvh::Bvh(const Surface& surface) : tree_(centres(surface)) {
+  prepared_.reserve(tree_.size());
+  normals_.resize(tree_.size());
+  for (std::size_t place = 0; place < tree_.size(); ++place) {
+    const std::uint32_t triangle = tree_.object(place);
+    prepared_.push_back(prepare(surface.corners(triangle)));
+    normals_[triangle] = prepared_.back().normal;
   }
   summarise();
 }
 
 void Bvh::summarise() {
-  moments_.resize(nodes_.size());
-  for (std::size_t at = nodes_.size(); at-- > 0;) {
-    Node& node = nodes_[at];
+  const std::span<Node> nodes = tree_.nodes();
+  moments_.resize(nodes.size());
+  for (std::size_t at = nodes.size(); at-- > 0;) {
+    Node& node = nodes[at];
     Moment& moment = moments_[at];
     Vec3 weighted;
     if (node.count == 0) {
       for (const std::size_t child : {node.first, node.first + 1}) {
-        node.box.extend(nodes_[child].box.low);
-        node.box.extend(nodes_[child].box.high);
+        node.box.extend(nodes[child].box.low);
+        node.box.extend(nodes[child].box.high);
         moment.area_normal += moments_[child].area_normal;
         moment.area += moments_[child].area;
         weighted += moments_[child].area * moments_[child].centre;
       }
     } else {
-      each_triangle(node, [&](std::uint32_t i) {
+      Tree::each_place(node, [&](std::uint32_t i) {
         const PreparedTriangle& t = prepared_[i];
         for (const Vec3 p : t.corner) node.box.extend(p);
         const Vec3 area_normal = 0.5 * cross(t.edge[0], -t.edge[2]);
@@ -117,15 +71,16 @@ void Bvh::summarise() {
 ClosestPoint Bvh::closest(Vec3 p, double limit2) const {
   ClosestPoint best;
   double bound = limit2;
-  descend_near(p, bound, [&](const Node& leaf) {
-    each_triangle(leaf, [&](std::uint32_t i) {
-      const Vec3 offset = offset_from(prepared_[i], p);
-      const double distance2 = dot(offset, offset);
-      if (distance2 > bound) return;
-      bound = distance2;
-      best = {distance2, p - offset, order_[i]};
-    });
-  });
+  tree_.descend_near([&](const Bounds& box) { return box.distance2(p); }, bound,
+                     [&](const Node& leaf) {
+                       Tree::each_place(leaf, [&](std::uint32_t i) {
+                         const Vec3 offset = offset_from(prepared_[i], p);
+                         const double distance2 = dot(offset, offset);
+                         if (distance2 > bound) return;
+                         bound = distance2;
+                         best = {distance2, p - offset, tree_.object(i)};
+                       });
+                     });
   return best;
 }
 
@@ -186,18 +141,20 @@ void Bvh::closest(PointBlock& block) const {
     if (block.distance2[l] >= 0) box.extend({block.x[l], block.y[l], block.z[l]});
   block.place.fill(PointBlock::none);
   double bound = furthest(block) * slack;
-  descend_near(box, bound, [&](const Node& leaf) {
-    const Layers layers = nearer_layers(block, leaf.box);
-    if (layers == Layers{}) return;
-    each_triangle(leaf, [&](std::uint32_t i) { offer(block, layers, prepared_[i], i); });
-    bound = furthest(block) * slack;
-  });
+  tree_.descend_near([&](const Bounds& other) { return other.distance2(box); }, bound,
+                     [&](const Node& leaf) {
+                       const Layers layers = nearer_layers(block, leaf.box);
+                       if (layers == Layers{}) return;
+                       Tree::each_place(
+                           leaf, [&](std::uint32_t i) { offer(block, layers, prepared_[i], i); });
+                       bound = furthest(block) * slack;
+                     });
 }
 
 bool Bvh::may_reach(const Bounds& box, double limit2) const {
   bool found = false;
-  descend([&](std::uint32_t at) {
-    const Node& node = nodes_[at];
+  tree_.descend([&](std::uint32_t at) {
+    const Node& node = tree_.nodes()[at];
     if (found || node.box.distance2(box) > limit2) return false;
     found = node.count != 0;
     return true;

@@ -32,12 +32,12 @@ double crossing_at(Vec3 from, Vec3 way, const std::array<Vec3, 3>& corner) {
 
 void Bvh::crossings(Vec3 from, Vec3 to, std::vector<Crossing>& into) const {
   const Vec3 way = to - from;
-  descend([&](std::uint32_t at) {
-    const Node& node = nodes_[at];
+  tree_.descend([&](std::uint32_t at) {
+    const Node& node = tree_.nodes()[at];
     if (!may_meet(node.box, from, way)) return false;
-    each_triangle(node, [&](std::uint32_t i) {
+    Tree::each_place(node, [&](std::uint32_t i) {
       if (const double part = crossing_at(from, way, prepared_[i].corner); part > 0)
-        into.push_back({part, order_[i]});
+        into.push_back({part, tree_.object(i)});
     });
     return true;
   });

@@ -57,7 +57,7 @@ bool add_half_angle(Turns& sum, Vec3 p, const PreparedTriangle& t) {
 double Bvh::winding_number(Vec3 p, double accuracy) const {
   double angle = 0;
   Turns halves;
-  descend([&](std::uint32_t at) {
+  tree_.descend([&](std::uint32_t at) {
     const Moment& moment = moments_[at];
     const Vec3 to = moment.centre - p;
     const double distance2 = dot(to, to), reach = accuracy * moment.radius;
@@ -65,7 +65,8 @@ double Bvh::winding_number(Vec3 p, double accuracy) const {
       angle += dot(to, moment.area_normal) / (distance2 * std::sqrt(distance2));
       return false;
     }
-    each_triangle(nodes_[at], [&](std::uint32_t i) { add_half_angle(halves, p, prepared_[i]); });
+    Tree::each_place(tree_.nodes()[at],
+                     [&](std::uint32_t i) { add_half_angle(halves, p, prepared_[i]); });
     return true;
   });
   return (angle + 2 * halves.angle()) / (4 * std::numbers::pi);
@@ -83,7 +84,7 @@ WindingEstimate Bvh::winding_estimate(Vec3 p, double radius, double accuracy) co
     const double off = 2 * area * shift / (distance * distance * distance);
     error2 += off * off;
   };
-  descend([&](std::uint32_t at) {
+  tree_.descend([&](std::uint32_t at) {
     const Moment& moment = moments_[at];
     const Vec3 to = moment.centre - p;
     const double distance = norm(to);
@@ -93,7 +94,7 @@ WindingEstimate Bvh::winding_estimate(Vec3 p, double radius, double accuracy) co
       off_by(moment.area, radius + truncated * moment.radius, distance - radius);
       return false;
     }
-    each_triangle(nodes_[at], [&](std::uint32_t i) {
+    Tree::each_place(tree_.nodes()[at], [&](std::uint32_t i) {
       const PreparedTriangle& t = prepared_[i];
       if (radius > 0) {
         const double least = std::sqrt(distance2(t, p.x, p.y, p.z)) - radius;

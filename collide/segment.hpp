@@ -1,0 +1,25 @@
+// A straight segment, its box and its exact test against another segment.
+#pragma once
+
+#include "collide/box.hpp"
+
+namespace tess::collide {
+
+/// The points between two ends, which may coincide.
+struct Segment {
+  Point from;
+  Point to;
+
+  friend bool operator==(const Segment&, const Segment&) = default;
+};
+
+/// The smallest box that contains the segment.
+[[nodiscard]] inline Aabb box_of(const Segment& segment) noexcept {
+  return box_around(std::array{segment.from, segment.to});
+}
+
+/// Whether two segments have a common point: exact for all finite coordinates. If touching does not
+/// count, never: two segments come apart by a small translation.
+[[nodiscard]] bool intersect(const Segment& a, const Segment& b, Touching touching) noexcept;
+
+}  // namespace tess::collide

@@ -1,0 +1,149 @@
+#include "collide/distance.hpp"
+
+#include "collide/shapes/vector.hpp"
+
+#include <algorithm>
+
+namespace tess::collide {
+namespace {
+
+using shapes::ratio;
+using shapes::sign_of;
+using shapes::way;
+
+double squared_length(double x, double y, double z) noexcept {
+  return x * x + y * y + z * z;
+}
+
+/// On which part of a segment the nearest point is.
+enum class Part { from, between, to };
+
+Part nearest_part(const Segment& s, const Point& p) noexcept {
+  const auto ahead_of = [&](const Point& end) {
+    return sign_of(
+        [&](auto number) { return dot(way(number, s.from, s.to), way(number, end, p)); });
+  };
+  if (ahead_of(s.from) <= 0) return Part::from;
+  return ahead_of(s.to) >= 0 ? Part::to : Part::between;
+}
+
+/// The way from `p` to the nearest point.
+Point offset_to(const Segment& s, const Point& p) noexcept {
+  const Part part = nearest_part(s, p);
+  if (part == Part::from) return {s.from[0] - p[0], s.from[1] - p[1], s.from[2] - p[2]};
+  if (part == Part::to) return {s.to[0] - p[0], s.to[1] - p[1], s.to[2] - p[2]};
+  Point out{};
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = ratio(
+        [&](auto number) {
+          const auto along = way(number, s.from, s.to);
+          return (number(s.from[k]) - number(p[k])) * dot(along, along) +
+                 (number(s.to[k]) - number(s.from[k])) * dot(along, way(number, s.from, p));
+        },
+        [&](auto number) {
+          const auto along = way(number, s.from, s.to);
+          return dot(along, along);
+        });
+  return out;
+}
+
+Segment edge(const Triangle& t, std::size_t i) noexcept {
+  return {t.corners[i], t.corners[(i + 1) % 3]};
+}
+
+/// The edge on which the nearest point is, if it is not on the face.
+struct NearestEdge {
+  Segment edge{};
+  double distance2 = HUGE_VAL;
+};
+
+NearestEdge nearest_edge(const Triangle& t, const std::array<int, 3>& sides,
+                         const Point& p) noexcept {
+  NearestEdge nearest{edge(t, 0)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!shapes::may_be_on_edge(sides, i)) continue;
+    const double d = distance2(edge(t, i), p);
+    if (d < nearest.distance2) nearest = {edge(t, i), d};
+  }
+  return nearest;
+}
+
+}  // namespace
+
+double distance2(const Point& object, const Point& p) noexcept {
+  return squared_length(p[0] - object[0], p[1] - object[1], p[2] - object[2]);
+}
+
+double distance2(const Aabb& object, const Point& p) noexcept {
+  const auto off = [&](std::size_t k) {
+    return std::max({0.0, object.lo[k] - p[k], p[k] - object.hi[k]});
+  };
+  return squared_length(off(0), off(1), off(2));
+}
+
+double distance2(const Segment& object, const Point& p) noexcept {
+  const Part part = nearest_part(object, p);
+  if (part == Part::from) return distance2(object.from, p);
+  if (part == Part::to) return distance2(object.to, p);
+  return ratio(
+      [&](auto number) {
+        const auto off = cross(way(number, object.from, p), way(number, object.from, object.to));
+        return dot(off, off);
+      },
+      [&](auto number) {
+        const auto along = way(number, object.from, object.to);
+        return dot(along, along);
+      });
+}
+
+double distance2(const Triangle& object, const Point& p) noexcept {
+  const std::array<int, 3> sides = shapes::edge_sides(object.corners, p);
+  if (!shapes::is_over_face(sides)) return nearest_edge(object, sides, p).distance2;
+  const auto& [a, b, c] = object.corners;
+  return ratio(
+      [&](auto number) {
+        const auto height = dot(cross(way(number, a, b), way(number, a, c)), way(number, a, p));
+        return height * height;
+      },
+      [&](auto number) {
+        const auto normal = cross(way(number, a, b), way(number, a, c));
+        return dot(normal, normal);
+      });
+}
+
+double distance2(const Sphere& object, const Point& p) noexcept {
+  const double off = std::max(0.0, std::sqrt(distance2(object.centre, p)) - object.radius);
+  return off * off;
+}
+
+double distance2(const Tetrahedron& object, const Point& p) noexcept {
+  if (intersect(object, p, Touching::counts)) return 0;
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& c = object.corners;
+    least = std::min(least, distance2(Triangle{{c[i], c[(i + 1) % 4], c[(i + 2) % 4]}}, p));
+  }
+  return least;
+}
+
+Point offset_to(const Triangle& triangle, const Point& p) noexcept {
+  const std::array<int, 3> sides = shapes::edge_sides(triangle.corners, p);
+  if (!shapes::is_over_face(sides)) return offset_to(nearest_edge(triangle, sides, p).edge, p);
+  const auto& [a, b, c] = triangle.corners;
+  const auto normal = [&](auto number) { return cross(way(number, a, b), way(number, a, c)); };
+  return {
+      ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).x; },
+            [&](auto n) { return dot(normal(n), normal(n)); }),
+      ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).y; },
+            [&](auto n) { return dot(normal(n), normal(n)); }),
+      ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).z; },
+            [&](auto n) { return dot(normal(n), normal(n)); }),
+  };
+}
+
+Point nearest_point(const Triangle& triangle, const Point& p) noexcept {
+  const Point offset = offset_to(triangle, p);
+  return {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]};
+}
+
+}  // namespace tess::collide

@@ -1,0 +1,181 @@
+#include "collide/ray.hpp"
+
+#include "tests/collide/shapes/oracle.hpp"
+#include "tests/collide/shapes/rational.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+using namespace tess::collide;
+using namespace tess::collide::testing;
+
+namespace {
+
+/// Where a ray meets the plane of a triangle, if that is in the triangle: barycentric coordinates.
+std::optional<Rational> exact_hit(const Triangle& t, const Ray& ray) {
+  const Exact a = exact(t.corners[0]), o = exact(ray.from), d = exact(ray.direction);
+  const Exact u = exact(t.corners[1]) - a, v = exact(t.corners[2]) - a, w = o - a;
+  const Exact normal = cross(u, v);
+  const Rational speed = dot(normal, d);
+  if (speed == 0) return std::nullopt;
+  const Rational at = -dot(normal, w) / speed;
+  const Exact x = w + at * d;
+  const Rational area2 = dot(normal, normal);
+  const Rational beta = dot(cross(x, v), normal) / area2, gamma = dot(cross(u, x), normal) / area2;
+  if (at < 0 || beta < 0 || gamma < 0 || beta + gamma > 1) return std::nullopt;
+  return at;
+}
+
+std::optional<Rational> exact_hit(const Aabb& box, const Ray& ray) {
+  Rational first = 0;
+  std::optional<Rational> last;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Rational o(ray.from[k]), d(ray.direction[k]), lo(box.lo[k]), hi(box.hi[k]);
+    if (d == 0) {
+      if (o < lo || o > hi) return std::nullopt;
+      continue;
+    }
+    Rational in = (lo - o) / d, out = (hi - o) / d;
+    if (in > out) std::swap(in, out);
+    first = std::max(first, in);
+    last = last ? std::min(*last, out) : out;
+  }
+  return first <= *last ? std::optional(first) : std::nullopt;
+}
+
+template <class Object>
+bool agree(const Object& object, const Ray& ray) {
+  const auto found = hit(object, ray);
+  const auto expected = exact_hit(object, ray);
+  if (found.has_value() != expected.has_value()) return false;
+  return !found || abs(Rational(*found) - *expected) <= *expected * Rational(0x1p-42);
+}
+
+/// Scaled by powers of two: the shape's, and another for the direction. The answer follows exactly.
+Triangle scaled(Triangle t, int power, double offset) {
+  for (Point& p : t.corners)
+    for (double& x : p) x = std::ldexp(x, power) + offset;
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("rays meet triangles and boxes as rational numbers say, at edges and corners too",
+          "[collide][shapes]") {
+  SmallPoints random(1);
+  int n_hits = 0, n_box_hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const int size = 3 + i % 4;
+    Triangle t{random.points<3>(size)};
+    Ray ray{random.point(size), random.point(size)};
+    if (i % 3 == 0) {  // through a corner or the middle of an edge
+      for (std::size_t k = 0; k < 3; ++k)
+        ray.direction[k] = t.corners[0][k] + (i % 2 == 0 ? t.corners[0][k] : t.corners[1][k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) ray.direction[k] -= (i % 3 == 0 ? 2 : 1) * ray.from[k];
+    if (i % 7 == 0)
+      for (double& x : ray.direction) x *= 0.1;
+    if (ray.direction == Point{}) continue;
+    INFO(i);
+    REQUIRE(agree(t, ray));
+    const Aabb box = merged(box_of(random.point(size)), box_of(t.corners[1]));
+    REQUIRE(agree(box, ray));
+    n_hits += hit(t, ray) ? 1 : 0;
+    n_box_hits += hit(box, ray) ? 1 : 0;
+    if (i % 7 == 0) continue;
+    for (const auto& [power, offset] : {std::pair{-30, 0.0}, {30, 0.0}, {0, 1e12}}) {
+      Ray other = ray;
+      for (double& x : other.from) x = std::ldexp(x, power) + offset;
+      for (double& x : other.direction) x = std::ldexp(x, power);
+      REQUIRE(hit(scaled(t, power, offset), other) == hit(t, ray));
+    }
+  }
+  CHECK(n_hits > 500);
+  CHECK(n_box_hits > 500);
+}
+
+TEST_CASE("rays meet balls at the root of the quadratic, and decide tangents exactly",
+          "[collide][shapes]") {
+  SmallPoints random(2);
+  int n_hits = 0, n_tangents = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Sphere ball{random.point(8), double(random.below(4))};
+    Ray ray{random.point(8), random.point(8)};
+    for (std::size_t k = 0; k < 3; ++k) ray.direction[k] -= ray.from[k];
+    if (ray.direction == Point{}) continue;
+    const Exact d = exact(ray.direction), w = exact(ball.centre) - exact(ray.from);
+    const Rational r2(ball.radius * ball.radius);
+    const Rational ahead = dot(d, w), outside = dot(w, w) - r2;
+    const Rational discriminant = ahead * ahead - dot(d, d) * outside;
+    const bool expected = outside <= 0 || (ahead > 0 && discriminant >= 0);
+    const auto found = hit(ball, ray);
+    REQUIRE(found.has_value() == expected);
+    if (!found) continue;
+    const double root =
+        outside <= 0 ? 0
+                     : (static_cast<double>(ahead) - std::sqrt(static_cast<double>(discriminant))) /
+                           static_cast<double>(dot(d, d));
+    REQUIRE(*found == Approx(root).epsilon(1e-12).margin(1e-13));
+    ++n_hits;
+    n_tangents += discriminant == 0 ? 1 : 0;
+  }
+  CHECK(n_hits > 300);
+  CHECK(n_tangents > 5);
+}
+
+TEST_CASE("a ray that meets a tetrahedron meets it where it enters", "[collide][shapes]") {
+  SmallPoints random(3);
+  int n_hits = 0;
+  for (int n = 0; n < 1500; ++n) {
+    const Tetrahedron t{random.points<4>(5)};
+    Ray ray{random.point(7), random.point(5)};
+    for (std::size_t k = 0; k < 3; ++k) ray.direction[k] -= ray.from[k];
+    if (ray.direction == Point{}) continue;
+    if (!oracle(t.corners, t.corners, Touching::does_not_count)) continue;  // may lie in its plane
+    // The first 16 units of length of the direction reach all tetrahedra.
+    Segment reach{ray.from, ray.from};
+    for (std::size_t k = 0; k < 3; ++k) reach.to[k] += 16 * ray.direction[k];
+    const auto found = hit(t, ray);
+    REQUIRE(found.has_value() == intersect(t, reach, Touching::counts));
+    if (!found) continue;
+    ++n_hits;
+    std::optional<Rational> expected;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Triangle face{{t.corners[i], t.corners[(i + 1) % 4], t.corners[(i + 2) % 4]}};
+      const auto at = exact_hit(face, ray);
+      if (at && (!expected || *at < *expected)) expected = at;
+    }
+    if (intersect(t, ray.from, Touching::counts)) expected = 0;
+    REQUIRE(abs(Rational(*found) - *expected) <= *expected * Rational(0x1p-42));
+  }
+  CHECK(n_hits > 200);
+}
+
+TEST_CASE("no ray from inside leaves a closed surface between its triangles", "[collide][shapes]") {
+  // A sphere of triangles with coordinates that are rounded, around 0.1.
+  constexpr int n_rows = 8, n_columns = 12;
+  const auto vertex = [](int row, int column) {
+    const double polar = M_PI * row / n_rows, azimuth = 2 * M_PI * (column % n_columns) / n_columns;
+    const double r = row == 0 || row == n_rows ? 0 : std::sin(polar);
+    return Point{0.1 + r * std::cos(azimuth), 0.1 + r * std::sin(azimuth), std::cos(polar)};
+  };
+  std::vector<Triangle> surface;
+  for (int r = 0; r < n_rows; ++r)
+    for (int c = 0; c < n_columns; ++c) {
+      surface.push_back({{vertex(r, c), vertex(r + 1, c), vertex(r + 1, c + 1)}});
+      surface.push_back({{vertex(r, c), vertex(r + 1, c + 1), vertex(r, c + 1)}});
+    }
+  const Point from{0.1, 0.1, 0.05};
+  int n_shared = 0;
+  for (const Triangle& t : surface)
+    for (const double along : {0.0, 0.5, 1.0 / 3, 0.9}) {
+      Ray ray{from, {}};
+      for (std::size_t k = 0; k < 3; ++k)
+        ray.direction[k] = (1 - along) * t.corners[0][k] + along * t.corners[1][k] - from[k];
+      int n_hits = 0;
+      for (const Triangle& each : surface) n_hits += hit(each, ray) ? 1 : 0;
+      REQUIRE(n_hits >= 1);
+      n_shared += n_hits > 1 ? 1 : 0;
+    }
+  CHECK(n_shared > 10);
+}
