@@ -19,7 +19,8 @@
 // submit() is a call to the local Manager. Before a collision, the main coroutine awaits an epoch
 // in which the clients submit. run_collision() collides what was submitted: it chooses the voxels
 // from all objects, and is done when the owners have handled all hits. A voxel starts as soon as
-// its objects are there. Several collisions, of one collider or of several, may overlap.
+// its objects are there. Collisions of several colliders may overlap, and of one, if what was
+// submitted to the earlier one has been taken: a collision takes what it finds on each PE.
 //
 // The voxels remain for the next collision; retire() ends those that are idle. They can be
 // balanced: call tess::start_balancing(collider.voxels, options) before the first collision, and
@@ -68,8 +69,8 @@ struct Collider {
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all
-/// hits. Throws Error (bad_value) if the voxel size takes too much memory, or a coordinate exceeds
-/// the range of cells; then the objects are dropped.
+/// hits. Throws Error (out_of_range) if a coordinate exceeds the range of cells; then the objects are
+/// dropped.
 Task run_collision(Collider collider, Report report);
 
 /// Ends the voxels that had no objects since the last call. No collision may be running.

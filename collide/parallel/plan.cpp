@@ -53,18 +53,6 @@ Level Plan::level_of(double longest_extent) const noexcept {
 
 namespace {
 
-/// A number of entries per object, from the sample.
-double entries_per_object(const Summary& summary, const Plan& plan) {
-  double n = 0;
-  for (const Aabb& box : summary.sample) {
-    const Point size = plan.grid(plan.level_of(search::longest_extent(box))).size();
-    double cells = 1;
-    for (std::size_t k = 0; k < 3; ++k) cells *= 1 + (box.hi[k] - box.lo[k]) / size[k];
-    n += cells;
-  }
-  return n / std::max<double>(1, static_cast<double>(summary.sample.size()));
-}
-
 double chosen_size(const Summary& summary) {
   std::vector<search::Entry> all(summary.sample.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = search::make_entry(i, 0);
@@ -110,11 +98,6 @@ Plan make_plan(const Summary& summary, const Point& origin, const Point& size, P
     // Indices have 32 bits, with a margin for what rounding does.
     edge = std::clamp(std::max(edge, std::ldexp(widest, -30)), 1e-300, 1e300);
     plan.size = {edge, edge, edge};
-  } else if (const double n = entries_per_object(summary, plan); n > 64) {
-    const double all = n * static_cast<double>(summary.n);
-    fail(ErrorCode::bad_value, "collider: voxel size ", size[0], " x ", size[1], " x ", size[2],
-         " puts ", summary.n, " objects into about ", all, " voxels, which takes ", 12e-9 * all,
-         " GB; give a larger one, or 0 to have it chosen");
   }
   for (std::uint32_t octave = 0; octave < 2048; ++octave) {
     if ((summary.octaves[octave / 64] >> octave % 64 & 1U) == 0) continue;

@@ -53,8 +53,9 @@ struct Plan {
   [[nodiscard]] Level level_of(double longest_extent) const noexcept;
 };
 
-/// With a size of zero, the size that is expected to cost least. Throws Error (bad_value) for a
-/// size that takes too much memory, or for which a coordinate has no 32-bit cell.
+/// With a size of zero, the size that is expected to cost least. A size that is too small costs time
+/// but no memory: objects stand on the level of their size. Throws Error (out_of_range) if a
+/// coordinate has no 32-bit cell.
 [[nodiscard]] Plan make_plan(const Summary& summary, const Point& origin, const Point& size,
                              PairRules rules, std::uint64_t step);
 

@@ -122,6 +122,13 @@ class Client : public Chare<Client, Index1> {
       reported_.push_back(
           {static_cast<std::uint64_t>(hits.owner), static_cast<std::uint64_t>(hits.other), pair});
   }
+  Task collide(Collider collider, Report report) { co_await run_collision(collider, report); }
+  void submit_more(const Collider& collider, const Scene& scene) {
+    collider.submit(boxes_of(scene, index().x));
+  }
+  void count_sent(const Collider& collider, Callback<std::int64_t> target) {
+    contribute(sum, static_cast<std::int64_t>(collider.managers.local().n_delivered()), target);
+  }
   void gather(Callback<Reports> target) { contribute(Join{}, reported_, std::move(target)); }
   void count_refused(Callback<std::int64_t> target) {
     contribute(sum, n_refused_, std::move(target));
@@ -143,10 +150,13 @@ struct Problem {
   std::optional<ModelId> only;
   std::vector<Reports> rounds;  ///< the reports of each collision
   std::int64_t n_refused = 0;
+  std::int64_t n_sent_of_one_model = -1, n_sent_of_two_models = -1;
+  std::string error;
   std::size_t n_left = 0;  ///< collections on PE 0 after all are destroyed
 };
 
 constexpr std::int32_t kRounds = 2;
+constexpr Aabb far_box{{100, 100, 100}, {101, 101, 101}};
 
 Task collide_rounds(Problem& problem) {
   Scene scene = problem.scene;
@@ -189,6 +199,71 @@ Task collide_bad(Problem& problem) {
   problem.rounds.push_back(co_await all);
 }
 
+/// Two colliders at once, and of each a second collision of nothing.
+Task collide_overlapping(Problem& problem) {
+  std::array<Collider, 2> colliders;
+  ArrayProxy<Client> clients;
+  co_await epoch([&] {
+    for (Collider& collider : colliders) collider = make_collider(problem.options);
+    clients = create<Client>(range(problem.scene.n_clients));
+  });
+  const Report report{report_to<&Client::receive>(clients), problem.only};
+  co_await epoch([&] {
+    for (const Collider& collider : colliders)
+      clients.broadcast<&Client::submit_more>(collider, problem.scene);
+  });
+  co_await epoch([&] {
+    for (int i = 0; i < 2; ++i)
+      for (const Collider& collider : colliders)
+        clients[Index1{problem.scene.n_clients - 1}].send<&Client::collide>(collider, report);
+  });
+  Future<Reports> all;
+  clients.broadcast<&Client::gather>(all.callback());
+  problem.rounds.push_back(in_order(co_await all));
+}
+
+Task collide_apart(Problem& problem) {
+  Collider collider;
+  ArrayProxy<Client> clients;
+  co_await epoch([&] {
+    collider = make_collider(problem.options);
+    clients = create<Client>(range(problem.scene.n_clients));
+  });
+  const Report report{report_to<&Client::receive>(clients), {}};
+  for (std::int64_t* sent : {&problem.n_sent_of_one_model, &problem.n_sent_of_two_models}) {
+    co_await epoch([&] { clients.broadcast<&Client::submit>(collider, problem.scene); });
+    if (sent == &problem.n_sent_of_two_models)
+      collider.submit(Objects{owner_of(Index1{0}), ModelId{7}, {far_box, far_box}});
+    co_await run_collision(collider, report);
+    Future<std::int64_t> n;
+    clients.broadcast<&Client::count_sent>(collider, n.callback());
+    *sent = co_await n;
+  }
+  Future<Reports> all;
+  clients.broadcast<&Client::gather>(all.callback());
+  problem.rounds.push_back(co_await all);
+}
+
+Task collide_refused(Problem& problem) {
+  Collider collider;
+  ArrayProxy<Client> clients;
+  co_await epoch([&] {
+    collider = make_collider(problem.options);
+    clients = create<Client>(range(problem.scene.n_clients));
+  });
+  const Report report{report_to<&Client::receive>(clients), {}};
+  co_await epoch([&] { clients.broadcast<&Client::submit>(collider, problem.scene); });
+  try {
+    co_await run_collision(collider, report);
+  } catch (const Error& error) {
+    problem.error = error.what();
+  }
+  co_await run_collision(collider, report);  // nothing is submitted
+  Future<Reports> all;
+  clients.broadcast<&Client::gather>(all.callback());
+  problem.rounds.push_back(co_await all);
+}
+
 int run_with(const std::string& option, Problem& problem, Task (*program)(Problem&)) {
   std::string name = "test", argument = option;
   std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
@@ -206,7 +281,7 @@ Problem problem_of(std::uint64_t seed) {
                    static_cast<std::int32_t>(1 + seed % 3),
                    0,
                    0};
-  const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0}[seed % 5];
+  const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0, 1e-3}[seed % 6];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
   if (seed % 3 == 0) {  // chosen; the scene has a few large boxes
     problem.options.size = {0, 0, 0};
@@ -239,7 +314,9 @@ void check_reports(const std::string& option, std::uint64_t seed) {
 
 std::string simulated(std::uint64_t seed) {
   const std::uint64_t pes = std::array<std::uint64_t, 5>{1, 2, 3, 4, 8}[seed % 5];
-  return fmt::format("--sim=pes={},cost=100ns,migrate=0.1,seed={}", pes, seed);
+  // Every other machine has a PE per process, so that all messages are packed.
+  return fmt::format("--sim=pes={},cost=100ns,migrate=0.1,seed={}{}", pes, seed,
+                     seed / 5 % 2 == 0 ? ",per-process=1" : "");
 }
 
 }  // namespace
@@ -253,6 +330,47 @@ TEST_CASE("each pair is reported once to each owner on threads", "[collide][para
   for (const int pes : {1, 2, 4})
     for (std::uint64_t seed = 1; seed <= 8; ++seed)
       check_reports(fmt::format("--pes={}", pes), seed);
+}
+
+TEST_CASE("collisions of two colliders, and of one, may overlap", "[collide][parallel]") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Problem problem = problem_of(seed);
+    problem.scene.round = 0;
+    CAPTURE(seed);
+    REQUIRE(run_with(simulated(seed), problem, &collide_overlapping) == 0);
+    const Reports once = oracle(problem.scene, problem.options.rules, problem.only);
+    Reports expected;
+    for (int i = 0; i < 2; ++i) expected.insert(expected.end(), once.begin(), once.end());
+    REQUIRE((problem.rounds.front() == in_order(std::move(expected))));
+  }
+}
+
+TEST_CASE("nothing is sent for one model, and voxels of one model alone are not made",
+          "[collide][parallel]") {
+  for (const std::string option : {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
+    Problem problem;
+    problem.scene = {.seed = 4, .n_clients = 3, .n_boxes = 40, .n_models = 1};
+    problem.options.size = {1, 1, 1};
+    CAPTURE(option);
+    REQUIRE(run_with(option, problem, &collide_apart) == 0);
+    REQUIRE(problem.n_sent_of_one_model == 0);
+    // Two far objects of another model: their voxel and the others are left out.
+    REQUIRE(problem.n_sent_of_two_models == 0);
+    REQUIRE(problem.rounds.front().empty());
+  }
+}
+
+TEST_CASE("voxels too small for 32-bit cells are refused, and the collider goes on",
+          "[collide][parallel]") {
+  for (const std::string option : {"--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
+    Problem problem;
+    problem.scene = {.seed = 3, .n_clients = 3, .n_boxes = 40, .n_models = 2};
+    problem.options.size = {1e-10, 1e-10, 1e-10};
+    CAPTURE(option);
+    REQUIRE(run_with(option, problem, &collide_refused) == 0);
+    REQUIRE_THAT(problem.error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));
+    REQUIRE(problem.rounds.front().empty());
+  }
 }
 
 TEST_CASE("a list with a NaN box is refused as a whole, before any message is sent",
