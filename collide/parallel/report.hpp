@@ -37,19 +37,36 @@ struct Report {
   }
 };
 
-/// The owner id of an element of a one-dimensional array, for report_to().
-[[nodiscard]] inline OwnerId owner_of(Index1 index) {
+/// The owner id of an element of an array of one to three dimensions, for report_to(). In three
+/// dimensions a coordinate has 21 bits; otherwise throws Error (bad_value).
+[[nodiscard]] inline OwnerId owner_of(const Index1& index) {
   return static_cast<OwnerId>(static_cast<std::uint32_t>(index.x));
 }
-[[nodiscard]] inline Index1 index_of(OwnerId owner) {
-  return Index1{static_cast<std::int32_t>(static_cast<std::uint64_t>(owner))};
+[[nodiscard]] inline OwnerId owner_of(const Index2& index) {
+  return static_cast<OwnerId>(std::uint64_t{static_cast<std::uint32_t>(index.x)} << 32 |
+                              static_cast<std::uint32_t>(index.y));
+}
+[[nodiscard]] OwnerId owner_of(const Index3& index);
+/// The owner id of a group's member.
+[[nodiscard]] inline OwnerId owner_of(PeId pe) {
+  return owner_of(Index1{pe.value});
 }
 
 namespace detail {
+inline void set_index(Index1& index, OwnerId owner) {
+  index.x = static_cast<std::int32_t>(static_cast<std::uint64_t>(owner));
+}
+inline void set_index(Index2& index, OwnerId owner) {
+  const auto bits = static_cast<std::uint64_t>(owner);
+  index = {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
+}
+void set_index(Index3& index, OwnerId owner);
+
 template <class C, auto F>
 void call_owner(const Callback<Hits>& callback, Hits&& hits) {
   const ArrayProxy<C> owners(from_bytes<CollectionId>(callback.where()));
-  const Index1 owner = index_of(hits.owner);
+  typename C::Index owner;
+  set_index(owner, hits.owner);
   owners[owner].template send<F>(std::move(hits));
 }
 template <class C, auto F>
@@ -57,11 +74,15 @@ inline const Callback<Hits>::Kind owner_kind{naming::name_of<&call_owner<C, F>>(
                                              &call_owner<C, F>};
 }  // namespace detail
 
-/// Sends hits to the entry method F(Hits) of the elements of an array. An object of an element has
-/// the owner id owner_of(index).
+/// Sends hits to the entry method F(Hits) of the elements of an array, or of a group's members. An
+/// object of an element has the owner id owner_of(index); one of a member owner_of(pe).
 template <auto F, class C>
 [[nodiscard]] Callback<Hits> report_to(const ArrayProxy<C>& owners) {
   return Callback<Hits>(detail::owner_kind<C, F>, to_bytes(owners.id()));
+}
+template <auto F, class C>
+[[nodiscard]] Callback<Hits> report_to(const GroupProxy<C>& owners) {
+  return report_to<F>(ArrayProxy<C>(owners.id()));
 }
 
 }  // namespace tess::collide
