@@ -61,12 +61,21 @@ inline void set_index(Index2& index, OwnerId owner) {
   index = {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
 }
 void set_index(Index3& index, OwnerId owner);
+}  // namespace detail
 
+/// The index that owner_of() was given.
+template <class Index = Index1>
+[[nodiscard]] Index index_of(OwnerId owner) {
+  Index index;
+  detail::set_index(index, owner);
+  return index;
+}
+
+namespace detail {
 template <class C, auto F>
 void call_owner(const Callback<Hits>& callback, Hits&& hits) {
   const ArrayProxy<C> owners(from_bytes<CollectionId>(callback.where()));
-  typename C::Index owner;
-  set_index(owner, hits.owner);
+  const auto owner = index_of<typename C::Index>(hits.owner);
   owners[owner].template send<F>(std::move(hits));
 }
 template <class C, auto F>

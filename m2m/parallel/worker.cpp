@@ -5,11 +5,6 @@
 namespace tess::m2m {
 namespace {
 
-collide::Item item_of(const Aabb& box, Index1 owner, std::size_t local, collide::ModelId model) {
-  return collide::Item{box, collide::ObjectId{collide::owner_of(owner),
-                                              static_cast<collide::LocalId>(local), model}};
-}
-
 std::int32_t as_row(collide::LocalId id) {
   return static_cast<std::int32_t>(id);
 }
@@ -17,7 +12,7 @@ std::int32_t as_row(collide::LocalId id) {
 void call_target(const Callback<collide::Hits>& callback, collide::Hits&& hits) {
   const auto [target, transfer] =
       from_bytes<std::tuple<CollectionId, TransferId>>(callback.where());
-  const Index1 owner = collide::index_of(hits.owner);
+  const auto owner = collide::index_of<Index1>(hits.owner);
   ArrayProxy<Worker>(target)[owner].send<&Worker::receive_hits>(transfer, std::move(hits));
 }
 const Callback<collide::Hits>::Kind target_kind{naming::name_of<&call_target>(), &call_target};
@@ -61,12 +56,11 @@ void Worker::set_row(Incoming& to, std::int32_t point, const double* values) con
 
 void Worker::submit_tets(const TransferSetup& setup) {
   outgoing_.emplace(setup.id, Outgoing{setup});
-  std::vector<collide::Item> items;
-  items.reserve(part_.tets.size());
-  for (std::size_t t = 0; t < part_.tets.size(); ++t)
-    items.push_back(
-        item_of(search_box(corners_of(part_.points, part_.tets[t])), index(), t, source_model));
-  setup.collider.submit(std::move(items));
+  collide::Objects tets{collide::owner_of(index()), source_model, {}};
+  tets.boxes.reserve(part_.tets.size());
+  for (const auto& tet : part_.tets)
+    tets.boxes.push_back(search_box(corners_of(part_.points, tet)));
+  setup.collider.submit(std::move(tets));
 }
 
 void Worker::submit_points(const TransferSetup& setup) {
@@ -75,11 +69,11 @@ void Worker::submit_points(const TransferSetup& setup) {
   to.best.resize(n_owned);
   to.values.resize(values_.size());
   to.is_new.resize(part_.points.size());
-  std::vector<collide::Item> items;
-  items.reserve(n_owned);
+  collide::Objects points{collide::owner_of(index()), target_model, {}};
+  points.boxes.reserve(n_owned);
   for (std::size_t v = 0; v < n_owned; ++v)
-    items.push_back(item_of(collide::box_of(part_.points[v]), index(), v, target_model));
-  setup.collider.submit(std::move(items));
+    points.boxes.push_back(collide::box_of(part_.points[v]));
+  setup.collider.submit(std::move(points));
 }
 
 void Worker::receive_hits(TransferId transfer, collide::Hits hits) {
