@@ -7,23 +7,26 @@
 namespace tess::collide {
 
 void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
-  const ObjectList& objects = prepared_[step] = std::exchange(pending_, {});
+  Prepared& prepared = prepared_[step];
+  prepared.objects = std::exchange(pending_, {});
+  const ObjectList& objects = prepared.objects;
   Summary summary;
   for (const Aabb& box : objects.boxes()) summary.add(box);
   objects.for_each_model([&](ModelId model) { summary.add(model); });
   summary.add_sample(objects.boxes(), n_pes());
+  prepared.bounds = summary.bounds;
   contribute(in_order(JoinSummaries{}), std::move(summary), target);
 }
 
 void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) {
-  ObjectList objects = std::move(prepared_.extract(step).mapped());
+  Prepared prepared = std::move(prepared_.extract(step).mapped());
   if (plan.nothing) {
-    n_left_out_ += objects.boxes().size();
+    n_left_out_ += prepared.objects.boxes().size();
     return;
   }
   Round& r = round(step);
-  r.delivery = std::make_shared<Delivery>(Delivery{plan, report, std::move(objects), {}});
-  r.sort = VoxelSort(plan, r.delivery->objects);
+  r.delivery = std::make_shared<Delivery>(Delivery{plan, report, std::move(prepared.objects), {}});
+  r.sort = VoxelSort(plan, r.delivery->objects, prepared.bounds);
   const std::vector<VoxelRecord>& all = r.sort.records();
   const auto n = static_cast<std::size_t>(n_pes());
   std::vector<std::vector<VoxelRecord>> records(n);

@@ -50,6 +50,11 @@ class Manager : public Group<Manager> {
   [[nodiscard]] std::uint64_t n_left_out() const { return n_left_out_; }
 
  private:
+  /// What was submitted for a collision.
+  struct Prepared {
+    ObjectList objects;
+    Aabb bounds{};
+  };
   /// A collision, as its sender and as the home of voxels.
   struct Round {
     std::shared_ptr<Delivery> delivery;
@@ -66,7 +71,7 @@ class Manager : public Group<Manager> {
 
   const ArrayProxy<Voxel> voxels_;
   ObjectList pending_;
-  std::map<std::uint64_t, ObjectList> prepared_;  // by step
+  std::map<std::uint64_t, Prepared> prepared_;  // by step
   std::map<std::uint64_t, Round> rounds_;
   std::uint64_t n_steps_ = 0, n_delivered_ = 0, n_left_out_ = 0;
 };

@@ -13,6 +13,57 @@ using Search = search::VoxelSearch<double, 3>;
 using Problem = search::Problem<double, 3>;
 using Entries = std::vector<search::Entry>;
 
+/// Entries by model. They are copied only if the objects of a model do not stand together.
+class ByModel {
+ public:
+  struct Set {
+    ModelId model;
+    std::span<const search::Entry> entries;
+  };
+
+  void split(std::span<const search::Entry> entries, const ObjectList& objects) {
+    sets_.clear();
+    bool together = true;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const ModelId model = objects.model(search::object_of(entries[i]));
+      if (!sets_.empty() && sets_.back().model == model) {
+        Set& last = sets_.back();
+        last.entries = {last.entries.data(), last.entries.size() + 1};
+        continue;
+      }
+      together = together && std::none_of(sets_.begin(), sets_.end(),
+                                          [&](const Set& set) { return set.model == model; });
+      sets_.push_back({model, entries.subspan(i, 1)});
+    }
+    if (!together) gather(entries);
+  }
+  [[nodiscard]] std::span<const Set> sets() const { return sets_; }
+
+ private:
+  /// One set for all runs of a model.
+  void gather(std::span<const search::Entry> entries) {
+    std::stable_sort(sets_.begin(), sets_.end(),
+                     [](const Set& a, const Set& b) { return a.model < b.model; });
+    copies_.clear();
+    copies_.reserve(entries.size());
+    std::vector<Set> joined;
+    for (const Set& run : sets_) {
+      const search::Entry* const at = copies_.data() + copies_.size();
+      copies_.insert(copies_.end(), run.entries.begin(), run.entries.end());
+      if (!joined.empty() && joined.back().model == run.model) {
+        Set& last = joined.back();
+        last.entries = {last.entries.data(), last.entries.size() + run.entries.size()};
+      } else {
+        joined.push_back({run.model, {at, run.entries.size()}});
+      }
+    }
+    sets_ = std::move(joined);
+  }
+
+  std::vector<Set> sets_;
+  Entries copies_;
+};
+
 /// The objects of a voxel, and how they are searched. The memory is kept from voxel to voxel.
 class VoxelProblem {
  public:
@@ -41,43 +92,27 @@ class VoxelProblem {
     const Aabb* const boxes = objects_->boxes().data();
     if (within_model == WithinModel::test)
       return run(Problem{boxes, boxes, natives_, visitors_, true});
-    by_model(natives_, natives_by_model_);
-    by_model(visitors_, visitors_by_model_);
-    for (std::size_t m = 0; m < natives_by_model_.size(); ++m) {
-      const auto& [model, natives] = natives_by_model_[m];
+    natives_by_model_.split(natives_, *objects_);
+    visitors_by_model_.split(visitors_, *objects_);
+    const auto natives = natives_by_model_.sets();
+    for (std::size_t m = 0; m < natives.size(); ++m) {
       // With the natives of the models after it, and with the visitors of all others.
-      for (std::size_t other = m + 1; other < natives_by_model_.size(); ++other)
-        run(Problem{boxes, boxes, natives, natives_by_model_[other].second, false});
-      for (const auto& [visiting, visitors] : visitors_by_model_)
-        if (visiting != model) run(Problem{boxes, boxes, natives, visitors, false});
+      for (std::size_t other = m + 1; other < natives.size(); ++other)
+        run(Problem{boxes, boxes, natives[m].entries, natives[other].entries, false});
+      for (const ByModel::Set& visiting : visitors_by_model_.sets())
+        if (visiting.model != natives[m].model)
+          run(Problem{boxes, boxes, natives[m].entries, visiting.entries, false});
     }
   }
   [[nodiscard]] const ObjectList& objects() const { return *objects_; }
 
  private:
-  using ByModel = std::vector<std::pair<ModelId, Entries>>;
-
   void add(const Part& part, std::span<const search::Entry> entries) {
     for (const search::Entry entry : entries) {
       const auto n = static_cast<std::uint32_t>(merged_.boxes().size());
       merged_.append(part.delivery().objects, search::object_of(entry));
       entries_.push_back(search::make_entry(n, search::below_of(entry)));
     }
-  }
-  void by_model(std::span<const search::Entry> entries, ByModel& out) const {
-    for (auto& [model, of_model] : out) of_model.clear();
-    std::size_t at = 0;
-    for (const search::Entry entry : entries) {
-      const ModelId model = objects_->model(search::object_of(entry));
-      if (at >= out.size() || out[at].first != model) {
-        const auto known = std::find_if(out.begin(), out.end(),
-                                        [&](const auto& one) { return one.first == model; });
-        at = static_cast<std::size_t>(known - out.begin());
-        if (known == out.end()) out.emplace_back(model, Entries());
-      }
-      out[at].second.push_back(entry);
-    }
-    std::erase_if(out, [](const auto& one) { return one.second.empty(); });
   }
 
   const ObjectList* objects_ = nullptr;

@@ -3,11 +3,14 @@
 #include "collide/search/survey.hpp"
 #include "collide/search/wide.hpp"
 
+#include <algorithm>
+
 namespace tess::collide {
 
-VoxelSort::VoxelSort(const Plan& plan, const ObjectList& objects) {
+VoxelSort::VoxelSort(const Plan& plan, const ObjectList& objects, const Aabb& bounds) {
+  if (objects.boxes().empty()) return;
   for (Level level = 0; level < most_levels; ++level)
-    if (plan.has(level)) sort_level(plan, objects, level);
+    if (plan.has(level)) sort_level(plan, objects.boxes(), bounds, level);
   note_models(objects);
 }
 
@@ -29,9 +32,17 @@ void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
   using Corners = search::Corners<3>;
   const Corners corners(numbers.strides());
   const bool is_dense = numbers.is_dense();
-  std::size_t n = n_entries_;
+  std::size_t n = n_entries_, room = 0;
+  const auto make_room = [&](std::size_t more) {
+    if (n + more <= room) return;
+    slot_of_.reserve(n + more);
+    entry_of_.reserve(n + more);
+    room = std::min(slot_of_.capacity(), entry_of_.capacity());
+  };
+  make_room(boxes.size() + boxes.size() / 2);
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!is_wanted(i)) continue;
+    make_room(Corners::room);
     const CellRange range = cells_in(grid, boxes[i]);
     const auto more = [](std::int32_t lo, std::int32_t hi) {
       return static_cast<std::uint32_t>(hi) - static_cast<std::uint32_t>(lo);
@@ -44,6 +55,7 @@ void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
                          slot_of_.data() + n, entry_of_.data() + n);
       continue;
     }
+    make_room(static_cast<std::size_t>(range.n_cells()));
     numbers.for_each(range, [&](std::uint32_t number, std::uint32_t below) {
       slot_of_.data()[n] = number;
       entry_of_.data()[n++] = static_cast<std::uint32_t>(search::make_entry(i, below));
@@ -52,8 +64,8 @@ void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
   n_entries_ = n;
 }
 
-void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level level) {
-  const std::vector<Aabb>& boxes = objects.boxes();
+void VoxelSort::sort_level(const Plan& plan, const std::vector<Aabb>& boxes, const Aabb& bounds,
+                           Level level) {
   const VoxelGrid grid = plan.grid(level);
   const bool one_level = plan.levels == 1U << level;
   const auto level_of = [&](std::uint32_t i) {
@@ -61,17 +73,9 @@ void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level le
   };
   const auto is_native = [&](std::uint32_t i) { return one_level || level_of(i) == level; };
   const auto is_visitor = [&](std::uint32_t i) { return level_of(i) < level; };
-  serial::CellBounds bounds;
-  for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    if (one_level || level_of(i) <= level)
-      bounds.add(cells_in(grid, boxes[i]), [&] { return Item{boxes[i], objects.id(i)}; });
-  serial::CellNumbers numbers(bounds);
+  serial::CellNumbers numbers(grid.cells_of(bounds), static_cast<double>(boxes.size()));
 
   const std::size_t begin = n_entries_;
-  const std::size_t room =
-      begin + static_cast<std::size_t>(bounds.n_entries) + search::Corners<3>::room;
-  slot_of_.reserve(room);
-  entry_of_.reserve(room);
   spread(boxes, grid, numbers, is_native);
   const std::size_t first_visitor = n_entries_;
   if (!one_level) spread(boxes, grid, numbers, is_visitor);

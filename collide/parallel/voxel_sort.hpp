@@ -32,7 +32,8 @@ struct VoxelAnswer {
 class VoxelSort {
  public:
   VoxelSort() = default;
-  VoxelSort(const Plan& plan, const ObjectList& objects);
+  /// `bounds`: of the objects.
+  VoxelSort(const Plan& plan, const ObjectList& objects, const Aabb& bounds);
 
   [[nodiscard]] const std::vector<VoxelRecord>& records() const noexcept { return records_; }
 
@@ -41,7 +42,8 @@ class VoxelSort {
   [[nodiscard]] std::vector<search::Entry> sorted(std::span<const VoxelAnswer> answers) const;
 
  private:
-  void sort_level(const Plan& plan, const ObjectList& objects, Level level);
+  void sort_level(const Plan& plan, const std::vector<Aabb>& boxes, const Aabb& bounds,
+                  Level level);
   /// Writes the numbers of the cells that objects touch, to slot_of_, and their entries.
   template <class IsWanted>
   void spread(std::span<const Aabb> boxes, const VoxelGrid& grid, serial::CellNumbers& numbers,

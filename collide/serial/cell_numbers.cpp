@@ -1,26 +1,16 @@
 #include "collide/serial/cell_numbers.hpp"
 
-#include "runtime/core/error.hpp"
-
 namespace tess::collide::serial {
 
-void CellBounds::refuse(double n_cells, const Item& item) {
-  fail(ErrorCode::bad_value, "collision: object ", static_cast<std::uint32_t>(item.id.local),
-       " of owner ", static_cast<std::uint64_t>(item.id.owner), " touches ", n_cells,
-       " voxels (the limits are 2^24 per object and 2^32 for all objects); take larger voxels");
-}
-
-CellNumbers::CellNumbers(const CellBounds& bounds) : low_(bounds.range.lo) {
-  if (bounds.n_entries == 0) return;
-  const CellRange& range = bounds.range;
-  if (range.n_cells() <= 2 * bounds.n_entries + 64) {
+CellNumbers::CellNumbers(const CellRange& range, double n_used) : low_(range.lo) {
+  if (range.n_cells() <= 2 * n_used + 64) {
     n_y_ = std::int64_t{range.hi.y} - range.lo.y + 1;
     n_z_ = std::int64_t{range.hi.z} - range.lo.z + 1;
     n_dense_ = static_cast<std::size_t>(range.n_cells());
     return;
   }
   std::size_t n = 64;
-  while (static_cast<double>(n) < bounds.n_entries / 4) n *= 2;
+  while (static_cast<double>(n) < n_used / 4) n *= 2;
   slots_.assign(n, no_number);
 }
 

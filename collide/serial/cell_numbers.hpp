@@ -27,37 +27,10 @@ namespace tess::collide::serial {
   return range;
 }
 
-/// The range that contains all cells that were added, and their number.
-struct CellBounds {
-  CellRange range{
-      {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
-       std::numeric_limits<std::int32_t>::max()},
-      {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
-       std::numeric_limits<std::int32_t>::min()}};
-  double n_entries = 0;
-
-  /// Throws Error if the item that item() gives has more than 2^24 cells, or all items together
-  /// 2^32.
-  template <class GiveItem>
-  void add(const CellRange& cells, const GiveItem& item) {
-    const double n_cells = cells.n_cells();
-    n_entries += n_cells;
-    if (n_cells > 0x1p24 || n_entries >= 0x1p32) [[unlikely]]
-      refuse(n_cells, item());
-    range.lo = {std::min(range.lo.x, cells.lo.x), std::min(range.lo.y, cells.lo.y),
-                std::min(range.lo.z, cells.lo.z)};
-    range.hi = {std::max(range.hi.x, cells.hi.x), std::max(range.hi.y, cells.hi.y),
-                std::max(range.hi.z, cells.hi.z)};
-  }
-
- private:
-  [[noreturn]] static void refuse(double n_cells, const Item& item);
-};
-
 class CellNumbers {
  public:
-  /// For cells within `bounds`.
-  explicit CellNumbers(const CellBounds& bounds);
+  /// For cells of this range, of which about `n_used` are used.
+  CellNumbers(const CellRange& range, double n_used);
 
   /// All numbers are below this. In a dense numbering it is the number of cells of the range.
   [[nodiscard]] std::size_t size() const noexcept {
