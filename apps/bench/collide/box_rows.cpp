@@ -6,6 +6,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/core.h>
 #include <iterator>
 #include <map>
@@ -55,15 +56,11 @@ std::uint64_t n_missing(const Pairs& of, const Pairs& in) {
   return n;
 }
 
-/// The boxes that our method on floats works on, as doubles.
-Problem widened(const Problem& problem) {
-  Problem out = problem;
-  for (std::size_t i = 0; i < out.boxes.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      out.boxes[i].lo[k] = static_cast<double>(out.floats[i].lo[k]);
-      out.boxes[i].hi[k] = static_cast<double>(out.floats[i].hi[k]);
-    }
-  return out;
+/// Merges the small blocks that a method freed: otherwise the first large allocation of the next one
+/// does it and pays for it. After FCL, which frees a million nodes, that is 85 ns per object.
+void tidy_heap() {
+  void* volatile large = std::malloc(std::size_t{1} << 16);
+  std::free(large);
 }
 
 /// Brute force checks every problem that is small enough, and has a row where it is compared.
@@ -135,6 +132,7 @@ class BoxCase {
     require(pairs == expected_, case_.name, kind,
             fmt::format("{} of our pairs are missing, {} are false", n_missing(expected_, pairs),
                         n_missing(pairs, expected_)));
+    if (case_.exact) return;
     if (kind == "embree") count_candidates(*run.method);
     if (kind == "fcl") count_lost(*fcl_centred_pairs(problem_));
   }
@@ -168,6 +166,7 @@ class BoxCase {
   }
 
   void sample(Run& run) {
+    tidy_heap();
     for (;;) {
       const ProcessWatch watch;
       for (std::int64_t i = 0; i < run.times; ++i) {
@@ -176,6 +175,7 @@ class BoxCase {
                 fmt::format("{} pairs, and {} another time", n, run.n_pairs));
       }
       const double took = watch.nanoseconds();
+      tidy_heap();
       if (took < kSampleNanoseconds / 2 && run.nanoseconds.empty()) {
         run.times *= 2;
         continue;
@@ -232,12 +232,12 @@ std::vector<std::pair<std::string, std::string>> box_row_texts(const std::string
     if (can(kind.name) && is_listed(kind, *of))
       add(kind.name, fmt::format("ns per object: {}", kind.meaning));
   add("pairs", "pairs that are wanted");
-  if (can("embree")) {
+  if (can("embree") && !of->exact) {
     add("embree_rounded",
         "pairs that Embree adds, because its boxes are rounded outward to floats");
     add("embree_leaves", "pairs that Embree passes on although its boxes do not overlap");
   }
-  if (can("fcl")) {
+  if (can("fcl") && !of->exact) {
     add("fcl_lost", "pairs that FCL loses if its boxes are given by centre and sides");
     add("fcl_added", "false pairs that it finds then");
   }

@@ -5,7 +5,19 @@
 
 namespace bench {
 
+using tess::collide::Point;
 using tess::collide::Touching;
+
+namespace {
+
+std::array<float, 3> rounded(const Point& p) {
+  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+}
+Point widened(const std::array<float, 3>& p) {
+  return {double{p[0]}, double{p[1]}, double{p[2]}};
+}
+
+}  // namespace
 
 const std::vector<Case>& box_cases() {
   static const std::vector<Case> all{
@@ -21,6 +33,8 @@ const std::vector<Case>& box_cases() {
       {"disparity6", "disparity6:1000000", "random cubes, sizes over six decades"},
       {"dragon", "dragon:871414", "a closed knotted tube with itself"},
       {"crowd", "crowd:1048576", "8 192 bodies of uneven density", Pairing::across_models},
+      {"triangles", "planes:65536", "exact pairs of triangles of two near-parallel wavy planes",
+       Pairing::across_models, Touching::counts, true},
       {"few", "boxes:4096", "random boxes, few enough for brute force"},
   };
   return all;
@@ -44,16 +58,23 @@ std::size_t Problem::second_set() const {
 
 Problem make_problem(const Case& of) {
   const collide_scene::Scene scene = collide_scene::make_scene(of.scene);
-  Problem out{boxes_of(scene), {}, {}, of.pairing, of.touching};
+  Problem out{boxes_of(scene), {}, {}, {}, {}, of.pairing, of.touching};
   if (of.pairing == Pairing::across_models) out.models = scene.models;
+  if (of.exact) out.triangles = scene.triangles;
   out.floats.reserve(out.boxes.size());
-  for (const Aabb& box : out.boxes) {
-    FloatBox& rounded = out.floats.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      rounded.lo[k] = static_cast<float>(box.lo[k]);
-      rounded.hi[k] = static_cast<float>(box.hi[k]);
-    }
-  }
+  for (const Aabb& box : out.boxes) out.floats.push_back({rounded(box.lo), rounded(box.hi)});
+  for (const auto& [corners] : out.triangles)
+    out.float_triangles.push_back(
+        {{rounded(corners[0]), rounded(corners[1]), rounded(corners[2])}});
+  return out;
+}
+
+Problem widened(const Problem& problem) {
+  Problem out = problem;
+  for (std::size_t i = 0; i < out.boxes.size(); ++i)
+    out.boxes[i] = {widened(out.floats[i].lo), widened(out.floats[i].hi)};
+  for (std::size_t i = 0; i < out.triangles.size(); ++i)
+    out.triangles[i] = in_double(out.float_triangles[i]);
   return out;
 }
 

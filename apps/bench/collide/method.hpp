@@ -49,7 +49,7 @@ struct MethodKind {
 [[nodiscard]] std::span<const MethodKind> method_kinds();
 
 [[nodiscard]] std::unique_ptr<Method> our_doubles(const Problem& problem);
-/// On Problem::floats; its pairs are those of the rounded boxes.
+/// On Problem::floats or float_triangles; its pairs are those of the rounded objects.
 [[nodiscard]] std::unique_ptr<Method> our_floats(const Problem& problem);
 /// Boxes as user geometry, doubles rounded outward to floats; closed boxes only. Embree passes on all
 /// pairs of two leaves, so the callback tests the boxes of doubles.

@@ -1,6 +1,7 @@
 // Our serial face in the terms of a Method.
 #include "apps/bench/collide/method.hpp"
 #include "collide/pairs.hpp"
+#include "collide/triangle.hpp"
 
 namespace bench {
 namespace {
@@ -31,9 +32,13 @@ class OurPairs : public Method {
 }  // namespace
 
 std::unique_ptr<Method> our_doubles(const Problem& problem) {
+  if (!problem.triangles.empty())
+    return std::make_unique<OurPairs<Triangle>>(problem, problem.triangles);
   return std::make_unique<OurPairs<Aabb>>(problem, problem.boxes);
 }
 std::unique_ptr<Method> our_floats(const Problem& problem) {
+  if (!problem.float_triangles.empty())
+    return std::make_unique<OurPairs<TriangleOf<float>>>(problem, problem.float_triangles);
   return std::make_unique<OurPairs<FloatBox>>(problem, problem.floats);
 }
 
