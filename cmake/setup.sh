@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the packages that Tessera builds on, as far as they are missing. Quick when nothing is missing.
 #
-#   cmake/setup.sh [--dry-run]      --dry-run: says what it would do, and does nothing
+#   cmake/setup.sh [--dry-run] [--peers]      --dry-run: says what it would do, and does nothing
+#                                             --peers: also the libraries beside which benchmarks run
 #
 # Exit code 2, and nothing is changed, where apt would remove a package or where it may not install.
 set -euo pipefail
@@ -18,13 +19,17 @@ refuse() {
   exit 2
 }
 
+# Nothing else needs these: without them a benchmark leaves their rows out.
+peers=(libembree-dev libfcl-dev)
 dry=false
-case "${1:-}" in
-  "") ;;
-  --dry-run) dry=true ;;
-  --help | -h) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
-  *) refuse "unknown option $1: there is --dry-run" ;;
-esac
+for option; do
+  case "$option" in
+    --dry-run) dry=true ;;
+    --peers) packages+=("${peers[@]}") ;;
+    --help | -h) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) refuse "unknown option $option: there are --dry-run and --peers" ;;
+  esac
+done
 command -v apt-get >/dev/null || refuse "this script uses apt; install by hand what cmake/setup.sh lists, or the like: ${packages[*]}"
 
 missing=()

@@ -2,18 +2,20 @@
 # Keeps a run of bench: measures on one PE, two PEs and two processes, and writes the rows to
 # apps/bench/results/MACHINE_tessera_COMMIT.csv. Run it on an idle machine.
 #
-#     apps/bench/keep.sh [--built BIN] [--into FOLDER] [NAME | --quick | --repeat N …]
+#     apps/bench/keep.sh [--built BIN] [--into FOLDER] [--program bench_collide] [NAME | --quick | --repeat N …]
 #
-# --built: the folder of the programs (default: build/release/bin). The rest is passed to bench.
+# --built: the folder of the programs (default: build/release/bin). --program: another one than bench, of one process and one
+# PE; its name stands in that of the file. The rest is passed to the program.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 built=$root/build/release/bin into=$root/apps/bench/results
-arguments=()
+arguments=() program=bench
 while (($# > 0)); do
   case $1 in
     --built) built=${2:?--built takes a folder}; shift 2 ;;
     --into) into=${2:?--into takes a folder}; shift 2 ;;
-    --help | -h) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --program) program=${2:?--program takes a name}; shift 2 ;;
+    --help | -h) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) arguments+=("$1"); shift ;;
   esac
 done
@@ -22,26 +24,38 @@ if ((EUID == 0)); then mpirun+=(--allow-run-as-root); fi
 
 model=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -1)
 machine="$(nproc) cores of ${model:-an unnamed processor}"
-rows=$(
-  "$built/bench" --pes 1 "${arguments[@]}"
-  "$built/bench" --pes 2 "${arguments[@]}"
-  "${mpirun[@]}" -n 2 "$built/bench" --pes 1 "${arguments[@]}"
-)
+if [[ $program == bench ]]; then
+  kept=tessera
+  rows=$(
+    "$built/bench" --pes 1 "${arguments[@]}"
+    "$built/bench" --pes 2 "${arguments[@]}"
+    "${mpirun[@]}" -n 2 "$built/bench" --pes 1 "${arguments[@]}"
+  )
+else
+  kept=tessera_$program
+  rows=$("$built/$program" "${arguments[@]}")
+fi
+# "Embree 3.13.5's rtcCollide …" in the list of rows.
+version_of() { "$built/$program" --list | sed -n "s/.* $1 \([0-9.]*\)'s .*/\1/p" | head -1; }
+embree=$(version_of Embree) fcl=$(version_of FCL)
 mkdir -p "$into"
 part=$(mktemp "$into/part.XXXXXX")
 trap 'rm -f "$part"' EXIT
 # bench's last three columns are its machine (in quotes), preset and commit.
-awk -v machine="$machine" -v date="$(date +%F)" '
+awk -v machine="$machine" -v date="$(date +%F)" -v embree="$embree" -v fcl="$fcl" '
   BEGIN { print "name,median,unit,pes,ranks,system,version,machine,date,note" }
   /^name,/ { next }
   {
     split($0, halves, "\"")
     n = split(halves[1], a, ",")
     split(halves[3], build, ",")
-    print a[1] "," a[2] "," a[3] "," a[n - 2] "," a[n - 1] ",Tessera,\"" build[3] ", " build[2] "\",\"" machine "\"," date ",spread " a[5]
+    whose = "Tessera"; version = build[3] ", " build[2]
+    if (a[1] ~ /_embree/) { whose = "Embree"; version = embree " in turns with Tessera " version }
+    if (a[1] ~ /_fcl/) { whose = "FCL"; version = fcl " in turns with Tessera " version }
+    print a[1] "," a[2] "," a[3] "," a[n - 2] "," a[n - 1] "," whose ",\"" version "\",\"" machine "\"," date ",least " a[4] " spread " a[5]
   }' <<<"$rows" >"$part"
-commit=$(awk -F'"' 'NR == 2 { sub(/, .*/, "", $2); print $2 }' "$part")
+commit=$(awk -F'"' '/,Tessera,/ { sub(/, .*/, "", $2); print $2; exit }' "$part")
 name=$(tr -cs 'A-Za-z0-9\n' '_' <<<"${model:-unnamed}" | tr 'A-Z' 'a-z' | sed 's/_*$//')
-mv "$part" "$into/${name}_tessera_$commit.csv"
-chmod a+r "$into/${name}_tessera_$commit.csv"
-echo "keep: $(($(wc -l <"$into/${name}_tessera_$commit.csv") - 1)) rows in $into/${name}_tessera_$commit.csv"
+mv "$part" "$into/${name}_${kept}_$commit.csv"
+chmod a+r "$into/${name}_${kept}_$commit.csv"
+echo "keep: $(($(wc -l <"$into/${name}_${kept}_$commit.csv") - 1)) rows in $into/${name}_${kept}_$commit.csv"

@@ -50,5 +50,8 @@ expect "lists are fetched first" 0 "fetching apt's lists" yes UNKNOWN=1 --
 expect "a dry run" 0 "would install g++-12" no -- --dry-run
 expect "Boost would be removed" 2 "apt would remove libboost1.74-dev libcgal-dev" no "REMOVES=libboost1.74-dev libcgal-dev" --
 expect "a dry run says so, too" 2 "-DBoost_ROOT" no REMOVES=libboost1.74-dev -- --dry-run
+needed=$(sed -n '/^packages=(/,/^)/p' "$setup" | tr '\n' ' ')
+expect "benchmarks' libraries on request" 0 "would install libembree-dev libfcl-dev" no "HAVE=$needed" -- --dry-run --peers
+expect "no library of a benchmark otherwise" 0 "packages are installed" no "HAVE=$needed" --
 expect "an unknown option" 2 "unknown option --all" no -- --all
 exit $failed

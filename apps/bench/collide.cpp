@@ -1,0 +1,86 @@
+// The pairs of boxes and triangles in one thread, without the runtime, beside other libraries on the
+// same scenes in the same run: CSV on standard output. Methods run in turns, and a row is printed
+// after the sets of pairs were compared. Times are processor times of the process, which stays on
+// one core: on an idle machine they equal wall-clock times, and other programs disturb them only
+// through the caches.
+//
+//     bench_collide;  bench_collide planes wave_self_embree;  bench_collide --growth;  bench_collide --list
+//
+// The limit of our rows is the fastest other library of this run.
+#include "apps/bench/collide/box_rows.hpp"
+#include "apps/bench/collide/case.hpp"
+#include "apps/bench/collide/conversion_rows.hpp"
+#include "apps/bench/collide/one_core.hpp"
+#include "apps/command_line.hpp"
+#include "apps/plot/write_file.hpp"
+#include "runtime/core/check.hpp"
+
+#include <algorithm>
+#include <fmt/core.h>
+
+namespace bench {
+namespace {
+
+/// Every name that --list shows.
+void list() {
+  for (const Case& of : box_cases()) {
+    fmt::print("{}: {}, {}\n", of.name, of.scene, of.meaning);
+    for (const auto& [row, meaning] : box_row_texts(of.name))
+      fmt::print("  {:<26} {}\n", row, meaning);
+  }
+  fmt::print("conversion: a coordinate to the index of its voxel\n");
+  for (const auto& [row, meaning] : conversion_row_texts())
+    fmt::print("  {:<26} {}\n", row, meaning);
+  fmt::print("growth: our ns per object from 2^10 to 2^22 objects; with --growth or by its name\n");
+}
+
+void require_known(const std::string& name) {
+  if (name == "growth" || name == "conversion") return;
+  for (const auto& [row, meaning] : conversion_row_texts())
+    if (name == row) return;
+  for (const Case& of : box_cases()) {
+    if (name == of.name) return;
+    if (!name.starts_with(of.name + "_")) continue;
+    for (const auto& [row, meaning] : box_row_texts(of.name))
+      if (name == row) return;
+  }
+  tess::fail(tess::ErrorCode::bad_argument, "no case and no row is named ", name, " (see --list)");
+}
+
+}  // namespace
+}  // namespace bench
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] {
+    bench::CollideOptions options;
+    std::string json;
+    bool lists = false;
+    apps::CommandLine line("The pairs of boxes in one thread, beside other libraries.");
+    line.option("names", options.names, "cases or rows (all by default)");
+    const apps::Option repeat =
+        line.option("--repeat", options.repeat, "samples of each figure, after one that warms up")
+            .between(1, 1000);
+    line.flag("--growth", options.growth, "also the growth from 2^10 to 2^22 objects");
+    line.flag("--list", lists, "names and meanings of what can be measured by this build");
+    line.flag("--quick", options.quick, "small sizes: to try out, not to measure");
+    line.option("--json", json, "a file for the rows as JSON");
+    if (!line.parse(argc, argv, {})) return 0;
+    if (lists) {
+      bench::list();
+      return 0;
+    }
+    if (options.quick && !repeat.is_given()) options.repeat = 1;
+    for (const std::string& name : options.names) bench::require_known(name);
+    plot::require_writable("--json", json);
+    TESS_CHECK(bench::stay_on_one_core(), "the system does not bind this process to a core");
+
+    bench::Output output(options, "one core");
+    output.header();
+    bench::box_rows(output);
+    if (output.wants_any("conversion")) bench::conversion_rows(output);
+    if (options.growth || (!options.names.empty() && output.wants("growth", "growth")))
+      bench::growth_rows(output);
+    if (!json.empty()) plot::write_file(json, output.json());
+    return 0;
+  });
+}

@@ -1,0 +1,42 @@
+#include "apps/bench/collide/output.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/core.h>
+
+namespace bench {
+
+bool Output::wants(std::string_view of, std::string_view row) const {
+  return options_.names.empty() ||
+         std::any_of(options_.names.begin(), options_.names.end(),
+                     [&](const std::string& name) { return name == of || name == row; });
+}
+
+bool Output::wants_any(std::string_view of) const {
+  const std::string prefix = fmt::format("{}_", of);
+  return wants(of, of) ||
+         std::any_of(options_.names.begin(), options_.names.end(),
+                     [&](const std::string& name) { return name.starts_with(prefix); });
+}
+
+void Output::header() const {
+  fmt::print("{}", csv_header());
+  std::fflush(stdout);
+}
+
+void Output::row(std::string_view of, const std::string& name, const Samples& samples,
+                 std::string_view unit, double limit) {
+  if (!wants(of, name)) return;
+  rows_.push_back(make_row(name, samples, unit, limit));
+  fmt::print("{}", csv_line(rows_.back(), origin_));
+  std::fflush(stdout);
+}
+
+void Output::row(std::string_view of, const std::string& name, double value,
+                 std::string_view unit) {
+  Samples one;
+  one.add(value);
+  row(of, name, one, unit);
+}
+
+}  // namespace bench
