@@ -1,0 +1,85 @@
+#include "apps/collide_scene/scenes/scene.hpp"
+
+#include "apps/collide_scene/scenes/adversaries.hpp"
+#include "apps/collide_scene/scenes/crowd.hpp"
+#include "apps/collide_scene/scenes/dragon.hpp"
+#include "apps/collide_scene/scenes/random_boxes.hpp"
+#include "apps/collide_scene/scenes/waves.hpp"
+#include "runtime/core/error.hpp"
+
+#include <charconv>
+
+namespace collide_scene {
+namespace {
+
+using tess::collide::Aabb;
+
+constexpr std::uint64_t kMost = 1u << 28;
+
+template <Scene (*make)(std::uint64_t)>
+Scene without_seed(std::uint64_t n, std::uint64_t) {
+  return make(n);
+}
+
+constexpr SceneKind kinds[] = {
+    {"wave", "N triangles of a wavy plane, one model", 1u << 20, without_seed<wave>},
+    {"planes", "N triangles, half in each of two near-parallel wavy planes", 1u << 20,
+     without_seed<two_planes>},
+    {"crossing", "N triangles, half in each of two wavy planes that cross at a right angle",
+     1u << 20, without_seed<crossing_planes>},
+    {"dragon", "about N triangles of a closed, knotted, bumpy tube, one model", 871'414,
+     without_seed<dragon>},
+    {"boxes", "N random boxes of one scale in the unit cube, 3.4 pairs per box", 1'000'000,
+     random_boxes},
+    {"disparity", "N cubes with sizes over four decades, 9.5 pairs per cube", 1'000'000,
+     four_decades},
+    {"disparity6", "N cubes with sizes over six decades, 9.5 pairs per cube", 1'000'000,
+     six_decades},
+    {"lshapes", "N nested L shapes of four triangles: all boxes overlap, no two shapes touch", 1000,
+     without_seed<nested_ls>},
+    {"segments", "N crossing thin triangles, N * N / 4 pairs", 2000,
+     without_seed<crossing_segments>},
+    {"crowd", "about N triangles of many closed moving models in clusters of uneven density",
+     1u << 20, crowd},
+};
+
+}  // namespace
+
+std::vector<Aabb> boxes_of(const Scene& scene) {
+  std::vector<Aabb> boxes = scene.boxes;
+  boxes.reserve(scene.n_objects());
+  for (const auto& triangle : scene.triangles) boxes.push_back(box_of(triangle));
+  return boxes;
+}
+
+std::span<const SceneKind> scene_kinds() {
+  return kinds;
+}
+
+const SceneKind* find_scene_kind(std::string_view text) {
+  const std::string_view name = text.substr(0, text.find(':'));
+  for (const SceneKind& kind : kinds)
+    if (kind.name == name) return &kind;
+  return nullptr;
+}
+
+Scene make_scene(std::string_view text, std::uint64_t seed) {
+  const SceneKind* kind = find_scene_kind(text);
+  if (kind == nullptr) {
+    std::string names;
+    for (const SceneKind& each : kinds) names.append(names.empty() ? "" : ", ").append(each.name);
+    tess::fail(tess::ErrorCode::bad_value, "no scene '", text, "': there are ", names,
+               ", each alone or with a number (boxes:1000)");
+  }
+  std::uint64_t n = kind->default_n;
+  if (const std::size_t colon = text.find(':'); colon != std::string_view::npos) {
+    const std::string_view digits = text.substr(colon + 1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
+    if (error != std::errc{} || end != digits.data() + digits.size() || n < 1 || n > kMost)
+      tess::fail(tess::ErrorCode::bad_value, "scene '", text, "': '", digits,
+                 "' is no number from 1 to ", kMost);
+  }
+  return kind->make(n, seed);
+}
+
+}  // namespace collide_scene
