@@ -5,7 +5,7 @@
 //     make_scene("boxes")             the number of objects that the kind proposes
 #pragma once
 
-#include "collide/aabb.hpp"
+#include "collide/box.hpp"
 #include "collide/triangle.hpp"
 
 #include <cstdint>
