@@ -21,4 +21,5 @@ if("m2m" IN_LIST TESS_COMPONENTS)
 endif()
 if(TESS_APPS)
   find_package(CLI11 REQUIRED)
+  find_package(assimp REQUIRED)  # files of triangles
 endif()

@@ -12,7 +12,7 @@ packages=(
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
   libfmt-dev libcli11-dev nlohmann-json3-dev catch2
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev
-  gmsh gnuplot-nox
+  libassimp-dev gmsh gnuplot-nox
 )
 refuse() {
   echo "setup: error: $*" >&2

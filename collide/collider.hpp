@@ -10,7 +10,7 @@
 //
 // Sample: tests/samples/collider.cpp
 //
-//     const auto collider = tess::collide::make_collider({.size = {1, 1, 1}});
+//     const auto collider = tess::collide::make_collider({});
 //     const auto clients = tess::create<Client>(tess::range(8));
 //     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
 //     const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};

@@ -3,8 +3,9 @@
 //
 // Sample: tests/samples/pairs.cpp
 //
-//     const std::vector<Pair> touching = pairs(std::span(boxes));
-//     const std::uint64_t n = count_pairs(std::span(planes), std::span(rockets), {.statistics = &report});
+//     const std::vector<Pair> all = pairs(std::span<const Aabb>(boxes));
+//     PairStatistics report;
+//     const std::uint64_t n = count_pairs(planes, rockets, {.statistics = &report});
 //
 // An object is a Box<float or double, 2 to 4>, or any type with two functions that are found beside
 // it:

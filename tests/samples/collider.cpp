@@ -22,16 +22,16 @@ class Client : public tess::Chare<Client, tess::Index1> {
   }
 
  private:
-  [[nodiscard]] std::vector<tess::collide::Item> boxes() const {
+  [[nodiscard]] tess::collide::Objects boxes() const {
     const double x = index().x;
     const auto model = static_cast<tess::collide::ModelId>(index().x % 2);
-    return {{{{x, 0, 0}, {x + 1.5, 1, 1}}, {tess::collide::owner_of(index()), {}, model}}};
+    return {tess::collide::owner_of(index()), model, {{{x, 0, 0}, {x + 1.5, 1, 1}}}};
   }
   std::uint64_t n_pairs_ = 0;
 };
 
 tess::Task find_pairs(std::uint64_t& n_pairs) {
-  const auto collider = tess::collide::make_collider({.size = {1, 1, 1}});
+  const auto collider = tess::collide::make_collider({});
   const auto clients = tess::create<Client>(tess::range(8));
   co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};

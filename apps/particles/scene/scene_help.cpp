@@ -23,7 +23,7 @@ objects     a list (default: none); of each:
                 {"torus": {"major": r, "minor": r, "n": 64}}            around the z axis
                 {"cylinder": {"radius": r, "half_height": h, "sides": 64}}   along the z axis
                 {"plate": {"half": h, "n": 1}}                          in the plane z = 0
-                {"file": "mesh.obj"}                                    relative to the scene file; closed parts that
+                {"file": "mesh.obj"}                                    or .ply, .stl; relative to the scene file; closed parts that
                     overlap keep their inner faces, which count as surface: join them before
   resolution  voxels along each axis of the field, 4 … 1024 (default 60)
   thickness   of the field beyond the object, in its own units (default: a quarter of its extent)

@@ -1,5 +1,6 @@
 #include "apps/particles/scene/box_union.hpp"
 #include "apps/particles/scene/readers.hpp"
+#include "apps/surface_file/read_surface.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
 
@@ -58,9 +59,10 @@ Surface read_file(const Node& node, const std::string& folder) {
   const std::string path = path_beside(folder, node.text());
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown))
-    node.blame(path + ": is a directory; give the path of an OBJ file");
+    node.blame(path + ": is a directory; give the path of a file .obj, .ply or .stl");
   try {
-    Surface surface = tess::dn::read_obj(path);
+    Surface surface = apps::read_surface(path);
+    validate(surface);
     for (std::size_t v = 0; v < surface.vertices.size(); ++v)
       for (int axis = 0; axis < 3; ++axis)
         if (const double at = component(surface.vertices[v], axis); std::abs(at) > largest_number)

@@ -84,9 +84,10 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"none.obj\"}",
        "scene.json: objects[0].shape.file: none.obj: cannot be opened"},
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"/dev/zero\"}",
-       "/dev/zero: is no file; give the path of an OBJ file"},
+       "/dev/zero: is no surface by its name; give a file .obj, .ply or .stl"},
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \".\"}",
-       "scene.json: objects[0].shape.file: .: is a directory; give the path of an OBJ file"},
+       "scene.json: objects[0].shape.file: .: is a directory; give the path of a file .obj, .ply "
+       "or .stl"},
       {"\"count\": 5, ", "", "emitters[0].count: is missing; give how many particles"},
       {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
       {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},

@@ -1,0 +1,85 @@
+#include "apps/collide_scene/run/parallel.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace collide_scene {
+
+using namespace tess::collide;
+
+namespace {
+
+template <class T>
+std::vector<T> part(const std::vector<T>& all, std::size_t begin, std::size_t end) {
+  if (all.empty()) return {};
+  const auto at = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
+  return {at(begin), at(end)};
+}
+
+}  // namespace
+
+ParallelCollisions::ParallelCollisions(const Scene& scene, const Rules& rules)
+    : scene_(scene), rules_(rules) {}
+
+tess::Task ParallelCollisions::begin() {
+  const PairRules pair_rules{
+      rules_.open ? Touching::does_not_count : Touching::counts,
+      scene_.models.empty() || rules_.within_model ? WithinModel::test : WithinModel::skip};
+  const double size = rules_.voxel_size;  // zero: chosen
+  collider_ = make_collider({.size = {size, size, size}, .rules = pair_rules});
+  co_await tess::epoch([&] { clients_ = tess::create<Client>(tess::range(tess::n_pes())); });
+}
+
+tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
+                                    std::vector<ScenePair>* pairs) {
+  co_await tess::epoch([&] {
+    for (std::int32_t c = 0; c < tess::n_pes(); ++c) {
+      const std::size_t begin = first_of(c, scene_.n_objects()),
+                        end = first_of(c + 1, scene_.n_objects());
+      Piece piece{.n_objects = scene_.n_objects(),
+                  .exact = rules_.triangles,
+                  .open = rules_.open,
+                  .keep_pairs = pairs != nullptr,
+                  .step = step};
+      piece.triangles = part(scene_.triangles, begin, end);
+      piece.boxes = part(scene_.boxes, begin, end);
+      piece.models = part(scene_.models, begin, end);
+      clients_[{c}].send<&Client::take>(std::move(piece));
+    }
+  });
+  const Report report{report_to<&Client::receive>(clients_), {}};
+  for (int run = 0; run < repeat; ++run) {
+    if (run > 0) co_await tess::epoch([&] { clients_.broadcast<&Client::forget>(); });
+    const tess::Time begin = tess::now();
+    co_await tess::epoch([&] { clients_.broadcast<&Client::submit>(collider_); });
+    co_await run_collision(collider_, report);
+    const double seconds = tess::seconds(tess::now() - begin);
+    result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
+    tess::Future<Sent> sent;
+    clients_.broadcast<&Client::give_sent>(collider_, sent.callback());
+    const Sent before = std::exchange(sent_, co_await sent);
+    in_last_ = {sent_.n_entries - before.n_entries, sent_.n_left_out - before.n_left_out};
+  }
+  tess::Future<Answer> answer;
+  clients_.broadcast<&Client::give_answer>(answer.callback());
+  result.answer = co_await answer;
+  if (pairs == nullptr) co_return;
+  tess::Future<std::vector<ScenePair>> found;
+  clients_.broadcast<&Client::give_pairs>(found.callback());
+  *pairs = co_await found;
+}
+
+tess::Task ParallelCollisions::end(RunResult& result) {
+  if (rules_.voxel_size > 0) result.grid.voxel_size = rules_.voxel_size;
+  result.grid.entries = in_last_.n_entries;
+  result.grid.left_out = in_last_.n_left_out;
+  tess::Future<std::uint64_t> bytes;
+  clients_.broadcast<&Client::give_memory>(bytes.callback());
+  result.peak_memory_bytes = co_await bytes;
+  co_await tess::epoch([&] {
+    collider_.destroy();
+    clients_.destroy();
+  });
+}
+
+}  // namespace collide_scene

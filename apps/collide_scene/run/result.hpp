@@ -1,0 +1,77 @@
+// What a run gives. Pairs are counted and hashed as pairs of positions in the scene, so that the
+// answer does not depend on the order of pairs, on PEs, processes or voxels.
+#pragma once
+
+#include "runtime/core/hash.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace collide_scene {
+
+/// Two objects by their positions in the scene, first < second.
+struct ScenePair {
+  std::uint32_t first = 0, second = 0;
+
+  friend bool operator==(const ScenePair&, const ScenePair&) = default;
+  friend auto operator<=>(const ScenePair&, const ScenePair&) = default;
+};
+
+/// A sum over pairs: the same in any order.
+struct Answer {
+  std::uint64_t n_pairs = 0;
+  std::uint64_t n_candidates = 0;  ///< pairs of boxes that overlap
+  std::uint64_t hash = 0;
+
+  void add(ScenePair pair, int step) noexcept {
+    ++n_pairs;
+    const auto both = std::uint64_t{pair.first} << 32U | pair.second;
+    hash += tess::mix(both ^ tess::mix(static_cast<std::uint64_t>(step)));
+  }
+  Answer& operator+=(const Answer& other) noexcept {
+    n_pairs += other.n_pairs;
+    n_candidates += other.n_candidates;
+    hash += other.hash;
+    return *this;
+  }
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+/// What the library says about its grid; a number that it does not say is absent.
+struct GridReport {
+  std::optional<double> voxel_size;
+  std::optional<std::uint64_t> levels, voxels;
+  std::optional<std::uint64_t> entries;   ///< (object, voxel)
+  std::optional<std::uint64_t> left_out;  ///< objects in voxels of one model
+  std::optional<std::uint64_t> bytes;     ///< of the grid and its scratch
+};
+
+struct StepResult {
+  Answer answer;
+  double seconds = 0;
+};
+
+struct RunResult {
+  std::vector<StepResult> steps;
+  GridReport grid;                      ///< of the last step
+  std::vector<ScenePair> pairs;         ///< of the last step, sorted, if they were asked for
+  std::uint64_t peak_memory_bytes = 0;  ///< sum over processes
+
+  [[nodiscard]] Answer total() const {
+    Answer sum;
+    for (const StepResult& step : steps) sum += step.answer;
+    return sum;
+  }
+  [[nodiscard]] double seconds_per_step() const {
+    double sum = 0;
+    for (const StepResult& step : steps) sum += step.seconds;
+    return steps.empty() ? 0 : sum / static_cast<double>(steps.size());
+  }
+};
+
+/// The greatest resident size of this process so far.
+[[nodiscard]] std::uint64_t peak_memory_bytes();
+
+}  // namespace collide_scene

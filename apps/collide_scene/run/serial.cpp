@@ -1,0 +1,55 @@
+#include "apps/collide_scene/run/serial.hpp"
+
+#include "collide/pairs.hpp"
+#include "collide/triangle.hpp"
+
+#include <chrono>
+#include <ctime>
+
+namespace collide_scene {
+namespace {
+
+double cpu_now() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
+                             std::vector<ScenePair>* pairs) {
+  using namespace tess::collide;
+  SerialCollision out;
+  PairStatistics statistics;
+  PairOptions options;
+  options.touching = rules.open ? Touching::does_not_count : Touching::counts;
+  options.models = scene.models;
+  options.within_model = rules.within_model;
+  options.voxel_size = rules.voxel_size;
+  options.statistics = &statistics;
+  const auto found = [&](std::uint32_t i, std::uint32_t j) {
+    out.answer.add({i, j}, step);
+    if (pairs != nullptr) pairs->push_back({i, j});
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const double cpu_begin = cpu_now();
+  if (rules.triangles)
+    for_each_pair(std::span<const Triangle>(scene.triangles), options, found);
+  else if (scene.triangles.empty())
+    for_each_pair(std::span<const Aabb>(scene.boxes), options, found);
+  else
+    for_each_pair(std::span<const Aabb>(boxes_of(scene)), options, found);
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.cpu_seconds = cpu_now() - cpu_begin;
+  out.answer.n_candidates = statistics.n_candidates;
+  out.grid.voxel_size = statistics.voxel_size;
+  out.grid.levels = statistics.n_levels;
+  out.grid.voxels = statistics.n_voxels;
+  out.grid.entries = statistics.n_entries;
+  out.grid.left_out = statistics.n_left_out;
+  out.grid.bytes = statistics.bytes;
+  return out;
+}
+
+}  // namespace collide_scene

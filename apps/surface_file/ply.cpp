@@ -1,0 +1,273 @@
+// The PLY format (Turk, "The PLY polygon file format", 1994): a header that lists elements and
+// their properties, then the elements one after the other, as text or binary. Of the elements,
+// `vertex` (x, y, z) and `face` (a list of vertices) are taken; others are passed over.
+#include "apps/surface_file/formats.hpp"
+#include "runtime/base/open_file.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <iterator>
+#include <sstream>
+
+namespace apps {
+namespace {
+using tess::ErrorCode;
+using tess::dn::Surface;
+
+enum class Type : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+
+struct TypeName {
+  std::string_view name;
+  Type type;
+};
+constexpr std::array type_names{
+    TypeName{"char", Type::i8},     TypeName{"int8", Type::i8},     TypeName{"uchar", Type::u8},
+    TypeName{"uint8", Type::u8},    TypeName{"short", Type::i16},   TypeName{"int16", Type::i16},
+    TypeName{"ushort", Type::u16},  TypeName{"uint16", Type::u16},  TypeName{"int", Type::i32},
+    TypeName{"int32", Type::i32},   TypeName{"uint", Type::u32},    TypeName{"uint32", Type::u32},
+    TypeName{"float", Type::f32},   TypeName{"float32", Type::f32}, TypeName{"double", Type::f64},
+    TypeName{"float64", Type::f64},
+};
+
+struct Property {
+  std::string name;
+  Type type{};
+  bool is_list = false;
+  Type count_type{};
+};
+struct ElementKind {
+  std::string name;
+  std::uint64_t n = 0;
+  std::vector<Property> properties;
+};
+enum class Encoding : std::uint8_t { ascii, little, big };
+
+class PlyReader {
+ public:
+  explicit PlyReader(const std::string& path) : path_(path) {
+    std::ifstream file = tess::detail::open_file(path, "a PLY file");
+    text_.assign(std::istreambuf_iterator<char>(file), {});
+    read_header();
+  }
+
+  Surface read() {
+    for (const ElementKind& kind : kinds_) {
+      kind_ = &kind;
+      if (kind.n > 0 && kind.properties.empty()) refuse("has elements without properties");
+      if (kind.name == "vertex")
+        read_vertices(kind);
+      else if (kind.name == "face")
+        read_faces(kind);
+      else
+        for (number_ = 0; number_ < kind.n; ++number_)
+          for (const Property& property : kind.properties) pass(property);
+    }
+    return std::move(surface_);
+  }
+
+ private:
+  template <class... Parts>
+  [[noreturn]] void refuse(const Parts&... parts) const {
+    if (kind_ == nullptr) tess::fail(ErrorCode::bad_file, path_, ": ", parts...);
+    tess::fail(ErrorCode::bad_file, path_, ": ", kind_->name, " ", number_, " of ", kind_->n, ": ",
+               parts...);
+  }
+
+  std::string header_line() {
+    const std::size_t end = text_.find('\n', at_);
+    if (end == std::string::npos) refuse("its header has no end_header; is the file truncated?");
+    std::string line = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    return line;
+  }
+
+  Type type_of(const std::string& name) const {
+    const auto* found = std::ranges::find(type_names, std::string_view(name), &TypeName::name);
+    if (found == type_names.end()) refuse("unknown type '", name.substr(0, 40), "' in the header");
+    return found->type;
+  }
+
+  void read_header() {
+    if (!text_.starts_with("ply\n") && !text_.starts_with("ply\r\n"))
+      refuse("is not a PLY file: it does not begin with the line 'ply'");
+    header_line();
+    for (std::string line = header_line(); line != "end_header"; line = header_line()) {
+      std::istringstream words(line);
+      std::string word, name;
+      words >> word;
+      if (word == "format") {
+        words >> name;
+        if (name == "ascii")
+          encoding_ = Encoding::ascii;
+        else if (name == "binary_little_endian")
+          encoding_ = Encoding::little;
+        else if (name == "binary_big_endian")
+          encoding_ = Encoding::big;
+        else
+          refuse("unknown format '", name.substr(0, 40), "'");
+      } else if (word == "element") {
+        ElementKind kind;
+        if (!(words >> kind.name >> kind.n)) refuse("not understood: '", line.substr(0, 80), "'");
+        kinds_.push_back(kind);
+      } else if (word == "property") {
+        Property property;
+        words >> name;
+        if (name == "list") {
+          property.is_list = true;
+          words >> name;
+          property.count_type = type_of(name);
+          words >> name;
+        }
+        property.type = type_of(name);
+        if (!(words >> property.name) || kinds_.empty())
+          refuse("not understood: '", line.substr(0, 80), "'");
+        kinds_.back().properties.push_back(property);
+      }
+    }
+  }
+
+  /// The next number of the file. Every number of a PLY file is a double, exactly.
+  double next(Type type) {
+    if (encoding_ == Encoding::ascii) return next_word();
+    switch (type) {
+      case Type::i8:
+        return next_as<std::int8_t>();
+      case Type::u8:
+        return next_as<std::uint8_t>();
+      case Type::i16:
+        return next_as<std::int16_t>();
+      case Type::u16:
+        return next_as<std::uint16_t>();
+      case Type::i32:
+        return next_as<std::int32_t>();
+      case Type::u32:
+        return next_as<std::uint32_t>();
+      case Type::f32:
+        return next_as<float>();
+      case Type::f64:
+        return next_as<double>();
+    }
+    return 0;
+  }
+
+  template <class T>
+  double next_as() {
+    std::array<char, sizeof(T)> bytes{};
+    if (text_.size() - at_ < sizeof(T)) refuse("the file ends here; it is truncated");
+    std::memcpy(bytes.data(), text_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    if ((encoding_ == Encoding::little) != (std::endian::native == std::endian::little))
+      std::ranges::reverse(bytes);
+    return static_cast<double>(std::bit_cast<T>(bytes));
+  }
+
+  double next_word() {
+    constexpr std::string_view blanks = " \t\r\n";
+    at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
+    if (at_ == text_.size()) refuse("the file ends here; it is truncated");
+    if (text_[at_] == '+') ++at_;
+    double value = 0;
+    const char *begin = text_.data() + at_, *end = text_.data() + text_.size();
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    const bool whole = stop == end || blanks.find(*stop) != std::string_view::npos;
+    if (error != std::errc{} || !whole)
+      refuse("'",
+             text_.substr(at_, std::min<std::size_t>(text_.find_first_of(blanks, at_) - at_, 40)),
+             "' is not a number");
+    at_ = static_cast<std::size_t>(stop - text_.data());
+    return value;
+  }
+
+  std::uint64_t next_count(const Property& property) {
+    if (!property.is_list) return 1;
+    const double n = next(property.count_type);
+    if (!(n >= 0) || n != static_cast<double>(static_cast<std::uint32_t>(std::min(n, 1e9))))
+      refuse("a list of ", n, " numbers");
+    return static_cast<std::uint64_t>(n);
+  }
+
+  void pass(const Property& property) {
+    for (std::uint64_t left = next_count(property); left > 0; --left) (void)next(property.type);
+  }
+
+  void read_vertices(const ElementKind& kind) {
+    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+    for (const std::string_view axis : axes)
+      if (std::ranges::find(kind.properties, axis, &Property::name) == kind.properties.end())
+        refuse("vertices have no property ", axis);
+    surface_.vertices.reserve(std::min<std::uint64_t>(kind.n, text_.size() / 3));
+    for (number_ = 0; number_ < kind.n; ++number_) {
+      tess::dn::Vec3 at{};
+      for (const Property& property : kind.properties) {
+        double* const to = property.is_list           ? nullptr
+                           : property.name == axes[0] ? &at.x
+                           : property.name == axes[1] ? &at.y
+                           : property.name == axes[2] ? &at.z
+                                                      : nullptr;
+        if (to != nullptr)
+          *to = next(property.type);
+        else
+          pass(property);
+      }
+      surface_.vertices.push_back(at);
+    }
+  }
+
+  void read_faces(const ElementKind& kind) {
+    const auto is_corners = [](const Property& property) {
+      return property.is_list &&
+             (property.name == "vertex_indices" || property.name == "vertex_index");
+    };
+    if (std::ranges::none_of(kind.properties, is_corners))
+      refuse("faces have no list vertex_indices");
+    surface_.triangles.reserve(std::min<std::uint64_t>(kind.n, text_.size() / 4));
+    for (number_ = 0; number_ < kind.n; ++number_)
+      for (const Property& property : kind.properties) {
+        if (is_corners(property))
+          read_polygon(property);
+        else
+          pass(property);
+      }
+  }
+
+  void read_polygon(const Property& property) {
+    const std::uint64_t n = next_count(property);
+    if (n < 3) refuse("has ", n, " vertices; a face needs three");
+    std::array<std::uint32_t, 3> fan{};
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const double v = next(property.type);
+      if (!(v >= 0 && v < 4294967296.0) || v != std::floor(v))
+        refuse("vertex ", v, " does not exist");
+      const auto corner = static_cast<std::uint32_t>(v);
+      if (i < 2) {
+        fan[i] = corner;
+        continue;
+      }
+      fan[2] = corner;
+      surface_.triangles.push_back(fan);
+      fan[1] = corner;
+    }
+  }
+
+  const std::string& path_;
+  std::string text_;
+  std::size_t at_ = 0;
+  Encoding encoding_ = Encoding::ascii;
+  std::vector<ElementKind> kinds_;
+  const ElementKind* kind_ = nullptr;  // that is being read, and the number of its element
+  std::uint64_t number_ = 0;
+  Surface surface_;
+};
+
+}  // namespace
+
+tess::dn::Surface read_ply(const std::string& path) {
+  return PlyReader(path).read();
+}
+
+}  // namespace apps

@@ -1,0 +1,26 @@
+// Surfaces of triangles from files, for all programs: OBJ, PLY and STL, by the ending of the name.
+// Every face of a file becomes its triangles (polygons become fans), degenerate and duplicate ones
+// included, in the order of the file. No vertex is merged or moved.
+//
+// OBJ and PLY (ASCII, binary of either byte order) are read in double precision by readers of our
+// own; STL, which holds single precision only, by Assimp. Assimp 5.2's other readers are not used:
+// that of OBJ refuses ".5" and rounds to single precision, that of PLY ends in a segmentation
+// fault if the file is truncated.
+#pragma once
+
+#include "collide/dn_field/surface.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace apps {
+
+/// True if the name ends in .obj, .ply or .stl, in any case.
+[[nodiscard]] bool names_surface(std::string_view path);
+
+/// Throws tess::Error (bad_file, bad_mesh) that names the file and what is wrong: it cannot be
+/// read, has another ending, is truncated or holds no triangles, a vertex is not finite, or a face
+/// has fewer than three vertices or one that does not exist.
+[[nodiscard]] tess::dn::Surface read_surface(const std::string& path);
+
+}  // namespace apps

@@ -1,0 +1,110 @@
+// The files of --out.
+#include "apps/collide_scene/output/files.hpp"
+
+#include "apps/collide_scene/output/picture.hpp"
+#include "apps/collide_scene/output/view.hpp"
+#include "apps/collide_scene/output/vtp.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <cstring>
+
+using namespace collide_scene;
+
+namespace {
+
+/// The numbers of an appended array, by its name.
+template <class T>
+std::vector<T> array_of(const std::string& vtp, const std::string& name) {
+  const std::size_t at = vtp.find("Name=\"" + name + "\"");
+  REQUIRE(at != std::string::npos);
+  const std::size_t offset = std::stoul(vtp.substr(vtp.find("offset=\"", at) + 8));
+  const std::size_t begin = vtp.find("encoding=\"raw\">\n_") + 17 + offset;
+  std::uint64_t n_bytes = 0;
+  std::memcpy(&n_bytes, vtp.data() + begin, sizeof n_bytes);
+  std::vector<T> values(n_bytes / sizeof(T));
+  std::memcpy(values.data(), vtp.data() + begin + sizeof n_bytes, n_bytes);
+  return values;
+}
+
+Scene two_triangles() {
+  Scene scene;
+  scene.triangles = {{{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}}, {{{{1, 1, -1}, {1, 1, 1}, {2, 2, 0}}}}};
+  scene.models = {0, 1};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the file of hits has each triangle with its hits and its model",
+          "[apps][collide_scene]") {
+  const std::vector<std::uint32_t> n_hits{5, 7};
+  const std::string vtp = hits_vtp(two_triangles(), n_hits);
+  CHECK(vtp.find("NumberOfPoints=\"6\" NumberOfPolys=\"2\"") != std::string::npos);
+  CHECK(array_of<std::uint32_t>(vtp, "hits") == n_hits);
+  CHECK(array_of<std::uint32_t>(vtp, "model") == std::vector<std::uint32_t>{0, 1});
+  CHECK(array_of<std::int64_t>(vtp, "offsets") == std::vector<std::int64_t>{3, 6});
+  const auto points = array_of<double>(vtp, "Points");
+  REQUIRE(points.size() == 18);
+  CHECK(points[3] == 4);
+  CHECK(points[11] == -1);
+}
+
+TEST_CASE("boxes are six faces in the file of hits", "[apps][collide_scene]") {
+  Scene scene;
+  scene.boxes = {{{0, 0, 0}, {1, 2, 3}}};
+  const std::string vtp = hits_vtp(scene, std::vector<std::uint32_t>{1});
+  CHECK(array_of<std::uint32_t>(vtp, "object") == std::vector<std::uint32_t>(6, 0));
+  CHECK(array_of<double>(vtp, "Points").size() == 6 * 4 * 3);
+}
+
+TEST_CASE("the file of pairs has a segment between the centres of each", "[apps][collide_scene]") {
+  const std::string vtp = pairs_vtp(two_triangles(), std::vector<ScenePair>{{0, 1}});
+  CHECK(vtp.find("NumberOfLines=\"1\"") != std::string::npos);
+  CHECK(array_of<double>(vtp, "Points") == std::vector<double>{2, 2, 0, 1.5, 1.5, 0});
+  CHECK(array_of<std::uint32_t>(vtp, "second") == std::vector<std::uint32_t>{1});
+}
+
+TEST_CASE("a pixel shows the triangle that is nearest to the viewer", "[apps][collide_scene]") {
+  Scene scene;
+  for (const double z : {0.0, 2.0, 1.0})
+    scene.triangles.push_back({{{{-9, -9, z}, {9, -9, z}, {0, 9, z}}}});
+  const View view(scene, 200);
+  const std::uint32_t middle = view.at(view.width() / 2, view.height() / 2);
+  REQUIRE(middle != View::nothing);
+  CHECK(view.triangles()[middle].object == 1);
+  CHECK(view.at(0, 0) == View::nothing);
+  // From the farthest to the nearest.
+  const std::vector<std::uint32_t> visible = view.visible();
+  REQUIRE(visible.size() == 3);
+  CHECK(view.triangles()[visible.back()].object == 1);
+}
+
+TEST_CASE("the picture shows scenes of points, far away and of one place",
+          "[apps][collide_scene]") {
+  Scene points;
+  points.boxes = {{{1e12, 1, 1}, {1e12, 1, 1}}, {{1e12, 1, 1}, {1e12, 1, 1}}};
+  points.description = "<&>";
+  const std::string svg = picture(points, std::vector<std::uint32_t>{1, 1});
+  CHECK(svg.find("2 of 2 objects collide") != std::string::npos);
+  CHECK(svg.find("&lt;&amp;&gt;") != std::string::npos);
+  CHECK(svg.find("nan") == std::string::npos);
+  // Many triangles become rows of pixels.
+  const Scene wave = make_scene("wave:131072");
+  CHECK(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)).find("M0 ") ==
+        std::string::npos);
+  CHECK(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)).find("h") !=
+        std::string::npos);
+}
+
+TEST_CASE("files that cannot be written are refused before the run", "[apps][collide_scene]") {
+  const tess::test::Scratch scratch;
+  Options options;
+  options.json = scratch.path("none/x.json");
+  CHECK(tess::test::message_of([&] { prepare_files(options); }).starts_with("--json "));
+  options.json.clear();
+  options.out = scratch.path("here/scene");
+  prepare_files(options);
+  std::filesystem::create_directories(options.out + "_hits.vtp");
+  CHECK(tess::test::message_of([&] { prepare_files(options); }).starts_with("--out "));
+}

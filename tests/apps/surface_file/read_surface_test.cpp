@@ -1,0 +1,193 @@
+// Files of triangles: nothing is lost, merged or moved, and what is damaged is refused by name.
+#include "apps/surface_file/read_surface.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <bit>
+#include <cstring>
+
+using apps::read_surface;
+using tess::dn::Surface;
+using tess::test::message_of;
+
+namespace {
+
+using Corners = std::array<std::array<double, 3>, 3>;
+
+/// All triangles by their corners, in order.
+std::vector<Corners> soup(const Surface& surface) {
+  std::vector<Corners> out;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    Corners& corners = out.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto p = surface.corners(t)[i];
+      corners[i] = {p.x, p.y, p.z};
+    }
+  }
+  return out;
+}
+
+template <class T>
+std::string bytes_of(T value, bool reversed) {
+  std::string bytes(sizeof(T), '\0');
+  std::memcpy(bytes.data(), &value, sizeof(T));
+  if (reversed) std::ranges::reverse(bytes);
+  return bytes;
+}
+
+// A triangle, the same again, one with an edge of no length, a point, and a fan of two.
+const std::string obj =
+    "v 0 0 0\nv 1 0 0\nv 0 .5 0\nv 3 0 0.25\n"
+    "f 1 2 3\nf 1/1/1 2//2 3/7\nf 1 1 2\nf 4 4 4\nf -4 -3 -2 -1\n";
+const std::vector<Corners> triangles{
+    {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}}, {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}},
+    {{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}},   {{{3, 0, 0.25}, {3, 0, 0.25}, {3, 0, 0.25}}},
+    {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}}, {{{0, 0, 0}, {0, 0.5, 0}, {3, 0, 0.25}}},
+};
+
+/// The same as PLY: with a property and an element that are passed over.
+std::string ply(const std::string& format, const std::string& real) {
+  const bool text = format == "ascii", reversed = format == "binary_big_endian";
+  std::string out = "ply\nformat " + format + " 1.0\ncomment made by a test\nelement vertex 4\n";
+  for (const char* name : {"x", "y", "z"}) out += "property " + real + " " + name + "\n";
+  out += "property uchar red\nelement material 2\nproperty list uchar short ids\n";
+  out += "element face 5\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto put = [&](auto value) {
+    out += text ? std::to_string(value) + " " : bytes_of(value, reversed);
+  };
+  const double places[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {3, 0, 0.25}};
+  for (const auto& place : places) {
+    for (const double at : place) real == "double" ? put(at) : put(static_cast<float>(at));
+    put(std::uint8_t{200});
+    if (text) out += "\n";
+  }
+  put(std::uint8_t{2}), put(std::int16_t{-5}), put(std::int16_t{7});
+  put(std::uint8_t{0});
+  const std::vector<std::vector<int>> faces{
+      {0, 1, 2}, {0, 1, 2}, {0, 0, 1}, {3, 3, 3}, {0, 1, 2, 3}};
+  for (const auto& face : faces) {
+    put(static_cast<std::uint8_t>(face.size()));
+    for (const int v : face) put(v);
+    if (text) out += "\n";
+  }
+  return out;
+}
+
+std::string binary_stl(const std::vector<Corners>& of) {
+  std::string out(80, '\0');
+  out += bytes_of(static_cast<std::uint32_t>(of.size()), false);
+  for (const Corners& corners : of) {
+    for (const float normal : {0.F, 0.F, 1.F}) out += bytes_of(normal, false);
+    for (const auto& corner : corners)
+      for (const double at : corner) out += bytes_of(static_cast<float>(at), false);
+    out += bytes_of(std::uint16_t{0}, false);
+  }
+  return out;
+}
+
+std::string text_stl(const std::vector<Corners>& of) {
+  std::string out = "solid part\n";
+  for (const Corners& corners : of) {
+    out += "facet normal 0 0 1\nouter loop\n";
+    for (const auto& [x, y, z] : corners)
+      out +=
+          "vertex " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    out += "endloop\nendfacet\n";
+  }
+  return out + "endsolid part\n";
+}
+
+}  // namespace
+
+TEST_CASE("every format keeps all triangles, also degenerate and duplicate ones, in order",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  CHECK(soup(read_surface(scratch.write("a.obj", obj))) == triangles);
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
+    for (const char* real : {"float", "double"}) {
+      INFO(format << " " << real);
+      CHECK(soup(read_surface(scratch.write("a.ply", ply(format, real)))) == triangles);
+    }
+  CHECK(soup(read_surface(scratch.write("a.stl", binary_stl(triangles)))) == triangles);
+  CHECK(soup(read_surface(scratch.write("A.STL", text_stl(triangles)))) == triangles);
+}
+
+TEST_CASE("OBJ and PLY are read in double precision", "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const std::string x = "500000.123456789";
+  const Surface of_obj =
+      read_surface(scratch.write("a.obj", "v " + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  CHECK(of_obj.vertices[0].x == 500000.123456789);
+  const Surface of_ply = read_surface(scratch.write(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+      "property double z\nelement face 1\nproperty list uchar int vertex_index\n"
+      "end_header\n" +
+          x + " 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+  CHECK(of_ply.vertices[0].x == 500000.123456789);
+}
+
+TEST_CASE("a file that is cut anywhere is refused by its name", "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  for (const char* format : {"ascii", "binary_little_endian"}) {
+    const std::string whole = ply(format, "float");
+    // The last character of the text is a blank.
+    for (std::size_t n = 0; n + 2 < whole.size(); ++n) {
+      const std::string path = scratch.write("cut.ply", whole.substr(0, n));
+      const std::string message = message_of([&] { (void)read_surface(path); });
+      if (!message.starts_with(path + ": ")) FAIL(format << ", " << n << " bytes: " << message);
+    }
+  }
+  const std::string stl = binary_stl(triangles);
+  for (std::size_t n = 0; n < stl.size(); n += 7) {
+    const std::string path = scratch.write("cut.stl", stl.substr(0, n));
+    CHECK(message_of([&] { (void)read_surface(path); }).starts_with(path + ": "));
+  }
+}
+
+TEST_CASE("what is no surface is refused with its name and the reason", "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const auto refused = [&](const std::string& name, const std::string& bytes) {
+    const std::string path = scratch.write(name, bytes);
+    const std::string message = message_of([&] { (void)read_surface(path); });
+    CHECK(message.starts_with(path));
+    return message;
+  };
+  using Catch::Matchers::Contains;
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  CHECK_THAT(refused("a.obj", ""), Contains("holds no faces"));
+  CHECK_THAT(refused("a.obj", "not a mesh\n"), Contains("holds no faces"));
+  CHECK_THAT(refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"), Contains("vertex 2"));
+  CHECK_THAT(refused("a.ply", "solid\n"), Contains("not a PLY file"));
+  CHECK_THAT(refused("a.ply", head + faces + "0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"),
+             Contains("vertex 2 of triangle 0") && Contains("not finite"));
+  CHECK_THAT(refused("a.ply", head + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+             Contains("has vertex 3, but there are 3"));
+  CHECK_THAT(refused("a.ply", head + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
+             Contains("vertex -1 does not exist"));
+  CHECK_THAT(refused("a.ply", head + faces + "0 0 0\n1 0 0\n0 1 0\n2 0 1\n"),
+             Contains("a face needs three"));
+  CHECK_THAT(refused("a.ply", head + faces + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n"),
+             Contains("vertex 1 of 3: 'zero' is not a number"));
+  CHECK_THAT(refused("a.ply", head + "end_header\n0 0 0\n1 0 0\n0 1 0\n"),
+             Contains("holds no triangles"));
+  CHECK_THAT(
+      refused("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n" + faces),
+      Contains("no property y"));
+  CHECK_THAT(refused("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n" + faces),
+             Contains("unknown type 'real'"));
+  CHECK_THAT(refused("a.ply", "ply\nformat ascii 1.0\nelement dust 99999999999\nend_header\n"),
+             Contains("elements without properties"));
+  CHECK_THAT(refused("a.stl", binary_stl({})), Contains("not an STL file"));
+  CHECK_THAT(refused("a.stl", "hello"), Contains("not an STL file"));
+  CHECK_THAT(refused("a.stl", binary_stl({{{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}}})),
+             Contains("not finite"));
+  CHECK_THAT(refused("a.txt", obj), Contains("give a file .obj, .ply or .stl"));
+  CHECK(message_of([&] {
+          (void)read_surface(scratch.path("none.ply"));
+        }).starts_with(scratch.path("none.ply")));
+}
