@@ -29,6 +29,10 @@ Task run_collision(Collider collider, Report report) {
   if (refused) std::rethrow_exception(refused);
 }
 
+void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target) {
+  collider.managers.broadcast<&Manager::report_last>(target);
+}
+
 void retire(const Collider& collider) {
   collider.voxels.broadcast<&Voxel::retire>();
 }

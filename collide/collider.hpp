@@ -73,6 +73,13 @@ struct Collider {
 /// dropped.
 Task run_collision(Collider collider, Report report);
 
+/// What the last collision did, for example
+///
+///     Future<CollisionStatistics> done;
+///     report_statistics(collider, done.callback());
+///     const CollisionStatistics statistics = co_await done;
+void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target);
+
 /// Ends the voxels that had no objects since the last call. No collision may be running.
 void retire(const Collider& collider);
 

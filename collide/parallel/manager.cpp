@@ -2,6 +2,8 @@
 
 #include "collide/parallel/voxel_home.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace tess::collide {
@@ -20,10 +22,13 @@ void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
 
 void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) {
   Prepared prepared = std::move(prepared_.extract(step).mapped());
+  last_ = {};
   if (plan.nothing) {
-    n_left_out_ += prepared.objects.boxes().size();
+    last_.n_left_out = prepared.objects.boxes().size();
     return;
   }
+  last_.voxel_size = std::min({plan.size[0], plan.size[1], plan.size[2]});
+  last_.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
   Round& r = round(step);
   r.delivery = std::make_shared<Delivery>(Delivery{plan, report, std::move(prepared.objects), {}});
   r.sort = VoxelSort(plan, r.delivery->objects, prepared.bounds);
@@ -78,10 +83,11 @@ void Manager::deliver(Round& r) {
     const std::uint32_t n = record.n_natives + record.n_visitors;
     const VoxelAnswer& answer = r.answers[i];
     if (answer.n_senders == 0) {
-      n_left_out_ += n;
+      last_.n_left_out += n;
       continue;
     }
-    n_delivered_ += n;
+    last_.n_entries += n;
+    last_.n_voxels += answer.makes_it;
     Part part(r.delivery, begin, record.n_natives, record.n_visitors);
     const std::uint32_t n_senders = answer.n_senders;
     if (answer.makes_it != 0) {

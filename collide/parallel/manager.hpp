@@ -17,12 +17,27 @@
 #include "collide/parallel/voxel_sort.hpp"
 #include "runtime/runtime.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <vector>
 
 namespace tess::collide {
+
+/// What the last collision did, on all PEs.
+struct CollisionStatistics {
+  double voxel_size = 0;  ///< the shortest edge, on the finest level; 0 if nothing was done
+  std::uint64_t n_levels = 0;
+  std::uint64_t n_voxels = 0;    ///< that were searched
+  std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
+  std::uint64_t n_left_out = 0;  ///< and that were not
+
+  friend CollisionStatistics operator+(const CollisionStatistics& a, const CollisionStatistics& b) {
+    return {std::max(a.voxel_size, b.voxel_size), std::max(a.n_levels, b.n_levels),
+            a.n_voxels + b.n_voxels, a.n_entries + b.n_entries, a.n_left_out + b.n_left_out};
+  }
+};
 
 class Manager : public Group<Manager> {
  public:
@@ -45,9 +60,9 @@ class Manager : public Group<Manager> {
                        std::vector<VoxelRecord> records);
   void receive_answers(std::uint64_t step, PeId home, std::vector<VoxelAnswer> answers);
 
-  /// Number of (object, voxel) pairs sent so far, and of those that were left out.
-  [[nodiscard]] std::uint64_t n_delivered() const { return n_delivered_; }
-  [[nodiscard]] std::uint64_t n_left_out() const { return n_left_out_; }
+  /// What this PE did in the last collision.
+  [[nodiscard]] const CollisionStatistics& last() const { return last_; }
+  void report_last(const Callback<CollisionStatistics>& target) { contribute(sum, last_, target); }
 
  private:
   /// What was submitted for a collision.
@@ -73,7 +88,8 @@ class Manager : public Group<Manager> {
   ObjectList pending_;
   std::map<std::uint64_t, Prepared> prepared_;  // by step
   std::map<std::uint64_t, Round> rounds_;
-  std::uint64_t n_steps_ = 0, n_delivered_ = 0, n_left_out_ = 0;
+  std::uint64_t n_steps_ = 0;
+  CollisionStatistics last_;
 };
 
 }  // namespace tess::collide

@@ -107,13 +107,12 @@ class Client : public Chare<Client, Index1> {
   void submit_bad(const Collider& collider, const Scene& scene) {
     std::vector<Item> items = boxes_of(scene, index().x);
     items.back().box.hi[1] = std::numeric_limits<double>::quiet_NaN();
-    const std::uint64_t sent_before = collider.managers.local().n_delivered();
     try {
       collider.submit(std::move(items));
     } catch (const Error& error) {
       const std::string name = fmt::format("object {} of owner {}", scene.n_boxes - 1, index().x);
       const bool names_it = std::string_view(error.what()).find(name) != std::string_view::npos;
-      if (names_it && collider.managers.local().n_delivered() == sent_before) ++n_refused_;
+      if (names_it) ++n_refused_;
     }
   }
   void receive(const Hits& hits) {
@@ -125,9 +124,6 @@ class Client : public Chare<Client, Index1> {
   Task collide(Collider collider, Report report) { co_await run_collision(collider, report); }
   void submit_more(const Collider& collider, const Scene& scene) {
     collider.submit(boxes_of(scene, index().x));
-  }
-  void count_sent(const Collider& collider, Callback<std::int64_t> target) {
-    contribute(sum, static_cast<std::int64_t>(collider.managers.local().n_delivered()), target);
   }
   void gather(Callback<Reports> target) { contribute(Join{}, reported_, std::move(target)); }
   void count_refused(Callback<std::int64_t> target) {
@@ -235,9 +231,9 @@ Task collide_apart(Problem& problem) {
     if (sent == &problem.n_sent_of_two_models)
       collider.submit(Objects{owner_of(Index1{0}), ModelId{7}, {far_box, far_box}});
     co_await run_collision(collider, report);
-    Future<std::int64_t> n;
-    clients.broadcast<&Client::count_sent>(collider, n.callback());
-    *sent = co_await n;
+    Future<CollisionStatistics> done;
+    report_statistics(collider, done.callback());
+    *sent = static_cast<std::int64_t>((co_await done).n_entries);
   }
   Future<Reports> all;
   clients.broadcast<&Client::gather>(all.callback());

@@ -90,11 +90,6 @@ void Client::give_pairs(tess::Callback<std::vector<ScenePair>> target) {
   pairs_ = {};
 }
 
-void Client::give_sent(const Collider& collider, tess::Callback<Sent> target) {
-  const Manager& manager = collider.managers.local();
-  contribute(AddAnswers{}, Sent{manager.n_delivered(), manager.n_left_out()}, std::move(target));
-}
-
 void Client::give_memory(tess::Callback<std::uint64_t> target) {
   const tess::Machine& machine = tess::machine();
   const tess::PeId here = tess::my_pe();

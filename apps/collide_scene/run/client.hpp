@@ -36,16 +36,8 @@ struct Candidates {
   std::vector<Pair> pairs;
 };
 
-/// Objects in voxels: those sent, and those left out because a voxel could have no pair.
-struct Sent {
-  std::uint64_t n_entries = 0, n_left_out = 0;
-};
-
 struct AddAnswers {
   Answer operator()(Answer a, const Answer& b) const { return a += b; }
-  Sent operator()(Sent a, const Sent& b) const {
-    return {a.n_entries + b.n_entries, a.n_left_out + b.n_left_out};
-  }
 };
 
 class Client : public tess::Chare<Client, tess::Index1> {
@@ -60,8 +52,6 @@ class Client : public tess::Chare<Client, tess::Index1> {
   void give_pairs(tess::Callback<std::vector<ScenePair>> target);
   /// Of the process, from the first of its PEs.
   void give_memory(tess::Callback<std::uint64_t> target);
-  /// By the Manager of this PE since the start; there is one client per PE.
-  void give_sent(const tess::collide::Collider& collider, tess::Callback<Sent> target);
   void forget();
 
   template <class Ar>

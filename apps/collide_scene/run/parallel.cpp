@@ -55,10 +55,9 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
     co_await run_collision(collider_, report);
     const double seconds = tess::seconds(tess::now() - begin);
     result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
-    tess::Future<Sent> sent;
-    clients_.broadcast<&Client::give_sent>(collider_, sent.callback());
-    const Sent before = std::exchange(sent_, co_await sent);
-    in_last_ = {sent_.n_entries - before.n_entries, sent_.n_left_out - before.n_left_out};
+    tess::Future<CollisionStatistics> done;
+    report_statistics(collider_, done.callback());
+    last_ = co_await done;
   }
   tess::Future<Answer> answer;
   clients_.broadcast<&Client::give_answer>(answer.callback());
@@ -70,9 +69,11 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
 }
 
 tess::Task ParallelCollisions::end(RunResult& result) {
-  if (rules_.voxel_size > 0) result.grid.voxel_size = rules_.voxel_size;
-  result.grid.entries = in_last_.n_entries;
-  result.grid.left_out = in_last_.n_left_out;
+  result.grid.voxel_size = last_.voxel_size;
+  result.grid.levels = last_.n_levels;
+  result.grid.voxels = last_.n_voxels;
+  result.grid.entries = last_.n_entries;
+  result.grid.left_out = last_.n_left_out;
   tess::Future<std::uint64_t> bytes;
   clients_.broadcast<&Client::give_memory>(bytes.callback());
   result.peak_memory_bytes = co_await bytes;

@@ -33,7 +33,7 @@ class ParallelCollisions {
   const Rules rules_;
   tess::collide::Collider collider_;
   tess::ArrayProxy<Client> clients_;
-  Sent sent_, in_last_;  // by all collisions so far, by the last one
+  tess::collide::CollisionStatistics last_;
 };
 
 }  // namespace collide_scene
