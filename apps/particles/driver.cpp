@@ -2,7 +2,6 @@
 
 #include "apps/particles/output/files.hpp"
 #include "apps/particles/output/report.hpp"
-#include "apps/particles/simulation/memory.hpp"
 #include "apps/plot/write_file.hpp"
 
 #include <fmt/ranges.h>
@@ -16,23 +15,6 @@ struct Problem {
   Scene scene;
   Report report;
 };
-
-/// The size of the compressed fields; of flat ones, of copies by the usual compression. None where
-/// these cannot be made, for instance for lack of memory: the run is worth more than this number.
-std::optional<std::uint64_t> compressed_bytes(const Stage& stage) {
-  std::uint64_t bytes = 0;
-  try {
-    for (const FieldInTheMaking& of : stage.fields)
-      bytes += of.field().planes != nullptr
-                   ? of.field().bytes()
-                   : compress(of.field(), bound_of({}, of.field())).bytes();
-  } catch (const std::bad_alloc&) {
-    return std::nullopt;
-  } catch (const tess::Error&) {
-    return std::nullopt;
-  }
-  return bytes;
-}
 
 tess::Task run(Problem& problem, apps::Progress& progress) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
@@ -50,7 +32,6 @@ tess::Task run(Problem& problem, apps::Progress& progress) {
       plot::write_file(options.json, json(stage->scene, result, problem.report));
   };
   write_json();
-  if (!options.json.empty()) problem.report.bytes_compressed = compressed_bytes(*stage);
   if (options.study) {
     StudyOptions study_options;
     study_options.progress = &progress;

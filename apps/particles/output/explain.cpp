@@ -39,16 +39,9 @@ std::string explanation(const Scene& scene, const Options& options) {
     line(scene.compression ? fmt::format("compression: used, within {} cells and {} degrees",
                                          scene.compression->cells, scene.compression->degrees)
                            : "compression: left out, flat fields");
-    if (!scene.compression && !options.json.empty())
-      line("compressed copies: made after the run, for their size in the --json file");
   } else if (any) {
     line("fields: left out, no rule asks for a surface and no picture shows one");
   }
-  const auto n_sheets = count([&](const SceneObject& object) {
-    return object.sides == tess::dn::Sides::two && keeps_triangles(scene, object);
-  });
-  line(n_sheets == 0 ? "triangles beside the fields: left out, no impacts on sheets"
-                     : fmt::format("triangles beside the fields: used, of {} sheets", n_sheets));
   if (options.study) line("study: builds fields of its own, of the first object");
   line(fmt::format("objects: {}, of which {} move, {} of these grow", scene.objects.size(),
                    count([](const SceneObject& object) { return object.frame.is_moving(); }),

@@ -4,11 +4,9 @@
 #include "apps/particles/output/vtp.hpp"
 #include "apps/plot/write_file.hpp"
 #include "collide/dn_field/field_file.hpp"
-#include "runtime/core/error.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
-#include <string_view>
 
 namespace particles {
 namespace {
@@ -18,19 +16,6 @@ std::string field_file(std::size_t object) {
   return fmt::format("field_{}.dnf", object);
 }
 
-void require_writable_in(const std::string& folder, const fs::path& file) {
-  if (const std::string why = plot::hindrance(file); !why.empty())
-    tess::fail(tess::ErrorCode::environment, "--out ", folder, ": ", file.string(),
-               " cannot be written: ", why, "; move that away, or give another folder");
-}
-
-/// Checks the files whose names begin so: this run writes them again.
-void require_writable_in(const std::string& folder, const fs::path& in, std::string_view begin) {
-  std::error_code error;
-  for (fs::directory_iterator at(in, error), end; !error && at != end; at.increment(error))
-    if (at->path().filename().string().starts_with(begin)) require_writable_in(folder, at->path());
-}
-
 }  // namespace
 
 void prepare_files(const Scene& scene, const Options& options) {
@@ -38,19 +23,14 @@ void prepare_files(const Scene& scene, const Options& options) {
   plot::require_writable("--json", options.json);
   if (options.out.empty()) return;
   const fs::path in(options.out);
-  const auto require = [&](const std::string& file) {
-    require_writable_in(options.out, in / file);
+  const auto require = [&](const char* file) {
+    plot::require_writable("--out " + options.out, (in / file).string());
   };
-  for (std::size_t i = 0; scene.outputs.fields && i < scene.objects.size(); ++i)
-    require(field_file(i));
   if (scene.outputs.slice) require("field.svg");
   if (scene.outputs.trajectories > 0) {
     require("paths.svg");
-    require("trajectories.pvd");
     plot::make_folder("--out " + options.out, in / "trajectories");
-    require_writable_in(options.out, in / "trajectories", "step_");
   }
-  if (options.study) require_writable_in(options.out, in, "study");
 }
 
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {

@@ -10,7 +10,7 @@
 
 namespace particles {
 
-/// Makes the folder of --out and checks every file that this run will write there, and that of
+/// Makes the folder of --out, and checks the pictures that this run will write there and the file of
 /// --json. Throws Error(environment) that names the option, the path and the remedy.
 void prepare_files(const Scene& scene, const Options& options);
 

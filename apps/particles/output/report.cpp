@@ -87,11 +87,10 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
                      fields.build_seconds));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    const double needed = least_wall(scene, object), share = thin_share(scene, object);
-    if (!stops_particles(scene) || object.walls.least >= needed) continue;
+    if (object.thin_share == 0) continue;
     line("thin",
-         fmt::format("{} % of objects[{}] is thinner than {:.3g}: particles may pass there",
-                     share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1", i, needed));
+         fmt::format("{:.2g} % of objects[{}] is thinner than {:.3g}: particles may pass there",
+                     100 * object.thin_share, i, least_wall(scene.rules, object)));
   }
   line("blocks", fmt::format("of {:.4g}, particles change them every {} steps", result.block,
                              result.exchange));
@@ -139,9 +138,9 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
                   {"bytes", fields.bytes},
-                  {"bytes_compressed", nullptr},  // unless it is known
+                  {"bytes_compressed", nullptr},  // of a run with flat fields
                   {"stored", scene.compression ? "compressed" : "flat"}};
-  if (report.bytes_compressed) out["field"]["bytes_compressed"] = *report.bytes_compressed;
+  if (scene.compression) out["field"]["bytes_compressed"] = fields.bytes_used;
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited == 0                     ? "last step"

@@ -6,7 +6,6 @@
 #include "apps/particles/simulation/simulate.hpp"
 #include "apps/particles/study/study.hpp"
 
-#include <optional>
 #include <string>
 
 namespace particles {
@@ -16,7 +15,6 @@ struct Report {
   std::string machine;
   std::int32_t pes = 0, processes = 0;
   RunOptions run{};
-  std::optional<std::uint64_t> bytes_compressed{};  ///< of all fields
   std::vector<StudyRow> study{};
 };
 

@@ -1,6 +1,7 @@
 // Checks that need several keys of a scene: each may be right by itself, and the run impossible.
 #include "apps/particles/scene/json.hpp"
 #include "apps/particles/scene/scene.hpp"
+#include "collide/dn_field/walls.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cmath>
@@ -39,8 +40,8 @@ class ObjectCheck {
   void check_thickness() const {
     const bool sweeps = scene_.rules.impact && scene_.rules.impact->sweep == Sweep::on;
     const double reach = tess::dn::reach(scene_.rules), thickness = object_.thickness * least_;
-    const double covers = least_ * covered(object_.thickness, object_.grid.cell, object_.sides,
-                                           look_up_of(scene_.rules));
+    const double covers =
+        least_ * covered(object_.thickness, object_.grid.cell, object_.sides, scene_.rules.look_up);
     if (reach > covers)
       refuse("].thickness: ", object_.thickness, " times scale ", least_,
              covers < thickness
@@ -92,25 +93,11 @@ class ObjectCheck {
 
   /// No large part of the surface is a wall that fits between voxels: particles would pass it.
   void check_walls() const {
-    constexpr double most_thin = 0.1, most_slanted = 0.5;  // of the surface; the latter with edges
-    const double needed = least_wall(scene_, object_), thin = thin_share(scene_, object_);
-    const bool by_walls = object_.walls.share_thinner(needed) > most_thin;
-    if (thin == 0 || (!by_walls && thin <= most_slanted)) return;
-    // The remedy is the resolution at which no more than the allowed share is thinner.
-    const auto& list = by_walls ? object_.walls.opposite : object_.walls.slanted;
-    const double allowed = (by_walls ? most_thin : most_slanted) * object_.walls.n_places();
-    const double wall =
-        list[static_cast<std::size_t>(std::min(allowed, static_cast<double>(list.size() - 1)))];
-    const double off = kept_off(scene_, object_), shrink = (wall + off) / (needed + off);
-    const double resolution = std::ceil((object_.grid.n[0] - 1) / shrink) + 1;
-    refuse("].shape: ", 100 * thin, " % of its surface is an open sheet, or a wall thinner than ",
-           needed, ", which a field of ", object_.grid.n[0],
-           " voxels needs; particles would pass it: take ",
-           object_.field.empty() ? "" : "a field of ", "sides two",
-           object_.method == Method::normals ? " and another method" : "",
-           shrink > 0 && resolution <= 1024
-               ? fmt::format(", or a resolution of {} or more", resolution)
-               : "");
+    if (object_.thin_share <= most_thin) return;
+    refuse("].shape: ", 100 * object_.thin_share,
+           " % of its surface is an open sheet, or a wall thinner than ",
+           least_wall(scene_.rules, object_), ", which a field of ", object_.grid.n[0],
+           " voxels needs; particles would pass it: take sides two, or a higher resolution");
   }
 
  private:

@@ -12,26 +12,12 @@ using namespace tess::dn;
 
 constexpr int block_layers = 4;  // are built together
 
-/// The layers `first` to `last` − 1.
-struct Layers {
-  int first, last;
-};
-
-/// Part `part` of n_parts, cut between blocks of layers.
-Layers share(Layers of, int part, int n_parts) {
-  const int n_blocks = (of.last - of.first + block_layers - 1) / block_layers;
-  const auto edge = [&](int at) {
-    return std::min(
-        of.last, of.first + block_layers * static_cast<int>(std::int64_t{n_blocks} * at / n_parts));
-  };
-  return {edge(part), edge(part + 1)};
-}
-
 }  // namespace
 
 Content content_of(const Scene& scene) {
-  return scene.outputs.slice || scene.outputs.fields ? Content::distance_and_normal
-                                                     : needed_content(scene.rules);
+  return scene.compression || scene.outputs.slice || scene.outputs.fields
+             ? Content::distance_and_normal
+             : needed_content(scene.rules);
 }
 
 void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
@@ -53,24 +39,19 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
       FieldOptions{object.sides, content, object.thickness, object.method, object.blur});
 }
 
-int FieldInTheMaking::n_distance_stages() const {
-  constexpr std::size_t voxels_a_stage = std::size_t{1} << 24U;  // some tenths of a second
-  // Each with blocks enough for all parts.
-  const auto most =
-      static_cast<std::size_t>(std::max(1, grid_.n[2] / (4 * block_layers * n_parts_)));
-  return static_cast<int>(std::min(most, grid_.size() / voxels_a_stage + 1));
-}
-
 int FieldInTheMaking::n_stages() const {
-  return builder_ ? n_distance_stages() + builder_->n_rounds() - 1 : 0;
+  return builder_ ? builder_->n_rounds() : 0;
 }
 
 void FieldInTheMaking::fill(int stage, int part) {
   if (stage >= n_stages()) return;
-  const Layers all{0, grid_.n[2]};
-  const int n = n_distance_stages();
-  const auto [first, last] = share(stage < n ? share(all, stage, n) : all, part, n_parts_);
-  if (first < last) builder_->build(std::max(0, stage - n + 1), first, last);
+  // Parts are cut between blocks of layers.
+  const int n_blocks = (grid_.n[2] + block_layers - 1) / block_layers;
+  const auto edge = [&](int at) {
+    return std::min(grid_.n[2],
+                    block_layers * static_cast<int>(std::int64_t{n_blocks} * at / n_parts_));
+  };
+  if (edge(part) < edge(part + 1)) builder_->build(stage, edge(part), edge(part + 1));
 }
 
 void FieldInTheMaking::finish(const std::optional<Compression>& compression) {

@@ -13,8 +13,8 @@
 
 namespace particles {
 
-/// The content of the fields of this scene: what its rules need, and normals for pictures and
-/// files.
+/// The content of the fields of this scene: what its rules need, and normals for compression,
+/// pictures and files.
 [[nodiscard]] tess::dn::Content content_of(const Scene& scene);
 
 /// The field of an object in the making: begun by one PE of the process, filled by all in stages,
@@ -41,9 +41,6 @@ class FieldInTheMaking {
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  /// More than one for large fields, so that the progress line moves.
-  [[nodiscard]] int n_distance_stages() const;
-
   std::optional<tess::dn::FieldBuilder> builder_;  // none for a field from a file
   tess::dn::Field field_;
   std::uint64_t flat_bytes_ = 0;

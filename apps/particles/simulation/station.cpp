@@ -1,7 +1,6 @@
 #include "apps/particles/simulation/station.hpp"
 
 #include "apps/particles/simulation/block.hpp"
-#include "apps/particles/simulation/simulate.hpp"
 
 #include <map>
 #include <new>
@@ -53,7 +52,8 @@ void Station::begin_fields() {
   make_mine([&](FieldInTheMaking& field, std::size_t i) {
     const SceneObject& object = scene.objects[i];
     field.begin(object, content_of(scene), n_parts);
-    if (keeps_triangles(scene, object)) stage_->triangles[i].emplace(object.surface);
+    if (object.sides == tess::dn::Sides::two && stage_->n_audited > 0)
+      stage_->triangles[i].emplace(object.surface);
   });
 }
 
@@ -99,7 +99,7 @@ void Station::emit(tess::ArrayProxy<Block> blocks) {
     arrivals.stations = group();
     arrivals.flocks.resize(stage.species.size());
     Flock& flock = arrivals.flocks[stage.species_of(id, start.mass)];
-    flock.add(id, start.position, start.velocity, Mark{});
+    flock.add(id, start.position, start.velocity);
     if (flock.size() < most_a_message) continue;
     send(to, arrivals);
     leaving.erase(to);

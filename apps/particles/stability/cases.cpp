@@ -49,7 +49,7 @@ void drag(Rows& rows) {
     rows.add("air drag", "c dt/m", rate, std::abs(end.velocity.x / speed - kept), 1e-13);
     rows.add("air drag: way", "c dt/m", rate, std::abs(end.position.x / (speed * way) - 1), 1e-12);
     Rules surface;
-    surface.surface_drag = SurfaceDrag{rate, 1, DragLaw::linear};
+    surface.surface_drag = SurfaceDrag{rate, 1};
     end = flown(surface, 1, n_steps, {&object, 1}, {{-0.5, 0, 0.5}, {speed, 0, 0}});
     rows.add("surface drag", "c dt/m", rate, std::abs(end.velocity.x / speed - kept), 1e-13);
     Rules fall = air;

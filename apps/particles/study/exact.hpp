@@ -1,14 +1,8 @@
 // The reference of the study: what particles do at the triangles themselves, without a field.
-//
-// Bounces: straight flight, reflection at the first triangle, straight flight; closed forms.
-// Flights in front of the triangles, for rules that act at a distance: linear drag takes as much
-// speed per length as its rate, a closed form between the places where its reach begins and ends,
-// which exact distances give; surface flow is followed in short steps of second order with exact
-// normals.
+// Straight flight, reflection at the first triangle, straight flight: closed forms.
 #pragma once
 
 #include "collide/dn_field/bvh.hpp"
-#include "collide/dn_field/rules.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -37,17 +31,5 @@ struct Bounce {
 /// `velocity` after `time`. It is the time at which the paths come closest.
 [[nodiscard]] double bounce_time(const Bounce& bounce, tess::dn::Vec3 place,
                                  tess::dn::Vec3 velocity, double time);
-
-struct Flight {
-  tess::dn::Vec3 position, velocity;
-};
-
-/// After `time`, slowed down by the drag, which is linear, nearer than its threshold.
-[[nodiscard]] Flight exact_drag(const tess::dn::Bvh& tree, const Flight& start,
-                                const tess::dn::SurfaceDrag& drag, double time);
-
-/// After `time`, turned by the flow; the error falls with the square of n_steps.
-[[nodiscard]] Flight exact_flow(const tess::dn::Bvh& tree, const Flight& start,
-                                const tess::dn::SurfaceFlow& flow, double time, int n_steps);
 
 }  // namespace particles

@@ -96,17 +96,19 @@ void compare_bounces(const Object& object, const Rules& rules, double dt, const 
   row.angle_error = angles.value();
 }
 
-void compare_flights(const Object& object, const Rules& rules, double dt, double time,
-                     const std::vector<Flight>& starts, const std::vector<Flight>& exact,
-                     StudyRow& row) {
-  Particles particles;
-  for (const Flight& start : starts) particles.push_back(start.position, start.velocity);
+Particles flown(const Object& object, const Rules& rules, double dt, double time,
+                const Particles& starts) {
+  Particles particles = starts;
   const auto n_steps = static_cast<int>(std::lround(time / dt));
   make_stepper(rules, dt).run(particles.span(), {&object, 1}, 0, n_steps);
+  return particles;
+}
+
+void compare_flights(const Particles& found, const Particles& wanted, StudyRow& row) {
   RootMeanSquare places, angles;
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    places.add(norm(particles.position(p) - exact[p].position));
-    angles.add(degrees_between(particles.velocity(p), exact[p].velocity));
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    places.add(norm(found.position(p) - wanted.position(p)));
+    angles.add(degrees_between(found.velocity(p), wanted.velocity(p)));
   }
   row.place_error = places.value();
   row.angle_error = angles.value();

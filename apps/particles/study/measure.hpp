@@ -1,5 +1,5 @@
-// What the study measures of one choice: a field against exact distances and normals, bounces and
-// flights against exact ones, and time. Serial; private to the study.
+// What the study measures of one choice: a field against exact distances and normals, bounces
+// against exact ones, flights against those of short steps, and time. Serial; private to the study.
 #pragma once
 
 #include "apps/particles/study/exact.hpp"
@@ -38,10 +38,14 @@ void compare(const tess::dn::Field& field, tess::dn::LookUp kind, const Samples&
 void compare_bounces(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
                      const Subject& subject, StudyRow& row);
 
-/// Moves particles for the time that the exact flights took, in steps of dt.
-void compare_flights(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
-                     double time, const std::vector<Flight>& starts,
-                     const std::vector<Flight>& exact, StudyRow& row);
+/// Particles after `time` in steps of dt.
+[[nodiscard]] tess::dn::Particles flown(const tess::dn::Object& object,
+                                        const tess::dn::Rules& rules, double dt, double time,
+                                        const tess::dn::Particles& starts);
+
+/// Errors of places and directions.
+void compare_flights(const tess::dn::Particles& found, const tess::dn::Particles& wanted,
+                     StudyRow& row);
 
 /// Particles near the surface with velocities of 1 in all directions.
 [[nodiscard]] tess::dn::Particles crowd(const Subject& subject, std::size_t n);

@@ -1,7 +1,5 @@
 #include "apps/particles/study/study.hpp"
 #include "apps/plot/chart.hpp"
-#include "apps/plot/quoting.hpp"
-#include "apps/plot/write_file.hpp"
 
 #include <array>
 #include <filesystem>
@@ -115,24 +113,7 @@ std::string study_table(const std::vector<StudyRow>& rows) {
          "time of the thread; the least of five measurements\n";
 }
 
-std::string study_csv(const std::vector<StudyRow>& rows) {
-  std::string out = "part,resolution,method,stored,look_up,rule";
-  for (const StudyColumn& column : columns) out += fmt::format(",{}", column.name);
-  out += ",note\n";
-  for (const StudyRow& row : rows) {
-    out += fmt::format("{},{},{},{},{},{}", row.part, row.resolution, row.method, row.stored,
-                       row.look_up, plot::csv_field(row.rule));
-    for (const StudyColumn& column : columns) {
-      const double value = row.*column.value;
-      out += value < 0 ? "," : fmt::format(",{}", value);
-    }
-    out += "," + plot::csv_field(row.note) + "\n";
-  }
-  return out;
-}
-
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows) {
-  plot::write_file((std::filesystem::path(folder) / "study.csv").string(), study_csv(rows));
   for (const Picture& picture : pictures) draw(folder, picture, rows);
 }
 

@@ -24,9 +24,8 @@ struct Distances::Shelf {
   int block_first;  // layer at which the blocks begin
 };
 
-Distances::Distances(const Surface& surface, const OutwardSurface* outward, const Grid& grid)
-    : tree_(outward != nullptr ? outward->surface() : surface) {
-  if (outward != nullptr) inside_.emplace(*outward, tree_, grid);
+Distances::Distances(const Surface& surface, Sides sides, const Grid& grid) : tree_(surface) {
+  if (sides == Sides::one) inside_.emplace(surface, tree_, grid);
 }
 
 // All 64 points of a block are asked for, whichever layers the shelf needs: the result does not
@@ -71,7 +70,9 @@ void Distances::fill_shelf(const Shelf& shelf) const {
   const Grid& grid = field.grid;
   const std::size_t begin = grid.index(0, 0, first), size = grid.index(0, 0, last) - begin;
   std::vector<std::uint8_t> inside(size);
-  if (inside_) inside_->layers(first, last, inside);
+  if (inside_)
+    for (int k = first; k < last; ++k)
+      inside_->layer(k, std::span(inside).subspan(grid.index(0, 0, k - first)));
   const auto far = static_cast<float>(field.thickness);
   for (std::size_t at = 0; at < size; ++at)
     field.distance[begin + at] = inside[at] != 0 ? -far : far;

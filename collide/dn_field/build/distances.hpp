@@ -1,7 +1,7 @@
 // The distances of a field, and its exact normals.
 #pragma once
 
-#include "collide/dn_field/build/sign.hpp"
+#include "collide/dn_field/build/inside.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/field.hpp"
 
@@ -11,14 +11,16 @@ namespace tess::dn {
 
 class Distances {
  public:
-  /// `outward`: of `surface`; null for two-sided fields. Refers to neither afterwards.
-  Distances(const Surface& surface, const OutwardSurface* outward, const Grid& grid);
+  /// Does not refer to `surface` afterwards.
+  Distances(const Surface& surface, Sides sides, const Grid& grid);
   Distances(const Distances&) = delete;
   Distances& operator=(const Distances&) = delete;
 
   /// Fills the layers `first` to `last` − 1 of `field`, up to its thickness; normals if it has room
   /// for them. Any thread, different layers at once.
   void fill(Field& field, int first, int last) const;
+
+  [[nodiscard]] const Bvh& tree() const { return tree_; }
 
  private:
   struct Shelf;  // up to four layers

@@ -27,8 +27,7 @@ Field expanded(const Field& field) {
       for (int i = 0; i < nx; ++i) {
         const lanes::Stored here = voxel(sampler, i, j, k);
         flat.distance.push_back(here.distance[0]);
-        if (field.content() == Content::distance_and_normal)
-          flat.normal.push_back(encode_normal(lanes::lane(here.normal, 0)));
+        flat.normal.push_back(encode_normal(lanes::lane(here.normal, 0)));
       }
   flat.jump = greatest_jump(flat);
   return flat;

@@ -205,7 +205,6 @@ PlacedObject placed(const Object& object, LookUp kind, double step, bool restles
   };
   result.swell = std::abs(frame.scale_rate) * norm(Vec3{furthest(0), furthest(1), furthest(2)});
   result.restless = restless;
-  if (field.sides == Sides::two) result.open_surface = object.triangles;
   return result;
 }
 

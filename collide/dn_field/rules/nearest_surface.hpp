@@ -44,12 +44,11 @@ struct PlacedObject {
   float doubt;  ///< that plus half a voxel's diagonal
   float jump;   ///< jump_of(), in world units
   Frame frame;
-  double step;              ///< length of the step in time
-  double growth;            ///< relative change of the scale in the step
-  float spin;               ///< rotation in the step, radians
-  double swell;             ///< upper bound of the surface's speed by growth
-  bool restless;            ///< whether some object of the scene moves
-  const Bvh* open_surface;  ///< the triangles of an open surface, if given
+  double step;    ///< length of the step in time
+  double growth;  ///< relative change of the scale in the step
+  float spin;     ///< rotation in the step, radians
+  double swell;   ///< upper bound of the surface's speed by growth
+  bool restless;  ///< whether some object of the scene moves
 
   /// Whether a straight path in the world is curved in the object's coordinates.
   [[nodiscard]] bool bends() const { return spin != 0 || growth != 0; }

@@ -63,32 +63,19 @@ void BlockFlight::meet_surface(const Run& run, const ObjectPoses& poses, int ste
   const auto& objects = poses.objects_at(step);
   if (!up_to_date_) sample_all(run, objects, particles, *nearest_);
   const NearestSurface& nearest = *nearest_;
-  const auto half_drag = [&] {
-    if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
-      drag_quadratic(0.5 * drag->rate * plan.step, drag->threshold, run.setting, particles,
-                     nearest);
-  };
-  half_drag();
   if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, nearest);
-  const bool open = plan.rules.impact && std::ranges::any_of(objects, &PlacedObject::open_surface);
   const ParticleSpan start = start_.span(particles.count);
-  if (plan.rules.spring || open) copy(particles, start);
+  if (plan.rules.spring) copy(particles, start);
   run.loop(run.constants, particles, nearest, scratch_);
   trace(run.constants, objects, plan.rules.look_up, particles, scratch_);
-  const CorrectedStep corrected{run.constants, run.setting, plan.sweep, nearest,
-                                start,         particles,   scratch_};
-  bool returned = false;
-  if (plan.rules.spring) {
-    sample_all(run, poses.objects_at(step + 1), particles, *after_);
-    returned = limit_springs(corrected, *after_);
-  }
-  if (open && keep_off_open_surfaces(corrected, plan.rules.spring.has_value(), objects,
-                                     poses.objects_at(step + 1)))
-    returned = true;
-  half_drag();
+  up_to_date_ = false;
+  if (!plan.rules.spring) return;
+  sample_all(run, poses.objects_at(step + 1), particles, *after_);
+  const bool returned =
+      limit_springs({run.constants, run.setting, nearest, start, particles, scratch_}, *after_);
   // The samples at the end serve the next step where nothing has moved since.
-  up_to_date_ = plan.rules.spring && run.setting == Setting::one_at_rest && !returned;
-  if (plan.rules.spring) std::swap(nearest_, after_);
+  up_to_date_ = run.setting == Setting::one_at_rest && !returned;
+  std::swap(nearest_, after_);
 }
 
 void BlockFlight::step_near(const Run& run, const ObjectPoses& poses, int step,

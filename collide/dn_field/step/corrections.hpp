@@ -1,14 +1,9 @@
-// The corrections after the rules of the surface, for the particles that one voxel's plane
-// misleads.
-//
-// Springs: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
-// the side and would gain potential energy. The depth is sampled again at the end of the step. A
-// particle with more energy than it had loses speed; if its depth alone takes more, it returns.
-// Open surfaces: where they meet, a voxel may store the wrong one. A particle that crossed a
-// triangle flies straight on instead if that crosses none; otherwise it returns.
-//
-// A particle that returns is put back to its start, which moved with the surface, with reversed
-// velocity relative to the surface. Private to the step loop.
+// The correction after the rules of the surface, for particles that one voxel's plane misleads: in a
+// corner, past an edge or on a curved object a particle can enter a stiff spring from the side and
+// would gain potential energy. The depth is sampled again at the end of the step. A particle with
+// more energy than it had loses speed; if its depth alone takes more, it returns: it is put back to
+// its start, which moved with the surface, with reversed velocity relative to the surface. Private
+// to the step loop.
 #pragma once
 
 #include "collide/dn_field/rules/rule_loop.hpp"
@@ -19,7 +14,6 @@ namespace tess::dn {
 struct CorrectedStep {
   const RuleConstants& constants;
   Setting setting;
-  Sweep sweep;
   const NearestSurface& nearest;  ///< at the start of the step
   const ParticleSpan& start;      ///< the particles before the rules of the surface
   const ParticleSpan& particles;
@@ -28,11 +22,5 @@ struct CorrectedStep {
 
 /// nearest_after: the nearest surfaces at the end of the step. Returns whether a particle returned.
 [[nodiscard]] bool limit_springs(const CorrectedStep& step, const NearestSurface& nearest_after);
-
-/// before, after: the objects at the start and at the end of the step. Returns whether a particle
-/// was moved.
-[[nodiscard]] bool keep_off_open_surfaces(const CorrectedStep& step, bool springs,
-                                          std::span<const PlacedObject> before,
-                                          std::span<const PlacedObject> after);
 
 }  // namespace tess::dn

@@ -94,7 +94,7 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            " stores no normals and a rule or the tangent look-up needs them; build its field with "
            "distance and normal");
     const double within =
-        frame.scale * covered(field.thickness, field.grid.cell, field.sides, look_up_of(rules));
+        frame.scale * covered(field.thickness, field.grid.cell, field.sides, rules.look_up);
     if (reach(rules) > within)
       fail(ErrorCode::bad_argument, "a rule reaches ", reach(rules),
            " from where particles are stopped, and the field of object ", i, " only ", within,
