@@ -52,7 +52,7 @@ class Stepper {
   [[nodiscard]] std::vector<Waypoint> run_once(ParticleSpan particles,
                                                std::span<const Object> objects, double time) const;
 
-  struct Plan;  ///< see step/plan.hpp
+  struct Plan;  ///< see step/object_poses.hpp
 
  private:
   friend Stepper make_stepper(const Rules& rules, double step);

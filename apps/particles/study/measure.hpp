@@ -1,17 +1,41 @@
 // What the study measures of one choice: a field against exact distances and normals, bounces
-// against exact ones, flights against those of short steps, and time. Serial; private to the study.
+// against exact ones off the triangles, flights against those of short steps, and time. Serial;
+// private to the study.
 #pragma once
 
-#include "apps/particles/study/exact.hpp"
 #include "apps/particles/study/study.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/stepper.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace particles {
+
+/// A particle that is about to bounce, and where and how it does.
+struct Bounce {
+  tess::dn::Vec3 start, velocity;  ///< of speed 1
+  double time = 0;                 ///< of the bounce
+  tess::dn::Vec3 hit;              ///< its place
+  tess::dn::Vec3 outgoing;         ///< the velocity after it, for restitution 1
+
+  /// Out of the surface.
+  [[nodiscard]] tess::dn::Vec3 normal() const { return direction(outgoing - velocity); }
+};
+
+/// Up to `n` bounces off a surface, of which `tree` holds the triangles: at points spread over its
+/// area, approached from the distance `from` at up to 60 degrees off the normal. A path that meets
+/// another front side first bounces there; one that meets a back side first is left out.
+[[nodiscard]] std::vector<Bounce> exact_bounces(const tess::dn::Surface& surface,
+                                                const tess::dn::Bvh& tree, std::size_t n,
+                                                double from, std::uint64_t seed);
+
+/// The time of a bounce from its two straight paths: begun at bounce.start, ended at `place` with
+/// `velocity` after `time`. It is the time at which the paths come closest.
+[[nodiscard]] double bounce_time(const Bounce& bounce, tess::dn::Vec3 place,
+                                 tess::dn::Vec3 velocity, double time);
 
 /// The object and its exact reference.
 struct Subject {

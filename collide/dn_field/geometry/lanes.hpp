@@ -29,6 +29,15 @@ using F = float __attribute__((vector_size(4 * width)));
 using I = std::int32_t __attribute__((vector_size(4 * width)));  // also the mask of F
 using L = std::int64_t __attribute__((vector_size(8 * width)));  // also the mask of D
 
+/// Calls make.operator()<V>() for the one of `Values` that equals `value`: picks a loop that is
+/// compiled for it.
+template <auto First, auto... Rest>
+auto with(decltype(First) value, const auto& make) {
+  if constexpr (sizeof...(Rest) > 0)
+    if (value != First) return with<Rest...>(value, make);
+  return make.template operator()<First>();
+}
+
 template <class V, class T>
 inline V load(const T* from) {
   V v;

@@ -135,33 +135,25 @@ void pass(const PlacedObject& __restrict object,  // no store can change it
   }
 }
 
-template <LookUp Kind, Storage How, Ask Asked, Setting Where>
-NearestPass choose(Sweep sweep) {
-  return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on, How>
-                            : &pass<Kind, Asked, Where, Sweep::off, How>;
-}
-template <LookUp Kind, Storage How, Ask Asked>
-NearestPass choose(Setting setting, Sweep sweep) {
-  return setting == Setting::general ? choose<Kind, How, Asked, Setting::general>(sweep)
-                                     : choose<Kind, How, Asked, Setting::one_at_rest>(sweep);
-}
-template <LookUp Kind, Storage How>
-NearestPass choose([[maybe_unused]] Ask asked, Setting setting, Sweep sweep) {
-  if constexpr (Kind != LookUp::tangent)  // which reads the normal
-    if (asked == Ask::distance) return choose<Kind, How, Ask::distance>(setting, sweep);
-  return choose<Kind, How, Ask::both>(setting, sweep);
-}
-
 }  // namespace
 
 NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage) {
-  if (storage == Storage::compressed)
-    return kind == LookUp::nearest
-               ? choose<LookUp::nearest, Storage::compressed>(asked, setting, sweep)
-               : choose<LookUp::tangent, Storage::compressed>(asked, setting, sweep);
-  if (kind == LookUp::nearest) return choose<LookUp::nearest, Storage::flat>(asked, setting, sweep);
-  if (kind == LookUp::tangent) return choose<LookUp::tangent, Storage::flat>(asked, setting, sweep);
-  return choose<LookUp::trilinear, Storage::flat>(asked, setting, sweep);
+  return with<LookUp::nearest, LookUp::tangent, LookUp::trilinear>(kind, [=]<LookUp Kind> {
+    return with<Storage::flat, Storage::compressed>(storage, [=]<Storage How> {
+      return with<Ask::distance, Ask::both>(asked, [=]<Ask Asked> {
+        return with<Setting::one_at_rest, Setting::general>(setting, [=]<Setting Where> {
+          return with<Sweep::off, Sweep::on>(sweep, [=]<Sweep Swept>() -> NearestPass {
+            // The tangent reads the normal; compressed fields have no trilinear look-up.
+            constexpr Ask reads = Kind == LookUp::tangent ? Ask::both : Asked;
+            if constexpr (Kind == LookUp::trilinear && How == Storage::compressed)
+              return nullptr;
+            else
+              return &pass<Kind, reads, Where, Swept, How>;
+          });
+        });
+      });
+    });
+  });
 }
 
 double jump_of(const Field& field) {

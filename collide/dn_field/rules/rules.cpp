@@ -104,18 +104,17 @@ double reach(const Rules& rules) {
 
 std::vector<std::string> explain(const Rules& rules) {
   std::vector<std::string> lines;
-  const auto line = [&lines](const char* name, bool used) {
+  for (const auto& [name, used] :
+       {std::pair{"spring", rules.spring.has_value()},
+        {"impact", rules.impact.has_value()},
+        {"swept look-up", rules.impact && rules.impact->sweep == Sweep::on},
+        {"surface drag", rules.surface_drag.has_value()},
+        {"surface flow", rules.surface_flow.has_value()},
+        {"gravity", rules.gravity.has_value()},
+        {"wind", rules.wind.has_value()},
+        {"air drag", rules.air_drag.has_value()},
+        {"explosions", !rules.explosions.empty()}})
     lines.push_back(std::string(name) + (used ? ": used" : ": left out"));
-  };
-  line("spring", rules.spring.has_value());
-  line("impact", rules.impact.has_value());
-  line("swept look-up", rules.impact && rules.impact->sweep == Sweep::on);
-  line("surface drag", rules.surface_drag.has_value());
-  line("surface flow", rules.surface_flow.has_value());
-  line("gravity", rules.gravity.has_value());
-  line("wind", rules.wind.has_value());
-  line("air drag", rules.air_drag.has_value());
-  line("explosions", !rules.explosions.empty());
   return lines;
 }
 

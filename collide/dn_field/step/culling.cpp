@@ -61,15 +61,18 @@ void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpa
 
 using RoomTo = void (*)(const PlacedObject&, F, Reach, const ParticleSpan&, NearParticles&);
 
-template <bool First, Storage How>
-RoomTo choose(const Frame& frame) {
-  if (frame.is_moving()) return &room_to<true, true, First, How>;
-  return frame.is_turned() ? &room_to<true, false, First, How> : &room_to<false, false, First, How>;
-}
-template <bool First>
-RoomTo choose(const PlacedObject& object) {
-  return object.compressed ? choose<First, Storage::compressed>(object.frame)
-                           : choose<First, Storage::flat>(object.frame);
+RoomTo room_loop(const PlacedObject& object, bool is_first) {
+  const bool moves = object.frame.is_moving(), turned = moves || object.frame.is_turned();
+  return with<false, true>(turned, [=, &object]<bool Turned> {
+    return with<false, true>(moves, [=, &object]<bool Moves> {
+      return with<false, true>(is_first, [=, &object]<bool First> {
+        return with<false, true>(object.compressed, []<bool Compressed>() -> RoomTo {
+          return &room_to < Turned, Moves, First,
+                 Compressed ? Storage::compressed : Storage::flat > ;
+        });
+      });
+    });
+  });
 }
 
 }  // namespace
@@ -84,8 +87,7 @@ void cull(std::span<const PlacedObject> objects, LookUp kind, Sweep sweep, Reach
     const float jumps = (kind == LookUp::trilinear ? 1.0F : 0.0F) + (reach.ahead ? 1.0F : 0.0F);
     const float doubt = (half_off ? object.doubt : 0.0F) + object.padding +
                         (jumps > 0 ? jumps * object.jump : 0.0F);
-    const RoomTo room_to = i == 0 ? choose<true>(object) : choose<false>(object);
-    room_to(object, all(doubt * rounding + reach.distance), reach, block, near);
+    room_loop(object, i == 0)(object, all(doubt * rounding + reach.distance), reach, block, near);
   }
   near.count = 0;
   if (objects.empty()) return;

@@ -1,5 +1,4 @@
-#include "collide/dn_field/step/plan.hpp"
-
+#include "collide/dn_field/step/object_poses.hpp"
 #include "runtime/core/error.hpp"
 
 namespace tess::dn {

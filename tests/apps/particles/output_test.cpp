@@ -1,6 +1,6 @@
 // The files that a run writes: pictures and snapshots.
+#include "apps/particles/output/files.hpp"
 #include "apps/particles/output/picture.hpp"
-#include "apps/particles/output/vtp.hpp"
 #include "apps/plot/contour.hpp"
 #include "tests/apps/particles/run_scene.hpp"
 

@@ -119,11 +119,12 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
        "\"transform\": {\"matrix\": [[1e200, 0, 0], [0, 1e200, 0], [0, 0, 1e200]]}",
        "objects[1].transform.matrix[0][0]: 1e+200 is beyond"},
       {"\"thickness\": 0.5", "\"transform\": {\"scale\": 1e100}",
-       "objects[1]: by its shape, transform and motion it reaches 2.23205e+100 from the origin"},
+       "objects[1]: a cell in the world, at its smallest is 1.57895e+99, not within 1e-15 … 1e+15"},
       {"\"thickness\": 0.5",
        "\"motion\": {\"velocity\": [0, 1e100, 0]}, \"transform\": {\"position\": [9.9e99, 0, 0]}",
-       "objects[1]: by its shape, transform and motion it reaches 1.09e+100 from the origin in 10 "
-       "steps of 0.01, beyond 1e+100"},
+       "objects[1]: a cell of its field is 0.157895 wide in the world, and positions 1.09e+100 "
+       "from "
+       "the origin, where it gets, are"},
       {"\"dt\": 0.01, ", "", "dt: is missing; give the time step"},
       {"\"steps\": 10", "\"steps\": -1", "steps: -1 is not within 0 … 1000000000"},
       {"\"dt\": 0.01, ", "\"dt\": 0.01 ", "is not JSON: parse error at line 1"},

@@ -2,7 +2,6 @@
 // that theory gives for the rows.
 #include "apps/particles/study/study.hpp"
 
-#include "apps/particles/study/exact.hpp"
 #include "apps/particles/study/measure.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/apps/particles/run_scene.hpp"
