@@ -18,13 +18,24 @@
 // the direction to the nearest point.
 #pragma once
 
-#include "collide/dn_field/blur.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/surface.hpp"
 
 #include <memory>
 
 namespace tess::dn {
+
+/// A 3D blur with linear attenuation: weight 1 − r / (radius + 1) for voxels at most radius away.
+struct Blur {
+  int radius = 0;  ///< 2 to 4 voxels
+  int rounds = 0;
+};
+
+/// A blur that reaches through `thickness` (section 3.1: radius 2 to 4, several rounds).
+[[nodiscard]] Blur choose_blur(const Grid& grid, double thickness);
+
+/// Throws Error(bad_argument) for a radius outside 2 … 4 or less than one round.
+void require_blur(const Blur& blur);
 
 struct FieldOptions {
   Sides sides = Sides::one;  ///< the normals method supports one side only
@@ -35,6 +46,9 @@ struct FieldOptions {
   Method method = Method::exact;
   Blur blur{};  ///< of the methods that blur; rounds 0: by choose_blur()
 };
+
+/// The layers whose distances are found together.
+inline constexpr int block_layers = 4;
 
 /// Memory for each voxel while a field is built.
 [[nodiscard]] double building_bytes_per_voxel(const FieldOptions& options);
@@ -57,8 +71,7 @@ class FieldBuilder {
   [[nodiscard]] int n_rounds() const;
 
   /// The layers `first` to `last` − 1 in round `round`. Any thread, different layers at once; all
-  /// layers of a round before the next. Round 0 is best split at multiples of 4 layers: blocks that
-  /// are cut are computed twice.
+  /// layers of a round before the next. Round 0 is split at multiples of block_layers.
   void build(int round, int first, int last);
 
   /// The field, with its jump, and the thickness reduced to the greatest distance in it. Call it

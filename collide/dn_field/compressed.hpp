@@ -53,9 +53,6 @@ struct Planes {
 /// degree), or for another block_shift.
 [[nodiscard]] Field compress(const Field& field, const ErrorBound& bound, int block_shift = 0);
 
-/// The flat field that look-ups of the compressed `field` see, with the jump of its own distances.
-[[nodiscard]] Field expanded(const Field& field);
-
 /// The distance of voxel (i, j, k), flat or compressed.
 [[nodiscard]] float voxel_distance(const Field& field, int i, int j, int k);
 

@@ -219,7 +219,7 @@ explains 'fields: left out, no rule asks' "$particles" "$(edited "$falls")"
 explains 'distances: left out' "$particles" "$(edited "$falls")"
 
 "$particles" "$scratch/scene.json" --steps 0 --balance rotate --explain >"$scratch/out.txt" &&
-  grep -q 'balancer: used, rotate, a round at each exchange' "$scratch/out.txt"
+  grep -q 'balancer: used, rotate, at_sync' "$scratch/out.txt"
 check "--explain names the balancer" $?
 "$particles" --stability >"$scratch/out.txt" 2>&1 && grep -q ' 0 failed' "$scratch/out.txt"
 check "--stability" $?

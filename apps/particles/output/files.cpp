@@ -85,8 +85,7 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
   if (const auto& slice = outputs.slice) {
     const Field& field = stage.fields[slice->object].field();
     plot::write_file((in / "field.svg").string(),
-                     slice_svg(field.planes != nullptr ? expanded(field) : field,
-                               outputs.axes.front(), slice->at));
+                     slice_svg(field, outputs.axes.front(), slice->at));
   }
   if (result.trajectories.empty()) return;
   write_series(folder, result.trajectories, stage.scene.dt);

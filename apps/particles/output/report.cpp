@@ -1,15 +1,11 @@
 #include "apps/particles/output/report.hpp"
 
-#include <array>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace particles {
 namespace {
 using Json = nlohmann::ordered_json;
-
-// In the order of BalanceWhen.
-constexpr std::array when_names{"at_sync", "periodic", "automatic"};
 
 std::string_view method_of(const Scene& scene) {
   if (scene.objects.empty()) return "none";
@@ -48,9 +44,8 @@ Json balance_of(const std::string& strategy, tess::BalanceWhen when,
   double seconds = 0;
   for (const tess::balance::Round& round : rounds)
     moves += round.n_moved, bytes += round.moved_bytes, seconds += round.round_seconds;
-  return {{"strategy", strategy},    {"when", when_names[static_cast<std::size_t>(when)]},
-          {"rounds", rounds.size()}, {"moves", moves},
-          {"bytes", bytes},          {"seconds", seconds}};
+  return {{"strategy", strategy}, {"when", name_of(when)}, {"rounds", rounds.size()},
+          {"moves", moves},       {"bytes", bytes},        {"seconds", seconds}};
 }
 
 /// The whole report but the study.

@@ -10,6 +10,11 @@
 
 namespace particles {
 
+[[nodiscard]] constexpr const char* name_of(tess::BalanceWhen when) {
+  constexpr const char* names[] = {"at_sync", "periodic", "automatic"};
+  return names[static_cast<std::size_t>(when)];
+}
+
 /// The run beside the machine it ran on.
 struct Report {
   std::string machine;

@@ -110,21 +110,21 @@ SceneObject read_object(const Node& node, const std::string& folder, double dt,
         node[key].refuse("stands beside a field from a file, which has its own; leave it out");
     fingerprint_of_field = read_field(of, folder, object);
   };
-  node.read(
-      {{"shape", [&](const Node& of) { object.surface = read_shape(of, folder, object.name); },
-        "one of sphere, box, boxes, torus, cylinder, plate, file"},
-       {"field", field},
-       {"resolution", object.grid.n[0], 4, 1024},
-       {"thickness", object.thickness, positive},
-       {"method", object.method, words_of(method_names)},
-       {"sides", object.sides, {"one", "two"}},
-       {"blur", blur},
-       {"transform", [&](const Node& of) { object.frame = read_transform(of); }},
-       {"motion", motion},
-       {"choose", [&](const Node& of) {
-          for (const char* key : {"resolution", "thickness"})
-            if (node.has(key)) of.refuse(std::string("stands beside ") + key + "; give either");
-        }}});
+  node.read({{"shape", [&](const Node& of) { object.surface = read_shape(of, folder); },
+              "one of sphere, box, boxes, torus, cylinder, plate, file"},
+             {"field", field},
+             {"resolution", object.grid.n[0], 4, 1024},
+             {"thickness", object.thickness, positive},
+             {"method", object.method, words_of(method_names)},
+             {"sides", object.sides, {"one", "two"}},
+             {"blur", blur},
+             {"transform", [&](const Node& of) { object.frame = read_transform(of); }},
+             {"motion", motion},
+             {"choose", [&](const Node& of) {
+                for (const char* key : {"resolution", "thickness"})
+                  if (node.has(key))
+                    of.refuse(std::string("stands beside ") + key + "; give either");
+              }}});
   // Emitters, the audit and the study use the triangles that the field is built from.
   if (object.sides == Sides::one) object.surface = outward(object.surface);
   if (!node.has("field"))

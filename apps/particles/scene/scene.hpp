@@ -3,7 +3,7 @@
 // keys of the file.
 #pragma once
 
-#include "collide/dn_field/blur.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/frame.hpp"
 #include "collide/dn_field/rules.hpp"
@@ -20,7 +20,6 @@ namespace particles {
 
 /// An object with the field around it.
 struct SceneObject {
-  std::string name;
   tess::dn::Surface surface;
   tess::dn::Grid grid;   ///< of the field
   double thickness = 0;  ///< of the field beyond the surface, in the object's units

@@ -1,16 +1,18 @@
 #include "apps/particles/simulation/field_making.hpp"
 
 #include "collide/dn_field/field_file.hpp"
-#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <numbers>
 
 namespace particles {
-namespace {
 using namespace tess::dn;
 
-constexpr int block_layers = 4;  // are built together
+namespace {
+
+FieldOptions options_of(const SceneObject& object, Content content) {
+  return {object.sides, content, object.thickness, object.method, object.blur};
+}
 
 }  // namespace
 
@@ -25,18 +27,11 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
   n_parts_ = n_parts;
   if (!object.field.empty()) {
     field_ = load_field(object.field);
-    if (content == Content::distance_and_normal && field_.normal.empty())
-      tess::fail(
-          tess::ErrorCode::bad_file, object.field,
-          ": holds no normals, which rules, pictures or files of this scene ask for; take one that "
-          "outputs.fields wrote");
     if (content == Content::distance) field_.normal = {};
     return;
   }
   grid_ = object.grid;
-  builder_.emplace(
-      object.surface, object.grid,
-      FieldOptions{object.sides, content, object.thickness, object.method, object.blur});
+  builder_.emplace(object.surface, object.grid, options_of(object, content));
 }
 
 int FieldInTheMaking::n_stages() const {
@@ -63,11 +58,9 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
 }
 
 Field build_alone(const SceneObject& object, Content content) {
-  FieldInTheMaking making;
-  making.begin(object, content, 1);
-  for (int stage = 0; stage < making.n_stages(); ++stage) making.fill(stage, 0);
-  making.finish();
-  return std::move(making).take();
+  return object.field.empty()
+             ? build_field(object.surface, object.grid, options_of(object, content))
+             : load_field(object.field);
 }
 
 ErrorBound bound_of(const Compression& compression, const Field& field) {

@@ -3,7 +3,6 @@
 #include "apps/particles/simulation/block.hpp"
 
 #include <map>
-#include <new>
 #include <utility>
 
 namespace particles {
@@ -31,10 +30,6 @@ void Station::make(std::size_t field, const Action& action) {
     action(stage_->fields[field]);
   } catch (const tess::Error& error) {
     tess::fail(error.code(), scene.name, ": objects[", field, "]: ", error.what());
-  } catch (const std::bad_alloc&) {
-    tess::fail(tess::ErrorCode::environment, scene.name, ": objects[", field,
-               "]: memory does not hold a field of ", scene.objects[field].grid.n[0],
-               "³ voxels; lower its resolution");
   }
 }
 
@@ -115,7 +110,7 @@ const std::vector<tess::dn::Object>& Station::objects(std::int32_t step) {
 }
 
 void Station::give_measured(tess::Callback<Measured> target) {
-  contribute(JoinMeasured{}, std::exchange(measured_, {}), std::move(target));
+  contribute(tess::sum, std::exchange(measured_, {}), std::move(target));
 }
 
 void Station::give_samples(tess::Callback<std::vector<Sample>> target) {

@@ -1,8 +1,8 @@
 // The normals of the paper's two methods (section 3.1), round after round.
 #pragma once
 
-#include "collide/dn_field/blur.hpp"
 #include "collide/dn_field/build/voxels.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/field.hpp"
 
 #include <array>

@@ -97,6 +97,8 @@ void FieldBuilder::build(int round, int first, int last) {
       "layers ", first, " to ", last, " of ", field.grid.n[2], " in round ", round, " of ",
       n_rounds());
   if (round > 0) return blurred->build(round - 1, field, first, last);
+  TESS_CHECK(first % block_layers == 0 && (last % block_layers == 0 || last == field.grid.n[2]),
+             "layers ", first, " to ", last, " cut a block of ", block_layers);
   distances.fill(field, first, last);
   n_layers += last - first;
 }

@@ -260,4 +260,11 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
           std::make_shared<const Planes>(std::move(*best))};
 }
 
+float voxel_distance(const Field& field, int i, int j, int k) {
+  if (field.planes == nullptr) return field.distance[field.grid.index(i, j, k)];
+  const lanes::I zero{};
+  return lanes::planes_at(plane_sampler_of(field), {~zero, zero + i, zero + j, zero + k})
+      .distance[0];
+}
+
 }  // namespace tess::dn

@@ -63,13 +63,6 @@ struct PlacedObject {
 /// one_at_rest: one object that neither moves nor is turned.
 enum class Setting : std::uint32_t { one_at_rest, general };
 
-/// How the fields of a scene are stored.
-enum class Storage : std::uint32_t { flat, compressed };
-[[nodiscard]] inline Storage storage_of(std::span<const Object> objects) {
-  return !objects.empty() && objects[0].field->planes != nullptr ? Storage::compressed
-                                                                 : Storage::flat;
-}
-
 /// Writes `nearest`. `last` is the result of the previous pass over these particles, and may be the
 /// same object; it saves time and does not change the result.
 using NearestPass = void (*)(const PlacedObject&, const ParticleSpan&, const NearestSurface& last,
@@ -78,7 +71,7 @@ using NearestPass = void (*)(const PlacedObject&, const ParticleSpan&, const Nea
 /// The pass over one object; a general pass keeps the nearer surface and starts from clear().
 /// There is no trilinear pass over compressed fields.
 [[nodiscard]] NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep,
-                                       Storage storage);
+                                       bool compressed);
 
 /// Must be called when lanes get other particles: no voxel is cached.
 void forget(NearestSurface& nearest, std::size_t count);

@@ -12,10 +12,6 @@ struct FlowConstants {
   double distance = 0;
 };
 
-/// Turns the velocities of particles closer than the flow's distance.
-void turn_to_surface(const FlowConstants& flow, Setting setting, const ParticleSpan& particles,
-                     const NearestSurface& nearest);
-
 namespace lanes {
 
 /// A power of two near 1 / sqrt(v), for 1e-300 < v < 1e300.
@@ -77,4 +73,12 @@ void flow_loop(const FlowConstants& constants, const ParticleSpan& span,
 }
 
 }  // namespace lanes
+
+/// Turns the velocities of particles closer than the flow's distance.
+inline void turn_to_surface(const FlowConstants& flow, Setting setting,
+                            const ParticleSpan& particles, const NearestSurface& nearest) {
+  lanes::with<Setting::one_at_rest, Setting::general>(
+      setting, [&]<Setting Where> { lanes::flow_loop<Where>(flow, particles, nearest); });
+}
+
 }  // namespace tess::dn

@@ -12,7 +12,7 @@ constexpr float rounding = 1.0001F;  // of float speeds
 
 /// A lower bound of all sampled distances, minus the reach of the rules and the way of the surface:
 /// the minimum over objects.
-template <bool Turned, bool Moves, bool First, Storage How>
+template <bool Turned, bool Moves, bool First, bool Compressed>
 void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpan& span,
              NearParticles& near) {
   const PlacedObject object = placed;  // copies that no store can change
@@ -41,7 +41,7 @@ void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpa
       h = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
     const Voxel voxel = voxel_from_corner(field.n, h);
     F found;
-    if constexpr (How == Storage::compressed)
+    if constexpr (Compressed)
       found = planes_at(object.planes, voxel).distance;
     else
       found = gather(field.distance, position(field, voxel));
@@ -67,8 +67,7 @@ RoomTo room_loop(const PlacedObject& object, bool is_first) {
     return with<false, true>(moves, [=, &object]<bool Moves> {
       return with<false, true>(is_first, [=, &object]<bool First> {
         return with<false, true>(object.compressed, []<bool Compressed>() -> RoomTo {
-          return &room_to < Turned, Moves, First,
-                 Compressed ? Storage::compressed : Storage::flat > ;
+          return &room_to<Turned, Moves, First, Compressed>;
         });
       });
     });

@@ -86,7 +86,7 @@ TEST_CASE("a bad scene is refused in one line that names the key, the value and 
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"/dev/zero\"}",
        "/dev/zero: is no file; give the path of an OBJ file"},
       {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \".\"}",
-       "scene.json: objects[0].shape.file: .: is a directory; give the path of an OBJ file"},
+       "scene.json: objects[0].shape.file: .: is no file; give the path of an OBJ file"},
       {"\"count\": 5, ", "", "emitters[0].count: is missing; give how many particles"},
       {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
       {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},
@@ -179,7 +179,6 @@ TEST_CASE("errors of an OBJ file name the scene, the key and the file", "[partic
       {"v 0 1 0\nf 1 1 1\n", "surface has extent 0"},
       {"v 1 1 1\nv 2 2 2\nf 1 3 4\n", "all 1 triangles are without area"},
       {"v -1e308 1e308 0\nv 1e308 0 0\nf 1 4 3\n", "surface has extent inf"},
-      {"v 0 1e101 0\nf 1 2 3\n", "vertex 2 has the coordinate 1e+101, beyond ±1e+100"},
       {"v 0 1 0\nf 1 2 9\n", "names vertex 9"},
       {"", "holds no faces"},
   }));
