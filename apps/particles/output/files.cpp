@@ -17,18 +17,16 @@ std::string field_file(std::size_t object) {
 
 /// Writes FOLDER/trajectories.pvd, which lists the snapshots by time, and
 /// FOLDER/trajectories/step_N.vtp.
-void write_series(const std::string& folder, const std::vector<Snapshot>& snapshots, double dt) {
-  const std::filesystem::path pieces = std::filesystem::path(folder) / "trajectories";
+void write_series(const fs::path& folder, const std::vector<Snapshot>& snapshots, double dt) {
   std::string series =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
   for (const Snapshot& snapshot : snapshots) {
     const std::string name = fmt::format("step_{:09}.vtp", snapshot.step);
-    plot::write_file((pieces / name).string(), vtp(snapshot));
+    plot::write_file((folder / "trajectories" / name).string(), vtp(snapshot));
     series += fmt::format("<DataSet timestep=\"{}\" file=\"trajectories/{}\"/>\n",
                           snapshot.step * dt, name);
   }
-  plot::write_file((std::filesystem::path(folder) / "trajectories.pvd").string(),
-                   series + "</Collection>\n</VTKFile>\n");
+  plot::write_file((folder / "trajectories.pvd").string(), series + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace
@@ -88,7 +86,7 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
                      slice_svg(field, outputs.axes.front(), slice->at));
   }
   if (result.trajectories.empty()) return;
-  write_series(folder, result.trajectories, stage.scene.dt);
+  write_series(in, result.trajectories, stage.scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(stage.scene, result.trajectories));
 }
 

@@ -25,7 +25,8 @@ Json json_of(const Row& row, double dt) {
 }
 
 Json json_of(const StudyRow& row) {
-  Json out{{"part", row.part}, {"resolution", row.resolution}, {"method", row.method}};
+  Json out{
+      {"part", row.part}, {"resolution", static_cast<int>(row.resolution)}, {"method", row.method}};
   if (!row.note.empty()) {
     out["refused"] = row.note;
     return out;

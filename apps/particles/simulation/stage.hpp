@@ -54,7 +54,6 @@ struct Stage {
     while (species[s].mass != mass) s += 2;
     return s;
   }
-  [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
   /// The objects as they stand at the start; after their fields are built.
   [[nodiscard]] std::vector<tess::dn::Object> objects() const {
     std::vector<tess::dn::Object> objects;

@@ -64,7 +64,7 @@ void Station::finish_fields() {
 
 void Station::prepare(double block_edge) {
   space_ = Space::around(stage_->source.bounds(), block_edge);
-  if (stage_->collides()) objects_ = stage_->objects();
+  if (needs_field(stage_->scene.rules)) objects_ = stage_->objects();
   for (const double mass : masses_of(stage_->scene)) {
     const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
     try {

@@ -16,8 +16,8 @@ namespace particles {
 /// One choice. Lengths are in the object's units; a negative value was not measured in this row.
 /// Times are the least of several measurements (see least_cost()).
 struct StudyRow {
-  std::string part;  ///< field, rule, cost
-  int resolution = 0;
+  std::string part;                           ///< field, rule, cost
+  double resolution = 0;                      ///< voxels along an axis
   std::string method, stored, look_up, rule;  ///< stored: flat, compressed; empty: no field
   double step = -1;                           ///< speed × dt as a part of the thickness
   double build_seconds = -1, build_cpu_seconds = -1;

@@ -210,16 +210,11 @@ std::optional<Planes> Compressor::run() {
   return made;
 }
 
-/// The greatest angle that `bits` an axis are off: 3 / 2^bits covers the octahedral map with the
-/// best of four neighbours; that it does is checked voxel by voxel.
-int bits_for(double angle) {
-  int bits = min_normal_bits;
-  while (bits < max_normal_bits && 3.0 / (1 << bits) > entry_share * angle) ++bits;
-  return bits;
-}
-
 EntryLayout layout_for(const Field& field, const ErrorBound& bound, int shift) {
-  const int bits = bits_for(bound.angle);
+  // A normal of so many bits an axis is off by at most 3 / 2^bits, with the best of four neighbours
+  // on the octahedral map; that it is, is checked voxel by voxel.
+  int bits = min_normal_bits;
+  while (bits < max_normal_bits && 3.0 / (1 << bits) > entry_share * bound.angle) ++bits;
   // The middle of a cell may stand a block's diagonal beyond the cut-off.
   const double range = field.thickness + field.grid.cell * (2 << shift);
   const double steps = std::ldexp(1.0, 31 - 2 * bits) - 1;

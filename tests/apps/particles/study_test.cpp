@@ -41,7 +41,7 @@ TEST_CASE("the study finds the orders of the look-ups, and no particle lost wher
   options.n_bounces = 30;
   options.n_timed = 100;
   const std::vector<StudyRow> rows = study(scene, options);
-  const auto row_of = [&](int resolution, const char* look_up) {
+  const auto row_of = [&](double resolution, const char* look_up) {
     for (const StudyRow& row : rows)
       if (row.part == "field" && row.method == "exact" && row.resolution == resolution &&
           row.look_up == look_up && row.stored == "flat")
