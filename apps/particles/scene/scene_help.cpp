@@ -14,7 +14,8 @@ block       edge of the blocks of space that carry the particles (default: chose
 exchange    particles change blocks every so many steps (default: chosen); no result depends on it
 compression {"cells": 0.125, "degrees": 3}: fields are compressed, and steps look up in them; so far, in
             cells and degrees, a voxel's distance (0 … 0.5) and normal (0 … 45) may be off. Not with trilinear
-            look-up. {} and --compressed take the defaults (default: flat fields)
+            look-up; refused where 32 bits a cell do not hold that. {} and --compressed take the defaults (default:
+            flat fields)
 objects     a list (default: none); of each:
   shape       one of
                 {"sphere": {"radius": r, "rings": 48}}
