@@ -83,10 +83,10 @@ Rules impact(LookUp look_up, Sweep sweep = Sweep::off) {
 }
 
 Rules all_rules(double cell) {
-  Rules rules = impact(LookUp::nearest);
+  Rules rules = impact(LookUp::tangent);
   rules.impact->restitution = 0.7;
   rules.spring = Spring{100, 1, cell};
-  rules.surface_drag = SurfaceDrag{1, 2 * cell, DragLaw::linear};
+  rules.surface_drag = SurfaceDrag{1, 2 * cell};
   rules.surface_flow = SurfaceFlow{1, 1, 2 * cell};
   rules.gravity = Gravity{{0, 0, -1}};
   rules.wind = Wind{{0.1, 0, 0}, 0.1};
@@ -227,8 +227,8 @@ class Bench {
         [&](Particles& p) { explosion_by_hand(p.span(), explosion.explosions.front()); }, explosion,
         1e-6);
     Rules drag, flow, spring;
-    drag.look_up = flow.look_up = spring.look_up = LookUp::nearest;
-    drag.surface_drag = SurfaceDrag{1, 2 * cell(), DragLaw::linear};
+    drag.look_up = flow.look_up = LookUp::nearest;
+    drag.surface_drag = SurfaceDrag{1, 2 * cell()};
     flow.surface_flow = SurfaceFlow{1, 1, 2 * cell()};
     spring.spring = Spring{100, 1, cell()};
     for (const Particles* from : {&spread_, &near_}) {

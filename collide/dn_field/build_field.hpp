@@ -2,7 +2,7 @@
 // (section 3.1).
 //
 // Distances: to the nearest feature of the mesh, with the sign of the winding number. Meshes may
-// have holes, flipped triangles and parts that are inside out (orientation.hpp), and may be far
+// have holes and flipped triangles, may be inside out (outward() in surface.hpp), and may be far
 // denser or coarser than the grid. Blocks of 4³ voxels traverse a tree of the triangles together;
 // blocks beyond the thickness are skipped.
 //
@@ -19,12 +19,23 @@
 #pragma once
 
 #include "collide/dn_field/field.hpp"
-#include "collide/dn_field/plan.hpp"
 #include "collide/dn_field/surface.hpp"
 
 #include <memory>
 
 namespace tess::dn {
+
+/// A 3D blur with linear attenuation: weight 1 − r / (radius + 1) for voxels at most radius away.
+struct Blur {
+  int radius = 0;  ///< 2 to 4 voxels
+  int rounds = 0;
+};
+
+/// A blur that reaches through `thickness` (section 3.1: radius 2 to 4, several rounds).
+[[nodiscard]] Blur choose_blur(const Grid& grid, double thickness);
+
+/// Throws Error(bad_argument) for a radius outside 2 … 4 or less than one round.
+void require_blur(const Blur& blur);
 
 struct FieldOptions {
   Sides sides = Sides::one;  ///< the normals method supports one side only
@@ -36,6 +47,9 @@ struct FieldOptions {
   Blur blur{};  ///< of the methods that blur; rounds 0: by choose_blur()
 };
 
+/// The layers whose distances are found together.
+inline constexpr int block_layers = 4;
+
 /// Memory for each voxel while a field is built.
 [[nodiscard]] double building_bytes_per_voxel(const FieldOptions& options);
 
@@ -44,8 +58,9 @@ class FieldBuilder {
  public:
   /// Does not refer to `surface` afterwards. Throws Error(bad_mesh) where validate() does,
   /// Error(bad_argument) for a thickness below two cells, a grid without voxels or cells without
-  /// size, a blur out of range, a two-sided field by normals, or a surface to be blurred that meets
-  /// no voxel of the grid, and Error(environment) for a field that does not fit into memory.
+  /// size, a blur out of range, a two-sided field by normals, one by normals of an object of
+  /// near-zero thickness (walls.hpp), or a surface to be blurred that meets no voxel of the grid, and
+  /// Error(environment) for a field that does not fit into memory.
   FieldBuilder(const Surface& surface, const Grid& grid, const FieldOptions& options);
   ~FieldBuilder();
   FieldBuilder(const FieldBuilder&) = delete;
@@ -56,10 +71,7 @@ class FieldBuilder {
   [[nodiscard]] int n_rounds() const;
 
   /// The layers `first` to `last` − 1 in round `round`. Any thread, different layers at once; all
-  /// layers of a round before the next. Round 0 is best split at multiples of 4 layers: blocks that
-  /// are cut are computed twice. Layer 0 of round 1 throws Error(bad_argument) for an object of
-  /// near-zero thickness by the normals method: more than a tenth of the surface's voxels have no
-  /// inside behind them.
+  /// layers of a round before the next. Round 0 is split at multiples of block_layers.
   void build(int round, int first, int last);
 
   /// The field, with its jump, and the thickness reduced to the greatest distance in it. Call it

@@ -33,12 +33,6 @@ struct Crossing {
   std::uint32_t triangle = 0;  ///< number in the surface
 };
 
-/// A winding number for all points of a ball, with an estimate of its largest error there.
-struct WindingEstimate {
-  double value = 0;
-  double error = 0;
-};
-
 class Bvh {
  public:
   explicit Bvh(const Surface& surface);
@@ -62,13 +56,8 @@ class Bvh {
   /// (Barill et al. 2018); 0 is exact.
   [[nodiscard]] double winding_number(Vec3 p, double accuracy) const;
 
-  /// The winding number at `p` with an estimate of its error in the ball of `radius` around `p`.
-  /// Clusters further than `accuracy` times their radius plus the ball's diameter count as one
-  /// dipole. The error is infinite if a triangle may intersect the ball or if rounding decides on
-  /// which side of it `p` lies.
-  [[nodiscard]] WindingEstimate winding_estimate(Vec3 p, double radius, double accuracy) const;
-
-  /// Whether `p` is inside by the winding number, exact where the approximation does not decide.
+  /// Whether the winding number at `p` exceeds 1/2, to 0.01: summed again where a coarse sum does not
+  /// decide.
   [[nodiscard]] bool is_inside(Vec3 p) const;
 
   /// The unit normal of a triangle of the surface; zero for a degenerate one.

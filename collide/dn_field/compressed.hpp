@@ -20,11 +20,9 @@ struct ErrorBound {
   double angle = 0;     ///< radians
 };
 
-/// The bits of an entry. Wide: a float and a code of normal_code.hpp. Narrow: two coordinates of
-/// `normal_bits` bits on the octahedral map, 0 … 2 middle(); mask() in the first means no normal.
-/// The rest of 32 bits is the distance in steps, plus zero().
+/// The 32 bits of an entry: two coordinates of `normal_bits` bits on the octahedral map, 0 …
+/// 2 middle(); mask() in the first means no normal. The rest is the distance in steps, plus zero().
 struct EntryLayout {
-  bool wide = false;
   int normal_bits = 0;
   float step = 0;
 
@@ -35,14 +33,13 @@ struct EntryLayout {
 
 /// The voxels of a compressed field.
 struct Planes {
-  Content content = Content::distance_and_normal;
   int block_shift = 2;            ///< e: blocks of 2^e voxels on each axis
   std::array<int, 3> n_blocks{};  ///< n / 2^e, rounded up
   EntryLayout layout;
   std::vector<std::uint32_t> block;  ///< n_blocks, x fastest
-  std::vector<std::uint32_t> entry;  ///< one word an entry, two where the layout is wide
-  ErrorBound bound;                  ///< asked for
-  ErrorBound measured;               ///< the greatest over all voxels; never above bound
+  std::vector<std::uint32_t> entry;
+  ErrorBound bound;     ///< asked for
+  ErrorBound measured;  ///< the greatest over all voxels; never above bound
 
   [[nodiscard]] std::size_t bytes() const {
     return (block.size() + entry.size()) * sizeof(std::uint32_t);
@@ -51,12 +48,10 @@ struct Planes {
 
 /// Compresses `field` so that every voxel meets `bound`, and measures it on all voxels, with the
 /// look-up's own arithmetic. The result has the jump of `field`. block_shift 2 to 4, or 0: the one
-/// that takes least memory. Throws Error(bad_argument) for a bound that is negative or NaN, or
-/// another block_shift.
+/// that takes least memory. Throws Error(bad_argument) for a field without normals, for a bound that
+/// is negative, NaN or below what 32 bits hold (about a thousandth of the thickness, and a third of a
+/// degree), or for another block_shift.
 [[nodiscard]] Field compress(const Field& field, const ErrorBound& bound, int block_shift = 0);
-
-/// The flat field that look-ups of the compressed `field` see, with the jump of its own distances.
-[[nodiscard]] Field expanded(const Field& field);
 
 /// The distance of voxel (i, j, k), flat or compressed.
 [[nodiscard]] float voxel_distance(const Field& field, int i, int j, int k);

@@ -30,12 +30,6 @@ struct Frame {
     const Vec3 q = p - position;
     return (1 / scale) * Vec3{dot(axes[0], q), dot(axes[1], q), dot(axes[2], q)};
   }
-  /// Velocity of the surface at the point `p` of the world.
-  [[nodiscard]] Vec3 velocity_at(Vec3 p) const {
-    const Vec3 stiff = velocity + cross(angular_velocity, p - position);
-    return is_growing() ? stiff + (scale_rate / scale) * (p - position) : stiff;
-  }
-
   /// Moves, turns and scales the frame over `step` by its velocities. Exact for constant
   /// velocities; axes stay orthonormal. The scale must stay above 0.
   void advance(double step);

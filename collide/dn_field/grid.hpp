@@ -24,12 +24,6 @@ struct Grid {
                static_cast<std::size_t>(n[0]) +
            static_cast<std::size_t>(i);
   }
-  /// The inverse of index().
-  [[nodiscard]] std::array<int, 3> voxel(std::size_t at) const {
-    const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
-    return {static_cast<int>(at % nx), static_cast<int>(at / nx % ny),
-            static_cast<int>(at / nx / ny)};
-  }
   [[nodiscard]] Vec3 centre(int i, int j, int k) const {
     return origin + cell * Vec3{1.0 * i, 1.0 * j, 1.0 * k};
   }

@@ -21,7 +21,8 @@ enum class Sweep : std::uint32_t { off, on };
 enum class DragLaw : std::uint32_t { linear, quadratic };
 
 /// A force (stiffness × depth) along N in d < reach, with -damping × N·V. Must be less than
-/// critically damped: damping < 2 √stiffness.
+/// critically damped: damping < 2 √stiffness. Not by nearest look-up: its depth is constant over a
+/// voxel, so that a spring would push a particle more than once.
 struct Spring {
   double stiffness = 1;
   double damping = 0;
@@ -35,11 +36,10 @@ struct Impact {
   Sweep sweep = Sweep::on;
 };
 
-/// Drag toward the surface's own velocity, in d < threshold.
+/// Linear drag toward the surface's own velocity, in d < threshold.
 struct SurfaceDrag {
   double rate = 0;
   double threshold = 0;
-  DragLaw law = DragLaw::linear;
 };
 
 /// Turns V toward the surface's tangent with an acceleration perpendicular to V, in d < distance.
@@ -98,10 +98,6 @@ void validate(const Rules& rules);
 
 /// What the fields of this scene must store: normals only if a rule or the look-up needs them.
 [[nodiscard]] Content needed_content(const Rules& rules);
-
-/// The look-up of the steps: that of the rules, but tangent instead of nearest for springs. With
-/// nearest the depth is constant over a voxel, and a spring would push a particle more than once.
-[[nodiscard]] LookUp look_up_of(const Rules& rules);
 
 /// The distance from the surface at which the first rule acts.
 [[nodiscard]] double reach(const Rules& rules);

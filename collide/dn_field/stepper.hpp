@@ -4,8 +4,8 @@
 // threads or instruction set. README.md shows a step as a picture.
 //
 // Limits: a voxel stores one surface. In a corner of two objects a particle may enter the further
-// one by half a cell. At a joint of open surfaces, or where a stiff spring catches it from the
-// side, a particle turns back the way it came instead of being reflected.
+// one by half a cell, and where open surfaces meet it may pass the joint. Where a stiff spring
+// catches it from the side, a particle turns back the way it came instead of being reflected.
 #pragma once
 
 #include "collide/dn_field/frame.hpp"
@@ -17,16 +17,11 @@
 
 namespace tess::dn {
 
-class Bvh;
-
 /// An obstacle. The field is shared, read-only, and must outlive the object. Either all fields of a
 /// scene are compressed or none is.
 struct Object {
   const Field* field = nullptr;
   Frame frame;  ///< at the start of a run, with its velocities
-  /// If given, the tree of the surface that the field was built from. With it, particles do not
-  /// pass the joints of an open surface.
-  const Bvh* triangles = nullptr;
 };
 
 /// Moves all frames over n_steps, to the bit as a run of n_steps does.
@@ -57,7 +52,7 @@ class Stepper {
   [[nodiscard]] std::vector<Waypoint> run_once(ParticleSpan particles,
                                                std::span<const Object> objects, double time) const;
 
-  struct Plan;  ///< see step/plan.hpp
+  struct Plan;  ///< see step/object_poses.hpp
 
  private:
   friend Stepper make_stepper(const Rules& rules, double step);

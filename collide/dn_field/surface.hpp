@@ -32,29 +32,17 @@ void validate(const Surface& surface);
 /// A hash of all vertices and triangles, in their order; never 0.
 [[nodiscard]] std::uint64_t fingerprint(const Surface& surface);
 
-/// An edge at which a surface ends: `surplus` more triangles run along it from `from` to `to` than
-/// back.
-struct RimEdge {
-  std::uint32_t from = 0, to = 0;
-  int surplus = 0;  ///< positive
-};
-
-/// All edges without as many opposite ones: the rims of holes and of flipped triangles. Linear in
-/// the number of triangles.
-[[nodiscard]] std::vector<RimEdge> rim(const Surface& surface);
-
-/// Whether every directed edge has as many opposite ones. Then the winding number off the surface
-/// is an integer.
-[[nodiscard]] inline bool is_closed(const Surface& surface) {
-  return rim(surface).empty();
-}
-
-/// The share of edges between two triangles along which both run the same way: one of the two is
-/// flipped. 0 if no two triangles share an edge.
-[[nodiscard]] double disagreeing_share(const Surface& surface);
+/// Whether every directed edge has as many opposite ones, by a hash of 64 bits. Then the winding
+/// number off the surface is an integer.
+[[nodiscard]] bool is_closed(const Surface& surface);
 
 /// Merges vertices with bit-equal positions: a triangle soup with equal seams becomes closed.
 [[nodiscard]] Surface welded(const Surface& surface);
+
+/// The surface of a body, before a one-sided field is built from it: welded unless it is closed, and
+/// turned as a whole if it has no rim and its triangles face inwards. Parts that disagree with each
+/// other stay as they are; the inside is where the winding number exceeds 1/2.
+[[nodiscard]] Surface outward(const Surface& surface);
 
 struct SurfacePoint {
   Vec3 at;

@@ -33,6 +33,10 @@ struct Measured {
     potential.add(other.potential);
     hash += other.hash;
   }
+  friend Measured operator+(Measured a, const Measured& b) {
+    a.add(b);
+    return a;
+  }
   /// Kinetic and potential; like kinetic.total() infinite or not a number where that of a particle
   /// is beyond all doubles. Particles with positions or velocities that are not finite are left
   /// out.
@@ -44,14 +48,6 @@ struct Measured {
   template <class Ar>
   void serialize(Ar& ar) {
     ar(particles, blocks, nonfinite, inside, tunnelled, fastest, nearest, kinetic, potential, hash);
-  }
-};
-
-/// Joins two; for reductions.
-struct JoinMeasured {
-  Measured operator()(Measured a, const Measured& b) const {
-    a.add(b);
-    return a;
   }
 };
 

@@ -1,7 +1,6 @@
 #include "apps/particles/output/report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fmt/core.h>
 
 namespace particles {
@@ -30,8 +29,8 @@ std::string explanation(const Scene& scene, const Options& options) {
   for (const std::string& rule : tess::dn::explain(scene.rules)) line(rule);
   const bool any = !scene.objects.empty(), needs = any && needs_field(scene.rules);
   line("distances: " + uses(scene, needs));
-  line("normals: " +
-       uses(scene, needs && needed_content(scene.rules) == tess::dn::Content::distance_and_normal));
+  const bool normals = needed_content(scene.rules) == tess::dn::Content::distance_and_normal;
+  line("normals: " + uses(scene, needs && (normals || scene.compression)));
   if (any && builds_fields(scene)) {
     const auto n_read = count([](const SceneObject& object) { return !object.field.empty(); });
     line(fmt::format("fields: {} built, {} read from files",
@@ -39,34 +38,19 @@ std::string explanation(const Scene& scene, const Options& options) {
     line(scene.compression ? fmt::format("compression: used, within {} cells and {} degrees",
                                          scene.compression->cells, scene.compression->degrees)
                            : "compression: left out, flat fields");
-    if (!scene.compression && !options.json.empty())
-      line("compressed copies: made after the run, for their size in the --json file");
   } else if (any) {
     line("fields: left out, no rule asks for a surface and no picture shows one");
   }
-  const auto n_sheets = count([&](const SceneObject& object) {
-    return object.sides == tess::dn::Sides::two && keeps_triangles(scene, object);
-  });
-  line(n_sheets == 0 ? "triangles beside the fields: left out, no impacts on sheets"
-                     : fmt::format("triangles beside the fields: used, of {} sheets", n_sheets));
   if (options.study) line("study: builds fields of its own, of the first object");
-  line(fmt::format("objects: {}, of which {} move, {} of these grow", scene.objects.size(),
-                   count([](const SceneObject& object) { return object.frame.is_moving(); }),
-                   count([](const SceneObject& object) { return object.frame.is_growing(); })));
+  line(fmt::format("objects: {}, of which {} move", scene.objects.size(),
+                   count([](const SceneObject& object) { return object.frame.is_moving(); })));
   line(fmt::format("step loops: {}, one for each mass", masses_of(scene).size()));
-  const std::uint64_t audited = n_audited(scene);
-  line(audited == 0
-           ? "audit of each step for particles that tunnel: left out (outputs.audit)"
-           : fmt::format(
-                 "audit of each step for particles that tunnel: used, of {} of {} particles; "
-                 "their steps take 4 to 10 times as long",
-                 audited, scene.n_particles()));
-  // In the order of BalanceWhen.
-  constexpr std::array when{"a round at each exchange of particles", "rounds beside the work",
-                            "a round at an exchange of particles where it gains time"};
+  line(
+      fmt::format("audit of each step for particles that tunnel: of {} of {} particles "
+                  "(outputs.audit); their steps take 4 to 10 times as long",
+                  n_audited(scene), scene.n_particles()));
   const auto& balance = options.run.balance;
-  line(balance ? fmt::format("balancer: used, {}, {}", balance->strategy,
-                             when[static_cast<std::size_t>(balance->when)])
+  line(balance ? fmt::format("balancer: used, {}, {}", balance->strategy, name_of(balance->when))
                : "balancer: left out, blocks stay and no load is measured");
   if (scene.outputs.trajectories == 0) line("trajectories: left out");
   return out;

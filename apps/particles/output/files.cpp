@@ -1,14 +1,11 @@
 #include "apps/particles/output/files.hpp"
 
 #include "apps/particles/output/picture.hpp"
-#include "apps/particles/output/vtp.hpp"
 #include "apps/plot/write_file.hpp"
 #include "collide/dn_field/field_file.hpp"
-#include "runtime/core/error.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
-#include <string_view>
 
 namespace particles {
 namespace {
@@ -18,39 +15,63 @@ std::string field_file(std::size_t object) {
   return fmt::format("field_{}.dnf", object);
 }
 
-void require_writable_in(const std::string& folder, const fs::path& file) {
-  if (const std::string why = plot::hindrance(file); !why.empty())
-    tess::fail(tess::ErrorCode::environment, "--out ", folder, ": ", file.string(),
-               " cannot be written: ", why, "; move that away, or give another folder");
-}
-
-/// Checks the files whose names begin so: this run writes them again.
-void require_writable_in(const std::string& folder, const fs::path& in, std::string_view begin) {
-  std::error_code error;
-  for (fs::directory_iterator at(in, error), end; !error && at != end; at.increment(error))
-    if (at->path().filename().string().starts_with(begin)) require_writable_in(folder, at->path());
+/// Writes FOLDER/trajectories.pvd, which lists the snapshots by time, and
+/// FOLDER/trajectories/step_N.vtp.
+void write_series(const fs::path& folder, const std::vector<Snapshot>& snapshots, double dt) {
+  std::string series =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+  for (const Snapshot& snapshot : snapshots) {
+    const std::string name = fmt::format("step_{:09}.vtp", snapshot.step);
+    plot::write_file((folder / "trajectories" / name).string(), vtp(snapshot));
+    series += fmt::format("<DataSet timestep=\"{}\" file=\"trajectories/{}\"/>\n",
+                          snapshot.step * dt, name);
+  }
+  plot::write_file((folder / "trajectories.pvd").string(), series + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace
+
+std::string vtp(const Snapshot& snapshot) {
+  const std::size_t n = snapshot.samples.size();
+  std::string ids, positions, velocities, vertices, offsets;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& [id, p, v] = snapshot.samples[i];
+    ids += fmt::format("{}\n", id);
+    positions += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+    velocities += fmt::format("{} {} {}\n", v.x, v.y, v.z);
+    vertices += fmt::format("{}\n", i);
+    offsets += fmt::format("{}\n", i + 1);
+  }
+  const auto array = [](const char* attributes, const std::string& values) {
+    return fmt::format("<DataArray {} format=\"ascii\">\n{}</DataArray>\n", attributes, values);
+  };
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+      "<PolyData>\n<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
+      "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
+      "<PointData Scalars=\"id\" Vectors=\"velocity\">\n{1}{2}</PointData>\n"
+      "<Points>\n{3}</Points>\n<Verts>\n{4}{5}</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n",
+      n, array("type=\"Int64\" Name=\"id\"", ids),
+      array("type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\"", velocities),
+      array("type=\"Float64\" NumberOfComponents=\"3\"", positions),
+      array("type=\"Int64\" Name=\"connectivity\"", vertices),
+      array("type=\"Int64\" Name=\"offsets\"", offsets));
+}
 
 void prepare_files(const Scene& scene, const Options& options) {
   plot::make_folder("--out " + options.out, options.out);
   plot::require_writable("--json", options.json);
   if (options.out.empty()) return;
   const fs::path in(options.out);
-  const auto require = [&](const std::string& file) {
-    require_writable_in(options.out, in / file);
+  const auto require = [&](const char* file) {
+    plot::require_writable("--out " + options.out, (in / file).string());
   };
-  for (std::size_t i = 0; scene.outputs.fields && i < scene.objects.size(); ++i)
-    require(field_file(i));
   if (scene.outputs.slice) require("field.svg");
   if (scene.outputs.trajectories > 0) {
     require("paths.svg");
-    require("trajectories.pvd");
     plot::make_folder("--out " + options.out, in / "trajectories");
-    require_writable_in(options.out, in / "trajectories", "step_");
   }
-  if (options.study) require_writable_in(options.out, in, "study");
 }
 
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {
@@ -62,11 +83,10 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
   if (const auto& slice = outputs.slice) {
     const Field& field = stage.fields[slice->object].field();
     plot::write_file((in / "field.svg").string(),
-                     slice_svg(field.planes != nullptr ? expanded(field) : field,
-                               outputs.axes.front(), slice->at));
+                     slice_svg(field, outputs.axes.front(), slice->at));
   }
   if (result.trajectories.empty()) return;
-  write_series(folder, result.trajectories, stage.scene.dt);
+  write_series(in, result.trajectories, stage.scene.dt);
   plot::write_file((in / "paths.svg").string(), paths_svg(stage.scene, result.trajectories));
 }
 

@@ -10,9 +10,13 @@
 
 namespace particles {
 
-/// Makes the folder of --out and checks every file that this run will write there, and that of
+/// Makes the folder of --out, and checks the pictures that this run will write there and the file of
 /// --json. Throws Error(environment) that names the option, the path and the remedy.
 void prepare_files(const Scene& scene, const Options& options);
+
+/// The points of a snapshot with their ids and velocities, as the text of a VTP file for ParaView, in
+/// ASCII: the traced particles are few.
+[[nodiscard]] std::string vtp(const Snapshot& snapshot);
 
 /// Fields, trajectories and pictures, as the scene asks for them.
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result);

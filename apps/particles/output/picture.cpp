@@ -2,8 +2,8 @@
 
 #include "apps/plot/contour.hpp"
 #include "apps/plot/ticks.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/look_up.hpp"
-#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -140,11 +140,11 @@ std::vector<std::vector<Point>> shadow(const Surface& surface, const Frame& fram
   return lines;
 }
 
-/// From the begin (0) to the end (1) of a run: dark blue, green, orange, red.
-std::string colour(double part) {
+/// Of the time `part` × `end`: from dark blue over green and orange to red.
+std::string colour(double part, std::size_t end) {
   constexpr std::array<std::array<double, 3>, 4> anchors{
       {{40, 50, 160}, {0, 150, 120}, {240, 160, 0}, {200, 20, 40}}};
-  const double at = 3 * std::clamp(part, 0.0, 1.0);
+  const double at = end > 0 ? 3 * part / static_cast<double>(end) : 0;
   const auto i = std::min<std::size_t>(2, static_cast<std::size_t>(at));
   std::array<int, 3> rgb{};
   for (std::size_t k = 0; k < 3; ++k)
@@ -174,16 +174,15 @@ std::string paths(const Frame2D& frame, const std::vector<Snapshot>& snapshots,
     out += fmt::format(
         "<path fill=\"none\" stroke=\"{}\" stroke-width=\"0.8\" "
         "stroke-opacity=\"0.7\" d=\"{}\"/>\n",
-        colour((static_cast<double>(piece) + 0.5) / static_cast<double>(n_pieces)), path);
+        colour(static_cast<double>(piece) + 0.5, n_pieces), path);
   }
   for (std::size_t i = 0; i < dots.size(); ++i) {
     std::string path;
     for (const Sample& sample : snapshots[dots[i]].samples)
       if (frame.holds(sample.position)) path += frame.to('M', frame.seen(sample.position)) + "h0";
-    out += fmt::format(
-        "<path stroke=\"{}\" stroke-width=\"4\" stroke-linecap=\"round\" d=\"{}\"/>\n",
-        colour(static_cast<double>(dots[i]) / static_cast<double>(std::max<std::size_t>(last, 1))),
-        path);
+    out +=
+        fmt::format("<path stroke=\"{}\" stroke-width=\"4\" stroke-linecap=\"round\" d=\"{}\"/>\n",
+                    colour(static_cast<double>(dots[i]), last), path);
   }
   return out;
 }
@@ -195,10 +194,6 @@ std::string slice_svg(const Field& field, int axis, double at) {
   const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
   const auto count = [&](int of) { return grid.n[static_cast<std::size_t>(of)]; };
   const double layer = std::round((at - component(grid.origin, axis)) / grid.cell);
-  if (!(layer >= 0 && layer < count(axis)))
-    tess::fail(tess::ErrorCode::bad_value, "outputs.slice.at: ", at,
-               " is outside of the field, which reaches from ", component(grid.origin, axis),
-               " to ", component(grid.origin, axis) + grid.cell * (count(axis) - 1));
   const auto voxel = [&](int i, int j) {
     std::array<int, 3> of{};
     of[static_cast<std::size_t>(axis)] = static_cast<int>(layer);
@@ -216,7 +211,7 @@ std::string slice_svg(const Field& field, int axis, double at) {
         count(across), count(up),
         [&](int i, int j) {
           const auto [x, y, z] = voxel(i, j);
-          return static_cast<double>(field.distance[grid.index(x, y, z)]);
+          return static_cast<double>(voxel_distance(field, x, y, z));
         },
         level);
     const Point origin = frame.seen(grid.origin);
@@ -234,7 +229,7 @@ std::string slice_svg(const Field& field, int axis, double at) {
                                          step == 0 ? " stroke=\"#000\" stroke-width=\"1.5\"" : "");
     drawn += frame.closed(below(step * field.thickness / 6), look.c_str());
   }
-  if (!field.normal.empty()) {
+  if (field.content() == Content::distance_and_normal) {
     constexpr int arrows = 20;
     const int stride = std::max(1, count(across) / arrows);
     std::vector<float> x, y, z;
@@ -295,9 +290,8 @@ std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots
   std::string drawn, key;
   for (std::size_t i = 0; i < dots.size(); ++i) {
     const double x = left + 70.0 * static_cast<double>(i);
-    key += fmt::format(
-        "<circle cx=\"{:.0f}\" cy=\"16\" r=\"4\" fill=\"{}\"/>", x + 4,
-        colour(static_cast<double>(dots[i]) / static_cast<double>(std::max<std::size_t>(last, 1))));
+    key += fmt::format("<circle cx=\"{:.0f}\" cy=\"16\" r=\"4\" fill=\"{}\"/>", x + 4,
+                       colour(static_cast<double>(dots[i]), last));
     key += text(x + 12, fmt::format("t = {:.4g}", time(dots[i])));
   }
   bool moved = false;

@@ -11,8 +11,7 @@
 
 namespace particles {
 
-/// The field cut at `at` on `axis` (0 … 2), in the object's own coordinates. Throws
-/// Error(bad_value) for a place outside of the grid.
+/// The field cut at `at` on `axis` (0 … 2), in the object's own coordinates, within the grid.
 [[nodiscard]] std::string slice_svg(const tess::dn::Field& field, int axis, double at);
 
 /// Paths of the particles over all snapshots, and dots where they are at some of the times; the

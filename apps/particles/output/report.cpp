@@ -1,28 +1,11 @@
 #include "apps/particles/output/report.hpp"
 
-#include <algorithm>
-#include <array>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace particles {
 namespace {
-
-// In the order of BalanceWhen.
-constexpr std::array when_names{"at_sync", "periodic", "automatic"};
-
-/// The balancer's rounds of a run, summed.
-struct Balanced {
-  explicit Balanced(const std::vector<tess::balance::Round>& of) : rounds(of.size()) {
-    for (const tess::balance::Round& round : of) {
-      moves += round.n_moved;
-      bytes += round.moved_bytes;
-      seconds += round.round_seconds;
-    }
-  }
-  std::uint64_t rounds, moves = 0, bytes = 0;
-  double seconds = 0;
-};
+using Json = nlohmann::ordered_json;
 
 std::string_view method_of(const Scene& scene) {
   if (scene.objects.empty()) return "none";
@@ -32,28 +15,18 @@ std::string_view method_of(const Scene& scene) {
   return name_of(method);
 }
 
-double per_particle_step(const Scene& scene, double seconds) {
-  const double n = static_cast<double>(scene.n_particles()) * scene.steps;
-  return n > 0 ? seconds * 1e9 / n : 0;
-}
-
-nlohmann::ordered_json json_of(const Row& row, double dt) {
+/// Numbers that are not finite become null.
+Json json_of(const Row& row, double dt) {
   const Measured& m = row.measured;
-  nlohmann::ordered_json out = {
-      {"step", row.step},         {"time", row.step * dt},
-      {"blocks", m.blocks},       {"kinetic", m.kinetic.total()},  // null where it is not finite
-      {"energy", m.energy()},     {"fastest", m.fastest},
-      {"nearest", m.nearest},     {"inside", m.inside},
-      {"tunnelled", m.tunnelled}, {"nonfinite", m.nonfinite}};
-  if (!(m.nearest < HUGE_VAL)) out.erase("nearest");
-  return out;
+  return {{"step", row.step},         {"time", row.step * dt},        {"particles", m.particles},
+          {"blocks", m.blocks},       {"kinetic", m.kinetic.total()}, {"energy", m.energy()},
+          {"fastest", m.fastest},     {"nearest", m.nearest},         {"inside", m.inside},
+          {"tunnelled", m.tunnelled}, {"nonfinite", m.nonfinite}};
 }
 
-nlohmann::ordered_json json_of(const StudyRow& row) {
-  nlohmann::ordered_json out;
-  out["part"] = row.part;
-  out["resolution"] = row.resolution;
-  out["method"] = row.method;
+Json json_of(const StudyRow& row) {
+  Json out{
+      {"part", row.part}, {"resolution", static_cast<int>(row.resolution)}, {"method", row.method}};
   if (!row.note.empty()) {
     out["refused"] = row.note;
     return out;
@@ -66,82 +39,46 @@ nlohmann::ordered_json json_of(const StudyRow& row) {
   return out;
 }
 
-}  // namespace
-
-std::string table(const Scene& scene, const RunResult& result, const Report& report) {
-  const FieldCost& fields = result.fields;
-  std::string out = fmt::format("{}: {} particles, {} steps of {}\n", scene.name,
-                                scene.n_particles(), scene.steps, scene.dt);
-  const auto line = [&out](const char* name, const std::string& value) {
-    out += fmt::format("  {:<10} {}\n", name, value);
-  };
-  line("machine", report.machine);
-  if (fields.cells > 0)
-    line("fields",
-         fmt::format("{} of method {}, {} cells, {:.3f} MB{}, made in {:.3f} s",
-                     scene.objects.size(), method_of(scene), fields.cells,
-                     static_cast<double>(fields.bytes) / 1e6,
-                     scene.compression ? fmt::format(" compressed to {:.3f} MB",
-                                                     static_cast<double>(fields.bytes_used) / 1e6)
-                                       : "",
-                     fields.build_seconds));
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    const double needed = least_wall(scene, object), share = thin_share(scene, object);
-    if (!stops_particles(scene) || object.walls.least >= needed) continue;
-    line("thin",
-         fmt::format("{} % of objects[{}] is thinner than {:.3g}: particles may pass there",
-                     share > 0 ? fmt::format("{:.2g}", 100 * share) : "less than 0.1", i, needed));
-  }
-  line("blocks", fmt::format("of {:.4g}, particles change them every {} steps", result.block,
-                             result.exchange));
-  out += fmt::format("  {:>9} {:>10} {:>9} {:>7} {:>13} {:>13} {:>10} {:>10} {:>8} {:>9} {:>9}\n",
-                     "step", "time", "particles", "blocks", "kinetic", "energy", "fastest",
-                     "nearest", "inside", "tunnelled", "nonfinite");
-  for (const auto& [step, m] : result.rows)
-    out += fmt::format(
-        "  {:>9} {:>10.4g} {:>9} {:>7} {:>13.6e} {:>13.6e} {:>10.4g} {:>10} {:>8} {:>9} {:>9}\n",
-        step, step * scene.dt, m.particles, m.blocks, m.kinetic.total(), m.energy(), m.fastest,
-        m.nearest < HUGE_VAL ? fmt::format("{:.4g}", m.nearest) : "-", m.inside, m.tunnelled,
-        m.nonfinite);
-  line("time", fmt::format("{:.4f} s, {:.3f} ns per particle and step; CPU in the rules {:.3f} ns",
-                           result.seconds, per_particle_step(scene, result.seconds),
-                           per_particle_step(scene, result.loop_seconds)));
-  if (result.audited > 0)
-    line("audit", fmt::format("of {} particles in each step: CPU {:.3f} ns per particle and step",
-                              result.audited, per_particle_step(scene, result.audit_seconds)));
-  if (const auto& balance = report.run.balance) {
-    const Balanced of(result.rounds);
-    line("balance",
-         fmt::format("{}: {} rounds moved {} blocks, {:.3f} MB, in {:.4f} s", balance->strategy,
-                     of.rounds, of.moves, static_cast<double>(of.bytes) / 1e6, of.seconds));
-  }
-  line("result", fmt::format("{:016x}", result.rows.back().measured.hash));
-  return out;
+Json balance_of(const std::string& strategy, tess::BalanceWhen when,
+                const std::vector<tess::balance::Round>& rounds) {
+  std::uint64_t moves = 0, bytes = 0;
+  double seconds = 0;
+  for (const tess::balance::Round& round : rounds)
+    moves += round.n_moved, bytes += round.moved_bytes, seconds += round.round_seconds;
+  return {{"strategy", strategy}, {"when", name_of(when)}, {"rounds", rounds.size()},
+          {"moves", moves},       {"bytes", bytes},        {"seconds", seconds}};
 }
 
-std::string json(const Scene& scene, const RunResult& result, const Report& report) {
+/// The whole report but the study.
+Json document(const Scene& scene, const RunResult& result, const Report& report) {
   const Measured& begin = result.rows.front().measured;
   const Measured& end = result.rows.back().measured;
   const FieldCost& fields = result.fields;
-  nlohmann::ordered_json out = {{"scene", scene.name},
-                                {"particles", scene.n_particles()},
-                                {"steps", scene.steps},
-                                {"dt", scene.dt},
-                                {"pes", report.pes},
-                                {"processes", report.processes},
-                                {"machine", report.machine},
-                                {"ns_per_particle_step", per_particle_step(scene, result.seconds)},
-                                {"ns_in_rules", per_particle_step(scene, result.loop_seconds)},
-                                {"ns_in_audit", per_particle_step(scene, result.audit_seconds)},
-                                {"seconds", result.seconds}};
+  const double n = static_cast<double>(scene.n_particles()) * scene.steps;
+  const auto per_particle_step = [n](double seconds) { return n > 0 ? seconds * 1e9 / n : 0; };
+  Json out = {{"scene", scene.name},
+              {"particles", scene.n_particles()},
+              {"steps", scene.steps},
+              {"dt", scene.dt},
+              {"pes", report.pes},
+              {"processes", report.processes},
+              {"machine", report.machine},
+              {"ns_per_particle_step", per_particle_step(result.seconds)},
+              {"ns_in_rules", per_particle_step(result.loop_seconds)},
+              {"ns_in_audit", per_particle_step(result.audit_seconds)},
+              {"seconds", result.seconds}};
   out["field"] = {{"method", method_of(scene)},
                   {"cells", fields.cells},
                   {"build_seconds", fields.build_seconds},
                   {"bytes", fields.bytes},
-                  {"bytes_compressed", nullptr},  // unless it is known
+                  {"bytes_compressed", nullptr},  // of a run with flat fields
                   {"stored", scene.compression ? "compressed" : "flat"}};
-  if (report.bytes_compressed) out["field"]["bytes_compressed"] = *report.bytes_compressed;
+  if (scene.compression) out["field"]["bytes_compressed"] = fields.bytes_used;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (const double share = scene.objects[i].thin_share; share > 0)
+      out["thin"][fmt::format("objects[{}]", i)] =
+          fmt::format("{:.2g} % of it is thinner than {:.3g}: particles may pass there",
+                      100 * share, least_wall(scene.rules, scene.objects[i]));
   out["nonfinite"] = end.nonfinite;
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited == 0                     ? "last step"
@@ -152,19 +89,46 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   out["energy_end"] = end.energy();
   out["block"] = result.block;
   out["exchange"] = result.exchange;
-  if (const auto& balance = report.run.balance) {
-    const Balanced of(result.rounds);
-    out["balance"] = {{"strategy", balance->strategy},
-                      {"when", when_names[static_cast<std::size_t>(balance->when)]},
-                      {"rounds", of.rounds},
-                      {"moves", of.moves},
-                      {"bytes", of.bytes},
-                      {"seconds", of.seconds}};
-  }
+  if (const auto& balance = report.run.balance)
+    out["balance"] = balance_of(balance->strategy, balance->when, result.rounds);
   out["result_hash"] = fmt::format("{:016x}", end.hash);
-  out["rows"] = nlohmann::ordered_json::array();
+  out["rows"] = Json::array();
   for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
-  out["study"] = nlohmann::ordered_json::array();
+  return out;
+}
+
+/// A value in a table; "-" for null.
+std::string shown(const Json& value) {
+  if (value.is_null()) return "-";
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+}  // namespace
+
+std::string table(const Scene& scene, const RunResult& result, const Report& report) {
+  std::string out;
+  const Json whole = document(scene, result, report);
+  for (const auto& [key, value] : whole.items()) {
+    if (key == "rows") continue;
+    std::string text = value.is_object() ? "" : shown(value);
+    if (value.is_object())
+      for (const auto& [name, part] : value.items())
+        text += (text.empty() ? "" : ", ") + name + " " + shown(part);
+    out += fmt::format("  {:<20} {}\n", key, text);
+  }
+  for (const auto& [name, value] : whole["rows"].front().items())
+    out += fmt::format(" {:>12}", name);
+  for (const Json& row : whole["rows"]) {
+    out += '\n';
+    for (const Json& value : row) out += fmt::format(" {:>12}", shown(value));
+  }
+  return out + '\n';
+}
+
+std::string json(const Scene& scene, const RunResult& result, const Report& report) {
+  Json out = document(scene, result, report);
+  out["study"] = Json::array();
   for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
   // The name of a file may have any bytes; JSON holds only UTF-8.
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

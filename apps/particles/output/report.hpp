@@ -6,17 +6,20 @@
 #include "apps/particles/simulation/simulate.hpp"
 #include "apps/particles/study/study.hpp"
 
-#include <optional>
 #include <string>
 
 namespace particles {
+
+[[nodiscard]] constexpr const char* name_of(tess::BalanceWhen when) {
+  constexpr const char* names[] = {"at_sync", "periodic", "automatic"};
+  return names[static_cast<std::size_t>(when)];
+}
 
 /// The run beside the machine it ran on.
 struct Report {
   std::string machine;
   std::int32_t pes = 0, processes = 0;
   RunOptions run{};
-  std::optional<std::uint64_t> bytes_compressed{};  ///< of all fields
   std::vector<StudyRow> study{};
 };
 

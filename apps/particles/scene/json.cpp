@@ -16,11 +16,11 @@ using nlohmann::json;
 using tess::ErrorCode;
 using tess::fail;
 
-/// The longest beginning of so many bytes that ends between two characters of UTF-8.
+/// The longest beginning of so many bytes that ends between two characters of UTF-8, of which all
+/// bytes but the first are 10xxxxxx.
 std::string_view beginning(std::string_view text, std::size_t longest) {
-  if (text.size() <= longest) return text;
-  std::size_t end = longest;  // a character has up to four bytes, all but the first are 10xxxxxx
-  for (int i = 0; i < 3 && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U; ++i)
+  std::size_t end = std::min(longest, text.size());
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
     --end;
   return text.substr(0, end);
 }

@@ -1,6 +1,6 @@
 #include "apps/particles/scene/readers.hpp"
 #include "collide/dn_field/field_file.hpp"
-#include "collide/dn_field/orientation.hpp"
+#include "collide/dn_field/walls.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -39,31 +39,6 @@ Frame read_transform(const Node& node) {
   return frame;
 }
 
-/// Grid, thickness and blur from the speed of the particles and the details of the object. Where
-/// impacts are swept, two cells are enough if a whole step is too much for a field.
-void choose(const Node& node, const Bounds& box, double dt, const Rules& rules,
-            SceneObject& object) {
-  constexpr std::size_t most_voxels = std::size_t{512} * 512 * 512;
-  double max_speed = 0, detail = 0;
-  node.read({{"max_speed", max_speed, positive, "the largest speed relative to the surface"},
-             {"detail", detail, positive, "the size of the smallest feature"}});
-  const auto plan = [&](double speed) {
-    const FieldPlan chosen =
-        choose_plan(box, {speed / object.frame.scale, dt, detail}, most_voxels);
-    object.grid = chosen.grid, object.thickness = chosen.thickness, object.blur = chosen.blur;
-  };
-  try {
-    try {
-      plan(max_speed);
-    } catch (const tess::Error&) {
-      if (!rules.impact || rules.impact->sweep == Sweep::off) throw;
-      plan(0);
-    }
-  } catch (const tess::Error& error) {
-    node.refuse(std::string("cannot be met: ") + error.what());
-  }
-}
-
 /// Copies what a field's file says of itself. The field is read again where it is used: a scene
 /// stays small. Returns the fingerprint of the surface that it was built from.
 std::uint64_t read_field(const Node& node, const std::string& folder, SceneObject& object) {
@@ -78,12 +53,44 @@ std::uint64_t read_field(const Node& node, const std::string& folder, SceneObjec
   }
 }
 
+/// The grid and the thickness of a field that is built: by resolution and thickness, or so that the
+/// field covers a step of the fastest particle, with two voxels across the smallest feature.
+void set_grid(const Node& node, double dt, SceneObject& object) {
+  const Bounds box = bounds(object.surface);
+  const Vec3 size = box.size();
+  const double extent = std::max({size.x, size.y, size.z});
+  double resolution = object.grid.n[0] > 0 ? object.grid.n[0] : 60;
+  if (node.has("choose")) {
+    double max_speed = 0, detail = 0;
+    node["choose"].read(
+        {{"max_speed", max_speed, positive, "the largest speed relative to the surface"},
+         {"detail", detail, positive, "the size of the smallest feature"}});
+    object.thickness = max_speed / object.frame.scale * dt + detail;
+    resolution = std::max(4.0, std::ceil(2 * (extent + 2 * object.thickness) / detail) + 1);
+    if (!(resolution <= 1024))
+      node["choose"].refuse(fmt::format(
+          "takes a resolution of {:g}, above 1024; shorten the step, or coarsen the detail",
+          resolution));
+  } else if (!node.has("thickness")) {
+    object.thickness = 0.25 * extent;
+  }
+  try {
+    object.grid = grid_around(box, static_cast<int>(resolution), object.thickness);
+  } catch (const tess::Error& error) {
+    node.refuse(std::string("cannot have a field: ") + error.what());
+  }
+  if (object.thickness < 2 * object.grid.cell)
+    (node.has("thickness") ? node["thickness"] : node)
+        .refuse(
+            fmt::format("is thinner than two cells of {:g}; raise the thickness or the resolution",
+                        object.grid.cell));
+}
+
 }  // namespace
 
 SceneObject read_object(const Node& node, const std::string& folder, double dt,
                         const Rules& rules) {
   SceneObject object;
-  int resolution = 60;
   std::uint64_t fingerprint_of_field = 0;
   const auto motion = [&](const Node& of) {
     Frame& frame = object.frame;
@@ -103,50 +110,30 @@ SceneObject read_object(const Node& node, const std::string& folder, double dt,
         node[key].refuse("stands beside a field from a file, which has its own; leave it out");
     fingerprint_of_field = read_field(of, folder, object);
   };
-  node.read(
-      {{"shape", [&](const Node& of) { object.surface = read_shape(of, folder, object.name); },
-        "one of sphere, box, boxes, torus, cylinder, plate, file"},
-       {"field", field},
-       {"resolution", resolution, 4, 1024},
-       {"thickness", object.thickness, positive},
-       {"method", object.method, words_of(method_names)},
-       {"sides", object.sides, {"one", "two"}},
-       {"blur", blur},
-       {"transform", [&](const Node& of) { object.frame = read_transform(of); }},
-       {"motion", motion},
-       {"choose", [&](const Node& of) {
-          for (const char* key : {"resolution", "thickness", "blur"})
-            if (node.has(key)) of.refuse(std::string("stands beside ") + key + "; give either");
-        }}});
+  node.read({{"shape", [&](const Node& of) { object.surface = read_shape(of, folder); },
+              "one of sphere, box, boxes, torus, cylinder, plate, file"},
+             {"field", field},
+             {"resolution", object.grid.n[0], 4, 1024},
+             {"thickness", object.thickness, positive},
+             {"method", object.method, words_of(method_names)},
+             {"sides", object.sides, {"one", "two"}},
+             {"blur", blur},
+             {"transform", [&](const Node& of) { object.frame = read_transform(of); }},
+             {"motion", motion},
+             {"choose", [&](const Node& of) {
+                for (const char* key : {"resolution", "thickness"})
+                  if (node.has(key))
+                    of.refuse(std::string("stands beside ") + key + "; give either");
+              }}});
   // Emitters, the audit and the study use the triangles that the field is built from.
-  if (object.sides == Sides::one) {
-    object.surface = Surface(OutwardSurface(object.surface).surface());
-    if (rules.impact || rules.spring) object.walls = walls_of(object.surface, Bvh(object.surface));
-  }
-  if (node.has("field")) {
-    if (fingerprint_of_field != fingerprint(object.surface))
-      node["field"].blame(object.field +
-                          ": is the field of another shape; give that of this one, "
-                          "or leave it out");
-    return object;
-  }
-  const Bounds box = bounds(object.surface);
-  if (node.has("choose")) {
-    choose(node["choose"], box, dt, rules, object);
-    return object;
-  }
-  const Vec3 size = box.size();
-  if (!node.has("thickness")) object.thickness = 0.25 * std::max({size.x, size.y, size.z});
-  try {
-    object.grid = grid_around(box, resolution, object.thickness);
-  } catch (const tess::Error& error) {
-    node.refuse(std::string("cannot have a field: ") + error.what());
-  }
-  if (object.thickness < 2 * object.grid.cell)
-    (node.has("thickness") ? node["thickness"] : node)
-        .refuse(
-            fmt::format("is thinner than two cells of {:g}; raise the thickness or the resolution",
-                        object.grid.cell));
+  if (object.sides == Sides::one) object.surface = outward(object.surface);
+  if (!node.has("field"))
+    set_grid(node, dt, object);
+  else if (fingerprint_of_field != fingerprint(object.surface))
+    node["field"].blame(object.field +
+                        ": is the field of another shape; give that of this one, or leave it out");
+  if (object.sides == Sides::one && (rules.impact || rules.spring))
+    object.thin_share = thin_share(object.surface, Bvh(object.surface), least_wall(rules, object));
   return object;
 }
 

@@ -11,9 +11,8 @@ namespace particles {
 /// The path of a file that a scene in `folder` names.
 [[nodiscard]] std::string path_beside(const std::string& folder, const std::string& name);
 
-/// A built-in shape, or triangles from an OBJ file. `name` becomes the kind of shape, or the file.
-[[nodiscard]] tess::dn::Surface read_shape(const Node& node, const std::string& folder,
-                                           std::string& name);
+/// A built-in shape, or triangles from an OBJ file.
+[[nodiscard]] tess::dn::Surface read_shape(const Node& node, const std::string& folder);
 
 [[nodiscard]] tess::dn::Rules read_rules(const Node& node);
 

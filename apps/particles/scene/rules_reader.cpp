@@ -4,8 +4,6 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-const Words laws{"linear", "quadratic"};
-
 Explosion read_explosion(const Node& node) {
   Explosion explosion;
   node.read({{"centre", explosion.centre, any_number, "a point [x, y, z]"},
@@ -35,8 +33,7 @@ Rules read_rules(const Node& node) {
   const auto surface_drag = [&](const Node& of) {
     SurfaceDrag& to = rules.surface_drag.emplace();
     of.read({{"rate", to.rate, not_negative, "force per velocity"},
-             {"threshold", to.threshold, positive, "the distance it reaches"},
-             {"law", to.law, laws}});
+             {"threshold", to.threshold, positive, "the distance it reaches"}});
   };
   const auto surface_flow = [&](const Node& of) {
     SurfaceFlow& to = rules.surface_flow.emplace();
@@ -51,7 +48,8 @@ Rules read_rules(const Node& node) {
   };
   const auto air_drag = [&](const Node& of) {
     AirDrag& to = rules.air_drag.emplace();
-    of.read({{"rate", to.rate, not_negative, "force per velocity"}, {"law", to.law, laws}});
+    of.read({{"rate", to.rate, not_negative, "force per velocity"},
+             {"law", to.law, {"linear", "quadratic"}}});
   };
   const auto explosions = [&](const Node& of) {
     for (const Node& item : of.items()) rules.explosions.push_back(read_explosion(item));

@@ -48,23 +48,9 @@ bool builds_fields(const Scene& scene) {
   return needs_field(scene.rules) || scene.outputs.slice || scene.outputs.fields;
 }
 
-bool stops_particles(const Scene& scene) {
-  return scene.rules.impact || scene.rules.spring;
-}
-
-double thin_share(const Scene& scene, const SceneObject& object) {
-  if (!stops_particles(scene) || object.sides == tess::dn::Sides::two) return 0;
-  return object.walls.share_thinner_or_slanted(least_wall(scene, object));
-}
-
-double kept_off(const Scene& scene, const SceneObject& object) {
-  return scene.rules.impact ? 2 * scene.rules.impact->threshold / greatest_scale(scene, object) : 0;
-}
-
-double least_wall(const Scene& scene, const SceneObject& object) {
-  const bool nearest = look_up_of(scene.rules) == tess::dn::LookUp::nearest;
-  const double diagonals = !nearest ? 1 : object.frame.is_moving() ? 3 : 1.5;
-  return diagonals * std::sqrt(3.0) * object.grid.cell - kept_off(scene, object);
+double least_wall(const tess::dn::Rules& rules, const SceneObject& object) {
+  const double diagonals = rules.look_up == tess::dn::LookUp::nearest ? 3 : 1;
+  return diagonals * std::sqrt(3.0) * object.grid.cell;
 }
 
 std::uint64_t n_audited(const Scene& scene) {

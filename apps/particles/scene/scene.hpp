@@ -3,12 +3,11 @@
 // keys of the file.
 #pragma once
 
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/field.hpp"
 #include "collide/dn_field/frame.hpp"
-#include "collide/dn_field/plan.hpp"
 #include "collide/dn_field/rules.hpp"
 #include "collide/dn_field/surface.hpp"
-#include "collide/dn_field/walls.hpp"
 
 #include <array>
 #include <cstdint>
@@ -21,7 +20,6 @@ namespace particles {
 
 /// An object with the field around it.
 struct SceneObject {
-  std::string name;
   tess::dn::Surface surface;
   tess::dn::Grid grid;   ///< of the field
   double thickness = 0;  ///< of the field beyond the surface, in the object's units
@@ -29,8 +27,10 @@ struct SceneObject {
   tess::dn::Sides sides = tess::dn::Sides::one;
   tess::dn::Blur blur;    ///< of the methods that blur; no rounds: chosen from the thickness
   std::string field;      ///< file that the field is read from; empty: it is built
-  tess::dn::Walls walls;  ///< of one-sided bodies if impacts or springs act; otherwise none
   tess::dn::Frame frame;  ///< at the first step, with its velocities
+  /// The share of the surface at which particles may pass the field: walls and edges thinner than
+  /// least_wall(). 0 for fields of two sides, and where no rule stops particles.
+  double thin_share = 0;
 };
 
 /// The error bounds of compressed fields: by default no more than the error of nearest look-up.
@@ -108,14 +108,6 @@ struct Scene {
 /// repeated after a change of a scene. Throws tess::Error.
 void check_scene(const Scene& scene);
 
-/// Whether a rule keeps particles off surfaces: impact or spring.
-[[nodiscard]] bool stops_particles(const Scene& scene);
-
-/// The share of an object's surface where particles may pass its field: walls and edges thinner
-/// than least_wall(), and open sheets. 0 for fields of two sides, and where no rule stops
-/// particles.
-[[nodiscard]] double thin_share(const Scene& scene, const SceneObject& object);
-
 /// Whether rules, a picture or outputs need the fields.
 [[nodiscard]] bool builds_fields(const Scene& scene);
 
@@ -123,13 +115,10 @@ void check_scene(const Scene& scene);
 [[nodiscard]] double least_scale(const Scene& scene, const SceneObject& object);
 [[nodiscard]] double greatest_scale(const Scene& scene, const SceneObject& object);
 
-/// The least that the impact's threshold adds to a wall on both sides, in the object's units.
-[[nodiscard]] double kept_off(const Scene& scene, const SceneObject& object);
-
 /// The least thickness of a wall, in the object's units, that its field can represent: a voxel's
-/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, one
-/// and a half, or three if the object moves; less kept_off().
-[[nodiscard]] double least_wall(const Scene& scene, const SceneObject& object);
+/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, and on
+/// both sides of a wall that moves, three.
+[[nodiscard]] double least_wall(const tess::dn::Rules& rules, const SceneObject& object);
 
 /// Sets the compression, within the scene's bounds or the usual ones. Throws where the scene has a
 /// look-up that compressed fields do not support, or writes files of the fields.

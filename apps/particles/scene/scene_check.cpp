@@ -1,6 +1,7 @@
 // Checks that need several keys of a scene: each may be right by itself, and the run impossible.
 #include "apps/particles/scene/json.hpp"
 #include "apps/particles/scene/scene.hpp"
+#include "collide/dn_field/walls.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cmath>
@@ -10,121 +11,83 @@ namespace particles {
 namespace {
 using namespace tess::dn;
 
-/// The checks of one object in its scene.
-class ObjectCheck {
- public:
-  ObjectCheck(const Scene& scene, std::size_t number)
-      : scene_(scene), object_(scene.objects[number]), number_(number) {
-    const Frame& frame = object_.frame;
-    const Bounds box = bounds(object_.surface);
-    const double radius = std::max(norm(box.low), norm(box.high)) + object_.thickness;
-    least_ = least_scale(scene, object_), greatest_ = greatest_scale(scene, object_);
-    reach_ =
-        norm(frame.position) + norm(frame.velocity) * scene.dt * scene.steps + greatest_ * radius;
-  }
+template <class... Text>
+[[noreturn]] void refuse(const Scene& scene, std::size_t object, const Text&... text) {
+  tess::fail(tess::ErrorCode::bad_value, scene.name, ": objects[", object, text...);
+}
 
-  /// All positions are numbers that doubles can square; the scale stays positive.
-  void check_magnitude() const {
-    if (!(reach_ <= largest_number))
-      refuse("]: by its shape, transform and motion it reaches ", reach_, " from the origin in ",
-             scene_.steps, " steps of ", scene_.dt, ", beyond ", largest_number,
-             ", the largest number supported; choose other units, or a slower motion");
-    if (!(least_ > 0))
-      refuse("].motion.scale: ", object_.frame.scale_rate, " a second takes the scale from ",
-             object_.frame.scale, " to ", least_, " in ", scene_.steps, " steps of ", scene_.dt,
-             "; it must stay above 0");
+/// The field is as thick as the rules reach and, without sweep, as a particle flies in a step.
+void check_thickness(const Scene& scene, std::size_t number, double scale) {
+  const SceneObject& object = scene.objects[number];
+  const Rules& rules = scene.rules;
+  const double thickness = object.thickness * scale,
+               covers =
+                   scale * covered(object.thickness, object.grid.cell, object.sides, rules.look_up);
+  if (reach(rules) > covers)
+    refuse(scene, number, "].thickness: ", object.thickness, " times scale ", scale,
+           covers < thickness
+               ? fmt::format(", less {:g} that a sheet keeps off,", thickness - covers)
+               : "",
+           " is below the distance ", reach(rules), " at which a rule begins to act");
+  if ((rules.impact && rules.impact->sweep == Sweep::on) || !needs_field(rules)) return;
+  const Frame& frame = object.frame;
+  const double extent = norm(bounds(object.surface).size());
+  const double surface = norm(frame.velocity) +
+                         norm(frame.angular_velocity) * frame.scale * extent +
+                         std::abs(frame.scale_rate) * extent;
+  for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
+    const Emitter& emitter = scene.emitters[e];
+    const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
+                         std::abs(emitter.outward) + surface;
+    if (speed * scene.dt > thickness)
+      tess::fail(tess::ErrorCode::bad_value, scene.name, ": emitters[", e, "]: speed ", speed,
+                 " times dt ", scene.dt, " passes the field of objects[", number, "], ", thickness,
+                 " thick, in one step; use impact with sweep, a thicker field or a shorter step");
   }
+}
 
-  /// The field is as thick as the rules reach and, without sweep, as a particle flies in a step.
-  void check_thickness() const {
-    const bool sweeps = scene_.rules.impact && scene_.rules.impact->sweep == Sweep::on;
-    const double reach = tess::dn::reach(scene_.rules), thickness = object_.thickness * least_;
-    const double covers = least_ * covered(object_.thickness, object_.grid.cell, object_.sides,
-                                           look_up_of(scene_.rules));
-    if (reach > covers)
-      refuse("].thickness: ", object_.thickness, " times scale ", least_,
-             covers < thickness
-                 ? fmt::format(", less {:g} that a sheet keeps off,", thickness - covers)
-                 : "",
-             " is below the distance ", reach, " at which a rule begins to act");
-    if (sweeps || !needs_field(scene_.rules)) return;
-    const Frame& frame = object_.frame;
-    const double extent = norm(bounds(object_.surface).size());
-    const double surface = norm(frame.velocity) +
-                           norm(frame.angular_velocity) * frame.scale * extent +
-                           std::abs(frame.scale_rate) * extent;
-    for (std::size_t e = 0; e < scene_.emitters.size(); ++e) {
-      const Emitter& emitter = scene_.emitters[e];
-      const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +
-                           std::abs(emitter.outward) + surface;
-      if (speed * scene_.dt > thickness)
-        tess::fail(tess::ErrorCode::bad_value, scene_.name, ": emitters[", e, "]: speed ", speed,
-                   " times dt ", scene_.dt, " passes the field of objects[", number_, "], ",
-                   thickness,
-                   " thick, in one step; use impact with sweep, a thicker field or a shorter step");
-    }
-  }
-
-  /// Fields and look-ups compute in floats, and with squares: lengths and speeds are within range.
-  void check_units() const {
-    constexpr double largest = 1e15, least = 1e-15;
-    const auto check = [&](double value, const char* what) {
-      if (value >= least && value <= largest) return;
-      refuse("]: ", what, " is ", value, ", not within ", least, " … ", largest,
+/// Fields and look-ups compute in floats, and with squares: lengths and speeds are within range. A
+/// cell is wide against the distance of neighbouring doubles where the object gets.
+void check_units(const Scene& scene, std::size_t number, double scale) {
+  constexpr double largest = 1e15, least = 1e-15;
+  constexpr double positions_a_cell = 16, unit = 2.2e-16;  // of a double, relative
+  const SceneObject& object = scene.objects[number];
+  const Frame& frame = object.frame;
+  const auto check = [&](double value, const char* what) {
+    if (!(value >= least && value <= largest))
+      refuse(scene, number, "]: ", what, " is ", value, ", not within ", least, " … ", largest,
              ", which fields support; choose other units");
-    };
-    check(object_.grid.cell, "a cell of its field");
-    check(object_.thickness, "its thickness");
-    check(object_.grid.cell * least_, "a cell in the world, at its smallest");
-    check(object_.thickness * greatest_, "its thickness in the world");
-    check(object_.grid.cell * object_.frame.scale / scene_.dt, "a cell a step, as a speed,");
-  }
+  };
+  check(object.grid.cell, "a cell of its field");
+  check(object.grid.cell * scale, "a cell in the world, at its smallest");
+  check(object.thickness * greatest_scale(scene, object), "its thickness in the world");
+  check(object.grid.cell * frame.scale / scene.dt, "a cell a step, as a speed,");
+  const Bounds box = bounds(object.surface);
+  const double cell = object.grid.cell * scale,
+               reaches = norm(frame.position) + norm(frame.velocity) * scene.dt * scene.steps +
+                         greatest_scale(scene, object) *
+                             (std::max(norm(box.low), norm(box.high)) + object.thickness);
+  if (!(cell >= positions_a_cell * unit * reaches))
+    refuse(scene, number, "]: a cell of its field is ", cell, " wide in the world, and positions ",
+           reaches, " from the origin, where it gets, are ", unit * reaches,
+           " apart; move the scene to the origin, or choose a coarser field");
+}
 
-  /// A cell is wide against the distance of neighbouring doubles where the object is.
-  void check_offset() const {
-    constexpr double positions_a_cell = 16, unit = 2.2e-16;  // of a double, relative
-    const double cell = object_.grid.cell * least_;
-    if (!(cell >= positions_a_cell * unit * reach_))
-      refuse("]: a cell of its field is ", cell, " wide in the world, and positions ", reach_,
-             " from the origin, where it gets, are ", unit * reach_,
-             " apart; move the scene to the origin, or choose a coarser field");
-  }
-
-  /// No large part of the surface is a wall that fits between voxels: particles would pass it.
-  void check_walls() const {
-    constexpr double most_thin = 0.1, most_slanted = 0.5;  // of the surface; the latter with edges
-    const double needed = least_wall(scene_, object_), thin = thin_share(scene_, object_);
-    const bool by_walls = object_.walls.share_thinner(needed) > most_thin;
-    if (thin == 0 || (!by_walls && thin <= most_slanted)) return;
-    // The remedy is the resolution at which no more than the allowed share is thinner.
-    const auto& list = by_walls ? object_.walls.opposite : object_.walls.slanted;
-    const double allowed = (by_walls ? most_thin : most_slanted) * object_.walls.n_places();
-    const double wall =
-        list[static_cast<std::size_t>(std::min(allowed, static_cast<double>(list.size() - 1)))];
-    const double off = kept_off(scene_, object_), shrink = (wall + off) / (needed + off);
-    const double resolution = std::ceil((object_.grid.n[0] - 1) / shrink) + 1;
-    refuse("].shape: ", 100 * thin, " % of its surface is an open sheet, or a wall thinner than ",
-           needed, ", which a field of ", object_.grid.n[0],
-           " voxels needs; particles would pass it: take ",
-           object_.field.empty() ? "" : "a field of ", "sides two",
-           object_.method == Method::normals ? " and another method" : "",
-           shrink > 0 && resolution <= 1024
-               ? fmt::format(", or a resolution of {} or more", resolution)
-               : "");
-  }
-
- private:
-  template <class... Text>
-  [[noreturn]] void refuse(const Text&... text) const {
-    tess::fail(tess::ErrorCode::bad_value, scene_.name, ": objects[", number_, text...);
-  }
-
-  const Scene& scene_;
-  const SceneObject& object_;
-  std::size_t number_;
-  double least_, greatest_;  // scales in the run
-  double reach_;             // the largest distance from the origin in the run, at most
-};
+void check_object(const Scene& scene, std::size_t number) {
+  const SceneObject& object = scene.objects[number];
+  const double scale = least_scale(scene, object);
+  if (!(scale > 0))
+    refuse(scene, number, "].motion.scale: ", object.frame.scale_rate,
+           " a second takes the scale from ", object.frame.scale, " to ", scale, " in ",
+           scene.steps, " steps of ", scene.dt, "; it must stay above 0");
+  check_thickness(scene, number, scale);
+  if (builds_fields(scene)) check_units(scene, number, scale);
+  if (object.thin_share > most_thin)
+    refuse(scene, number, "].shape: ", 100 * object.thin_share,
+           " % of its surface is an open sheet, or a wall thinner than ",
+           least_wall(scene.rules, object), ", which a field of ", object.grid.n[0],
+           " voxels needs; particles would pass it: take sides two, or a higher resolution");
+}
 
 }  // namespace
 
@@ -137,14 +100,7 @@ void check_scene(const Scene& scene) {
                  ")");
     }
   }
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const ObjectCheck check(scene, i);
-    check.check_magnitude();
-    check.check_thickness();
-    if (builds_fields(scene)) check.check_units();
-    if (needs_field(scene.rules)) check.check_offset();
-    check.check_walls();
-  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) check_object(scene, i);
 }
 
 }  // namespace particles

@@ -14,7 +14,8 @@ block       edge of the blocks of space that carry the particles (default: chose
 exchange    particles change blocks every so many steps (default: chosen); no result depends on it
 compression {"cells": 0.125, "degrees": 3}: fields are compressed, and steps look up in them; so far, in
             cells and degrees, a voxel's distance (0 … 0.5) and normal (0 … 45) may be off. Not with trilinear
-            look-up. {} and --compressed take the defaults (default: flat fields)
+            look-up; refused where 32 bits a cell do not hold that. {} and --compressed take the defaults (default:
+            flat fields)
 objects     a list (default: none); of each:
   shape       one of
                 {"sphere": {"radius": r, "rings": 48}}
@@ -27,8 +28,8 @@ objects     a list (default: none); of each:
                     overlap keep their inner faces, which count as surface: join them before
   resolution  voxels along each axis of the field, 4 … 1024 (default 60)
   thickness   of the field beyond the object, in its own units (default: a quarter of its extent)
-  choose      instead of resolution, thickness and blur: {"max_speed": v, "detail": d}: the field covers a step at speed v (two
-              cells where that would be above 512³ voxels and impacts are swept) and has two voxels across d
+  choose      instead of resolution and thickness: {"max_speed": v, "detail": d}: the field covers a step at speed v
+              and has two voxels across d
   method      exact (default), normals, potential
   sides       one (default): negative distances inside; two: thin shells, distances from either side
   blur        {"radius": 2 … 4 voxels, "rounds": n}: of normals and potential (default: through the thickness)
@@ -52,10 +53,10 @@ emitters    a list of at least one; of each:
   mass        above 0 (default 1)
   seed        of the random numbers, 0 … 2^53 (default 1); particle i is the same on any number of PEs
 rules       each may be left out
-  look_up     nearest (springs take the tangent instead), tangent (default), trilinear
+  look_up     nearest (not with springs), tangent (default), trilinear
   spring      {"stiffness": k, "reach": d, "damping": 0}          force over depth below d
   impact      {"restitution": 0 … 1, "threshold": 0, "sweep": true}
-  surface_drag   {"rate": c, "threshold": d, "law": "linear" or "quadratic"}
+  surface_drag   {"rate": c, "threshold": d}
   surface_flow   {"alpha_in": a, "alpha_out": a, "distance": d}
   gravity     [x, y, z]: an acceleration
   wind        {"velocity": [x, y, z], "rate": c}

@@ -61,14 +61,7 @@ Surface read_file(const Node& node, const std::string& folder) {
   if (std::filesystem::is_directory(path, unknown))
     node.blame(path + ": is a directory; give the path of a file .obj, .ply or .stl");
   try {
-    Surface surface = apps::read_surface(path);
-    validate(surface);
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-      for (int axis = 0; axis < 3; ++axis)
-        if (const double at = component(surface.vertices[v], axis); std::abs(at) > largest_number)
-          tess::fail(tess::ErrorCode::bad_mesh, "vertex ", v, " has the coordinate ", at,
-                     ", beyond ±", largest_number, "; choose other units");
-    return surface;
+    return apps::read_surface(path);
   } catch (const tess::Error& error) {
     constexpr std::size_t longest = 200;  // it quotes the rest of a line
     std::string_view what = error.what();
@@ -85,7 +78,7 @@ std::string path_beside(const std::string& folder, const std::string& name) {
   return (path.is_absolute() ? path : folder / path).string();
 }
 
-Surface read_shape(const Node& node, const std::string& folder, std::string& name) {
+Surface read_shape(const Node& node, const std::string& folder) {
   Surface out;
   double radius = 0, half = 0, minor = 0;
   int n = 0;
@@ -119,18 +112,14 @@ Surface read_shape(const Node& node, const std::string& folder, std::string& nam
     of.read({{"half", half, positive, "half the edge"}, {"n", n, 1, most_rings}});
     out = tess::dn::make_plate(half, n);
   };
-  const auto file = [&](const Node& of) {
-    out = read_file(of, folder);
-    name = of.text();
-  };
-  name = node.one_of({"sphere", "box", "boxes", "torus", "cylinder", "plate", "file"});
+  (void)node.one_of({"sphere", "box", "boxes", "torus", "cylinder", "plate", "file"});
   node.read({{"sphere", sphere},
              {"box", box},
              {"boxes", [&](const Node& of) { out = read_boxes(of); }},
              {"torus", torus},
              {"cylinder", cylinder},
              {"plate", plate},
-             {"file", file}});
+             {"file", [&](const Node& of) { out = read_file(of, folder); }}});
   return out;
 }
 

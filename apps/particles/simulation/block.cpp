@@ -10,16 +10,6 @@
 namespace particles {
 namespace {
 
-/// Whether an explosion acts in these steps, or in the one before or after: times are rounded.
-bool explodes_within(const Scene& scene, const Stretch& stretch) {
-  const double begin = (stretch.first - 1) * scene.dt,
-               end = (stretch.first + stretch.n_steps + 1) * scene.dt;
-  return std::any_of(scene.rules.explosions.begin(), scene.rules.explosions.end(),
-                     [=](const tess::dn::Explosion& explosion) {
-                       return explosion.start < end && explosion.start + explosion.duration > begin;
-                     });
-}
-
 /// Whether any particle is outside of the box: one pass without branches, since usually none is.
 bool any_outside(const tess::dn::Particles& motion, const tess::dn::Bounds& box) {
   const auto& [low, high] = box;
@@ -77,16 +67,9 @@ void Block::advance(std::size_t species, const Stretch& stretch, Station& statio
     advance_audited(flock, stepper, stretch, station);
     return;
   }
-  // Near an explosion each step is a call of its own: its times are then the same for every
-  // exchange.
-  const Scene& scene = station.stage().scene;
-  const std::int32_t at_once = explodes_within(scene, stretch) ? 1 : stretch.n_steps;
-  std::vector<tess::dn::Object> objects = station.objects(stretch.first);
   const double begin = tess::thread_cpu_seconds();
-  for (std::int32_t done = 0; done < stretch.n_steps; done += at_once) {
-    stepper.run(flock.motion.span(), objects, (stretch.first + done) * scene.dt, at_once);
-    tess::dn::advance(objects, scene.dt, at_once);
-  }
+  stepper.run(flock.motion.span(), station.objects(stretch.first),
+              stretch.first * station.stage().scene.dt, stretch.n_steps);
   station.spent().rules += tess::thread_cpu_seconds() - begin;
 }
 

@@ -1,37 +1,25 @@
 #include "apps/particles/simulation/field_making.hpp"
 
 #include "collide/dn_field/field_file.hpp"
-#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <numbers>
 
 namespace particles {
-namespace {
 using namespace tess::dn;
 
-constexpr int block_layers = 4;  // are built together
+namespace {
 
-/// The layers `first` to `last` − 1.
-struct Layers {
-  int first, last;
-};
-
-/// Part `part` of n_parts, cut between blocks of layers.
-Layers share(Layers of, int part, int n_parts) {
-  const int n_blocks = (of.last - of.first + block_layers - 1) / block_layers;
-  const auto edge = [&](int at) {
-    return std::min(
-        of.last, of.first + block_layers * static_cast<int>(std::int64_t{n_blocks} * at / n_parts));
-  };
-  return {edge(part), edge(part + 1)};
+FieldOptions options_of(const SceneObject& object, Content content) {
+  return {object.sides, content, object.thickness, object.method, object.blur};
 }
 
 }  // namespace
 
 Content content_of(const Scene& scene) {
-  return scene.outputs.slice || scene.outputs.fields ? Content::distance_and_normal
-                                                     : needed_content(scene.rules);
+  return scene.compression || scene.outputs.slice || scene.outputs.fields
+             ? Content::distance_and_normal
+             : needed_content(scene.rules);
 }
 
 void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_parts) {
@@ -39,38 +27,26 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
   n_parts_ = n_parts;
   if (!object.field.empty()) {
     field_ = load_field(object.field);
-    if (content == Content::distance_and_normal && field_.normal.empty())
-      tess::fail(
-          tess::ErrorCode::bad_file, object.field,
-          ": holds no normals, which rules, pictures or files of this scene ask for; take one that "
-          "outputs.fields wrote");
     if (content == Content::distance) field_.normal = {};
     return;
   }
   grid_ = object.grid;
-  builder_.emplace(
-      object.surface, object.grid,
-      FieldOptions{object.sides, content, object.thickness, object.method, object.blur});
-}
-
-int FieldInTheMaking::n_distance_stages() const {
-  constexpr std::size_t voxels_a_stage = std::size_t{1} << 24U;  // some tenths of a second
-  // Each with blocks enough for all parts.
-  const auto most =
-      static_cast<std::size_t>(std::max(1, grid_.n[2] / (4 * block_layers * n_parts_)));
-  return static_cast<int>(std::min(most, grid_.size() / voxels_a_stage + 1));
+  builder_.emplace(object.surface, object.grid, options_of(object, content));
 }
 
 int FieldInTheMaking::n_stages() const {
-  return builder_ ? n_distance_stages() + builder_->n_rounds() - 1 : 0;
+  return builder_ ? builder_->n_rounds() : 0;
 }
 
 void FieldInTheMaking::fill(int stage, int part) {
   if (stage >= n_stages()) return;
-  const Layers all{0, grid_.n[2]};
-  const int n = n_distance_stages();
-  const auto [first, last] = share(stage < n ? share(all, stage, n) : all, part, n_parts_);
-  if (first < last) builder_->build(std::max(0, stage - n + 1), first, last);
+  // Parts are cut between blocks of layers.
+  const int n_blocks = (grid_.n[2] + block_layers - 1) / block_layers;
+  const auto edge = [&](int at) {
+    return std::min(grid_.n[2],
+                    block_layers * static_cast<int>(std::int64_t{n_blocks} * at / n_parts_));
+  };
+  if (edge(part) < edge(part + 1)) builder_->build(stage, edge(part), edge(part + 1));
 }
 
 void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
@@ -82,11 +58,9 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
 }
 
 Field build_alone(const SceneObject& object, Content content) {
-  FieldInTheMaking making;
-  making.begin(object, content, 1);
-  for (int stage = 0; stage < making.n_stages(); ++stage) making.fill(stage, 0);
-  making.finish();
-  return std::move(making).take();
+  return object.field.empty()
+             ? build_field(object.surface, object.grid, options_of(object, content))
+             : load_field(object.field);
 }
 
 ErrorBound bound_of(const Compression& compression, const Field& field) {

@@ -13,8 +13,8 @@
 
 namespace particles {
 
-/// The content of the fields of this scene: what its rules need, and normals for pictures and
-/// files.
+/// The content of the fields of this scene: what its rules need, and normals for compression,
+/// pictures and files.
 [[nodiscard]] tess::dn::Content content_of(const Scene& scene);
 
 /// The field of an object in the making: begun by one PE of the process, filled by all in stages,
@@ -22,8 +22,7 @@ namespace particles {
 class FieldInTheMaking {
  public:
   /// The part of one PE: the tree of triangles and, for the methods that blur, the voxels of the
-  /// surface; or the whole field from a file. Throws Error(bad_file) for a file without normals
-  /// where `content` has them.
+  /// surface; or the whole field from a file.
   void begin(const SceneObject& object, tess::dn::Content content, int n_parts);
   /// Known once begun; none for a field from a file.
   [[nodiscard]] int n_stages() const;
@@ -31,19 +30,15 @@ class FieldInTheMaking {
   /// all before the next stage begins.
   void fill(int stage, int part);
   /// With a compression, the field is compressed.
-  void finish(const std::optional<Compression>& compression = {});
+  void finish(const std::optional<Compression>& compression);
 
   [[nodiscard]] const tess::dn::Field& field() const { return field_; }
-  [[nodiscard]] tess::dn::Field take() && { return std::move(field_); }
   /// Bytes of the flat field, also where the compressed one has replaced it.
   [[nodiscard]] std::uint64_t flat_bytes() const { return flat_bytes_; }
   /// From begin() to finish().
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  /// More than one for large fields, so that the progress line moves.
-  [[nodiscard]] int n_distance_stages() const;
-
   std::optional<tess::dn::FieldBuilder> builder_;  // none for a field from a file
   tess::dn::Field field_;
   std::uint64_t flat_bytes_ = 0;
@@ -53,7 +48,7 @@ class FieldInTheMaking {
   double seconds_ = 0;
 };
 
-/// The field, built by this thread.
+/// The flat field, built by this thread or read from its file.
 [[nodiscard]] tess::dn::Field build_alone(const SceneObject& object, tess::dn::Content content);
 
 [[nodiscard]] tess::dn::ErrorBound bound_of(const Compression& compression,

@@ -37,7 +37,7 @@ void measure(const Stage& stage, const std::vector<Object>& objects, const Flock
   for (std::size_t p = 0; p < flock.size(); ++p) {
     const Vec3 position = flock.motion.position(p), velocity = flock.motion.velocity(p);
     ++into.particles;
-    into.tunnelled += static_cast<std::uint64_t>(flock.marks[p].what == Mark::through);
+    into.tunnelled += flock.tunnelled[p];
     into.hash += hash_of(flock.ids[p], position, velocity);
     if (!is_finite(position) || !is_finite(velocity)) {
       ++into.nonfinite;
@@ -65,17 +65,13 @@ void note_tunnelled(const Stage& stage, const std::vector<Object>& at_begin,
   const double depth = greatest_depth(stage.scene.rules);
   std::vector<tess::dn::PathSegment> segments;
   for (std::size_t o = 0; o < at_begin.size(); ++o) {
-    const Audited audited{static_cast<std::uint16_t>(o), at_begin[o], depth};
+    const Audited audited{at_begin[o], stage.triangles[o] ? &*stage.triangles[o] : nullptr, depth};
+    const auto passes = [&](Vec3 from, Vec3 to) { return leads_through(audited, from, to); };
     for (std::size_t p = 0; p < flock.size(); ++p) {
-      Mark& mark = flock.marks[p];
-      const auto has_passed = [&](Vec3 from, Vec3 to) {
-        mark = mark_after(mark, audited, from, to);
-        return mark.what == Mark::through;
-      };
-      if (mark.what == Mark::through) continue;
+      if (flock.tunnelled[p] != 0) continue;
       path_segments(p, before.position(p), waypoints, flock.motion.position(p), segments);
       for (const tess::dn::PathSegment& segment : segments)
-        if (any_piece(at_begin[o].frame, stage.scene.dt, segment, has_passed)) break;
+        if (any_piece(at_begin[o].frame, stage.scene.dt, segment, passes)) flock.tunnelled[p] = 1;
     }
   }
 }
@@ -90,8 +86,7 @@ void note_inside(const Stage& stage, const std::vector<Object>& objects, Flock& 
       if (!(distance_at(objects[o], now) < deepest)) continue;
       const Vec3 start =
           stage.scene.objects[o].frame.to_object(stage.source.particle(flock.ids[p]).position);
-      if (!(distance_at(objects[o], start) < deepest))
-        flock.marks[p] = {Mark::through, 0, static_cast<std::uint16_t>(o)};
+      if (!(distance_at(objects[o], start) < deepest)) flock.tunnelled[p] = 1;
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include "apps/particles/simulation/block.hpp"
 #include "runtime/balance.hpp"
+#include "runtime/base/usable_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,10 +41,18 @@ double block_edge(const Scene& scene) {
 
 }  // namespace
 
-bool keeps_triangles(const Scene& scene, const SceneObject& object) {
-  const bool sheet = object.sides == tess::dn::Sides::two,
-             thin = object.walls.least < 2 * least_wall(scene, object);
-  return (sheet && scene.rules.impact) || ((sheet || thin) && n_audited(scene) > 0);
+void check_memory(const Scene& scene, int n_processes) {
+  constexpr double bytes_per_particle = 6 * sizeof(double) + sizeof(std::uint64_t) + 1;
+  const auto n = static_cast<double>(scene.n_particles());
+  double needed = bytes_per_particle * n / n_processes;
+  if (builds_fields(scene))
+    for (const SceneObject& object : scene.objects)
+      needed += tess::dn::building_bytes_per_voxel({.method = object.method}) *
+                static_cast<double>(object.grid.size());
+  if (const double usable = tess::detail::usable_memory(); needed > usable)
+    tess::fail(tess::ErrorCode::environment, scene.name, ": the fields and ", scene.n_particles(),
+               " particles make the run ", needed / 1e9, " GB large, and this process may have ",
+               usable / 1e9, " GB; ask for fewer particles, or a lower resolution");
 }
 
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options) {

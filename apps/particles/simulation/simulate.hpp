@@ -46,9 +46,9 @@ struct RunResult {
   std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
 };
 
-/// Whether a run keeps the triangles of an object beside its field: for impacts on sheets, and for
-/// the audit of sheets and thin walls.
-[[nodiscard]] bool keeps_triangles(const Scene& scene, const SceneObject& object);
+/// Refuses a scene whose fields, which each process builds, and particles, which the processes share,
+/// are larger than the memory that this process may have. Throws Error(environment).
+void check_memory(const Scene& scene, int n_processes);
 
 /// Runs the scene from PE 0. `stage`: of this process; holds the fields afterwards.
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options = {});

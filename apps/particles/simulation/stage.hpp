@@ -46,7 +46,7 @@ struct Stage {
   const std::uint64_t n_audited;  ///< particles that are audited in each step
   std::vector<Species> species;
   std::vector<FieldInTheMaking> fields;  ///< of the objects; empty unless builds_fields()
-  std::vector<std::optional<tess::dn::Bvh>> triangles;  ///< of objects that keep them
+  std::vector<std::optional<tess::dn::Bvh>> triangles;  ///< of open surfaces, for the audit
 
   /// The position in `species` of particle `id`.
   [[nodiscard]] std::size_t species_of(std::uint64_t id, double mass) const {
@@ -54,13 +54,11 @@ struct Stage {
     while (species[s].mass != mass) s += 2;
     return s;
   }
-  [[nodiscard]] bool collides() const { return needs_field(scene.rules); }
   /// The objects as they stand at the start; after their fields are built.
   [[nodiscard]] std::vector<tess::dn::Object> objects() const {
     std::vector<tess::dn::Object> objects;
     for (std::size_t i = 0; i < fields.size(); ++i)
-      objects.push_back(
-          {&fields[i].field(), scene.objects[i].frame, triangles[i] ? &*triangles[i] : nullptr});
+      objects.push_back({&fields[i].field(), scene.objects[i].frame});
     return objects;
   }
 };

@@ -1,10 +1,8 @@
 #include "apps/particles/simulation/station.hpp"
 
 #include "apps/particles/simulation/block.hpp"
-#include "apps/particles/simulation/simulate.hpp"
 
 #include <map>
-#include <new>
 #include <utility>
 
 namespace particles {
@@ -32,10 +30,6 @@ void Station::make(std::size_t field, const Action& action) {
     action(stage_->fields[field]);
   } catch (const tess::Error& error) {
     tess::fail(error.code(), scene.name, ": objects[", field, "]: ", error.what());
-  } catch (const std::bad_alloc&) {
-    tess::fail(tess::ErrorCode::environment, scene.name, ": objects[", field,
-               "]: memory does not hold a field of ", scene.objects[field].grid.n[0],
-               "³ voxels; lower its resolution");
   }
 }
 
@@ -53,7 +47,8 @@ void Station::begin_fields() {
   make_mine([&](FieldInTheMaking& field, std::size_t i) {
     const SceneObject& object = scene.objects[i];
     field.begin(object, content_of(scene), n_parts);
-    if (keeps_triangles(scene, object)) stage_->triangles[i].emplace(object.surface);
+    if (object.sides == tess::dn::Sides::two && stage_->n_audited > 0)
+      stage_->triangles[i].emplace(object.surface);
   });
 }
 
@@ -69,7 +64,7 @@ void Station::finish_fields() {
 
 void Station::prepare(double block_edge) {
   space_ = Space::around(stage_->source.bounds(), block_edge);
-  if (stage_->collides()) objects_ = stage_->objects();
+  if (needs_field(stage_->scene.rules)) objects_ = stage_->objects();
   for (const double mass : masses_of(stage_->scene)) {
     const tess::dn::Rules rules = for_mass(stage_->scene.rules, mass);
     try {
@@ -99,7 +94,7 @@ void Station::emit(tess::ArrayProxy<Block> blocks) {
     arrivals.stations = group();
     arrivals.flocks.resize(stage.species.size());
     Flock& flock = arrivals.flocks[stage.species_of(id, start.mass)];
-    flock.add(id, start.position, start.velocity, Mark{});
+    flock.add(id, start.position, start.velocity);
     if (flock.size() < most_a_message) continue;
     send(to, arrivals);
     leaving.erase(to);
@@ -115,7 +110,7 @@ const std::vector<tess::dn::Object>& Station::objects(std::int32_t step) {
 }
 
 void Station::give_measured(tess::Callback<Measured> target) {
-  contribute(JoinMeasured{}, std::exchange(measured_, {}), std::move(target));
+  contribute(tess::sum, std::exchange(measured_, {}), std::move(target));
 }
 
 void Station::give_samples(tess::Callback<std::vector<Sample>> target) {

@@ -1,6 +1,7 @@
 #include "apps/particles/stability/parts.hpp"
 
 #include <algorithm>
+#include <fmt/core.h>
 
 namespace tess::dn {
 namespace stability {
@@ -49,7 +50,7 @@ void drag(Rows& rows) {
     rows.add("air drag", "c dt/m", rate, std::abs(end.velocity.x / speed - kept), 1e-13);
     rows.add("air drag: way", "c dt/m", rate, std::abs(end.position.x / (speed * way) - 1), 1e-12);
     Rules surface;
-    surface.surface_drag = SurfaceDrag{rate, 1, DragLaw::linear};
+    surface.surface_drag = SurfaceDrag{rate, 1};
     end = flown(surface, 1, n_steps, {&object, 1}, {{-0.5, 0, 0.5}, {speed, 0, 0}});
     rows.add("surface drag", "c dt/m", rate, std::abs(end.velocity.x / speed - kept), 1e-13);
     Rules fall = air;
@@ -223,6 +224,17 @@ std::vector<StabilityRow> stability_report() {
   stability::extreme_motion(rows);
   stability::extreme_places(rows);
   return rows.rows;
+}
+
+std::string text_of(const std::vector<StabilityRow>& rows) {
+  constexpr const char* line = "{:<36} {:<16} {:>11} {:>11} {:>11}{}\n";
+  std::string text = fmt::format(line, "case", "parameter", "value", "met", "tolerance", "");
+  const auto number = [](double value) { return fmt::format("{:.4g}", value); };
+  for (const StabilityRow& row : rows)
+    text += fmt::format(line, row.name, row.parameter, number(row.value), number(row.met),
+                        number(row.tolerance), row.ok ? "" : "  FAILED");
+  return text + fmt::format("{} cases, {} failed\n", rows.size(),
+                            std::ranges::count(rows, false, &StabilityRow::ok));
 }
 
 }  // namespace tess::dn

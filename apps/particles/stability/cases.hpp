@@ -18,4 +18,7 @@ struct StabilityRow {
 
 [[nodiscard]] std::vector<StabilityRow> stability_report();
 
+/// A line for each row, and how many failed.
+[[nodiscard]] std::string text_of(const std::vector<StabilityRow>& rows);
+
 }  // namespace tess::dn

@@ -179,7 +179,7 @@ void slope(Rows& rows) {
     for (const double restitution : {0.0, 0.7}) {
       Rules rules = impact(restitution, Sweep::on, look_up);
       rules.gravity = Gravity{{0, 0, -9.81}};
-      rules.surface_drag = SurfaceDrag{rate, 0.1, DragLaw::linear};
+      rules.surface_drag = SurfaceDrag{rate, 0.1};
       const int n_steps = 1'000'000;
       const Particle end = flown(rules, 1e-3, n_steps, {&object, 1}, {{-0.5, 0, 0.25}, {}});
       rows.add("rest on a slope: distance", "steps", n_steps, std::abs(dot(end.position, normal)),
@@ -206,7 +206,7 @@ void all_rules(Rows& rows) {
     const double step = 0.02, k = stiff / (step * step), reach = 0.05;
     Rules rules = impact(0.7, Sweep::on);
     rules.spring = Spring{k, 0.2 * std::sqrt(k), reach};
-    rules.surface_drag = SurfaceDrag{0.1 * stiff / step, 0.1, DragLaw::linear};
+    rules.surface_drag = SurfaceDrag{0.1 * stiff / step, 0.1};
     rules.surface_flow = SurfaceFlow{stiff / step, stiff / step, 0.2};
     rules.air_drag = AirDrag{1e-3, DragLaw::quadratic};
     rules.gravity = Gravity{g};

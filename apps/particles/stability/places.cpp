@@ -71,8 +71,9 @@ void bounce_off_ball(const Object& object, const Visit& visit) {
 
 /// The bounce off a compressed field is off by its error bounds, and keeps the speed.
 void compressed_fields(Rows& rows) {
-  const Field ball = sphere_field(cube_grid(1, 41), 0.5);
-  for (const double cells : {1e-3, 1e-2, 1e-1, 1.0}) {
+  Field ball = sphere_field(cube_grid(1, 41), 0.5);
+  ball.thickness = 1.3;
+  for (const double cells : {1e-2, 1e-1, 1.0}) {
     const ErrorBound bound{cells * ball.grid.cell, cells};
     const Field compressed = compress(ball, bound);
     double place = 0, changed = 0;
@@ -112,7 +113,7 @@ void not_finite(Rows& rows) {
   const Object object{&ball, {}};
   Rules rules = impact(1, Sweep::on);
   rules.spring = Spring{100, 1, 0.1};
-  rules.surface_drag = SurfaceDrag{1, 0.2, DragLaw::linear};
+  rules.surface_drag = SurfaceDrag{1, 0.2};
   rules.surface_flow = SurfaceFlow{1, 1, 0.3};
   rules.gravity = Gravity{{0, 0, -1}};
   const Stepper stepper = make_stepper(rules, 0.01);

@@ -26,6 +26,46 @@ double degrees_between(Vec3 a, Vec3 b) {
 
 }  // namespace
 
+std::vector<Bounce> exact_bounces(const Surface& surface, const Bvh& tree, std::size_t n,
+                                  double from, std::uint64_t seed) {
+  constexpr double steepest = std::numbers::pi / 3;
+  tess::Random random(seed);
+  const std::vector<double> areas = area_sums(surface);
+  std::vector<Bounce> bounces;
+  std::vector<Crossing> crossings;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double first = random.unit(), second = random.unit(), third = random.unit();
+    const auto [point, normal, triangle] = point_on(surface, areas, first, second, third);
+    const auto [a, b, c] = surface.corners(triangle);
+    const Vec3 side = direction(b - a), other = cross(normal, side);
+    const double tilt = steepest * random.unit(), turn = 2 * std::numbers::pi * random.unit();
+    const Vec3 out =
+        std::cos(tilt) * normal + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other);
+    Bounce bounce;
+    bounce.start = point + (from / std::cos(tilt)) * out;
+    bounce.velocity = -out;
+    const double reach = 2 * from / std::cos(tilt);
+    crossings.clear();
+    tree.crossings(bounce.start, bounce.start + reach * bounce.velocity, crossings);
+    if (crossings.empty()) continue;
+    const Crossing hit = *std::ranges::min_element(crossings, {}, &Crossing::at);
+    const Vec3 met = tree.normal(hit.triangle);
+    const double into = dot(met, bounce.velocity);
+    if (into >= 0) continue;
+    bounce.time = hit.at * reach;
+    bounce.hit = bounce.start + bounce.time * bounce.velocity;
+    bounce.outgoing = bounce.velocity - (2 * into) * met;
+    bounces.push_back(bounce);
+  }
+  return bounces;
+}
+
+double bounce_time(const Bounce& bounce, Vec3 place, Vec3 velocity, double time) {
+  const Vec3 change = bounce.velocity - velocity;
+  const double size2 = dot(change, change);
+  return size2 > 0 ? dot(place - bounce.start - time * velocity, change) / size2 : time;
+}
+
 Samples samples_of(const Subject& subject, std::size_t n) {
   Samples samples;
   tess::Random random(3);
@@ -96,17 +136,19 @@ void compare_bounces(const Object& object, const Rules& rules, double dt, const 
   row.angle_error = angles.value();
 }
 
-void compare_flights(const Object& object, const Rules& rules, double dt, double time,
-                     const std::vector<Flight>& starts, const std::vector<Flight>& exact,
-                     StudyRow& row) {
-  Particles particles;
-  for (const Flight& start : starts) particles.push_back(start.position, start.velocity);
+Particles flown(const Object& object, const Rules& rules, double dt, double time,
+                const Particles& starts) {
+  Particles particles = starts;
   const auto n_steps = static_cast<int>(std::lround(time / dt));
   make_stepper(rules, dt).run(particles.span(), {&object, 1}, 0, n_steps);
+  return particles;
+}
+
+void compare_flights(const Particles& found, const Particles& wanted, StudyRow& row) {
   RootMeanSquare places, angles;
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    places.add(norm(particles.position(p) - exact[p].position));
-    angles.add(degrees_between(particles.velocity(p), exact[p].velocity));
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    places.add(norm(found.position(p) - wanted.position(p)));
+    angles.add(degrees_between(found.velocity(p), wanted.velocity(p)));
   }
   row.place_error = places.value();
   row.angle_error = angles.value();

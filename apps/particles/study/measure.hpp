@@ -1,17 +1,41 @@
-// What the study measures of one choice: a field against exact distances and normals, bounces and
-// flights against exact ones, and time. Serial; private to the study.
+// What the study measures of one choice: a field against exact distances and normals, bounces
+// against exact ones off the triangles, flights against those of short steps, and time. Serial;
+// private to the study.
 #pragma once
 
-#include "apps/particles/study/exact.hpp"
 #include "apps/particles/study/study.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/stepper.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace particles {
+
+/// A particle that is about to bounce, and where and how it does.
+struct Bounce {
+  tess::dn::Vec3 start, velocity;  ///< of speed 1
+  double time = 0;                 ///< of the bounce
+  tess::dn::Vec3 hit;              ///< its place
+  tess::dn::Vec3 outgoing;         ///< the velocity after it, for restitution 1
+
+  /// Out of the surface.
+  [[nodiscard]] tess::dn::Vec3 normal() const { return direction(outgoing - velocity); }
+};
+
+/// Up to `n` bounces off a surface, of which `tree` holds the triangles: at points spread over its
+/// area, approached from the distance `from` at up to 60 degrees off the normal. A path that meets
+/// another front side first bounces there; one that meets a back side first is left out.
+[[nodiscard]] std::vector<Bounce> exact_bounces(const tess::dn::Surface& surface,
+                                                const tess::dn::Bvh& tree, std::size_t n,
+                                                double from, std::uint64_t seed);
+
+/// The time of a bounce from its two straight paths: begun at bounce.start, ended at `place` with
+/// `velocity` after `time`. It is the time at which the paths come closest.
+[[nodiscard]] double bounce_time(const Bounce& bounce, tess::dn::Vec3 place,
+                                 tess::dn::Vec3 velocity, double time);
 
 /// The object and its exact reference.
 struct Subject {
@@ -38,10 +62,14 @@ void compare(const tess::dn::Field& field, tess::dn::LookUp kind, const Samples&
 void compare_bounces(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
                      const Subject& subject, StudyRow& row);
 
-/// Moves particles for the time that the exact flights took, in steps of dt.
-void compare_flights(const tess::dn::Object& object, const tess::dn::Rules& rules, double dt,
-                     double time, const std::vector<Flight>& starts,
-                     const std::vector<Flight>& exact, StudyRow& row);
+/// Particles after `time` in steps of dt.
+[[nodiscard]] tess::dn::Particles flown(const tess::dn::Object& object,
+                                        const tess::dn::Rules& rules, double dt, double time,
+                                        const tess::dn::Particles& starts);
+
+/// Errors of places and directions.
+void compare_flights(const tess::dn::Particles& found, const tess::dn::Particles& wanted,
+                     StudyRow& row);
 
 /// Particles near the surface with velocities of 1 in all directions.
 [[nodiscard]] tess::dn::Particles crowd(const Subject& subject, std::size_t n);

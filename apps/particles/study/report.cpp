@@ -1,7 +1,5 @@
 #include "apps/particles/study/study.hpp"
 #include "apps/plot/chart.hpp"
-#include "apps/plot/quoting.hpp"
-#include "apps/plot/write_file.hpp"
 
 #include <array>
 #include <filesystem>
@@ -29,33 +27,25 @@ constexpr std::array columns{
     StudyColumn{"cpu_ns", "CPU ns", "{:.3f}", &StudyRow::cpu_ns},
     StudyColumn{"of_tree", "of tree", "{:.4f}", &StudyRow::relative}};
 
-double voxels(const StudyRow& row) {
-  return row.resolution;
-}
-template <double StudyRow::*value>
-double number(const StudyRow& row) {
-  return row.*value;
-}
-
 /// A picture of the rows of a part: a point per row, a line per choice.
 struct Picture {
   const char *file, *title, *part, *x_label, *y_label;
-  double (*x)(const StudyRow&);
+  double StudyRow::*x;
   double StudyRow::*y;
   bool x_log = true;
 };
 constexpr const char* of_angle = "RMS error of the angle, degrees";
 constexpr std::array pictures{
     Picture{"study_distance.svg", "distance", "field", "voxels along an axis",
-            "RMS error of the distance", voxels, &StudyRow::distance_error},
+            "RMS error of the distance", &StudyRow::resolution, &StudyRow::distance_error},
     Picture{"study_bounce.svg", "bounces", "field", "CPU ns per particle and step", of_angle,
-            number<&StudyRow::cpu_ns>, &StudyRow::angle_error, false},
+            &StudyRow::cpu_ns, &StudyRow::angle_error, false},
     Picture{"study_build.svg", "construction", "field", "CPU seconds", of_angle,
-            number<&StudyRow::build_cpu_seconds>, &StudyRow::angle_error},
-    Picture{"study_memory.svg", "memory", "field", "bytes of the field", of_angle,
-            number<&StudyRow::bytes>, &StudyRow::angle_error},
+            &StudyRow::build_cpu_seconds, &StudyRow::angle_error},
+    Picture{"study_memory.svg", "memory", "field", "bytes of the field", of_angle, &StudyRow::bytes,
+            &StudyRow::angle_error},
     Picture{"study_step.svg", "rules", "rule", "speed x dt / thickness", "RMS error of the place",
-            number<&StudyRow::step>, &StudyRow::place_error}};
+            &StudyRow::step, &StudyRow::place_error}};
 
 std::string choice(const StudyRow& row) {
   if (row.part == "rule") return row.rule;
@@ -70,7 +60,7 @@ void draw(const std::string& folder, const Picture& picture, const std::vector<S
                     .y_log = true};
   std::map<std::string, std::size_t> known;
   for (const StudyRow& row : rows) {
-    const double x = picture.x(row), y = row.*picture.y;
+    const double x = row.*picture.x, y = row.*picture.y;
     if (row.part != picture.part || x < 0 || y < 0) continue;
     const auto [at, is_new] = known.try_emplace(choice(row), chart.series.size());
     if (is_new) chart.series.push_back({.name = at->first});
@@ -115,24 +105,7 @@ std::string study_table(const std::vector<StudyRow>& rows) {
          "time of the thread; the least of five measurements\n";
 }
 
-std::string study_csv(const std::vector<StudyRow>& rows) {
-  std::string out = "part,resolution,method,stored,look_up,rule";
-  for (const StudyColumn& column : columns) out += fmt::format(",{}", column.name);
-  out += ",note\n";
-  for (const StudyRow& row : rows) {
-    out += fmt::format("{},{},{},{},{},{}", row.part, row.resolution, row.method, row.stored,
-                       row.look_up, plot::csv_field(row.rule));
-    for (const StudyColumn& column : columns) {
-      const double value = row.*column.value;
-      out += value < 0 ? "," : fmt::format(",{}", value);
-    }
-    out += "," + plot::csv_field(row.note) + "\n";
-  }
-  return out;
-}
-
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows) {
-  plot::write_file((std::filesystem::path(folder) / "study.csv").string(), study_csv(rows));
   for (const Picture& picture : pictures) draw(folder, picture, rows);
 }
 

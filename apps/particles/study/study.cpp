@@ -46,7 +46,6 @@ class Study {
 
   std::vector<StudyRow> run() {
     study_fields();
-    rows_.insert(rows_.end(), memory_.begin(), memory_.end());
     field_ = build_alone(subject_.object, Content::distance_and_normal);
     show("study: rules");
     study_rules();
@@ -70,7 +69,6 @@ class Study {
     return row;
   }
 
-  /// Rows of fields; those of memory in memory_.
   void study_fields() {
     const Samples samples = samples_of(subject_, options_.n_samples);
     const std::size_t n_fields = 3 * options_.resolutions.size();
@@ -105,22 +103,18 @@ class Study {
   void study_compressed(const Field& field, const Samples& samples, StudyRow row) {
     Field compressed;
     const Cost cost = least_cost([&] { compressed = compress(field, bound_of({}, field)); });
-    study_memory(field, compressed, cost, samples, row);
     row.build_seconds += cost.wall, row.build_cpu_seconds += cost.cpu;
     row.bytes = static_cast<double>(compressed.bytes());
     row.stored = "compressed";
     study_look_ups(compressed, samples, row);
   }
 
-  /// Swept impacts in a field as it is stored. Flat fields also have the errors of distance and
-  /// normal; memory rows have those of compressed ones.
+  /// Swept impacts in a field as it is stored.
   void study_look_ups(const Field& field, const Samples& samples, StudyRow row) {
     for (const LookUp kind : kinds_of(field)) {
       row.look_up = name_of(kind);
-      if (field.planes == nullptr) {
-        compare(field, kind, samples, row);
-        row.order = order_of(row);
-      }
+      compare(field, kind, samples, row);
+      row.order = order_of(row);
       const Object object{&field, {}};
       const Rules rules = impact_rules(kind, Sweep::on);
       compare_bounces(object, rules, row.step * subject_.thickness, subject_, row);
@@ -141,32 +135,6 @@ class Study {
       return -1;
     return std::log(coarser->distance_error / row.distance_error) /
            std::log((row.resolution - 1.0) / (coarser->resolution - 1.0));
-  }
-
-  /// Nearest look-ups of a flat and a compressed field, by themselves.
-  void study_memory(const Field& field, const Field& compressed, const Cost& compression,
-                    const Samples& samples, StudyRow row) {
-    const Particles particles = crowd(subject_, options_.n_timed);
-    const std::vector<float> x(particles.x.begin(), particles.x.end()),
-        y(particles.y.begin(), particles.y.end()), z(particles.z.begin(), particles.z.end());
-    std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
-    row.part = "memory";
-    row.look_up = name_of(LookUp::nearest);
-    row.rule = "look-up alone";
-    row.step = -1;
-    const auto measure = [&](const Field& of) {
-      compare(of, LookUp::nearest, samples, row);
-      const Cost cost = least_cost([&] {
-        look_up(of, LookUp::nearest, {x, y, z}, {distance, nx, ny, nz});
-      });
-      set_times(row, cost, static_cast<double>(x.size()));
-      memory_.push_back(row);
-    };
-    measure(field);
-    row.stored = "compressed";
-    row.bytes = static_cast<double>(compressed.bytes());
-    row.build_seconds = compression.wall, row.build_cpu_seconds = compression.cpu;
-    measure(compressed);
   }
 
   /// All rules by themselves, at several steps, in the object's own field.
@@ -198,34 +166,27 @@ class Study {
     spring.spring = Spring{4 / (reach * reach), 0, reach};
     study_bounces("spring", spring);
 
-    // A particle that comes straight on has no tangent to turn to: a rounding error decides its
-    // side.
-    const double straight = std::cos(std::numbers::pi / 12);
+    // Flights in front of the surface, against those of short steps. A particle that comes straight
+    // on is left out: it has no tangent to turn to, a rounding error decides its side.
+    const double straight = std::cos(std::numbers::pi / 12), shortest = 0.1 * steps.front();
     constexpr std::size_t most_flights = 100;
-    std::vector<Flight> starts;
+    Particles starts;
     for (const Bounce& b : subject_.bounces)
       if (-dot(b.normal(), b.velocity) < straight && starts.size() < most_flights)
-        starts.push_back({b.start, b.velocity});
-    if (starts.empty()) return;
-    const auto study_flights = [&](const char* name, const Rules& rules, const auto& exact_flight) {
-      std::vector<Flight> exact;
-      for (const Flight& start : starts) exact.push_back(exact_flight(start));
+        starts.push_back(b.start, b.velocity);
+    const auto study_flights = [&](const char* name, const Rules& rules) {
+      const Particles wanted = flown(object, rules, shortest * thickness, time, starts);
       study(name, rules, [&](double dt, StudyRow& now) {
-        compare_flights(object, rules, dt, time, starts, exact, now);
+        compare_flights(flown(object, rules, dt, time, starts), wanted, now);
       });
     };
-    // Flights begin at 0.8 of the thickness with speed 1: the drag stops those that come straight
-    // on in front of the surface, and the flow turns them to the tangent there.
+    // They begin at 0.8 of the thickness with speed 1: the drag stops those that come straight on in
+    // front of the surface, and the flow turns them to the tangent there.
     Rules drag, flow;
-    drag.surface_drag = SurfaceDrag{2.5 / thickness, 0.5 * thickness, DragLaw::linear};
+    drag.surface_drag = SurfaceDrag{2.5 / thickness, 0.5 * thickness};
     flow.surface_flow = SurfaceFlow{4 / thickness, 4 / thickness, 0.7 * thickness};
-    study_flights("drag", drag, [&](const Flight& start) {
-      return exact_drag(subject_.tree, start, *drag.surface_drag, time);
-    });
-    study_flights("surface flow", flow, [&](const Flight& start) {
-      constexpr int n_steps = 400;
-      return exact_flow(subject_.tree, start, *flow.surface_flow, time, n_steps);
-    });
+    study_flights("drag", drag);
+    study_flights("surface flow", flow);
   }
 
   /// The paper's table 1: what collision costs, beside a tree of boxes that finds the closest
@@ -276,15 +237,12 @@ class Study {
   const StudyOptions& options_;
   Subject subject_;
   Field field_;  // of the object as the scene gives it
-  std::vector<StudyRow> rows_, memory_;
+  std::vector<StudyRow> rows_;
 };
 
 }  // namespace
 
 std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options) {
-  if (scene.objects.empty())
-    tess::fail(tess::ErrorCode::bad_value, scene.name,
-               ": objects: is empty; --study needs an object to bounce off");
   return Study(scene.objects.front(), options, scene.name).run();
 }
 

@@ -16,8 +16,8 @@ namespace particles {
 /// One choice. Lengths are in the object's units; a negative value was not measured in this row.
 /// Times are the least of several measurements (see least_cost()).
 struct StudyRow {
-  std::string part;  ///< field, memory, rule, cost
-  int resolution = 0;
+  std::string part;                           ///< field, rule, cost
+  double resolution = 0;                      ///< voxels along an axis
   std::string method, stored, look_up, rule;  ///< stored: flat, compressed; empty: no field
   double step = -1;                           ///< speed × dt as a part of the thickness
   double build_seconds = -1, build_cpu_seconds = -1;
@@ -31,14 +31,14 @@ struct StudyRow {
   double angle_error = -1;         ///< RMS, in degrees, of the velocity after the bounce
   double lost = -1;                ///< particles that went in, or on as if there were no object
   double bounces = -1;             ///< out of so many
-  double ns = -1, cpu_ns = -1;     ///< per particle and step (memory: per look-up)
+  double ns = -1, cpu_ns = -1;     ///< per particle and step
   double relative = -1;            ///< cost of collision as a part of that by a tree of boxes
   std::string note;                ///< why a choice is refused
 };
 
 /// A number of a row, for the table and the files.
 struct StudyColumn {
-  const char* name;    ///< in CSV and JSON
+  const char* name;    ///< in JSON
   const char* title;   ///< in the table
   const char* format;  ///< in the table
   double StudyRow::*value;
@@ -54,16 +54,14 @@ struct StudyOptions {
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with
-/// swept impact; exact ones also compressed), memory (flat and compressed look-ups by themselves),
-/// rules (rule × step, at the object's resolution: impact and spring against bounces off the
-/// triangles, drag and surface flow against flights in front of them), and cost beside a tree of
-/// boxes. Throws Error(bad_value) for a scene without an object.
+/// swept impact; exact ones also compressed), rules (rule × step, at the object's resolution: impact
+/// and spring against bounces off the triangles, drag and surface flow against steps of 0.002), and
+/// cost beside a tree of boxes. The scene has an object.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options);
 
 [[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows);
-[[nodiscard]] std::string study_csv(const std::vector<StudyRow>& rows);
 
-/// Writes study.csv and pictures to a folder.
+/// Writes pictures to a folder, each with its data as CSV.
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows);
 
 }  // namespace particles

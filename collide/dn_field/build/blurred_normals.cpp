@@ -7,9 +7,8 @@
 
 namespace tess::dn {
 namespace {
-constexpr double inward_step = 1.25;    // cells behind a voxel of the surface: inside, or thin
-constexpr double thin_share = 0.1;      // of the surface's voxels
-constexpr double flipped_share = 0.1;   // of the edges: above, flipped triangles are the cause
+constexpr int min_radius = 2, max_radius = 4;
+constexpr double wanted_rounds = 3;
 constexpr float least_vector = 1e-12F;  // shorter has no direction
 constexpr int smoothing_radius = 2;     // of the potential, before its gradient is taken
 
@@ -74,40 +73,37 @@ std::uint32_t code_of(float x, float y, float z) {
       direction({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
 }
 
-void require_met(const Surface& surface, const Grid& grid,
-                 const std::vector<SurfaceVoxel>& voxels) {
-  if (!voxels.empty()) return;
-  const auto corner = [](Vec3 p) { return text("(", p.x, ", ", p.y, ", ", p.z, ")"); };
-  const Bounds box = bounds(surface);
-  fail(ErrorCode::bad_argument,
-       "no voxel of the grid meets the surface, which the blurred methods start from: voxels from ",
-       corner(grid.box().low), " to ", corner(grid.box().high), ", surface from ", corner(box.low),
-       " to ", corner(box.high), "; put the grid around the surface, or take the exact method");
-}
-
-bool has_body(const Field& field, std::size_t at, Vec3 normal) {
-  const auto& n = field.grid.n;
-  const std::array<int, 3> voxel = field.grid.voxel(at);
-  const Vec3 inward = -inward_step * direction(normal);
-  std::array<int, 3> behind{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double to = voxel[a] + component(inward, static_cast<int>(a));
-    behind[a] = static_cast<int>(std::clamp(std::round(to), 0.0, n[a] - 1.0));
-  }
-  return field.distance[field.grid.index(behind[0], behind[1], behind[2])] < 0;
-}
-
 }  // namespace
+
+Blur choose_blur(const Grid& grid, double thickness) {
+  // At most the grid: the thickness may be infinite.
+  const double cells =
+      std::min(thickness / grid.cell, 1.0 * std::max({grid.n[0], grid.n[1], grid.n[2]}));
+  const int radius =
+      std::clamp(static_cast<int>(std::lround(cells / wanted_rounds)), min_radius, max_radius);
+  return {radius, static_cast<int>(std::ceil(cells / radius)) + 1};
+}
+
+void require_blur(const Blur& blur) {
+  if (blur.radius < min_radius || blur.radius > max_radius)
+    fail(ErrorCode::bad_argument, "blur of radius ", blur.radius, " voxels; it must be ",
+         min_radius, " to ", max_radius);
+  if (blur.rounds < 1)
+    fail(ErrorCode::bad_argument, "blur of ", blur.rounds, " rounds; it takes at least one");
+}
 
 BlurredNormals::BlurredNormals(const Surface& surface, const Grid& grid, Method method,
                                const Blur& blur)
-    : surface_(surface),
-      method_(method),
+    : method_(method),
       blur_(blur),
       // The potential is blurred once more without restoring: the voxels' steps are no slope.
       n_blurs_(method == Method::potential ? blur.rounds + 1 : blur.rounds),
       voxels_(surface_voxels(surface, grid)) {
-  require_met(surface, grid, voxels_);
+  if (voxels_.empty())
+    fail(ErrorCode::bad_argument,
+         "no voxel of the grid meets the surface, which the blurred methods start from; put the "
+         "grid "
+         "around the surface, or take the exact method");
   const std::size_t n_parts = method == Method::normals ? 3 : 1;
   for (auto& side : values_) side.assign(n_parts, Values(grid.size()));
   for (std::size_t part = 0; part < n_parts; ++part)
@@ -130,28 +126,8 @@ std::span<const SurfaceVoxel> BlurredNormals::voxels_in(const Grid& grid, int fi
 }
 
 void BlurredNormals::build(int round, Field& field, int first, int last) {
-  const bool by_normals = method_ == Method::normals;
-  if (round == 0 && first == 0 && by_normals) require_body(field);
   if (round < n_blurs_) return blur(round, field.grid, first, last);
-  by_normals ? set_normals(field, first, last) : set_gradients(field, first, last);
-}
-
-void BlurredNormals::require_body(const Field& field) const {
-  std::size_t thin = 0;
-  for (const SurfaceVoxel& v : voxels_)
-    if (!has_body(field, v.at, v.normal)) ++thin;
-  if (static_cast<double>(thin) <= thin_share * static_cast<double>(voxels_.size())) return;
-  const double disagreeing = disagreeing_share(welded(surface_));
-  if (disagreeing > flipped_share)
-    fail(ErrorCode::bad_argument, "the orientation of triangles disagrees at ", 100 * disagreeing,
-         " % of the edges between two, and ", thin, " of ", voxels_.size(),
-         " voxels of the surface have no inside behind them; the normals method needs triangles "
-         "that agree which side is out: orient them, or take a two-sided field by the potential or "
-         "the exact method");
-  fail(ErrorCode::bad_argument, "the object is of near-zero thickness in ", thin, " of ",
-       voxels_.size(), " voxels of its surface, with cells of ", field.grid.cell,
-       "; the normals method fails there: take the potential or the exact method, or a higher "
-       "resolution");
+  method_ == Method::normals ? set_normals(field, first, last) : set_gradients(field, first, last);
 }
 
 void BlurredNormals::blur(int round, const Grid& grid, int first, int last) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collide/dn_field/build/voxels.hpp"
+#include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/field.hpp"
-#include "collide/dn_field/plan.hpp"
 
 #include <array>
 #include <span>
@@ -27,12 +27,10 @@ class BlurredNormals {
   [[nodiscard]] float seed(const SurfaceVoxel& voxel, std::size_t part) const;
   [[nodiscard]] std::span<const SurfaceVoxel> voxels_in(const Grid& grid, int first,
                                                         int last) const;
-  void require_body(const Field& field) const;
   void blur(int round, const Grid& grid, int first, int last);
   void set_normals(Field& field, int first, int last) const;
   void set_gradients(Field& field, int first, int last) const;
 
-  Surface surface_;
   Method method_;
   Blur blur_;
   int n_blurs_;

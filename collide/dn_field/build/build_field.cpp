@@ -2,6 +2,7 @@
 
 #include "collide/dn_field/build/blurred_normals.hpp"
 #include "collide/dn_field/build/distances.hpp"
+#include "collide/dn_field/walls.hpp"
 #include "runtime/base/usable_memory.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
@@ -40,6 +41,19 @@ void check(const Surface& surface, const Grid& grid, const FieldOptions& options
          " GB to build, this process may have ", there / 1e9, "; lower the resolution");
 }
 
+/// The normals method needs an inside behind the surface.
+void require_body(const Surface& surface, const Bvh& tree, double cell) {
+  constexpr double inward_step = 1.25;  // cells
+  const double thin = thin_share(surface, tree, inward_step * cell);
+  if (thin > most_thin)
+    fail(ErrorCode::bad_argument, 100 * thin,
+         " % of the surface has no inside behind it, with cells of ", cell,
+         ": the object is of near-zero thickness, or its triangles do not agree which side is out; "
+         "the "
+         "normals method fails there: take the potential or the exact method, or a higher "
+         "resolution");
+}
+
 }  // namespace
 
 double building_bytes_per_voxel(const FieldOptions& options) {
@@ -56,18 +70,18 @@ struct FieldBuilder::Parts {
 
 FieldBuilder::FieldBuilder(const Surface& surface, const Grid& grid, const FieldOptions& options) {
   check(surface, grid, options);
-  std::optional<OutwardSurface> outward;
-  if (options.sides == Sides::one) outward.emplace(surface);
-  parts_.reset(new Parts{{surface, outward ? &*outward : nullptr, grid}, {}, {}, 0});
+  const Surface body = options.sides == Sides::one ? outward(surface) : surface;
+  parts_.reset(new Parts{{body, options.sides, grid}, {}, {}, 0});
   Field& field = parts_->field;
   field = {grid, options.method, options.sides, options.thickness, {}, {}};
   field.surface = fingerprint(surface);
   field.distance.resize(grid.size());
   if (options.content == Content::distance_and_normal) field.normal.resize(grid.size());
-  if (blurs(options))
-    parts_->blurred.emplace(
-        outward ? outward->surface() : surface, grid, options.method,
-        options.blur.rounds == 0 ? choose_blur(grid, options.thickness) : options.blur);
+  if (!blurs(options)) return;
+  if (options.method == Method::normals) require_body(body, parts_->distances.tree(), grid.cell);
+  parts_->blurred.emplace(
+      body, grid, options.method,
+      options.blur.rounds == 0 ? choose_blur(grid, options.thickness) : options.blur);
 }
 
 FieldBuilder::~FieldBuilder() = default;
@@ -83,6 +97,8 @@ void FieldBuilder::build(int round, int first, int last) {
       "layers ", first, " to ", last, " of ", field.grid.n[2], " in round ", round, " of ",
       n_rounds());
   if (round > 0) return blurred->build(round - 1, field, first, last);
+  TESS_CHECK(first % block_layers == 0 && (last % block_layers == 0 || last == field.grid.n[2]),
+             "layers ", first, " to ", last, " cut a block of ", block_layers);
   distances.fill(field, first, last);
   n_layers += last - first;
 }

@@ -7,7 +7,7 @@
 namespace tess::dn {
 namespace {
 constexpr double on_surface = 1e-3;  // of a cell: nearer, the direction to the surface is rounding
-constexpr int block_edge = 4;
+constexpr int block_edge = block_layers;
 constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are skipped together
 constexpr double just_beyond = 1 + 1e-9;
 
@@ -17,22 +17,12 @@ int up_to(int voxel, int step, int n) {
 
 }  // namespace
 
-/// Some layers of a field, within one row of blocks.
-struct Distances::Shelf {
-  Field& field;
-  int first, last;  // layers
-  int block_first;  // layer at which the blocks begin
-};
-
-Distances::Distances(const Surface& surface, const OutwardSurface* outward, const Grid& grid)
-    : tree_(outward != nullptr ? outward->surface() : surface) {
-  if (outward != nullptr) inside_.emplace(*outward, tree_, grid);
+Distances::Distances(const Surface& surface, Sides sides, const Grid& grid) : tree_(surface) {
+  if (sides == Sides::one) inside_.emplace(surface, tree_, grid);
 }
 
-// All 64 points of a block are asked for, whichever layers the shelf needs: the result does not
-// depend on the split. The sign stands in the field already.
-void Distances::fill_block(int i, int j, const Shelf& shelf) const {
-  Field& field = shelf.field;
+// The sign stands in the field already.
+void Distances::fill_block(Field& field, int i, int j, int k) const {
   const Grid& grid = field.grid;
   PointBlock block;
   const double limit2 = field.thickness * field.thickness * just_beyond;
@@ -40,23 +30,21 @@ void Distances::fill_block(int i, int j, const Shelf& shelf) const {
   for (int dk = 0; dk < block_edge; ++dk)
     for (int dj = 0; dj < block_edge; ++dj)
       for (int di = 0; di < block_edge; ++di, ++lane) {
-        const int k = shelf.block_first + dk;
-        const Vec3 p = grid.centre(i + di, j + dj, k);
+        const Vec3 p = grid.centre(i + di, j + dj, k + dk);
         block.x[lane] = p.x, block.y[lane] = p.y, block.z[lane] = p.z;
-        const bool asks = i + di < grid.n[0] && j + dj < grid.n[1] && k < grid.n[2];
+        const bool asks = i + di < grid.n[0] && j + dj < grid.n[1] && k + dk < grid.n[2];
         block.distance2[lane] = asks ? limit2 : -1;
       }
   tree_.closest(block);
-  for (int k = shelf.first; k < shelf.last; ++k)
+  for (int z = k; z < up_to(k, block_edge, grid.n[2]); ++z)
     for (int y = j; y < up_to(j, block_edge, grid.n[1]); ++y)
       for (int x = i; x < up_to(i, block_edge, grid.n[0]); ++x) {
-        lane = static_cast<std::size_t>(
-            ((k - shelf.block_first) * block_edge + y - j) * block_edge + x - i);
+        lane = static_cast<std::size_t>(((z - k) * block_edge + y - j) * block_edge + x - i);
         const auto place = block.place[lane];
         if (place == PointBlock::none) continue;
-        const auto at = grid.index(x, y, k);
+        const auto at = grid.index(x, y, z);
         const PreparedTriangle& triangle = tree_.triangle(place);
-        const Vec3 offset = offset_from(triangle, grid.centre(x, y, k));
+        const Vec3 offset = offset_from(triangle, grid.centre(x, y, z));
         const double distance = std::min(norm(offset), field.thickness);
         const double sign = field.distance[at] < 0 ? -1 : 1;
         field.distance[at] = static_cast<float>(sign * distance);
@@ -66,12 +54,14 @@ void Distances::fill_block(int i, int j, const Shelf& shelf) const {
       }
 }
 
-void Distances::fill_shelf(const Shelf& shelf) const {
-  const auto& [field, first, last, block_first] = shelf;
+void Distances::fill_shelf(Field& field, int first) const {
   const Grid& grid = field.grid;
+  const int last = up_to(first, block_edge, grid.n[2]);
   const std::size_t begin = grid.index(0, 0, first), size = grid.index(0, 0, last) - begin;
   std::vector<std::uint8_t> inside(size);
-  if (inside_) inside_->layers(first, last, inside);
+  if (inside_)
+    for (int k = first; k < last; ++k)
+      inside_->layer(k, std::span(inside).subspan(grid.index(0, 0, k - first)));
   const auto far = static_cast<float>(field.thickness);
   for (std::size_t at = 0; at < size; ++at)
     field.distance[begin + at] = inside[at] != 0 ? -far : far;
@@ -80,22 +70,17 @@ void Distances::fill_shelf(const Shelf& shelf) const {
   for (int tj = 0; tj < grid.n[1]; tj += query_edge)
     for (int ti = 0; ti < grid.n[0]; ti += query_edge) {
       Bounds tile;
-      tile.extend(grid.centre(ti, tj, block_first));
-      tile.extend(
-          grid.centre(ti + query_edge - 1, tj + query_edge - 1, block_first + block_edge - 1));
+      tile.extend(grid.centre(ti, tj, first));
+      tile.extend(grid.centre(ti + query_edge - 1, tj + query_edge - 1, first + block_edge - 1));
       if (!tree_.may_reach(tile, limit2)) continue;
       for (int j = tj; j < up_to(tj, query_edge, grid.n[1]); j += block_edge)
         for (int i = ti; i < up_to(ti, query_edge, grid.n[0]); i += block_edge)
-          fill_block(i, j, shelf);
+          fill_block(field, i, j, first);
     }
 }
 
 void Distances::fill(Field& field, int first, int last) const {
-  for (int k = first, next = k; k < last; k = next) {
-    const int block_first = k - k % block_edge;
-    next = std::min(block_first + block_edge, last);
-    fill_shelf({field, k, next, block_first});
-  }
+  for (int k = first; k < last; k += block_edge) fill_shelf(field, k);
 }
 
 }  // namespace tess::dn

@@ -1,5 +1,5 @@
-// Chooses the layout of entries and the division of each block: the coarsest for which every voxel,
-// decoded as samples are, meets the bound.
+// Chooses the division of each block: the coarsest for which every voxel, decoded as samples are,
+// meets the bound.
 #include "collide/dn_field/field/compressed_sample.hpp"
 #include "runtime/core/error.hpp"
 
@@ -33,10 +33,6 @@ float distance_to(const Plane& plane, float x, float y, float z, float thickness
   return above < thickness ? above : thickness;
 }
 
-struct Entry {
-  std::uint32_t low = 0, high = 0;  // high: of wide layouts only
-};
-
 class Compressor {
  public:
   Compressor(const Field& field, const ErrorBound& bound, const EntryLayout& layout, int shift)
@@ -47,30 +43,26 @@ class Compressor {
         cell_(static_cast<float>(field.grid.cell)),
         thickness_(static_cast<float>(field.thickness)) {}
 
-  /// Empty if the layout's entries do not meet the bound even voxel by voxel.
+  /// Empty if entries do not meet the bound even voxel by voxel.
   [[nodiscard]] std::optional<Planes> run();
 
  private:
   struct Voxel {
     double distance;
-    Vec3 normal;         // zero: has none
-    std::uint32_t code;  // of the normal
-    float x, y, z;       // from the cell's middle
+    Vec3 normal;    // zero: has none
+    float x, y, z;  // from the cell's middle
   };
 
   void gather(std::array<int, 3> low, int s);
-  [[nodiscard]] Vec3 direction_of_cell() const;
-  [[nodiscard]] Entry written(double distance, Vec3 normal) const;
-  [[nodiscard]] Plane plane(const Entry& e) const {
-    const lanes::I zero{};
-    const lanes::Stored all = lanes::decode(layout_, zero + static_cast<std::int32_t>(e.low),
-                                            zero + static_cast<std::int32_t>(e.high));
+  [[nodiscard]] std::uint32_t written(double distance, Vec3 normal) const;
+  [[nodiscard]] Plane plane(std::uint32_t entry) const {
+    const lanes::Stored all = lanes::decode(layout_, lanes::I{} + static_cast<std::int32_t>(entry));
     return {all.distance[0], {all.normal.x[0], all.normal.y[0], all.normal.z[0]}};
   }
-  [[nodiscard]] std::uint32_t narrow_normal(Vec3 normal) const;
+  [[nodiscard]] std::uint32_t written_normal(Vec3 normal) const;
   [[nodiscard]] double fitted_distance(Vec3 normal) const;
-  [[nodiscard]] bool fits(std::array<int, 3> low, int s, Entry& entry);
-  [[nodiscard]] bool divide(std::array<int, 3> low, int s, std::vector<Entry>& entries);
+  [[nodiscard]] bool fits(std::array<int, 3> low, int s, std::uint32_t& entry);
+  [[nodiscard]] bool divide(std::array<int, 3> low, int s, std::vector<std::uint32_t>& entries);
 
   const Field& field_;
   ErrorBound bound_, off_{}, measured_{};
@@ -89,46 +81,26 @@ void Compressor::gather(std::array<int, 3> low, int s) {
     for (int j = low[1]; j < std::min(low[1] + edge, grid.n[1]); ++j)
       for (int i = low[0]; i < std::min(low[0] + edge, grid.n[0]); ++i) {
         const std::size_t at = grid.index(i, j, k);
-        const std::uint32_t code = field_.normal.empty() ? no_normal : field_.normal[at];
-        voxels_.push_back({static_cast<double>(field_.distance[at]), to_vec3(decode_normal(code)),
-                           code, half * static_cast<float>(2 * (i - low[0]) - in_cell),
+        voxels_.push_back({static_cast<double>(field_.distance[at]),
+                           to_vec3(decode_normal(field_.normal[at])),
+                           half * static_cast<float>(2 * (i - low[0]) - in_cell),
                            half * static_cast<float>(2 * (j - low[1]) - in_cell),
                            half * static_cast<float>(2 * (k - low[2]) - in_cell)});
       }
 }
 
-/// The mean normal, or where none are stored the direction in which distances grow.
-Vec3 Compressor::direction_of_cell() const {
-  Vec3 sum;
-  if (!field_.normal.empty()) {
-    for (const Voxel& v : voxels_) sum += v.normal;
-    return direction(sum);
-  }
-  double mean = 0;
-  Vec3 middle;
-  const double share = 1 / static_cast<double>(voxels_.size());
-  const auto place = [](const Voxel& v) {
-    return Vec3{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-  };
-  for (const Voxel& v : voxels_) mean += share * v.distance, middle += share * place(v);
-  for (const Voxel& v : voxels_) sum += (v.distance - mean) * (place(v) - middle);
-  return direction(sum);
-}
-
-Entry Compressor::written(double distance, Vec3 normal) const {
-  if (layout_.wide)
-    return {std::bit_cast<std::uint32_t>(static_cast<float>(distance)), encode_normal(normal)};
+std::uint32_t Compressor::written(double distance, Vec3 normal) const {
   const auto most = static_cast<double>(layout_.zero() - 1);
   const double steps =
       layout_.step > 0 ? std::round(distance / static_cast<double>(layout_.step)) : 0;
   const auto above =
       static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + layout_.zero());
-  return {above << (2 * layout_.normal_bits) | narrow_normal(normal), 0};
+  return above << (2 * layout_.normal_bits) | written_normal(normal);
 }
 
 /// The two coordinates on the octahedral map that decode closest to `normal`: one of four
 /// neighbours.
-std::uint32_t Compressor::narrow_normal(Vec3 normal) const {
+std::uint32_t Compressor::written_normal(Vec3 normal) const {
   if (normal == Vec3{}) return static_cast<std::uint32_t>(layout_.mask() << layout_.normal_bits);
   const auto [u, v] = on_octahedral_map(normal);
   const auto low = [&](double t) {
@@ -138,7 +110,7 @@ std::uint32_t Compressor::narrow_normal(Vec3 normal) const {
   lanes::I words{};
   for (int corner = 0; corner < 4; ++corner)
     words[corner] = (low(u) + (corner & 1)) << layout_.normal_bits | (low(v) + (corner >> 1));
-  const lanes::F3 decoded = lanes::decode(layout_, words, lanes::I{}).normal;
+  const lanes::F3 decoded = lanes::decode(layout_, words).normal;
   std::uint32_t best = 0;
   double closest = -2;
   for (int corner = 0; corner < 4; ++corner) {
@@ -171,18 +143,17 @@ double Compressor::fitted_distance(Vec3 normal) const {
                   std::max(below, high - bound_.distance));
 }
 
-bool Compressor::fits(std::array<int, 3> low, int s, Entry& entry) {
+bool Compressor::fits(std::array<int, 3> low, int s, std::uint32_t& entry) {
   gather(low, s);
   off_ = {};
   if (voxels_.empty()) {  // beyond the grid
-    entry = {};
+    entry = 0;
     return true;
   }
-  const Vec3 normal = s == 0 ? voxels_[0].normal : direction_of_cell();
-  entry = written(0, normal);
-  const Vec3 kept = to_vec3(plane(entry).normal);
+  Vec3 sum;
+  for (const Voxel& v : voxels_) sum += v.normal;
+  const Vec3 normal = direction(sum), kept = to_vec3(plane(written(0, normal)).normal);
   entry = written(s == 0 ? voxels_[0].distance : fitted_distance(kept), normal);
-  if (s == 0 && layout_.wide) entry.high = voxels_[0].code;  // not rounded again
   const Plane made = plane(entry);
   const Vec3 made_normal = to_vec3(made.normal);
   for (const Voxel& v : voxels_) {
@@ -194,14 +165,14 @@ bool Compressor::fits(std::array<int, 3> low, int s, Entry& entry) {
   return true;
 }
 
-bool Compressor::divide(std::array<int, 3> low, int s, std::vector<Entry>& entries) {
+bool Compressor::divide(std::array<int, 3> low, int s, std::vector<std::uint32_t>& entries) {
   ErrorBound worst;
   entries.clear();
   const int edge = 1 << s, block = 1 << shift_;
   for (int k = 0; k < block; k += edge)
     for (int j = 0; j < block; j += edge)
       for (int i = 0; i < block; i += edge) {
-        Entry entry;
+        std::uint32_t entry = 0;
         if (!fits({low[0] + i, low[1] + j, low[2] + k}, s, entry)) return false;
         entries.push_back(entry);
         worst = {std::max(worst.distance, off_.distance), std::max(worst.angle, off_.angle)};
@@ -213,55 +184,41 @@ bool Compressor::divide(std::array<int, 3> low, int s, std::vector<Entry>& entri
 
 std::optional<Planes> Compressor::run() {
   const Grid& grid = field_.grid;
-  Planes made{field_.content(), shift_, {}, layout_, {}, {}, bound_, {}};
+  Planes made{shift_, {}, layout_, {}, {}, bound_, {}};
   const int block = 1 << shift_;
   for (std::size_t a = 0; a < 3; ++a) made.n_blocks[a] = (grid.n[a] + block - 1) / block;
-  std::unordered_map<std::uint64_t, std::uint32_t> undivided;  // blocks that are alike share one
-  std::vector<Entry> entries;
-  std::uint32_t n_entries = 0;
+  std::unordered_map<std::uint32_t, std::uint32_t> undivided;  // blocks that are alike share one
+  std::vector<std::uint32_t> entries;
   for (int k = 0; k < grid.n[2]; k += block)
     for (int j = 0; j < grid.n[1]; j += block)
       for (int i = 0; i < grid.n[0]; i += block) {
         int s = shift_;
         while (s >= 0 && !divide({i, j, k}, s, entries)) --s;
         if (s < 0) return std::nullopt;
-        std::uint32_t first = n_entries;
-        if (s == shift_) {
-          const std::uint64_t key = std::uint64_t{entries[0].high} << 32U | entries[0].low;
-          first = undivided.try_emplace(key, n_entries).first->second;
-        }
+        const auto n_entries = static_cast<std::uint32_t>(made.entry.size());
+        const std::uint32_t first =
+            s == shift_ ? undivided.try_emplace(entries[0], n_entries).first->second : n_entries;
         made.block.push_back(first << 3U | static_cast<std::uint32_t>(s));
         if (first != n_entries) continue;
-        n_entries += static_cast<std::uint32_t>(entries.size());
-        if (n_entries >= (1U << 28U))
+        made.entry.insert(made.entry.end(), entries.begin(), entries.end());
+        if (made.entry.size() >= (1U << 28U))
           fail(ErrorCode::bad_argument, "more than 2^28 entries in a compressed field of ",
                grid.n[0], " × ", grid.n[1], " × ", grid.n[2],
                " voxels; raise the error bound or lower the resolution");
-        for (const Entry& e : entries) {
-          made.entry.push_back(e.low);
-          if (layout_.wide) made.entry.push_back(e.high);
-        }
       }
   made.measured = measured_;
   return made;
 }
 
-/// The greatest angle that `bits` an axis are off: 3 / 2^bits covers the octahedral map with the
-/// best of four neighbours; that it does is checked voxel by voxel.
-int bits_for(double angle) {
+EntryLayout layout_for(const Field& field, const ErrorBound& bound, int shift) {
+  // A normal of so many bits an axis is off by at most 3 / 2^bits, with the best of four neighbours
+  // on the octahedral map; that it is, is checked voxel by voxel.
   int bits = min_normal_bits;
-  while (bits < max_normal_bits && 3.0 / (1 << bits) > entry_share * angle) ++bits;
-  return bits;
-}
-
-EntryLayout narrow_layout(const Field& field, const ErrorBound& bound, int shift) {
-  const bool has_normals = !field.normal.empty();
-  const double coarse = has_normals ? bound.angle : 0.05;
-  const int bits = bits_for(coarse);
+  while (bits < max_normal_bits && 3.0 / (1 << bits) > entry_share * bound.angle) ++bits;
   // The middle of a cell may stand a block's diagonal beyond the cut-off.
   const double range = field.thickness + field.grid.cell * (2 << shift);
   const double steps = std::ldexp(1.0, 31 - 2 * bits) - 1;
-  return {false, bits, static_cast<float>(range / steps)};
+  return {bits, static_cast<float>(range / steps)};
 }
 
 }  // namespace
@@ -273,19 +230,20 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
   if (block_shift != 0 && (block_shift < min_shift || block_shift > max_shift))
     fail(ErrorCode::bad_argument, "blocks of 2^", block_shift, " voxels; the exponent must be ",
          min_shift, " to ", max_shift, ", or 0 for the best");
+  if (field.normal.empty())
+    fail(ErrorCode::bad_argument,
+         "a field without normals cannot be compressed; build it with them");
   std::optional<Planes> best;
   const int first = block_shift == 0 ? min_shift : block_shift;
   const int last = block_shift == 0 ? max_shift - 1 : block_shift;
   for (int shift = first; shift <= last; ++shift) {
-    auto made = Compressor(field, bound, narrow_layout(field, bound, shift), shift).run();
-    // Wide entries meet every bound: a division into voxels writes them as they are.
-    if (!made) made = Compressor(field, bound, {true, 0, 0}, shift).run();
-    if (!made)
-      fail(ErrorCode::bad_value,
-           "a voxel's distance is not finite, or beyond the field's thickness of ", field.thickness,
-           "; build the field again");
-    if (!best || made->bytes() < best->bytes()) best = std::move(made);
+    auto made = Compressor(field, bound, layout_for(field, bound, shift), shift).run();
+    if (made && (!best || made->bytes() < best->bytes())) best = std::move(made);
   }
+  if (!best)
+    fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",
+         bound.angle, ": entries of 32 bits do not meet it within a thickness of ", field.thickness,
+         "; raise it, or keep the field flat");
   return {field.grid,
           field.method,
           field.sides,
@@ -295,6 +253,13 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
           field.jump,
           field.surface,
           std::make_shared<const Planes>(std::move(*best))};
+}
+
+float voxel_distance(const Field& field, int i, int j, int k) {
+  if (field.planes == nullptr) return field.distance[field.grid.index(i, j, k)];
+  const lanes::I zero{};
+  return lanes::planes_at(plane_sampler_of(field), {~zero, zero + i, zero + j, zero + k})
+      .distance[0];
 }
 
 }  // namespace tess::dn

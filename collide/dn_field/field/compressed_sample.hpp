@@ -36,24 +36,18 @@ namespace lanes {
 
 using U = std::uint32_t __attribute__((vector_size(4 * width)));
 
-/// The distances at the cells' middles and the normals. `high`: of wide entries only.
-inline Stored decode(const EntryLayout& layout, I low, I high) {
-  if (layout.wide) return {(F)low, unit(decode(high))};
+/// The distances at the cells' middles and the normals.
+inline Stored decode(const EntryLayout& layout, I entry) {
   const int bits = layout.normal_bits;
   const std::int32_t mask = layout.mask(), middle = layout.middle();
   const float per_middle = 1 / static_cast<float>(middle);
-  const I cu = (low >> bits) & mask, cv = low & mask;
+  const I cu = (entry >> bits) & mask, cv = entry & mask;
   const F u = __builtin_convertvector(cu - middle, F) * per_middle;
   const F v = __builtin_convertvector(cv - middle, F) * per_middle;
   const F3 n = on_octahedron(u, v);
   const F scale = only(cu != mask, 1.0F / sqrt(dot(n, n)));
-  const I steps = (I)((U)low >> (2 * bits)) - layout.zero();
+  const I steps = (I)((U)entry >> (2 * bits)) - layout.zero();
   return {__builtin_convertvector(steps, F) * layout.step, scale * n};
-}
-
-inline Stored read_planes(const PlaneSampler& field, I at) {
-  if (!field.layout.wide) return decode(field.layout, gather(field.entry, at), I{});
-  return decode(field.layout, gather(field.entry, at + at), gather(field.entry, at + at + 1));
 }
 
 /// The distances and normals of voxels.
@@ -64,7 +58,7 @@ inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
   const I s = head & 7, in_cell = ((I{} + 1) << s) - 1, t = e - s;
   const I li = i & in_block, lj = j & in_block, lk = k & in_block;
   const I at = (I)((U)head >> 3) + ((((lk >> s) << t) + (lj >> s)) << t) + (li >> s);
-  Stored plane = read_planes(field, at);
+  Stored plane = decode(field.layout, gather(field.entry, at));
   // The middle of a cell may lie between voxels: twice the offset is a whole number.
   const auto off = [&](I of) {
     return 0.5F * field.cell * __builtin_convertvector(2 * (of & in_cell) - in_cell, F);

@@ -3,10 +3,10 @@
 #include "runtime/base/open_file.hpp"
 #include "runtime/base/usable_memory.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written as memory stands");
 
 constexpr std::array<char, 8> magic{'T', 'e', 's', 's', 'D', 'N', '\r', '\n'};
-constexpr std::uint32_t version = 3, flat = 1;
+constexpr std::uint32_t version = 4, flat = 1;
 
 struct Head {
   std::array<char, 8> magic;
@@ -26,25 +26,17 @@ struct Head {
 static_assert(sizeof(Head) == 32);
 constexpr std::size_t checked_head_bytes = 24;
 
-/// A checksum of 64 bits over pieces of bytes, each padded to whole words. Each step is a bijection
-/// of the state for a given word and of the word for a given state: damage within one word is
-/// always detected, other damage is missed once in 2^64.
+/// The checksum over pieces of bytes: the hash is a bijection of each word, so that damage within one
+/// word is always detected, and other damage is missed once in 2^64.
 class Checksum {
  public:
   void add(std::span<const std::byte> bytes) {
-    std::size_t at = 0;
-    for (; at + 8 <= bytes.size(); at += 8) step(bytes.data() + at, 8);
-    if (at < bytes.size()) step(bytes.data() + at, bytes.size() - at);
+    state_ = tess::mix(state_ ^ tess::hash_bytes(bytes.data(), bytes.size()));
   }
-  [[nodiscard]] std::uint64_t value() const { return state_ ^ state_ >> 29U; }
+  [[nodiscard]] std::uint64_t value() const { return state_; }
 
  private:
-  void step(const std::byte* from, std::size_t n) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, from, n);
-    state_ = std::rotl((state_ ^ word) * 0x9e3779b97f4a7c15U, 31);
-  }
-  std::uint64_t state_ = 0x5445535344464c44U;
+  std::uint64_t state_ = 0;
 };
 
 std::span<const std::byte> bytes_of(const auto& value) {

@@ -45,12 +45,6 @@ void fill(const auto& given, const Grid& grid, const Points& points, const Answe
   put(write_some, at(x, y, z));
 }
 
-template <LookUp Kind>
-void fill(const auto& sampler, const Grid& grid, const Points& points, const Answers& answers) {
-  if (answers.nx.empty()) return fill<Kind, Ask::distance>(sampler, grid, points, answers);
-  fill<Kind, Ask::both>(sampler, grid, points, answers);
-}
-
 /// Returns whether anything is asked for.
 bool check(const Field& field, LookUp kind, const Points& points, const Answers& answers) {
   const std::size_t count = points.x.size();
@@ -76,14 +70,15 @@ bool check(const Field& field, LookUp kind, const Points& points, const Answers&
 
 void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers) {
   if (!check(field, kind, points, answers)) return;
-  const auto fill_from = [&](const auto& sampler) {
-    if (kind == LookUp::nearest) fill<LookUp::nearest>(sampler, field.grid, points, answers);
-    if (kind == LookUp::tangent) fill<LookUp::tangent>(sampler, field.grid, points, answers);
-  };
-  if (field.planes != nullptr) return fill_from(plane_sampler_of(field));
-  const Sampler sampler = sampler_of(field);
-  fill_from(sampler);
-  if (kind == LookUp::trilinear) fill<LookUp::trilinear>(sampler, field.grid, points, answers);
+  const Ask ask = answers.nx.empty() ? Ask::distance : Ask::both;
+  with<LookUp::nearest, LookUp::tangent, LookUp::trilinear>(kind, [&]<LookUp Kind> {
+    with<Ask::distance, Ask::both>(ask, [&]<Ask Asked> {
+      if (field.planes == nullptr)
+        fill<Kind, Asked>(sampler_of(field), field.grid, points, answers);
+      else if constexpr (Kind != LookUp::trilinear)
+        fill<Kind, Asked>(plane_sampler_of(field), field.grid, points, answers);
+    });
+  });
 }
 
 }  // namespace tess::dn

@@ -29,6 +29,15 @@ using F = float __attribute__((vector_size(4 * width)));
 using I = std::int32_t __attribute__((vector_size(4 * width)));  // also the mask of F
 using L = std::int64_t __attribute__((vector_size(8 * width)));  // also the mask of D
 
+/// Calls make.operator()<V>() for the one of `Values` that equals `value`: picks a loop that is
+/// compiled for it.
+template <auto First, auto... Rest>
+auto with(decltype(First) value, const auto& make) {
+  if constexpr (sizeof...(Rest) > 0)
+    if (value != First) return with<Rest...>(value, make);
+  return make.template operator()<First>();
+}
+
 template <class V, class T>
 inline V load(const T* from) {
   V v;
@@ -71,16 +80,12 @@ inline D abs(D v) {
 inline F abs(F v) {
   return (F)((I)v & (I{} + 0x7FFFFFFF));
 }
-inline D min(D a, D b) {
+template <class V>
+inline V min(V a, V b) {
   return a < b ? a : b;
 }
-inline D max(D a, D b) {
-  return a > b ? a : b;
-}
-inline F min(F a, F b) {
-  return a < b ? a : b;
-}
-inline F max(F a, F b) {
+template <class V>
+inline V max(V a, V b) {
   return a > b ? a : b;
 }
 /// Keeps the mask as a value. Otherwise g++ 12 moves a conjunction of comparisons to its use and
@@ -93,11 +98,9 @@ inline L settled(L mask) {
 }
 
 /// v where the mask holds, else zero.
-inline D only(L mask, D v) {
-  return (D)(mask & (L)v);
-}
-inline F only(I mask, F v) {
-  return (F)(mask & (I)v);
+template <class M, class V>
+inline V only(M mask, V v) {
+  return (V)(mask & (M)v);
 }
 
 inline bool any(L mask) {
@@ -260,10 +263,8 @@ inline D3 cross(D3 a, D3 b) {
 inline D3 fma(D s, D3 a, D3 b) {
   return {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
 }
-inline D3 only(L mask, D3 v) {
-  return {only(mask, v.x), only(mask, v.y), only(mask, v.z)};
-}
-inline F3 only(I mask, F3 v) {
+template <class M, class V>
+inline Three<V> only(M mask, Three<V> v) {
   return {only(mask, v.x), only(mask, v.y), only(mask, v.z)};
 }
 template <class M, class V>

@@ -1,6 +1,5 @@
 #include "collide/dn_field/surface.hpp"
 
-#include "collide/dn_field/geometry/surface_edges.hpp"
 #include "runtime/base/open_file.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
@@ -40,6 +39,34 @@ Vec3 vertex(const char* at, const std::string& place) {
     at = end;
   }
   return {value[0], value[1], value[2]};
+}
+
+/// Calls visit(from, to) with the vertices of each triangle's sides, as one number each way.
+void each_side(const Surface& surface, const auto& visit) {
+  const auto number = [](std::uint64_t a, std::uint64_t b) { return tess::mix(a << 32U | b); };
+  for (const auto& t : surface.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      if (a != b) visit(number(a, b), number(b, a));
+    }
+}
+
+/// Whether an odd number of triangles meets at some edge.
+bool has_rim(const Surface& surface) {
+  std::uint64_t odd = 0;
+  each_side(surface, [&](std::uint64_t there, std::uint64_t back) { odd ^= there ^ back; });
+  return odd != 0;
+}
+
+/// The volume that a closed surface encloses; negative if its triangles face inwards.
+double volume_of(const Surface& surface) {
+  const Vec3 middle = bounds(surface).centre();
+  double volume = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [a, b, c] = surface.corners(t);
+    volume += dot(a - middle, cross(b - middle, c - middle)) / 6;
+  }
+  return volume;
 }
 
 }  // namespace
@@ -85,24 +112,10 @@ void validate(const Surface& surface) {
          " triangles are without area; a field needs a surface");
 }
 
-std::vector<RimEdge> rim(const Surface& surface) {
-  std::vector<RimEdge> edges;
-  each_edge(surface, [&](const EdgeUse& edge) {
-    const int surplus = edge.up - edge.down;
-    if (surplus > 0) edges.push_back({edge.low, edge.high, surplus});
-    if (surplus < 0) edges.push_back({edge.high, edge.low, -surplus});
-  });
-  return edges;
-}
-
-double disagreeing_share(const Surface& surface) {
-  double between_two = 0, disagreeing = 0;
-  each_edge(surface, [&](const EdgeUse& edge) {
-    if (edge.up + edge.down != 2) return;
-    between_two += 1;
-    if (edge.up != edge.down) disagreeing += 1;
-  });
-  return between_two > 0 ? disagreeing / between_two : 0;
+bool is_closed(const Surface& surface) {
+  std::uint64_t surplus = 0;
+  each_side(surface, [&](std::uint64_t there, std::uint64_t back) { surplus += there - back; });
+  return surplus == 0;
 }
 
 Surface welded(const Surface& surface) {
@@ -122,6 +135,15 @@ Surface welded(const Surface& surface) {
   result.triangles.reserve(surface.triangles.size());
   for (const auto& t : surface.triangles)
     result.triangles.push_back({merged[t[0]], merged[t[1]], merged[t[2]]});
+  return result;
+}
+
+Surface outward(const Surface& surface) {
+  constexpr double no_volume = 1e-12;  // of the cube of the diagonal: rounding
+  Surface result = is_closed(surface) ? surface : welded(surface);
+  const double diagonal = norm(bounds(result).size());
+  if (!has_rim(result) && volume_of(result) < -no_volume * diagonal * diagonal * diagonal)
+    for (auto& t : result.triangles) std::swap(t[0], t[1]);
   return result;
 }
 

@@ -1,7 +1,7 @@
 #include "collide/dn_field/rules/nearest_surface.hpp"
 
 #include <algorithm>
-#include <array>
+#include <tuple>
 
 namespace tess::dn {
 namespace {
@@ -25,15 +25,6 @@ Sample sample_again(const Sampler& field, F3 g, const NearestSurface& last, Near
   return answer<Kind>(field.cell, voxel, stored, g);
 }
 
-template <Storage How>
-auto sampler_in(const PlacedObject& object) {
-  if constexpr (How == Storage::compressed) {
-    return object.planes;
-  } else {
-    return object.field;
-  }
-}
-
 /// The bound of the free way where another object may move by `way` against it.
 F shortened(const PlacedObject& object, F bound, F way) {
   const F rest = bound - way;
@@ -54,11 +45,11 @@ F taken_by_growth(const PlacedObject& object, F free, I in, F distance) {
   return std::max(-g, 0.0F) * max(free, F{}) + std::fabs(g) * abs(only(in, distance));
 }
 
-template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, Storage How>
+template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, bool Compressed>
 void pass(const PlacedObject& __restrict object,  // no store can change it
           const ParticleSpan& __restrict particles, [[maybe_unused]] const NearestSurface& last,
           NearestSurface& nearest) {
-  const auto field = sampler_in<How>(object);
+  const auto field = std::get < Compressed ? 1 : 0 > (std::tie(object.field, object.planes));
   const Vec3 c = object.centre;
   const auto& m = object.to_grid;
   const F ox = all(object.middle[0]), oy = all(object.middle[1]), oz = all(object.middle[2]);
@@ -72,7 +63,7 @@ void pass(const PlacedObject& __restrict object,  // no store can change it
       g = to_grid(object, q);
     Sample found;
     if constexpr (Where == Setting::one_at_rest && Kind != LookUp::trilinear &&
-                  Asked == Ask::both && How == Storage::flat)
+                  Asked == Ask::both && !Compressed)
       found = sample_again<Kind>(field, g, last, nearest, p);
     else
       found = sample<Kind, Asked>(field, g);
@@ -135,33 +126,25 @@ void pass(const PlacedObject& __restrict object,  // no store can change it
   }
 }
 
-template <LookUp Kind, Storage How, Ask Asked, Setting Where>
-NearestPass choose(Sweep sweep) {
-  return sweep == Sweep::on ? &pass<Kind, Asked, Where, Sweep::on, How>
-                            : &pass<Kind, Asked, Where, Sweep::off, How>;
-}
-template <LookUp Kind, Storage How, Ask Asked>
-NearestPass choose(Setting setting, Sweep sweep) {
-  return setting == Setting::general ? choose<Kind, How, Asked, Setting::general>(sweep)
-                                     : choose<Kind, How, Asked, Setting::one_at_rest>(sweep);
-}
-template <LookUp Kind, Storage How>
-NearestPass choose([[maybe_unused]] Ask asked, Setting setting, Sweep sweep) {
-  if constexpr (Kind != LookUp::tangent)  // which reads the normal
-    if (asked == Ask::distance) return choose<Kind, How, Ask::distance>(setting, sweep);
-  return choose<Kind, How, Ask::both>(setting, sweep);
-}
-
 }  // namespace
 
-NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, Storage storage) {
-  if (storage == Storage::compressed)
-    return kind == LookUp::nearest
-               ? choose<LookUp::nearest, Storage::compressed>(asked, setting, sweep)
-               : choose<LookUp::tangent, Storage::compressed>(asked, setting, sweep);
-  if (kind == LookUp::nearest) return choose<LookUp::nearest, Storage::flat>(asked, setting, sweep);
-  if (kind == LookUp::tangent) return choose<LookUp::tangent, Storage::flat>(asked, setting, sweep);
-  return choose<LookUp::trilinear, Storage::flat>(asked, setting, sweep);
+NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep, bool compressed) {
+  return with<LookUp::nearest, LookUp::tangent, LookUp::trilinear>(kind, [=]<LookUp Kind> {
+    return with<false, true>(compressed, [=]<bool Compressed> {
+      return with<Ask::distance, Ask::both>(asked, [=]<Ask Asked> {
+        return with<Setting::one_at_rest, Setting::general>(setting, [=]<Setting Where> {
+          return with<Sweep::off, Sweep::on>(sweep, [=]<Sweep Swept>() -> NearestPass {
+            // The tangent reads the normal; compressed fields have no trilinear look-up.
+            constexpr Ask reads = Kind == LookUp::tangent ? Ask::both : Asked;
+            if constexpr (Kind == LookUp::trilinear && Compressed)
+              return nullptr;
+            else
+              return &pass<Kind, reads, Where, Swept, Compressed>;
+          });
+        });
+      });
+    });
+  });
 }
 
 double jump_of(const Field& field) {
@@ -205,7 +188,6 @@ PlacedObject placed(const Object& object, LookUp kind, double step, bool restles
   };
   result.swell = std::abs(frame.scale_rate) * norm(Vec3{furthest(0), furthest(1), furthest(2)});
   result.restless = restless;
-  if (field.sides == Sides::two) result.open_surface = object.triangles;
   return result;
 }
 

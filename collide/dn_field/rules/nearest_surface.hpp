@@ -44,12 +44,11 @@ struct PlacedObject {
   float doubt;  ///< that plus half a voxel's diagonal
   float jump;   ///< jump_of(), in world units
   Frame frame;
-  double step;              ///< length of the step in time
-  double growth;            ///< relative change of the scale in the step
-  float spin;               ///< rotation in the step, radians
-  double swell;             ///< upper bound of the surface's speed by growth
-  bool restless;            ///< whether some object of the scene moves
-  const Bvh* open_surface;  ///< the triangles of an open surface, if given
+  double step;    ///< length of the step in time
+  double growth;  ///< relative change of the scale in the step
+  float spin;     ///< rotation in the step, radians
+  double swell;   ///< upper bound of the surface's speed by growth
+  bool restless;  ///< whether some object of the scene moves
 
   /// Whether a straight path in the world is curved in the object's coordinates.
   [[nodiscard]] bool bends() const { return spin != 0 || growth != 0; }
@@ -64,13 +63,6 @@ struct PlacedObject {
 /// one_at_rest: one object that neither moves nor is turned.
 enum class Setting : std::uint32_t { one_at_rest, general };
 
-/// How the fields of a scene are stored.
-enum class Storage : std::uint32_t { flat, compressed };
-[[nodiscard]] inline Storage storage_of(std::span<const Object> objects) {
-  return !objects.empty() && objects[0].field->planes != nullptr ? Storage::compressed
-                                                                 : Storage::flat;
-}
-
 /// Writes `nearest`. `last` is the result of the previous pass over these particles, and may be the
 /// same object; it saves time and does not change the result.
 using NearestPass = void (*)(const PlacedObject&, const ParticleSpan&, const NearestSurface& last,
@@ -79,7 +71,7 @@ using NearestPass = void (*)(const PlacedObject&, const ParticleSpan&, const Nea
 /// The pass over one object; a general pass keeps the nearer surface and starts from clear().
 /// There is no trilinear pass over compressed fields.
 [[nodiscard]] NearestPass nearest_pass(LookUp kind, Ask asked, Setting setting, Sweep sweep,
-                                       Storage storage);
+                                       bool compressed);
 
 /// Must be called when lanes get other particles: no voxel is cached.
 void forget(NearestSurface& nearest, std::size_t count);

@@ -53,28 +53,20 @@ struct LoopKey {
   Springs springs = Springs::none;
 };
 
-template <Setting Where, Flight Flies, Impacts Hits>
-RuleLoop chosen(Springs springs) {
-  return springs == Springs::none ? &lanes::rule_loop<Flies, Hits, Springs::none, Where>
-                                  : &lanes::rule_loop<Flies, Hits, Springs::exact, Where>;
-}
-template <Setting Where, Flight Flies>
-RuleLoop chosen(Impacts impacts, Springs springs) {
-  if (impacts == Impacts::none) return chosen<Where, Flies, Impacts::none>(springs);
-  if (impacts == Impacts::plain) return chosen<Where, Flies, Impacts::plain>(springs);
-  return chosen<Where, Flies, Impacts::swept>(springs);
-}
-template <Setting Where, bool Falls>
-RuleLoop chosen(const LoopKey& key) {
-  if (key.flight.drags == Drags::none)
-    return chosen<Where, Flight{Falls}>(key.impacts, key.springs);
-  if (key.flight.drags == Drags::everywhere)
-    return chosen<Where, Flight{Falls, Drags::everywhere}>(key.impacts, key.springs);
-  return chosen<Where, Flight{Falls, Drags::surface}>(key.impacts, key.springs);
-}
 template <Setting Where>
 RuleLoop chosen(const LoopKey& key) {
-  return key.flight.falls ? chosen<Where, true>(key) : chosen<Where, false>(key);
+  return lanes::with<false, true>(key.flight.falls, [&]<bool Falls> {
+    return lanes::with<Drags::none, Drags::everywhere, Drags::surface>(
+        key.flight.drags, [&]<Drags Drag> {
+          return lanes::with<Impacts::none, Impacts::plain, Impacts::swept>(
+              key.impacts, [&]<Impacts Hits> {
+                return lanes::with<Springs::none, Springs::exact>(
+                    key.springs, [&]<Springs Springy>() -> RuleLoop {
+                      return &lanes::rule_loop<Flight{Falls, Drag}, Hits, Springy, Where>;
+                    });
+              });
+        });
+  });
 }
 
 [[nodiscard]] RuleLoop rule_loop_at_rest(const LoopKey& key);

@@ -15,7 +15,7 @@
 #include "collide/dn_field/rules/flight.hpp"
 #include "collide/dn_field/rules/nearest_surface.hpp"
 #include "collide/dn_field/rules/spring.hpp"
-#include "collide/dn_field/rules/surface_velocity.hpp"
+#include "collide/dn_field/rules/surface_flow.hpp"
 
 #include <vector>
 

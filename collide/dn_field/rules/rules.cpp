@@ -62,6 +62,8 @@ void validate(const Explosion& explosion) {
 
 void validate(const Rules& rules) {
   if (rules.spring) validate(*rules.spring);
+  if (rules.spring && rules.look_up == LookUp::nearest)
+    fail(ErrorCode::bad_value, "look_up is nearest, which springs do not support; take tangent");
   if (rules.impact) validate(*rules.impact);
   if (const auto& drag = rules.surface_drag) {
     not_negative("surface_drag.rate", drag->rate, no_push);
@@ -100,26 +102,19 @@ double reach(const Rules& rules) {
   return furthest;
 }
 
-LookUp look_up_of(const Rules& rules) {
-  return rules.spring && rules.look_up == LookUp::nearest ? LookUp::tangent : rules.look_up;
-}
-
 std::vector<std::string> explain(const Rules& rules) {
   std::vector<std::string> lines;
-  const auto line = [&lines](const char* name, bool used) {
+  for (const auto& [name, used] :
+       {std::pair{"spring", rules.spring.has_value()},
+        {"impact", rules.impact.has_value()},
+        {"swept look-up", rules.impact && rules.impact->sweep == Sweep::on},
+        {"surface drag", rules.surface_drag.has_value()},
+        {"surface flow", rules.surface_flow.has_value()},
+        {"gravity", rules.gravity.has_value()},
+        {"wind", rules.wind.has_value()},
+        {"air drag", rules.air_drag.has_value()},
+        {"explosions", !rules.explosions.empty()}})
     lines.push_back(std::string(name) + (used ? ": used" : ": left out"));
-  };
-  line("spring", rules.spring.has_value());
-  if (look_up_of(rules) != rules.look_up)
-    lines.push_back("nearest look-up: left out, the spring takes the tangent");
-  line("impact", rules.impact.has_value());
-  line("swept look-up", rules.impact && rules.impact->sweep == Sweep::on);
-  line("surface drag", rules.surface_drag.has_value());
-  line("surface flow", rules.surface_flow.has_value());
-  line("gravity", rules.gravity.has_value());
-  line("wind", rules.wind.has_value());
-  line("air drag", rules.air_drag.has_value());
-  line("explosions", !rules.explosions.empty());
   return lines;
 }
 

@@ -6,6 +6,9 @@
 
 namespace tess::dn {
 namespace {
+using namespace lanes;
+
+constexpr double noise = 1e-6;             // of the energy: the rounding of float distances
 constexpr int steps_without_culling = 32;  // after culling did not pay
 constexpr std::size_t sample_size = 32;    // particles of a block that show whether culling pays
 
@@ -32,11 +35,6 @@ bool culling_pays(const Stepper::Plan& plan, std::size_t near, std::size_t all, 
   return packed < near_step + first_sample / std::min(left, steps_without_culling);
 }
 
-/// Waypoints of one particle stay in the order of time.
-void sort_by_particle(std::vector<Waypoint>& waypoints) {
-  std::ranges::stable_sort(waypoints, {}, &Waypoint::particle);
-}
-
 }  // namespace
 
 BlockFlight::BlockFlight(bool keeps_waypoints) : keeps_waypoints_(keeps_waypoints) {
@@ -56,6 +54,40 @@ void BlockFlight::sample_all(const Run& run, std::span<const PlacedObject> objec
   for (const PlacedObject& object : objects) run.sample(object, particles, *nearest_, nearest);
 }
 
+/// The correction of springs after the rules of the surface, for particles that one voxel's plane
+/// misleads: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
+/// the side and would gain potential energy. after_ has the depth at the end of the step. A particle
+/// with more energy than it had loses speed; if its depth alone takes more, it returns: it is put
+/// back to its start, which moved with the surface, with reversed velocity relative to the surface.
+/// Returns whether a particle did.
+bool BlockFlight::limit_springs(const Run& run, const ParticleSpan& span) {
+  const SpringConstants spring = run.constants.spring;  // copies that no store can change
+  const ParticleSpan particles = span, start = start_.span(span.count);
+  bool returned = false;
+  for (std::size_t p = 0; p < particles.count; p += width) {
+    const D depth = spring.reach - to_double(load<F>(after_->distance + p));
+    D3 u{};
+    if (run.setting == Setting::general) u = surface_velocities(*nearest_, p);
+    const D3 v = velocities(particles, p), w = v - u;
+    const D kinetic = dot(w, w), had = max(load<D>(scratch_.energy + p), D{}),
+            left = had - spring.stiffness * depth * depth;
+    const L over = (depth > 0.0) & (kinetic - left > noise * had) & (kinetic < HUGE_VAL);
+    if (!any(over)) continue;
+    const L slows = over & (left > 0.0), returns = over & ~slows;
+    set_velocities(particles, p, select(slows, u + sqrt(only(slows, left / kinetic)) * w, v));
+    if (!any(returns)) continue;
+    returned = true;
+    const D3 back = fma(all(run.constants.step), u, places(start, p)),
+             turned = u + (u - velocities(start, p));
+    set_places(particles, p, select(returns, back, places(particles, p)));
+    set_velocities(particles, p, select(returns, turned, velocities(particles, p)));
+    std::erase_if(scratch_.waypoints, [&](const Waypoint& bend) {
+      return bend.particle - p < width && returns[bend.particle - p] != 0;
+    });
+  }
+  return returned;
+}
+
 /// The rules of the surface and the flight.
 void BlockFlight::meet_surface(const Run& run, const ObjectPoses& poses, int step,
                                const ParticleSpan& particles) {
@@ -63,32 +95,17 @@ void BlockFlight::meet_surface(const Run& run, const ObjectPoses& poses, int ste
   const auto& objects = poses.objects_at(step);
   if (!up_to_date_) sample_all(run, objects, particles, *nearest_);
   const NearestSurface& nearest = *nearest_;
-  const auto half_drag = [&] {
-    if (const auto& drag = plan.rules.surface_drag; drag && drag->law == DragLaw::quadratic)
-      drag_quadratic(0.5 * drag->rate * plan.step, drag->threshold, run.setting, particles,
-                     nearest);
-  };
-  half_drag();
   if (plan.rules.surface_flow) turn_to_surface(run.constants.flow, run.setting, particles, nearest);
-  const bool open = plan.rules.impact && std::ranges::any_of(objects, &PlacedObject::open_surface);
-  const ParticleSpan start = start_.span(particles.count);
-  if (plan.rules.spring || open) copy(particles, start);
+  if (plan.rules.spring) copy(particles, start_.span(particles.count));
   run.loop(run.constants, particles, nearest, scratch_);
   trace(run.constants, objects, plan.rules.look_up, particles, scratch_);
-  const CorrectedStep corrected{run.constants, run.setting, plan.sweep, nearest,
-                                start,         particles,   scratch_};
-  bool returned = false;
-  if (plan.rules.spring) {
-    sample_all(run, poses.objects_at(step + 1), particles, *after_);
-    returned = limit_springs(corrected, *after_);
-  }
-  if (open && keep_off_open_surfaces(corrected, plan.rules.spring.has_value(), objects,
-                                     poses.objects_at(step + 1)))
-    returned = true;
-  half_drag();
+  up_to_date_ = false;
+  if (!plan.rules.spring) return;
+  sample_all(run, poses.objects_at(step + 1), particles, *after_);
+  const bool returned = limit_springs(run, particles);
   // The samples at the end serve the next step where nothing has moved since.
-  up_to_date_ = plan.rules.spring && run.setting == Setting::one_at_rest && !returned;
-  if (plan.rules.spring) std::swap(nearest_, after_);
+  up_to_date_ = run.setting == Setting::one_at_rest && !returned;
+  std::swap(nearest_, after_);
 }
 
 void BlockFlight::step_near(const Run& run, const ObjectPoses& poses, int step,
@@ -99,15 +116,6 @@ void BlockFlight::step_near(const Run& run, const ObjectPoses& poses, int step,
   change_velocities_before(changes, particles);
   meet_surface(poses.run(step, run), poses, step, particles);
   change_velocities_after(changes, particles);
-  sort_by_particle(scratch_.waypoints);
-}
-
-/// Waypoints of packed particles get the particles' numbers in the block.
-void BlockFlight::number_in_block() {
-  std::erase_if(scratch_.waypoints,
-                [&](const Waypoint& bend) { return bend.particle >= near_.count; });
-  for (Waypoint& bend : scratch_.waypoints) bend.particle = near_.index[bend.particle];
-  sort_by_particle(scratch_.waypoints);
 }
 
 /// Lists the near particles for the steps from `from` on, before `to`. Returns whether to separate
@@ -152,8 +160,13 @@ void BlockFlight::fly(const Run& run, const ObjectPoses& poses, const ParticleSp
     fly_free(run.constants, block, poses.changes_in(i, next));
     i = next;
     near_.unpack(block);
-    if (keeps_waypoints_) number_in_block();
+    // Waypoints get the particles' numbers in the block; those that only fill up a vector have none.
+    std::erase_if(scratch_.waypoints,
+                  [&](const auto& bend) { return bend.particle >= near_.count; });
+    for (Waypoint& bend : scratch_.waypoints) bend.particle = near_.index[bend.particle];
   }
+  // Those of one particle stay in the order of time.
+  std::ranges::stable_sort(scratch_.waypoints, {}, &Waypoint::particle);
 }
 
 }  // namespace tess::dn

@@ -2,7 +2,6 @@
 // together for the rules of the surface; the others fly free. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/step/corrections.hpp"
 #include "collide/dn_field/step/culling.hpp"
 #include "collide/dn_field/step/object_poses.hpp"
 
@@ -22,12 +21,12 @@ class BlockFlight {
   void new_particles(std::size_t count);
   void sample_all(const Run& run, std::span<const PlacedObject> objects,
                   const ParticleSpan& particles, NearestSurface& nearest) const;
+  [[nodiscard]] bool limit_springs(const Run& run, const ParticleSpan& particles);
   void meet_surface(const Run& run, const ObjectPoses& poses, int step,
                     const ParticleSpan& particles);
   void step_near(const Run& run, const ObjectPoses& poses, int step, const ParticleSpan& particles);
   [[nodiscard]] bool cull_for(const Run& run, const ObjectPoses& poses, int from, int to,
                               const ParticleSpan& particles);
-  void number_in_block();
 
   NearestSurface first_, second_;
   NearestSurface *nearest_ = &first_, *after_ = &second_;  // at the step's start and end

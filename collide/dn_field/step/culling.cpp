@@ -12,7 +12,7 @@ constexpr float rounding = 1.0001F;  // of float speeds
 
 /// A lower bound of all sampled distances, minus the reach of the rules and the way of the surface:
 /// the minimum over objects.
-template <bool Turned, bool Moves, bool First, Storage How>
+template <bool Turned, bool Moves, bool First, bool Compressed>
 void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpan& span,
              NearParticles& near) {
   const PlacedObject object = placed;  // copies that no store can change
@@ -41,7 +41,7 @@ void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpa
       h = {q.x * m[0][0] + ox, q.y * m[1][1] + oy, q.z * m[2][2] + oz};
     const Voxel voxel = voxel_from_corner(field.n, h);
     F found;
-    if constexpr (How == Storage::compressed)
+    if constexpr (Compressed)
       found = planes_at(object.planes, voxel).distance;
     else
       found = gather(field.distance, position(field, voxel));
@@ -61,15 +61,17 @@ void room_to(const PlacedObject& placed, F taken, Reach reach, const ParticleSpa
 
 using RoomTo = void (*)(const PlacedObject&, F, Reach, const ParticleSpan&, NearParticles&);
 
-template <bool First, Storage How>
-RoomTo choose(const Frame& frame) {
-  if (frame.is_moving()) return &room_to<true, true, First, How>;
-  return frame.is_turned() ? &room_to<true, false, First, How> : &room_to<false, false, First, How>;
-}
-template <bool First>
-RoomTo choose(const PlacedObject& object) {
-  return object.compressed ? choose<First, Storage::compressed>(object.frame)
-                           : choose<First, Storage::flat>(object.frame);
+RoomTo room_loop(const PlacedObject& object, bool is_first) {
+  const bool moves = object.frame.is_moving(), turned = moves || object.frame.is_turned();
+  return with<false, true>(turned, [=, &object]<bool Turned> {
+    return with<false, true>(moves, [=, &object]<bool Moves> {
+      return with<false, true>(is_first, [=, &object]<bool First> {
+        return with<false, true>(object.compressed, []<bool Compressed>() -> RoomTo {
+          return &room_to<Turned, Moves, First, Compressed>;
+        });
+      });
+    });
+  });
 }
 
 }  // namespace
@@ -84,8 +86,7 @@ void cull(std::span<const PlacedObject> objects, LookUp kind, Sweep sweep, Reach
     const float jumps = (kind == LookUp::trilinear ? 1.0F : 0.0F) + (reach.ahead ? 1.0F : 0.0F);
     const float doubt = (half_off ? object.doubt : 0.0F) + object.padding +
                         (jumps > 0 ? jumps * object.jump : 0.0F);
-    const RoomTo room_to = i == 0 ? choose<true>(object) : choose<false>(object);
-    room_to(object, all(doubt * rounding + reach.distance), reach, block, near);
+    room_loop(object, i == 0)(object, all(doubt * rounding + reach.distance), reach, block, near);
   }
   near.count = 0;
   if (objects.empty()) return;

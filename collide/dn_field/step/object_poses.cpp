@@ -32,7 +32,7 @@ Run run_of(const Stepper::Plan& plan, std::span<const Object> objects) {
   run.setting = simple || !plan.samples_fields ? Setting::one_at_rest : Setting::general;
   run.sample =
       nearest_pass(plan.rules.look_up, plan.asked, simple ? Setting::one_at_rest : Setting::general,
-                   plan.sweep, storage_of(objects));
+                   plan.sweep, !objects.empty() && objects[0].field->planes != nullptr);
   run.loop = run.setting == Setting::one_at_rest ? plan.loop_at_rest : plan.loop_general;
   set_lengths(run, objects);
   for (const Object& object : objects)

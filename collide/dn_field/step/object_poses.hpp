@@ -2,9 +2,23 @@
 // changes of velocity, and where the objects are at each step. Private to the step loop.
 #pragma once
 
-#include "collide/dn_field/step/plan.hpp"
+#include "collide/dn_field/rules/rule_loop.hpp"
+#include "collide/dn_field/stepper.hpp"
 
 namespace tess::dn {
+
+/// What make_stepper() computes once for a scene: the constants of its rules and the loops that hold
+/// them.
+struct Stepper::Plan {
+  Rules rules;
+  double step = 0;
+  RuleConstants constants;
+  bool samples_fields = false;
+  Sweep sweep = Sweep::off;
+  Ask asked = Ask::both;
+  RuleLoop loop_at_rest = nullptr, loop_general = nullptr;
+  FreeLoop fly_free = nullptr;
+};
 
 /// A plan together with objects.
 struct Run {

@@ -1,5 +1,4 @@
-#include "collide/dn_field/step/plan.hpp"
-
+#include "collide/dn_field/step/object_poses.hpp"
 #include "runtime/core/error.hpp"
 
 namespace tess::dn {
@@ -16,15 +15,11 @@ LinearFlow linear_flow(double rate, double step) {
   return {1 - lost, lost / rate, step * mean, step * mean_lost / rate};
 }
 
-bool drags_at_surface(const Rules& rules) {
-  return rules.surface_drag && rules.surface_drag->law == DragLaw::linear;
-}
-
 Flight flight_of(const Rules& rules) {
   Flight flight{rules.gravity || rules.wind};
   if (rules.wind || (rules.air_drag && rules.air_drag->law == DragLaw::linear))
     flight.drags = Drags::everywhere;
-  if (drags_at_surface(rules)) flight.drags = Drags::surface;
+  if (rules.surface_drag) flight.drags = Drags::surface;
   return flight;
 }
 
@@ -47,7 +42,7 @@ RuleConstants constants_of(const Rules& rules, double step) {
     c.acceleration += rules.wind->rate * rules.wind->velocity;
   }
   if (rules.air_drag && rules.air_drag->law == DragLaw::linear) rate += rules.air_drag->rate;
-  if (drags_at_surface(rules)) {
+  if (rules.surface_drag) {
     c.surface_rate = rules.surface_drag->rate;
     c.surface_threshold = rules.surface_drag->threshold;
   }
@@ -92,7 +87,6 @@ Stepper make_stepper(const Rules& rules, double step) {
            rule_loop_at_rest(key),
            rule_loop_general(key),
            free_loop(flight_of(rules))};
-  plan->rules.look_up = look_up_of(rules);
   return Stepper(std::move(plan));
 }
 

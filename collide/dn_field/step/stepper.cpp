@@ -77,10 +77,8 @@ void validate(const Rules& rules, std::span<const Object> objects) {
     const Field& field = *object.field;
     const bool compressed = field.planes != nullptr;
     if (compressed != (objects[0].field->planes != nullptr))
-      fail(ErrorCode::bad_argument, "object ", i,
-           compressed ? " has a compressed field and object 0 a flat one"
-                      : " has a flat field and object 0 a compressed one",
-           "; compress all of a scene or none");
+      fail(ErrorCode::bad_argument, "of the fields of objects 0 and ", i,
+           " one is compressed and one is flat; compress all of a scene or none");
     if (compressed && rules.look_up == LookUp::trilinear)
       fail(ErrorCode::bad_argument, "object ", i,
            " has a compressed field, which has no trilinear look-up; take nearest or tangent");
@@ -94,19 +92,17 @@ void validate(const Rules& rules, std::span<const Object> objects) {
            " stores no normals and a rule or the tangent look-up needs them; build its field with "
            "distance and normal");
     const double within =
-        frame.scale * covered(field.thickness, field.grid.cell, field.sides, look_up_of(rules));
+        frame.scale * covered(field.thickness, field.grid.cell, field.sides, rules.look_up);
     if (reach(rules) > within)
       fail(ErrorCode::bad_argument, "a rule reaches ", reach(rules),
            " from where particles are stopped, and the field of object ", i, " only ", within,
            "; build a thicker field or shorten the rule's distance");
-    if (!(frame.scale > 0) || !std::isfinite(frame.scale) || !std::isfinite(frame.scale_rate))
-      fail(ErrorCode::bad_argument, "object ", i, " is scaled by ", frame.scale,
-           ", which grows by ", frame.scale_rate,
-           " a second; give a positive, finite scale and a finite rate");
-    for (const Vec3 v : {frame.position, frame.velocity, frame.angular_velocity})
-      if (!is_finite(v))
+    for (const Vec3 v : {frame.position, frame.velocity, frame.angular_velocity,
+                         Vec3{frame.scale, frame.scale_rate, 0}})
+      if (!is_finite(v) || !(frame.scale > 0))
         fail(ErrorCode::bad_argument, "object ", i, " has (", v.x, ", ", v.y, ", ", v.z,
-             ") as position or velocity; give finite numbers");
+             ") as position, velocity, or scale and its rate, and the scale ", frame.scale,
+             "; give finite numbers and a positive scale");
   }
 }
 

@@ -119,58 +119,6 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
 }
 
-TEST_CASE("a particle that passes a wall too thin for the field is counted, for every orientation",
-          "[particles][physics]") {
-  // A cube with a fin beside it, 0.02 thick with cells of 0.08, in any orientation.
-  const auto falling_on_fin = [](const std::string& look_up, double speed) {
-    Scene scene = parse_scene(
-        R"({"dt": 0.01, "steps": 60,
-      "objects": [{"shape": {"boxes": [{"low": [-1, -1, -1], "high": [1, 1, 1]},
-                                       {"low": [0.9, -0.2, 0.5], "high": [1.5, 0.2, 0.52]}]},
-                   "resolution": 40, "thickness": 0.4}],
-      "emitters": [{"count": 300, "box": {"low": [1.2, -0.1, 0.6], "high": [1.3, 0.1, 0.65]}}],
-      "rules": {"impact": {"restitution": 0.3}, "look_up": ")" +
-            look_up + R"("}, "outputs": {"audit": true, "trajectories": 60, "traced": 300}})",
-        "scene.json");
-    scene.emitters[0].velocity = {0, 0, -speed};
-    return scene;
-  };
-  std::uint64_t n_through = 0;
-  for (const std::string look_up : {"nearest", "tangent", "trilinear"})
-    for (const double speed : {0.5, 3.0, 60.0}) {
-      const Ran ran = run_scene(falling_on_fin(look_up, speed), "--pes=2");
-      std::uint64_t below = 0;
-      for (const Sample& sample : ran.result.trajectories.back().samples)
-        below += sample.position.z < 0.5;
-      INFO(look_up << ", speed " << speed << ": " << below << " below the fin");
-      CHECK(ran.last().tunnelled == below);
-      n_through += below;
-    }
-  CHECK(n_through > 500);  // otherwise the case proves nothing
-}
-
-TEST_CASE("a particle that dips under two walls in a corner has passed neither",
-          "[particles][physics]") {
-  // Object 0 is met by its upper side, object 1 by its lower one.
-  const tess::dn::Surface plate = tess::dn::make_box({1, 1, 0.01});
-  const tess::dn::Field field = tess::dn::build_field(plate, grid_around(bounds(plate), 20, 0.3));
-  const tess::dn::Bvh triangles(plate);
-  const tess::dn::Object object{&field, {}, &triangles};
-  const auto after = [&](Mark mark, std::uint16_t number, double from, double to) {
-    return mark_after(mark, {number, object, 1}, {0.1, 0.2, from}, {0.1, 0.2, to});
-  };
-  const Mark in_floor = after({}, 0, 0.02, 0), in_both = after(in_floor, 1, -0.02, 0);
-  CHECK(in_floor.what == Mark::inside);
-  CHECK(in_both.object == 1);
-  CHECK(after(in_both, 0, 0, 0.02).what == Mark::inside);    // out of the floor: the other's mark
-  CHECK(after(in_both, 1, 0, -0.02).what == Mark::nothing);  // back where it came in
-  CHECK(after(in_floor, 1, 0, -0.02).what == Mark::inside);
-  CHECK(after(in_floor, 0, 0, -0.02).what == Mark::through);
-  CHECK(after(in_floor, 0, 0, 0.02).what == Mark::nothing);
-  CHECK(after({}, 0, 0.02, -0.02).what == Mark::through);  // in one step
-  CHECK(after({}, 0, 0, 0.02).what == Mark::nothing);      // began inside
-}
-
 TEST_CASE("a particle that bounces over a box in one step has not gone through it",
           "[particles][physics]") {
   // Up over the box, off the ceiling, and down behind: the straight way leads through the box.

@@ -39,7 +39,7 @@ inline Measured run_serially(const Stage& stage) {
   std::vector<Flock> flocks(stage.species.size());
   for (std::uint64_t id = 0; id < stage.source.size(); ++id) {
     const Start start = stage.source.particle(id);
-    flocks[stage.species_of(id, start.mass)].add(id, start.position, start.velocity, Mark{});
+    flocks[stage.species_of(id, start.mass)].add(id, start.position, start.velocity);
   }
   for (std::int32_t step = 0; step < scene.steps; ++step) {
     for (std::size_t s = 0; s < flocks.size(); ++s)

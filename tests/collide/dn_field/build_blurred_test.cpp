@@ -66,7 +66,7 @@ TEST_CASE("a plate between two layers is refused by normals and served by potent
   const Grid away{{5, 5, 5}, 0.1, {8, 8, 8}};
   for (const Method method : {Method::normals, Method::potential})
     CHECK(refusal([&] {
-            (void)build_field(plate, away,
+            (void)build_field(make_box({1, 1, 1}), away,
                               {Sides::one, Content::distance_and_normal, 0.4, method, {}});
           }).find("no voxel of the grid") != std::string::npos);
 }
@@ -120,7 +120,7 @@ TEST_CASE("a blurred field does not depend on how its layers are split", "[dn_fi
     const FieldOptions options{Sides::one, Content::distance_and_normal, 0.3, method, {3, 2}};
     const Field whole = build_field(torus, grid, options);
     for (const std::vector<int>& cuts :
-         {std::vector<int>{0, 26}, {0, 4, 4, 12, 26}, {0, 1, 2, 7, 25, 26}}) {
+         {std::vector<int>{0, 26}, {0, 4, 4, 12, 26}, {0, 4, 8, 16, 24, 26}}) {
       FieldBuilder builder(torus, grid, options);
       const auto each_part = [&cuts](const auto& build) {
         std::vector<std::jthread> threads;
@@ -198,15 +198,14 @@ TEST_CASE("the normals method refuses objects of near-zero thickness", "[dn_fiel
         std::string::npos);
 }
 
-TEST_CASE("a plan covers the step and resolves the detail, or is refused", "[dn_field]") {
-  const Bounds box{{-1, -1, -1}, {1, 1, 1}};
-  const FieldPlan plan = choose_plan(box, {20, 0.01, 0.1}, 1 << 24);
-  CHECK(plan.thickness >= 0.2 + 2 * plan.grid.cell);
-  CHECK(plan.grid.cell <= 0.05 * (1 + 1e-12));
-  CHECK(plan.blur.radius * plan.blur.rounds * plan.grid.cell >= plan.thickness);
-  const FieldPlan swept = choose_plan(box, {0, 0.01, 0.1}, 1 << 24);
-  CHECK(swept.thickness < plan.thickness);
-  CHECK_FALSE(refusal([&] { (void)choose_plan(box, {2000, 0.01, 0.1}, 1 << 24); }).empty());
+TEST_CASE("a chosen blur reaches through the thickness, and one out of range is refused",
+          "[dn_field]") {
+  const Grid grid = grid_around({{-1, -1, -1}, {1, 1, 1}}, 41, 0.3);
+  for (const double thickness : {0.1, 0.3, HUGE_VAL}) {
+    const Blur blur = choose_blur(grid, thickness);
+    CHECK(blur.radius * blur.rounds * grid.cell >= std::min(thickness, 2.0));
+    CHECK_NOTHROW(require_blur(blur));
+  }
   CHECK(refusal([&] { require_blur({5, 2}); }).find("2 to 4") != std::string::npos);
   CHECK(refusal([&] { require_blur({3, 0}); }).find("at least one") != std::string::npos);
 }

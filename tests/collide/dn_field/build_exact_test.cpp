@@ -1,7 +1,6 @@
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/normal_code.hpp"
-#include "collide/dn_field/plan.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/collide/dn_field/triangle_distance.hpp"
@@ -163,9 +162,6 @@ TEST_CASE("bad surfaces and grids are refused with a reason", "[dn_field]") {
   CHECK_THROWS_AS(build_field(make_box({1, 1, 1}), grid, {Sides::one, Content::distance, 0.1, {}}),
                   tess::Error);
   CHECK_THROWS_AS(grid_around({{0, 0, 0}, {1, 1, 1}}, 100000, 0.1), tess::Error);
-  CHECK(refusal([&] {
-          (void)choose_plan({{0, 0, 0}, {1, 1, 1}}, {100, 1, 0.1}, 1 << 20);
-        }).find("above the limit") != std::string::npos);
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ TEST_CASE("what is wrong with a file is named", "[dn_field]") {
   };
   std::string other = whole;
   other[8] = 1;
-  CHECK(loaded(other).find("version 1, this program reads 3") != std::string::npos);
+  CHECK(loaded(other).find("version 1, this program reads 4") != std::string::npos);
   CHECK(loaded("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# an OBJ\n").find("no field file") !=
         std::string::npos);
   other = whole;

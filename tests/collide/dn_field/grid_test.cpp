@@ -1,6 +1,5 @@
 #include "collide/dn_field/grid.hpp"
 
-#include "collide/dn_field/plan.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
@@ -22,29 +21,8 @@ TEST_CASE("a grid around a box is cubic, centred, and leaves the margin free", "
   CHECK(grid.index(40, 40, 40) == grid.size() - 1);
 }
 
-TEST_CASE("the choice covers a step and resolves the detail, and grows with either",
-          "[dn_field][grid]") {
+TEST_CASE("a grid that cannot be is refused", "[dn_field][grid]") {
   const Bounds box{{0, 0, 0}, {1, 1, 1}};
-  std::size_t before = 0;
-  for (const double speed : {0.0, 1.0, 4.0}) {
-    const Demand demand{speed, 0.05, 0.1};
-    const FieldPlan choice = choose_plan(box, demand, std::size_t{1} << 24U);
-    CHECK(choice.grid.cell <= 0.05 * (1 + 1e-12));  // two voxels across the detail
-    CHECK(choice.thickness >= speed * 0.05 + choice.grid.cell);
-    CHECK(choice.grid.origin.x <= -choice.thickness + 1e-12);
-    CHECK(choice.grid.size() > before);
-    before = choice.grid.size();
-  }
-  const FieldPlan fine = choose_plan(box, {1, 0.05, 0.05}, std::size_t{1} << 24U);
-  const FieldPlan coarse = choose_plan(box, {1, 0.05, 0.1}, std::size_t{1} << 24U);
-  CHECK(fine.grid.cell <= 0.5 * coarse.grid.cell * (1 + 1e-12));
-}
-
-TEST_CASE("a choice that cannot be made says what it would take", "[dn_field][grid]") {
-  const Bounds box{{0, 0, 0}, {1, 1, 1}};
-  CHECK_THROWS_AS(choose_plan(box, {std::nan(""), 1, 0.1}, 1000), tess::Error);
-  CHECK_THROWS_AS(choose_plan(box, {1, 1, 0}, 1000), tess::Error);
-  CHECK_THROWS_AS(choose_plan(box, {1, 0.1, 0.01}, 1000), tess::Error);
   CHECK_THROWS_AS(grid_around(box, 3, 0.1), tess::Error);
   CHECK_THROWS_AS(grid_around(box, 20, -1), tess::Error);
   CHECK_THROWS_AS(grid_around({{0, 0, 0}, {0, 0, 0}}, 20, 0.1), tess::Error);

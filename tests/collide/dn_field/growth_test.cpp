@@ -89,7 +89,7 @@ TEST_CASE("a growing box throws back exactly: its faces are planes", "[dn_field]
 
 TEST_CASE("drag near a growing surface takes the surface's velocity", "[dn_field][growth]") {
   Rules rules;
-  rules.surface_drag = SurfaceDrag{1e3, 0.4, DragLaw::linear};
+  rules.surface_drag = SurfaceDrag{1e3, 0.4};
   rules.impact = Impact{0, 0, Sweep::on};
   Object object{&unit_sphere(), {}};
   object.frame.scale_rate = 0.5;

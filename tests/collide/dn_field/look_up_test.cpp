@@ -93,8 +93,6 @@ TEST_CASE("no two voxels that touch differ by more than the field's jump, howeve
   }
   const Field compressed = compress(fields[0], {0.2 * grid.cell, 0.1});
   CHECK(compressed.jump == fields[0].jump);
-  const Field seen = expanded(compressed);
-  CHECK(seen.jump == jump_by_brute_force(seen));
 }
 
 TEST_CASE("the jump is that of brute force on grids of any size", "[dn_field]") {

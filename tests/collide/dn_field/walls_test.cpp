@@ -11,8 +11,8 @@ namespace {
 using namespace tess::dn;
 using namespace tess::dn::test;
 
-Walls walls(const Surface& surface) {
-  return walls_of(surface, Bvh(surface));
+double thin(const Surface& surface, double depth) {
+  return thin_share(surface, Bvh(surface), depth);
 }
 
 /// Both, the second moved.
@@ -61,40 +61,26 @@ TEST_CASE("a segment crosses the triangles that brute force finds, at the same p
   CHECK(n_found > 100);
 }
 
-TEST_CASE("walls are as thick as they are", "[dn_field]") {
+TEST_CASE("the thin share of a body is that of its walls below the depth", "[dn_field]") {
   // Faces of 4 × 4 a wall's thickness apart: 32 of the area 32 + 4 × 4 × thickness.
   for (const double thickness : {1e-4, 0.05, 0.3}) {
-    const Walls plate = walls(make_box({2, 2, 0.5 * thickness}));
-    CHECK(plate.opposite.size() == 1024);
-    CHECK(plate.least == Approx(thickness).epsilon(0.001));
-    CHECK(plate.share_thinner(1.1 * thickness) == Approx(32 / (32 + 16 * thickness)).margin(0.002));
-    CHECK(plate.share_thinner(0.9 * thickness) == 0);
-    if (thickness > 0.01) CHECK(plate.opposite.back() == Approx(4).epsilon(0.01));
+    const Surface plate = make_box({2, 2, 0.5 * thickness});
+    CHECK(thin(plate, 1.1 * thickness) == Approx(32 / (32 + 16 * thickness)).margin(0.002));
+    CHECK(thin(plate, 0.9 * thickness) == 0);
   }
-  const Walls ball = walls(make_sphere(1, 40));
-  CHECK(ball.least > 1.98);
-  CHECK(ball.opposite.back() < 2.01);
+  CHECK(thin(make_sphere(1, 40), 1.9) < 0.01);
+  CHECK(thin(make_sphere(1, 40), 2.1) == 1);
 }
 
-TEST_CASE("an open sheet has no thickness, an edge is slanted, parts may overlap", "[dn_field]") {
-  CHECK(walls(make_plate(1, 4)).opposite.back() == 0);
-  CHECK(walls(without_last(make_box({1, 1, 1}), 2)).share_thinner(0.5) < 0.05);  // near the rim
-  // A pyramid: nothing looks the opposite way from a face, within 30 degrees; its rim is thin.
+TEST_CASE("open sheets and sharp edges are thin, parts may overlap", "[dn_field]") {
+  CHECK(thin(make_plate(1, 4), 1e-3) == 1);
+  CHECK(thin(without_last(make_box({1, 1, 1}), 2), 0.1) < 0.1);  // near the rim
   const Surface pyramid{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 1}},
                         {{3, 2, 1}, {3, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
-  CHECK(walls(pyramid).share_thinner(1.5) == 0);
-  CHECK(walls(pyramid).share_thinner_or_slanted(0.1) == Approx(0.17).margin(0.04));
+  CHECK(thin(pyramid, 0.1) == Approx(0.17).margin(0.04));  // its rim
   // Two boxes, the second reaching half into the first: through both is one wall.
   const Surface box = make_box({1, 1, 0.5});
-  const Walls joined = walls(beside(box, box, {0.01, 0.02, 0.5}));
-  CHECK(joined.share_thinner(1.4) < 0.45);  // faces inside of the other part see its far side
-  CHECK(joined.share_thinner(0.4) == 0);
-  CHECK(walls({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}).opposite.empty());
-  // A part too small to be met by the places.
-  const Walls with_fin =
-      walls(beside(make_box({20, 20, 5}), make_box({0.1, 0.1, 0.001}), {0, 0, 9}));
-  CHECK(with_fin.share_thinner(0.01) == 0);
-  CHECK(with_fin.least == Approx(0.002).epsilon(0.05));
+  CHECK(thin(beside(box, box, {0.01, 0.02, 0.5}), 0.4) == 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "collide/dn_field/build/winding_lines.hpp"
+#include "collide/dn_field/build/inside.hpp"
 
 #include <algorithm>
 
@@ -30,8 +30,9 @@ Range voxels_between(double low, double high, double origin, double cell, int n)
 
 }  // namespace
 
-WindingLines::WindingLines(Surface surface, const Grid& grid)
-    : surface_(std::move(surface)), grid_(grid) {
+Inside::Inside(Surface surface, const Bvh& tree, const Grid& grid)
+    : surface_(std::move(surface)), tree_(tree), grid_(grid), closed_(is_closed(surface_)) {
+  if (!closed_) return;
   const auto layers_of = [&](std::size_t t) {
     const auto [a, b, c] = surface_.corners(t);
     const auto [low, high] = std::minmax({a.z, b.z, c.z});
@@ -47,10 +48,11 @@ WindingLines::WindingLines(Surface surface, const Grid& grid)
       triangles_[begin_[static_cast<std::size_t>(k) + 1]++] = static_cast<std::uint32_t>(t);
 }
 
-void WindingLines::cross(std::uint32_t triangle, int k, std::span<std::int16_t> change) const {
+/// Adds to `change` what the winding number changes by at each voxel of each line.
+void Inside::count_crossings(std::uint32_t triangle, int k, std::span<std::int16_t> change) const {
   const auto [ia, ib, ic] = surface_.triangles[triangle];
   const auto [a, b, c] = surface_.corners(triangle);
-  const Vec3 normal = tess::dn::cross(b - a, c - a);
+  const Vec3 normal = cross(b - a, c - a);
   if (normal.x == 0) return;
   const int nx = grid_.n[0];
   const auto [low, high] = std::minmax({a.y, b.y, c.y});
@@ -66,20 +68,26 @@ void WindingLines::cross(std::uint32_t triangle, int k, std::span<std::int16_t> 
   }
 }
 
-void WindingLines::layer(int k, std::span<std::int16_t> winding) const {
-  const auto nx = static_cast<std::size_t>(grid_.n[0]), ny = static_cast<std::size_t>(grid_.n[1]);
+void Inside::layer(int k, std::span<std::uint8_t> inside) const {
+  const auto [nx, ny, nz] = grid_.n;
+  const auto line_size = static_cast<std::size_t>(nx) + 1;
   // The last entry of a line counts crossings behind its last voxel.
-  std::vector<std::int16_t> change(ny * (nx + 1), 0);
-  const auto at = static_cast<std::size_t>(k);
-  for (std::size_t i = begin_[at]; i < begin_[at + 1]; ++i) cross(triangles_[i], k, change);
-  for (std::size_t j = 0; j < ny; ++j) {
-    const auto line = winding.subspan(j * nx, nx);
-    int so_far = 0;
-    for (std::size_t i = 0; i < nx; ++i) {
-      so_far += change[j * (nx + 1) + i];
-      line[i] = static_cast<std::int16_t>(so_far);
-    }
-    if (so_far + change[j * (nx + 1) + nx] != 0) std::fill(line.begin(), line.end(), unknown);
+  std::vector<std::int16_t> change(static_cast<std::size_t>(ny) * line_size, 0);
+  if (closed_)
+    for (auto i = begin_[static_cast<std::size_t>(k)]; i < begin_[static_cast<std::size_t>(k) + 1];
+         ++i)
+      count_crossings(triangles_[i], k, change);
+  for (int j = 0; j < ny; ++j) {
+    const auto line = std::span(change).subspan(static_cast<std::size_t>(j) * line_size, line_size);
+    int winding = 0;
+    for (std::int16_t& at : line) at = static_cast<std::int16_t>(winding += at);
+    // A count that does not end at zero lost a crossing to rounding.
+    const bool is_known = closed_ && winding == 0;
+    for (int i = 0; i < nx; ++i)
+      inside[grid_.index(i, j, 0)] = (is_known ? line[static_cast<std::size_t>(i)] > 0
+                                               : tree_.is_inside(grid_.centre(i, j, k)))
+                                         ? 1
+                                         : 0;
   }
 }
 

@@ -1,6 +1,6 @@
-// The rules that change only the velocity of particles near a surface: the surface flow and the
-// quadratic surface drag. They are loops of their own over a block: a chain of a root, a quotient
-// and polynomials then overlaps with that of the next vector. Private to the step loop.
+// The surface flow, which changes only the velocity of particles near a surface. It is a loop of its
+// own over a block: a chain of a root, a quotient and polynomials then overlaps with that of the next
+// vector. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/rules/nearest_surface.hpp"
@@ -11,14 +11,6 @@ struct FlowConstants {
   double turn_in = 0, turn_out = 0;  ///< alpha × step
   double distance = 0;
 };
-
-/// Quadratic drag toward the surface's velocity, of particles closer than `threshold`.
-void drag_quadratic(double rate_time, double threshold, Setting setting,
-                    const ParticleSpan& particles, const NearestSurface& nearest);
-
-/// The surface flow, of particles closer than its distance.
-void turn_to_surface(const FlowConstants& flow, Setting setting, const ParticleSpan& particles,
-                     const NearestSurface& nearest);
 
 namespace lanes {
 
@@ -81,4 +73,12 @@ void flow_loop(const FlowConstants& constants, const ParticleSpan& span,
 }
 
 }  // namespace lanes
+
+/// Turns the velocities of particles closer than the flow's distance.
+inline void turn_to_surface(const FlowConstants& flow, Setting setting,
+                            const ParticleSpan& particles, const NearestSurface& nearest) {
+  lanes::with<Setting::one_at_rest, Setting::general>(
+      setting, [&]<Setting Where> { lanes::flow_loop<Where>(flow, particles, nearest); });
+}
+
 }  // namespace tess::dn
