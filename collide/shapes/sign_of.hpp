@@ -20,16 +20,16 @@ struct RoundedNumber {
   double error = 0;
 
   friend RoundedNumber operator+(RoundedNumber a, RoundedNumber b) noexcept {
-    const double value = a.value + b.value;
-    return {value, a.error + b.error + unit * std::abs(value)};
+    const double sum = a.value + b.value;
+    return {sum, a.error + b.error + unit * std::abs(sum)};
   }
   friend RoundedNumber operator-(RoundedNumber a, RoundedNumber b) noexcept {
     return a + RoundedNumber{-b.value, b.error};
   }
   friend RoundedNumber operator*(RoundedNumber a, RoundedNumber b) noexcept {
-    const double value = a.value * b.value;
-    return {value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error +
-                       unit * std::abs(value) + smallest};
+    const double product = a.value * b.value;
+    return {product, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error +
+                         unit * std::abs(product) + smallest};
   }
   /// Whether the value is certain to `share` of it. The bound itself is rounded, hence the factor.
   [[nodiscard]] bool is_within(double share) const noexcept {
