@@ -18,10 +18,13 @@ using tess::collide::Triangle;
 
 namespace {
 
+template <class Object>
+std::uint64_t hash_of(const std::vector<Object>& objects) {
+  return objects.empty() ? tess::hash_bytes("", 0)
+                         : tess::hash_bytes(objects.data(), objects.size() * sizeof(Object));
+}
 std::uint64_t fingerprint(const Scene& scene) {
-  const auto boxes = boxes_of(scene);
-  return tess::hash_bytes(boxes.data(), boxes.size() * sizeof(Aabb)) ^
-         tess::hash_bytes(scene.triangles.data(), scene.triangles.size() * sizeof(Triangle));
+  return hash_of(boxes_of(scene)) ^ hash_of(scene.triangles);
 }
 
 /// Pairs of boxes that overlap, closed; within models, too, if `within`.
