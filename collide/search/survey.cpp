@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <string>
+#include <utility>
 
 namespace tess::collide::search {
 namespace {
@@ -19,6 +20,12 @@ template <class Real, std::size_t D>
        " is not valid; give finite numbers with lo <= hi");
 }
 
+/// The upper end of a box beside each lower end.
+template <std::size_t D, class Eight, std::size_t... k>
+Eight upper_ends(const Eight& x, std::index_sequence<k...> /*lanes*/) {
+  return __builtin_shufflevector(x, x, (k < D ? k + D : k)...);
+}
+
 }  // namespace
 
 template <class Real, std::size_t D>
@@ -28,8 +35,6 @@ Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set
   // Eight numbers at a time: a box, and of the next one what fits.
   using Eight [[gnu::vector_size(8 * sizeof(Real))]] = Real;
   using Bits = decltype(Eight{} < Eight{});
-  Bits ends;  // the upper end beside each lower end
-  for (std::size_t k = 0; k < 8; ++k) ends[k] = static_cast<int>(k < D ? k + D : k);
   Eight least = Eight{} + std::numeric_limits<Real>::infinity(), greatest = -least;
   Bits bad{};
   const Real* at = boxes[0].lo.data();
@@ -39,7 +44,7 @@ Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set
     std::memcpy(&x, at, sizeof x);
     least = x < least ? x : least;
     greatest = x > greatest ? x : greatest;
-    bad |= ~(x <= __builtin_shuffle(x, ends));  // also for NaN
+    bad |= ~(x <= upper_ends<D>(x, std::make_index_sequence<8>()));  // also for NaN
   }
   bool good = true;
   for (std::size_t k = 0; k < D; ++k) {
