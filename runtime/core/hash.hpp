@@ -32,7 +32,7 @@ namespace tess {
     hash ^= hash >> 32U;
   }
   std::uint64_t tail = 0;
-  std::memcpy(&tail, at, n_bytes);
+  if (n_bytes != 0) std::memcpy(&tail, at, n_bytes);
   return mix(hash ^ tail);
 }
 
