@@ -1,10 +1,21 @@
 #include "collide/parallel/object_list.hpp"
 
+#include "collide/search/entry.hpp"
+#include "runtime/core/error.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 namespace tess::collide {
+
+/// Entries have 28 bits for an object.
+void ObjectList::check_room(std::size_t n_more) const {
+  if (boxes_.size() + n_more > search::most_objects)
+    fail(ErrorCode::bad_value, "collider: ", boxes_.size() + n_more,
+         " objects were submitted on one PE; the limit is ", search::most_objects,
+         ": spread them over more PEs");
+}
 
 void ObjectList::number_objects() {
   if (local_.size() == boxes_.size()) return;
@@ -30,6 +41,7 @@ void ObjectList::append(Objects objects) {
       check_boxes(
           {{Item{objects.boxes[i], {objects.owner, static_cast<LocalId>(i), objects.model}}}});
   if (objects.boxes.empty()) return;
+  check_room(objects.boxes.size());
   const std::uint32_t of = source(objects.owner, objects.model);
   if (boxes_.empty() && of == 0) {
     boxes_ = std::move(objects.boxes);
@@ -45,6 +57,7 @@ void ObjectList::append(Objects objects) {
 
 void ObjectList::append(std::span<const Item> items) {
   check_boxes(items);
+  check_room(items.size());
   number_objects();
   boxes_.reserve(boxes_.size() + items.size());
   for (const Item& item : items) {

@@ -19,7 +19,8 @@ struct Objects {
 
 class ObjectList {
  public:
-  /// Both throw Error (bad_value) with the object if a box is not valid, and change nothing.
+  /// Both throw Error (bad_value) with the object if a box is not valid, or with the number of
+  /// objects if it is above 2^28, and change nothing.
   void append(Objects objects);
   void append(std::span<const Item> items);
   /// An object of another list; its box is valid.
@@ -53,6 +54,7 @@ class ObjectList {
     std::uint32_t unused = 0;
     friend bool operator==(const Source&, const Source&) = default;
   };
+  void check_room(std::size_t n_more) const;
   /// Sets the numbers of the objects that have none.
   void number_objects();
   std::uint32_t source(OwnerId owner, ModelId model);
