@@ -46,6 +46,16 @@ class Part {
     return {delivery_->sorted.data() + begin_ + n_natives_, n_visitors_};
   }
 
+  /// Adds the objects of some of its entries to a list, and their entries there.
+  void copy(std::span<const search::Entry> entries, ObjectList& objects,
+            std::vector<search::Entry>& copies) const {
+    for (const search::Entry entry : entries) {
+      const auto n = static_cast<std::uint32_t>(objects.boxes().size());
+      objects.append(delivery_->objects, search::object_of(entry));
+      copies.push_back(search::make_entry(n, search::below_of(entry)));
+    }
+  }
+
   template <class Ar>
   void serialize(Ar& ar) {
     if constexpr (Ar::is_reading) {
@@ -64,12 +74,8 @@ class Part {
   void make_alone() {
     if (delivery_->sorted.size() == n_natives_ + n_visitors_) return;
     auto alone = std::make_shared<Delivery>(Delivery{delivery_->plan, delivery_->report, {}, {}});
-    for (const auto entries : {natives(), visitors()})
-      for (const search::Entry entry : entries) {
-        const auto n = static_cast<std::uint32_t>(alone->sorted.size());
-        alone->objects.append(delivery_->objects, search::object_of(entry));
-        alone->sorted.push_back(search::make_entry(n, search::below_of(entry)));
-      }
+    copy(natives(), alone->objects, alone->sorted);
+    copy(visitors(), alone->objects, alone->sorted);
     delivery_ = std::move(alone);
     begin_ = 0;
   }

@@ -78,9 +78,9 @@ class VoxelProblem {
     }
     merged_ = {};
     entries_.clear();
-    for (const Part& part : parts) add(part, part.natives());
+    for (const Part& part : parts) part.copy(part.natives(), merged_, entries_);
     const std::size_t n_natives = entries_.size();
-    for (const Part& part : parts) add(part, part.visitors());
+    for (const Part& part : parts) part.copy(part.visitors(), merged_, entries_);
     objects_ = &merged_;
     natives_ = std::span(entries_).first(n_natives);
     visitors_ = std::span(entries_).subspan(n_natives);
@@ -107,14 +107,6 @@ class VoxelProblem {
   [[nodiscard]] const ObjectList& objects() const { return *objects_; }
 
  private:
-  void add(const Part& part, std::span<const search::Entry> entries) {
-    for (const search::Entry entry : entries) {
-      const auto n = static_cast<std::uint32_t>(merged_.boxes().size());
-      merged_.append(part.delivery().objects, search::object_of(entry));
-      entries_.push_back(search::make_entry(n, search::below_of(entry)));
-    }
-  }
-
   const ObjectList* objects_ = nullptr;
   std::span<const search::Entry> natives_, visitors_;
   ObjectList merged_;
@@ -152,9 +144,7 @@ void search_pairs(std::span<const Part> parts) {
   options.touching = rules.touching;
   scratch.search.restart(options, false, {&receiver, &Receiver::call});
   scratch.problem.for_each_search(rules.within_model, [&](const Problem& problem) {
-    Aabb bounds = no_box<double, 3>();
-    for (const search::Entry entry : problem.a)
-      bounds = merged(bounds, problem.boxes_a[search::object_of(entry)]);
+    const Aabb bounds = search::bounds_of(problem.boxes_a, problem.a);
     static_cast<void>(scratch.search.solve(problem, bounds, false));
   });
   receiver.hits.send(delivery.report.call);

@@ -1,6 +1,7 @@
 #include "collide/search/choose_grid.hpp"
 
 #include "collide/search/costs.hpp"
+#include "collide/search/instantiate.hpp"
 #include "collide/search/wide.hpp"
 
 #include <algorithm>
@@ -153,13 +154,8 @@ Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Bo
 
 #define TESS_INSTANTIATE(Real, D)      \
   template class GridChooser<Real, D>; \
-  template CellAt<D> cells_of_size(const Box<Real, D>&, double, double)
-TESS_INSTANTIATE(float, 2);
-TESS_INSTANTIATE(float, 3);
-TESS_INSTANTIATE(float, 4);
-TESS_INSTANTIATE(double, 2);
-TESS_INSTANTIATE(double, 3);
-TESS_INSTANTIATE(double, 4);
+  template CellAt<D> cells_of_size(const Box<Real, D>&, double, double);
+TESS_FOR_EACH_KIND_OF_BOX(TESS_INSTANTIATE)
 #undef TESS_INSTANTIATE
 
 }  // namespace tess::collide::search

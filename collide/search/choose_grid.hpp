@@ -28,6 +28,14 @@ struct Problem {
   }
 };
 
+/// The bounds of the objects' boxes.
+template <class Real, std::size_t D>
+[[nodiscard]] Box<Real, D> bounds_of(const Box<Real, D>* boxes, std::span<const Entry> entries) {
+  Box<Real, D> bounds = no_box<Real, D>();
+  for (const Entry entry : entries) bounds = merged(bounds, boxes[object_of(entry)]);
+  return bounds;
+}
+
 /// A position in a sample that does not follow a period of the input.
 [[nodiscard]] inline std::size_t scattered(std::size_t i, std::size_t n_samples, std::size_t n) {
   const std::size_t begin = i * n / n_samples, end = (i + 1) * n / n_samples;

@@ -1,7 +1,7 @@
 // The plan of a search: which sets are compared, on one level or on several.
 #include "collide/pairs.hpp"
 
-#include "collide/search/costs.hpp"
+#include "collide/search/instantiate.hpp"
 #include "collide/search/size_classes.hpp"
 #include "collide/search/survey.hpp"
 #include "collide/search/voxel_search.hpp"
@@ -97,10 +97,7 @@ class Plan {
     std::vector<Part> parts;
     const auto add = [&](const Problem<Real, D>& problem, bool swapped) {
       if (problem.n_comparisons() == 0) return;
-      TheBox bounds = no_box<Real, D>();
-      for (const Entry entry : problem.a)
-        bounds = merged(bounds, problem.boxes_a[object_of(entry)]);
-      parts.push_back({problem, bounds, swapped});
+      parts.push_back({problem, bounds_of(problem.boxes_a, problem.a), swapped});
     };
     for (std::size_t c = 0; c < n_classes; ++c) {
       if (whole.within_a) {
@@ -214,13 +211,8 @@ void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>>
 #define TESS_INSTANTIATE(Real, D)                                                          \
   template void search_pairs(std::span<const Box<Real, D>>, const PairOptions&, PairSink); \
   template void search_pairs(std::span<const Box<Real, D>>, std::span<const Box<Real, D>>, \
-                             const PairOptions&, PairSink)
-TESS_INSTANTIATE(float, 2);
-TESS_INSTANTIATE(float, 3);
-TESS_INSTANTIATE(float, 4);
-TESS_INSTANTIATE(double, 2);
-TESS_INSTANTIATE(double, 3);
-TESS_INSTANTIATE(double, 4);
+                             const PairOptions&, PairSink);
+TESS_FOR_EACH_KIND_OF_BOX(TESS_INSTANTIATE)
 #undef TESS_INSTANTIATE
 
 }  // namespace tess::collide::detail

@@ -1,5 +1,6 @@
 #include "collide/search/survey.hpp"
 
+#include "collide/search/instantiate.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cstring>
@@ -63,13 +64,8 @@ Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set
 }
 
 #define TESS_INSTANTIATE(Real, D) \
-  template Box<Real, D> checked_bounds(std::span<const Box<Real, D>>, const char*)
-TESS_INSTANTIATE(float, 2);
-TESS_INSTANTIATE(float, 3);
-TESS_INSTANTIATE(float, 4);
-TESS_INSTANTIATE(double, 2);
-TESS_INSTANTIATE(double, 3);
-TESS_INSTANTIATE(double, 4);
+  template Box<Real, D> checked_bounds(std::span<const Box<Real, D>>, const char*);
+TESS_FOR_EACH_KIND_OF_BOX(TESS_INSTANTIATE)
 #undef TESS_INSTANTIATE
 
 }  // namespace tess::collide::search

@@ -1,6 +1,7 @@
 #include "collide/search/voxel_search.hpp"
 
 #include "collide/search/costs.hpp"
+#include "collide/search/instantiate.hpp"
 
 #include <algorithm>
 
@@ -25,15 +26,6 @@ template <class Real, std::size_t D>
 void prefetch(const Box<Real, D>& box) {
   __builtin_prefetch(&box);
   __builtin_prefetch(&box.hi[D - 1]);
-}
-
-/// The bounds of the parts of the objects that lie in the region.
-template <class Real, std::size_t D>
-Box<Real, D> bounds_in(const Box<Real, D>* boxes, std::span<const Entry> entries,
-                       const Box<Real, D>& region) {
-  Box<Real, D> bounds = no_box<Real, D>();
-  for (const Entry entry : entries) bounds = merged(bounds, boxes[object_of(entry)]);
-  return clipped(bounds, region);
 }
 
 }  // namespace
@@ -62,7 +54,8 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
     compare(problem);
     return true;
   }
-  const TheBox bounds = depth == 0 ? region : bounds_in(problem.boxes_a, problem.a, region);
+  const TheBox bounds =
+      depth == 0 ? region : clipped(bounds_of(problem.boxes_a, problem.a), region);
   const Grid<Real, D> grid(bounds, choose(problem, bounds, depth));
   if (grid.size() == 1) {
     compare(problem);
@@ -309,11 +302,8 @@ void VoxelSearch<Real, D>::across(const TheProblem& problem) {
   }
 }
 
-template class VoxelSearch<float, 2>;
-template class VoxelSearch<float, 3>;
-template class VoxelSearch<float, 4>;
-template class VoxelSearch<double, 2>;
-template class VoxelSearch<double, 3>;
-template class VoxelSearch<double, 4>;
+#define TESS_INSTANTIATE(Real, D) template class VoxelSearch<Real, D>;
+TESS_FOR_EACH_KIND_OF_BOX(TESS_INSTANTIATE)
+#undef TESS_INSTANTIATE
 
 }  // namespace tess::collide::search
