@@ -1,5 +1,6 @@
-// Moves fields from one distributed mesh to another that overlaps it (the five steps of the ExaM2M
-// slides). Call these functions in a coroutine, on one PE:
+// Moves fields from one mesh to another that overlaps it (the five steps of the ExaM2M slides); the
+// library holds both meshes. Applications with meshes of their own use coupling.hpp. Call these
+// functions in a coroutine, on one PE:
 //
 // Sample: tests/samples/transfer.cpp
 //
@@ -28,42 +29,57 @@
 //     co_await first;
 //     co_await second;
 //
+// To move fields several times, keep the donors:
+//
+// Sample: tests/samples/transfer.cpp
+//
+//     Transfer repeated(source, target, {.policy = Nearest{}});
+//     co_await repeated.search();
+//     for (int step = 0; step < 10; ++step) co_await repeated.apply();
+//     co_await epoch([&] { repeated.destroy(); });
+//
 // If one of two concurrent transfers reads the mesh that the other writes, it sees the result of
 // the other completely or not at all. If both write to the same vertex, one of the two values
 // remains, and it is not defined which. Await the first transfer before the second if that matters.
 #pragma once
 
+#include "m2m/coupling.hpp"
 #include "m2m/parallel/scatter.hpp"
 #include "m2m/parallel/worker.hpp"
 
-#include <functional>
-
 namespace tess::m2m {
 
-struct TransferOptions {
-  Point voxel_origin{0, 0, 0};
-  Point voxel_size{1, 1, 1};
-  OutsidePolicy policy = Keep{};
-  /// Called with the name of each phase ("broad", "narrow", "report") when it starts; may be empty.
-  std::function<void(const char*)> on_phase{};
+using TransferOptions = CouplingOptions;
+
+/// A handle to the donors of the vertices of one mesh in another.
+class Transfer {
+ public:
+  /// Both meshes have equally many components.
+  Transfer(const DistributedMesh& source, const DistributedMesh& target,
+           const TransferOptions& options);
+
+  /// Finds the donors. `summary` may be null.
+  Task search(SearchSummary* summary = nullptr) { return coupling_.search(summary); }
+  /// Moves all fields. When the task is done, every target vertex has its value.
+  Task apply();
+  /// Frees what the Workers hold of it. The enclosing epoch includes this.
+  void destroy() { coupling_.destroy(); }
+
+ private:
+  Coupling<Worker, Worker> coupling_;
+  ArrayProxy<Worker> target_;
 };
 
 /// Times and counts of one transfer. Times are wall-clock seconds on the calling PE.
 struct TransferSummary {
-  double broad = 0;   ///< boxes to voxels, candidate pairs to the target
-  double narrow = 0;  ///< point location and interpolation
-  double report = 0;  ///< vertices outside, ghosts, end
+  double broad = 0;   ///< pairs of parts that are near
+  double narrow = 0;  ///< point location, vertices outside
+  double apply = 0;   ///< interpolation, values, ghosts
   Tally tally;        ///< of the target vertices
 };
 
-/// Moves all fields of `source` to `target`, which must have equally many components. When the task
-/// is done, every target vertex has its value. `summary` may be null.
+/// A search and one application.
 Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
               TransferSummary* summary);
-
-/// A voxel size for a transfer between these meshes: about 100 source tetrahedra per voxel, and not
-/// so small that cell indices exceed 32 bits. (Measured: with 30 tetrahedra a transfer takes a
-/// third longer, with 200 as long.) It depends only on the meshes.
-[[nodiscard]] Point suggest_voxel_size(const TetMesh& source, const TetMesh& target);
 
 }  // namespace tess::m2m

@@ -27,15 +27,16 @@ std::string explain(const Problem& problem, Output output) {
   if (r.chares > 1)
     out +=
         fmt::format("  Zoltan, which cuts each mesh into {} chares on {} PEs\n", r.chares, r.pes);
-  out += fmt::format("  voxels with edges of {:.4g}, only where there are tetrahedra or vertices\n",
-                     problem.voxel[0]);
+  out += "  covers of some dozens of tetrahedra or vertices each, whose boxes meet in voxels";
+  out += problem.voxel[0] == 0 ? "\n" : fmt::format(" with edges of {:.4g}\n", problem.voxel[0]);
   if (std::holds_alternative<Nearest>(problem.policy))
     out += "  the search for the nearest source vertex, for each vertex outside\n";
   if (output == Output::mesh) out += "  ExodusII output\n";
 
   out += "it leaves out\n";
   out += "  voxels in empty space, and the search in voxels that only one of the meshes touches\n";
-  out += "  pairs within a mesh, and reports of candidates to the source\n";
+  out += "  pairs within a mesh, and tetrahedra whose cover has no vertex near\n";
+  out += "  the search in further steps (--steps): the donors are kept\n";
   if (r.chares == 1) out += "  partitioning: each mesh is one chare\n";
   if (r.processes == 1) out += "  serialisation: within a process messages are moved, not packed\n";
   if (!std::holds_alternative<Nearest>(problem.policy))

@@ -32,6 +32,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
           "--repeat", options.repeat,
           "number of transfers; the times are those of the fastest (default: 1, with --study 3)")
       .between(1, 1000000);
+  line.option("--steps", request.steps,
+              "applications of each transfer's donors; the time of the fastest counts")
+      .between(1, 1000000);
   line.option("--out", options.out,
               "write the target mesh with the fields and the status to this ExodusII file");
   line.option("--picture", options.picture,

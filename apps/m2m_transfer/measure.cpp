@@ -2,6 +2,8 @@
 
 #include "m2m/transfer.hpp"
 
+#include <algorithm>
+
 namespace m2m_transfer {
 namespace {
 
@@ -62,17 +64,26 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   options.policy = problem.policy;
   options.on_phase = [&progress](const char* name) { progress.phase(name); };
   for (std::int32_t round = 0; round < problem.repeat; ++round) {
-    TransferSummary summary;
-    co_await transfer(source, target, options, &summary);
-    PhaseSeconds& best = report.seconds;
-    if (round == 0 || summary.broad + summary.narrow + summary.report < best.transfer()) {
-      best.broad = summary.broad;
-      best.narrow = summary.narrow;
-      best.report = summary.report;
+    Transfer transfer(source, target, options);
+    SearchSummary search;
+    co_await transfer.search(&search);
+    progress.phase("apply");
+    double apply = 0;
+    for (std::int32_t step = 0; step < problem.steps; ++step) {
+      const Time begin = now();
+      co_await transfer.apply();
+      apply = step == 0 ? seconds_since(begin) : std::min(apply, seconds_since(begin));
     }
+    PhaseSeconds& best = report.seconds;
+    if (round == 0 || search.broad + search.narrow + apply < best.transfer()) {
+      best.broad = search.broad;
+      best.narrow = search.narrow;
+      best.apply = apply;
+    }
+    co_await epoch([&] { transfer.destroy(); });
     if (round != 0) continue;
-    report.counts = summary.tally.counts;
-    report.n_candidates = summary.tally.n_candidates;
+    report.counts = search.tally.counts;
+    report.n_candidates = search.tally.n_candidates;
     gauge.broadcast<&Gauge::read>(after.callback());
     report.footprint.bytes_sent = (co_await after).bytes_sent - sent_before.bytes_sent;
   }

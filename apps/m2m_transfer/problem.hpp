@@ -23,8 +23,9 @@ struct Request {
   std::string partition = "rcb";
   std::int32_t n_chares = 0;  ///< per mesh; 0: per_pe times the number of PEs
   std::int32_t per_pe = 8;
-  double voxel = 0;         ///< edge; 0: suggest_voxel_size()
+  double voxel = 0;         ///< edge; 0: chosen by the collider
   std::int32_t repeat = 1;  ///< number of transfers; the fastest counts
+  std::int32_t steps = 1;   ///< applications of each; the fastest counts
 };
 
 struct Problem {
@@ -35,7 +36,7 @@ struct Problem {
   OutsidePolicy policy{};
   PartitionMethod partition{};
   Point voxel{};
-  std::int32_t repeat = 1;
+  std::int32_t repeat = 1, steps = 1;
   TransferReport report{};  ///< load() fills in what is known before the run
 };
 

@@ -55,9 +55,9 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair.update(norms_of(r.fields.front().norms));
   pair["found"] = found_of(r.fields.front().found);
   pair["candidates"] = r.n_candidates;
-  pair["seconds"] = {{"read", r.seconds.read},     {"setup", r.seconds.setup},
-                     {"broad", r.seconds.broad},   {"narrow", r.seconds.narrow},
-                     {"report", r.seconds.report}, {"transfer", r.seconds.transfer()}};
+  pair["seconds"] = {{"read", r.seconds.read},   {"setup", r.seconds.setup},
+                     {"broad", r.seconds.broad}, {"narrow", r.seconds.narrow},
+                     {"apply", r.seconds.apply}, {"transfer", r.seconds.transfer()}};
   pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
   pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
   pair["bytes_sent"] = r.footprint.bytes_sent;
@@ -89,7 +89,8 @@ std::string table(const TransferReport& r) {
   };
   out += fmt::format("{} -> {}\n", r.source, r.target);
   line("machine", r.machine);
-  line("chares", fmt::format("{} per mesh, voxels of {:.4g}", r.chares, r.voxel));
+  line("chares", fmt::format("{} per mesh{}", r.chares,
+                             r.voxel == 0 ? "" : fmt::format(", voxels of {:.4g}", r.voxel)));
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
   if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
   if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
@@ -116,9 +117,9 @@ std::string table(const TransferReport& r) {
   line("worst at",
        fmt::format("({:.4g}, {:.4g}, {:.4g})", r.worst_at[0], r.worst_at[1], r.worst_at[2]));
   out += fmt::format("  {:<12} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "seconds", "setup", "broad",
-                     "narrow", "report", "transfer");
+                     "narrow", "apply", "transfer");
   out += fmt::format("  {:<12} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f}\n", "",
-                     r.seconds.setup, r.seconds.broad, r.seconds.narrow, r.seconds.report,
+                     r.seconds.setup, r.seconds.broad, r.seconds.narrow, r.seconds.apply,
                      r.seconds.transfer());
   line("memory",
        fmt::format("{:.1f} MB peak over {} {}, {:.1f} MB the greatest; {:.3f} MB sent between them",

@@ -12,10 +12,11 @@
 
 namespace m2m_transfer {
 
-/// Wall-clock seconds of the phases. `read`: on PE 0; `setup`: partition and distribution.
+/// Wall-clock seconds of the phases. `read`: on PE 0; `setup`: partition and distribution; `broad` and
+/// `narrow`: the search; `apply`: one application of the donors found.
 struct PhaseSeconds {
-  double read = 0, setup = 0, broad = 0, narrow = 0, report = 0;
-  [[nodiscard]] double transfer() const { return broad + narrow + report; }
+  double read = 0, setup = 0, broad = 0, narrow = 0, apply = 0;
+  [[nodiscard]] double transfer() const { return broad + narrow + apply; }
 };
 
 /// The error of one field.

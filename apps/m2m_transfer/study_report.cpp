@@ -149,7 +149,7 @@ std::string csv(const Study& study) {
   std::string out =
       "source,target,policy,field,edge,source_tets,targets,inside,boundary,snapped,outside,l2,"
       "l2_relative,rms,linf,l2_found,l2_relative_found,rms_found,linf_found,candidates,setup,broad,"
-      "narrow,report,transfer,bytes_sent,pes,"
+      "narrow,apply,transfer,bytes_sent,pes,"
       "processes,result_hash\n";
   for (const TransferReport& r : study.reports)
     for (const FieldError& field : r.fields)
@@ -162,7 +162,7 @@ std::string csv(const Study& study) {
                      field.norms.l2, field.norms.l2_relative, field.norms.rms, field.norms.linf,
                      field.found.l2, field.found.l2_relative, field.found.rms, field.found.linf,
                      r.n_candidates, r.seconds.setup, r.seconds.broad, r.seconds.narrow,
-                     r.seconds.report, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
+                     r.seconds.apply, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
                      r.processes, r.result_hash);
   return out;
 }

@@ -15,6 +15,7 @@
 #include "m2m/interpolate/candidate.hpp"
 #include "m2m/mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -69,6 +70,22 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
 /// The box of a tetrahedron, padded so that it holds every point that snaps to the tetrahedron. The
 /// broad phase uses it for the source; target points need no padding.
 [[nodiscard]] Aabb search_box(const std::array<Point, 4>& corners);
+
+/// Contains the search_box() of every tetrahedron with corners in `box`, and costs less.
+[[nodiscard]] inline Aabb padded(const Aabb& box) {
+  double extent = 0, largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    extent += box.hi[axis] - box.lo[axis];  // the sum is at least an edge
+    largest = std::max({largest, -box.lo[axis], box.hi[axis]});
+  }
+  const double pad = 2.01 * (snap_edges * extent + snap_ulps * largest);
+  Aabb out = box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.lo[axis] -= pad;
+    out.hi[axis] += pad;
+  }
+  return out;
+}
 
 /// The four points of a tetrahedron.
 [[nodiscard]] inline std::array<Point, 4> corners_of(std::span<const Point> points,

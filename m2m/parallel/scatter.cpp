@@ -41,8 +41,6 @@ DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields, s
   out.workers = create<Worker>(range(n_parts));
   for (std::int32_t k = 0; k < n_parts; ++k) {
     MeshPart& part = parts[static_cast<std::size_t>(k)];
-    out.boxes.push_back(
-        collide::box_around(std::span(part.points).first(static_cast<std::size_t>(part.n_owned))));
     std::vector<double> rows = rows_of(part, fields, out.n_components);
     out.workers[{k}].send<&Worker::load>(
         PartLoad{std::move(part), out.n_components, std::move(rows)});

@@ -18,7 +18,6 @@ struct DistributedMesh {
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 0;
   std::size_t n_components = 0;  ///< of all fields together
-  std::vector<Aabb> boxes{};     ///< per part: of the vertices it owns; lo > hi if it owns none
 
   /// Frees the Workers on all PEs. No transfer may be running. The enclosing epoch includes this.
   void destroy() const { workers.destroy(); }

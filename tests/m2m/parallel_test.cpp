@@ -36,7 +36,6 @@ Case make_case(TetMesh source, TetMesh target, OutsidePolicy policy) {
     c.source_fields.push_back(sample(c.source, name, formula));
     c.target_fields.push_back({name, 1, std::vector<double>(c.target.n_points(), -7.0)});
   }
-  c.voxel = suggest_voxel_size(c.source, c.target);
   return c;
 }
 
@@ -88,6 +87,17 @@ void check_same(const Case& c, const Result& want, std::unique_ptr<Machine> mach
                         want.values[f].size() * sizeof(double)) == 0);
 }
 
+/// A third of the mesh's box, or as small as cells of 32 bits allow.
+double a_voxel(const TetMesh& mesh) {
+  const Aabb box = bounds(mesh);
+  double longest = 0, farthest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, box.hi[axis] - box.lo[axis]);
+    farthest = std::max({farthest, -box.lo[axis], box.hi[axis]});
+  }
+  return std::max(longest / 3, farthest * 0x1p-29);
+}
+
 void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
   const Result want = serial(c);
 #ifdef __SANITIZE_THREAD__
@@ -99,6 +109,7 @@ void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
     options.cost = Time(100);
     options.seed = seed;
     c.n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
+    c.voxel.fill(seed % 3 == 0 ? a_voxel(c.source) : 0);
     RuntimeOptions runtime_options;
     runtime_options.seed = seed;
     runtime_options.migration_chance = migration_chance(options);

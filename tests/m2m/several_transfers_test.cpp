@@ -18,13 +18,13 @@ using tess::test::transfer_serial;
 namespace {
 
 /// A mesh with one field of two components.
-struct Piece {
+struct MeshWithField {
   TetMesh mesh;
   Field field;
 };
 
-Piece piece(const char* name, double scale, double offset, const char* formula) {
-  Piece p{read_mesh(name), {"f", 2, {}}};
+MeshWithField piece(const char* name, double scale, double offset, const char* formula) {
+  MeshWithField p{read_mesh(name), {"f", 2, {}}};
   for (Point& point : p.mesh.points)
     for (double& x : point) x = x * scale + offset;
   const Field scalar = sample(p.mesh, formula, make_formula(formula, bounds(p.mesh)));
@@ -35,7 +35,8 @@ Piece piece(const char* name, double scale, double offset, const char* formula) 
   return p;
 }
 
-std::vector<Status> transfer_alone(const Piece& from, Piece& to, const OutsidePolicy& policy) {
+std::vector<Status> transfer_alone(const MeshWithField& from, MeshWithField& to,
+                                   const OutsidePolicy& policy) {
   return transfer_serial(from.mesh, std::span(&from.field, 1), to.mesh, std::span(&to.field, 1),
                          policy)
       .status;
@@ -66,16 +67,16 @@ struct Parts {
   std::int32_t a = 0, b = 0;
 };
 
-DistributedMesh spread(const Piece& p, std::int32_t n_parts) {
+DistributedMesh spread(const MeshWithField& p, std::int32_t n_parts) {
   return scatter(p.mesh, {p.field}, n_parts, PartitionMethod::rcb);
 }
 
-TransferOptions options_of(const Piece& from, const Piece& to, const OutsidePolicy& policy) {
-  return {{0.1, 0, 0}, suggest_voxel_size(from.mesh, to.mesh), policy};
+TransferOptions options_of(const OutsidePolicy& policy) {
+  return {{0.1, 0, 0}, {0, 0, 0}, policy};
 }
 
 /// Requires equality. A failure does not print the lists.
-void require_same(const Held& got, const Piece& want, const std::vector<Status>& status) {
+void require_same(const Held& got, const MeshWithField& want, const std::vector<Status>& status) {
   const bool same_values = got.values == want.field.values;
   const bool same_status = got.status == status;
   REQUIRE(same_values);
@@ -84,12 +85,12 @@ void require_same(const Held& got, const Piece& want, const std::vector<Status>&
 
 /// Two meshes and a policy. Each mesh has vertices outside the other.
 struct MeshPair {
-  Piece a = piece("kuhn:4@0.2", 1, 0, "sin");
-  Piece b = piece("kuhn:6@0.1", 1.1, -0.05, "gaussian");
+  MeshWithField a = piece("kuhn:4@0.2", 1, 0, "sin");
+  MeshWithField b = piece("kuhn:6@0.1", 1.1, -0.05, "gaussian");
   OutsidePolicy policy{};
 
-  [[nodiscard]] TransferOptions there() const { return options_of(a, b, policy); }
-  [[nodiscard]] TransferOptions back() const { return options_of(b, a, policy); }
+  [[nodiscard]] TransferOptions there() const { return options_of(policy); }
+  [[nodiscard]] TransferOptions back() const { return options_of(policy); }
 };
 
 struct Spread {

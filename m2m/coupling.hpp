@@ -1,0 +1,145 @@
+// Moves fields between the meshes of two arrays of chares. The chares are the application's own:
+// each holds a piece of its mesh, shows it as spans, and gets values in its own memory.
+//
+// Sample: tests/samples/coupling.cpp
+//
+//     SAMPLE
+//
+// A search finds the donors of every target point, once; apply() moves a field, any number of
+// times. If a mesh moves, search again. Values travel from piece to piece; no PE collects them. Any
+// number of couplings may exist and be in flight. A piece may be source and target of several.
+//
+// apply() is a broadcast to the source pieces in an epoch. Pieces can also start on their own,
+// without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a
+// target piece's received() is called when all of its rows are there.
+//
+// The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
+// voxels, or the order of messages.
+#pragma once
+
+#include "m2m/parallel/piece.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace tess::m2m {
+
+struct CouplingOptions {
+  Point voxel_origin{0, 0, 0};
+  Point voxel_size{0, 0, 0};      ///< zero: chosen
+  OutsidePolicy policy = Keep{};  ///< for target points outside the source
+  /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
+  std::function<void(const char*)> on_phase{};
+};
+
+/// Times and counts of a search. Times are wall-clock seconds on the calling PE.
+struct SearchSummary {
+  double broad = 0;   ///< covers, voxels, pairs of pieces that are near
+  double narrow = 0;  ///< point location, points outside
+  Tally tally;        ///< of the target points
+};
+
+/// A coupling from an array of S to an array of T, which are Pieces. A handle: it can be copied.
+template <class S, class T>
+class Coupling {
+ public:
+  Coupling() = default;
+  Coupling(ArrayProxy<S> source, ArrayProxy<T> target, CouplingOptions options = {})
+      : source_(source), target_(target), options_(std::move(options)) {}
+
+  /// Valid after the first search.
+  [[nodiscard]] CouplingId id() const { return setup_.id; }
+
+  /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no
+  /// application of this coupling is under way. `summary` may be null.
+  Task search(SearchSummary* summary = nullptr);
+
+  /// Gives the field that Give shows to the memory that Take shows, for example
+  /// apply<&Fluid::temperature, &Solid::heat>(). When the task is done, all target pieces have it.
+  ///   Give: std::span<const double> S::f() const, n_points × n_components, ghosts included
+  ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs
+  /// Each may take the CouplingId.
+  template <auto Give, auto Take>
+  Task apply();
+
+  /// Frees what the pieces and PEs hold of this coupling. The enclosing epoch includes this.
+  void destroy() {
+    if (setup_.id == CouplingId{}) return;
+    source_.template broadcast<&Piece<S>::m2m_release_source>(setup_.id);
+    target_.template broadcast<&Piece<T>::m2m_release_target>(setup_.id);
+    setup_.collider.destroy();
+    setup_.ledger.destroy();
+    setup_ = {};
+  }
+
+ private:
+  void enter(const char* phase) const {
+    if (options_.on_phase) options_.on_phase(phase);
+  }
+
+  ArrayProxy<S> source_;
+  ArrayProxy<T> target_;
+  CouplingOptions options_;
+  CouplingSetup setup_;
+};
+
+template <class S, class T>
+Task Coupling<S, T>::search(SearchSummary* summary) {
+  enter("broad");
+  const Time start = now();
+  if (setup_.id == CouplingId{}) {
+    setup_.source = source_.id();
+    setup_.target = target_.id();
+    setup_.policy = options_.policy;
+    co_await epoch([&] {
+      setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
+      setup_.ledger = create_group<Ledger>();
+      // Each coupling has its own collider.
+      setup_.id = CouplingId{setup_.collider.voxels.id().value};
+    });
+  }
+  co_await epoch([&] {
+    source_.template broadcast<&Piece<S>::m2m_submit_source>(setup_);
+    target_.template broadcast<&Piece<T>::m2m_submit_target>(setup_);
+  });
+  // Named, because g++ 12 destroys an aggregate twice if it is written in a co_await expression.
+  const collide::Report to_target{
+      Callback<collide::Hits>(detail::target_kind<T>,
+                              to_bytes(std::tuple(target_.id(), setup_.id))),
+      detail::target_model};
+  co_await collide::run_collision(setup_.collider, to_target);
+  std::vector<SourcePiece> sources;
+  if (std::holds_alternative<Nearest>(options_.policy)) {
+    Future<LedgerPage> page;
+    setup_.ledger.template broadcast<&Ledger::close_page>(page.callback());
+    LedgerPage all = co_await page;
+    sources = std::move(all.sources);
+    std::sort(sources.begin(), sources.end(),
+              [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
+  }
+  const Time broad = now();
+  enter("narrow");
+  co_await epoch(
+      [&] { target_.template broadcast<&Piece<T>::template m2m_ask<S>>(setup_.id, sources); });
+  Future<LedgerPage> page;
+  setup_.ledger.template broadcast<&Ledger::close_page>(page.callback());
+  const LedgerPage found = co_await page;
+  if (summary != nullptr) *summary = {seconds(broad - start), seconds(now() - broad), found.tally};
+}
+
+template <class S, class T>
+template <auto Give, auto Take>
+Task Coupling<S, T>::apply() {
+  TESS_CHECK(setup_.id != CouplingId{},
+             "a coupling is applied before its first search: "
+             "co_await search() first");
+  const CouplingId id = setup_.id;
+  co_await epoch([&] {
+    source_.template broadcast<&Piece<S>::template m2m_give<T, Give, Take>>(id);
+    target_.template broadcast<&Piece<T>::template m2m_take_if_alone<Take>>(id);
+  });
+}
+
+}  // namespace tess::m2m

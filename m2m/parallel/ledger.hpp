@@ -1,0 +1,49 @@
+// Sums of a coupling over its pieces, kept per PE. Pieces do not contribute to a reduction of their
+// own array: it would mix with the application's reductions.
+#pragma once
+
+#include "collide/hit.hpp"
+#include "m2m/mesh.hpp"
+#include "m2m/tally.hpp"
+#include "runtime/runtime.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace tess::m2m {
+
+/// A source piece and the box around the points it owns.
+struct SourcePiece {
+  collide::OwnerId owner{};
+  Aabb box{};
+};
+
+struct LedgerPage {
+  Tally tally;
+  std::vector<SourcePiece> sources;
+};
+/// Joins the pages of all PEs.
+struct JoinPages {
+  LedgerPage operator()(LedgerPage a, const LedgerPage& b) const {
+    a.tally += b.tally;
+    a.sources.insert(a.sources.end(), b.sources.begin(), b.sources.end());
+    return a;
+  }
+};
+
+class Ledger : public Group<Ledger> {
+ public:
+  /// Called by pieces on this PE.
+  void add(const Tally& tally) { page_.tally += tally; }
+  void add(const SourcePiece& source) { page_.sources.push_back(source); }
+
+  /// Entry method: gives the sums since the last call.
+  void close_page(Callback<LedgerPage> target) {
+    contribute(JoinPages{}, std::exchange(page_, {}), std::move(target));
+  }
+
+ private:
+  LedgerPage page_;
+};
+
+}  // namespace tess::m2m

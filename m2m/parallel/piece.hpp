@@ -1,0 +1,218 @@
+// The part of the library in a chare that holds a piece of a mesh: its entry methods, which receive
+// the messages of searches and applications (messages.hpp), and the state of its couplings. The
+// work is in SourceSide and TargetSide.
+//
+//   step       at the source            message         at the target
+//   ---------  -----------------------  --------------  --------------------------------------
+//   submit     boxes of its cover       → collider ←    boxes around its points
+//   hits                                                collects the source pieces near
+//   ask                                 ← DonorQuery    sends its points there
+//   answer     locates the points       DonorAnswer →   keeps the best candidate of each
+//   outside    its nearest vertex       ← NearestQuery  if the policy says so
+//                                       NearestAnswer →
+//   choose     keeps what was chosen    ← Choice        decides
+//   give       interpolates             Rows →          writes a round that is complete
+#pragma once
+
+#include "m2m/parallel/source_side.hpp"
+#include "m2m/parallel/target_side.hpp"
+#include "runtime/core/hash.hpp"
+#include "runtime/runtime.hpp"
+
+#include <map>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace tess::m2m {
+
+namespace detail {
+
+/// The two sides of a collision, as models.
+inline constexpr collide::ModelId source_model{1};
+inline constexpr collide::ModelId target_model{2};
+
+/// Calls a chare's accessor to its values, which may take the coupling.
+template <auto F, class C>
+auto values_of(C& chare, CouplingId coupling) {
+  if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
+    return (chare.*F)(coupling);
+  } else {
+    return (chare.*F)();
+  }
+}
+
+}  // namespace detail
+
+/// The couplings that a piece is part of. It migrates with the piece.
+struct Couplings {
+  std::map<CouplingId, SourceSide> sources;
+  std::map<CouplingId, TargetSide> targets;
+
+  [[nodiscard]] SourceSide& source(CouplingId id);
+  [[nodiscard]] TargetSide& target(CouplingId id);
+  [[nodiscard]] const TargetSide& target(CouplingId id) const;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(sources, targets);
+  }
+};
+
+/// A second base class of a chare that holds a piece of a mesh. The chare has a member function
+/// `MeshView mesh_view() const`; if it migrates, it serialises `couplings`. If it has a member
+/// function `received(CouplingId)`, that is called after new values were written.
+template <class C>
+class Piece {
+ public:
+  Couplings couplings;
+
+  /// Where the points of this piece lie in the source of a coupling: per point owned.
+  [[nodiscard]] std::span<const Status> status(CouplingId id) const {
+    return couplings.target(id).status();
+  }
+
+  /// Gives the values that Give returns to the pieces of the coupling's target, which are of class
+  /// T: F of each is the memory that they go to. The k-th call of every source piece belongs to the
+  /// k-th round; a target piece gets a round when it is complete. Give may be const.
+  template <class T, auto Give, auto Take>
+  void m2m_give(CouplingId id) {
+    SourceSide& from = couplings.source(id);
+    const std::span<const double> values = detail::values_of<Give>(self(), id);
+    const std::size_t n_points = self().mesh_view().points.size();
+    TESS_CHECK(n_points == 0 || values.size() % n_points == 0, "a piece of ", n_points,
+               " points gives ", values.size(), " values: give points × components");
+    from.give(values, n_points == 0 ? 0 : values.size() / n_points, channel<Take>(),
+              [&](collide::OwnerId target, Rows rows) {
+                rows.from = me();
+                at<T>(from.setup.target, target)
+                    .template send<&Piece<T>::template m2m_take<Take>>(std::move(rows));
+              });
+  }
+  /// A piece without sources has nothing to wait for.
+  template <auto Take>
+  void m2m_take_if_alone(CouplingId id) {
+    const TargetSide& to = couplings.target(id);
+    if (to.n_sources() != 0) return;
+    to.set_outside(detail::values_of<Take>(self(), id));
+    notify(id);
+  }
+  template <auto Take>
+  void m2m_take(Rows rows) {
+    const CouplingId id = rows.coupling;
+    couplings.target(id).add(std::move(rows));
+    while (couplings.target(id).take_next(channel<Take>(), detail::values_of<Take>(self(), id)))
+      notify(id);
+  }
+
+  void m2m_submit_source(const CouplingSetup& setup) {
+    SourceSide& from = couplings.sources[setup.id];
+    from.setup = setup;
+    const MeshView mesh = self().mesh_view();
+    setup.collider.submit({me(), detail::source_model, from.start_search(mesh)});
+    if (std::holds_alternative<Nearest>(setup.policy))
+      setup.ledger.local().add(SourcePiece{me(), collide::box_around(mesh.owned())});
+  }
+  void m2m_submit_target(const CouplingSetup& setup) {
+    TargetSide& to = couplings.targets[setup.id];
+    to.setup = setup;
+    setup.collider.submit({me(), detail::target_model, to.start_search(self().mesh_view())});
+  }
+  void m2m_hits(CouplingId id, const collide::Hits& hits) { couplings.target(id).add(hits); }
+
+  template <class S>
+  void m2m_ask(CouplingId id, const std::vector<SourcePiece>& sources) {
+    TargetSide& to = couplings.target(id);
+    for (auto& [source, query] : to.donor_queries(self().mesh_view(), sources)) {
+      query.from = me();
+      at<S>(to.setup.source, source)
+          .template send<&Piece<S>::template m2m_answer<C>>(std::move(query));
+    }
+    ask_on<S>(to);
+  }
+  template <class T>
+  void m2m_answer(const DonorQuery& query) {
+    SourceSide& from = couplings.source(query.coupling);
+    DonorAnswer answer = from.answer(self().mesh_view(), query);
+    answer.from = me();
+    at<T>(from.setup.target, query.from)
+        .template send<&Piece<T>::template m2m_receive_donors<C>>(std::move(answer));
+  }
+  template <class S>
+  void m2m_receive_donors(const DonorAnswer& answer) {
+    TargetSide& to = couplings.target(answer.coupling);
+    to.add(answer);
+    ask_on<S>(to);
+  }
+  template <class T>
+  void m2m_answer_nearest(NearestQuery query) {
+    SourceSide& from = couplings.source(query.coupling);
+    const collide::OwnerId target = query.from;
+    NearestAnswer answer = from.answer(self().mesh_view(), std::move(query));
+    answer.from = me();
+    at<T>(from.setup.target, target)
+        .template send<&Piece<T>::template m2m_receive_nearest<C>>(std::move(answer));
+  }
+  template <class S>
+  void m2m_receive_nearest(const NearestAnswer& answer) {
+    TargetSide& to = couplings.target(answer.coupling);
+    to.add(answer);
+    ask_on<S>(to);
+  }
+  void m2m_choose(Choice choice) { couplings.source(choice.coupling).choose(std::move(choice)); }
+
+  void m2m_release_source(CouplingId id) { couplings.sources.erase(id); }
+  void m2m_release_target(CouplingId id) { couplings.targets.erase(id); }
+
+ private:
+  friend C;
+  Piece() = default;
+
+  [[nodiscard]] C& self() { return static_cast<C&>(*this); }
+  [[nodiscard]] collide::OwnerId me() { return collide::owner_of(self().index()); }
+  template <class Other>
+  [[nodiscard]] static auto at(CollectionId array, collide::OwnerId piece) {
+    return ArrayProxy<Other>(array)[collide::index_of<typename Other::Index>(piece)];
+  }
+  template <auto Take>
+  [[nodiscard]] static std::uint64_t channel() {
+    const std::string_view key = naming::name_of<Take>().key;
+    return hash_bytes(key.data(), key.size());
+  }
+  void notify(CouplingId id) {
+    if constexpr (requires(C& chare) { chare.received(id); }) self().received(id);
+  }
+  /// Goes on with a search once all answers are there.
+  template <class S>
+  void ask_on(TargetSide& to) {
+    if (!to.has_all_answers()) return;
+    auto queries = to.nearest_queries(self().mesh_view());
+    for (auto& [source, query] : queries) {
+      query.from = me();
+      at<S>(to.setup.source, source)
+          .template send<&Piece<S>::template m2m_answer_nearest<C>>(std::move(query));
+    }
+    if (!queries.empty()) return;
+    for (auto& [source, choice] : to.choices()) {
+      choice.from = me();
+      at<S>(to.setup.source, source).template send<&Piece<S>::m2m_choose>(std::move(choice));
+    }
+    to.setup.ledger.local().add(to.tally());
+  }
+};
+
+namespace detail {
+template <class T>
+void call_target(const Callback<collide::Hits>& callback, collide::Hits&& hits) {
+  const auto [target, coupling] =
+      from_bytes<std::tuple<CollectionId, CouplingId>>(callback.where());
+  const auto owner = collide::index_of<typename T::Index>(hits.owner);
+  ArrayProxy<T>(target)[owner].template send<&Piece<T>::m2m_hits>(coupling, std::move(hits));
+}
+template <class T>
+inline const Callback<collide::Hits>::Kind target_kind{naming::name_of<&call_target<T>>(),
+                                                       &call_target<T>};
+}  // namespace detail
+
+}  // namespace tess::m2m

@@ -1,0 +1,68 @@
+#include "m2m/parallel/source_side.hpp"
+
+#include "m2m/search/best_donors.hpp"
+
+#include <utility>
+
+namespace tess::m2m {
+
+std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
+  drafts_.clear();
+  donors_.clear();
+  rounds_.clear();
+  nearest_.reset();
+  cover_ = cover_tets(mesh.points, mesh.tets);
+  return cover_.boxes;
+}
+
+DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
+  BestDonors best = best_donors(mesh, cover_, query.boxes, query.points);
+  drafts_[query.from] = std::move(best.donors);
+  return {setup.id, {}, std::move(best.points), std::move(best.candidates), best.n_tested};
+}
+
+NearestAnswer SourceSide::answer(const MeshView& mesh, NearestQuery query) {
+  if (!nearest_) nearest_.emplace(mesh.owned());
+  NearestAnswer answer{setup.id, {}, std::move(query.rows), {}, {}, {}};
+  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+    const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
+    answer.squared_distances.push_back(found.squared_distance);
+    answer.vertices.push_back(found.vertex);
+    answer.ids.push_back(found.vertex < 0 ? -1
+                                          : mesh.point_ids[static_cast<std::size_t>(found.vertex)]);
+  }
+  return answer;
+}
+
+void SourceSide::choose(Choice choice) {
+  std::vector<Donor> drafts = std::exchange(drafts_[choice.from], {});
+  drafts_.erase(choice.from);
+  std::vector<Donor> donors;
+  if (choice.answers.size() == drafts.size()) {
+    donors = std::move(drafts);
+  } else {
+    donors.reserve(choice.answers.size() + choice.vertices.size());
+    for (const std::uint32_t answer : choice.answers) donors.push_back(drafts[answer]);
+  }
+  for (const VertexId vertex : choice.vertices) donors.push_back(donor_at(vertex));
+  if (!donors.empty()) donors_[choice.from] = std::move(donors);
+}
+
+std::size_t SourceSide::n_donors() const {
+  std::size_t n = 0;
+  for (const auto& [target, donors] : donors_) n += donors.size();
+  return n;
+}
+
+std::vector<double> SourceSide::interpolate(std::span<const Donor> donors,
+                                            std::span<const double> values,
+                                            std::size_t n_components) {
+  std::vector<double> out;
+  out.reserve(donors.size() * n_components);
+  for (const Donor& donor : donors)
+    for (std::size_t c = 0; c < n_components; ++c)
+      out.push_back(interpolated(donor.weights, donor.vertices, values.data() + c, n_components));
+  return out;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,58 @@
+// What a piece knows of a coupling that it gives values to. During a search: the cover of its
+// tetrahedra, and the donors it found for each target piece that asked. After it: the donors that
+// were chosen.
+#pragma once
+
+#include "m2m/mesh_view.hpp"
+#include "m2m/parallel/messages.hpp"
+#include "m2m/search/cover.hpp"
+#include "m2m/search/nearest_vertex.hpp"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tess::m2m {
+
+class SourceSide {
+ public:
+  CouplingSetup setup;
+
+  /// Forgets the last search, and returns the boxes of the cover.
+  [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
+  [[nodiscard]] DonorAnswer answer(const MeshView& mesh, const DonorQuery& query);
+  [[nodiscard]] NearestAnswer answer(const MeshView& mesh, NearestQuery query);
+  void choose(Choice choice);
+  /// Frees what only the search needs. Calls send(target piece, rows) for every target piece that gets values from this one.
+  /// `values`: of all points of the piece, n_points × n_components, row-major.
+  template <class Send>
+  void give(std::span<const double> values, std::size_t n_components, std::uint64_t channel,
+            const Send& send) {
+    cover_ = {};
+    nearest_.reset();
+    const std::uint32_t round = rounds_[channel]++;
+    for (const auto& [target, donors] : donors_)
+      send(target, Rows{setup.id, {}, channel, round, interpolate(donors, values, n_components)});
+  }
+  [[nodiscard]] std::size_t n_donors() const;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(setup, cover_, drafts_, donors_, rounds_);
+  }
+
+ private:
+  [[nodiscard]] static std::vector<double> interpolate(std::span<const Donor> donors,
+                                                       std::span<const double> values,
+                                                       std::size_t n_components);
+  Cover cover_;
+  std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered
+  std::map<collide::OwnerId, std::vector<Donor>> donors_;  // per target piece, as chosen
+  std::map<std::uint64_t, std::uint32_t> rounds_;          // per channel
+  // Of the points owned; built when it is asked for, and again after a migration.
+  std::optional<NearestVertex> nearest_;
+};
+
+}  // namespace tess::m2m

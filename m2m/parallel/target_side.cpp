@@ -1,0 +1,187 @@
+#include "m2m/parallel/target_side.hpp"
+
+#include "runtime/core/check.hpp"
+
+#include <algorithm>
+
+namespace tess::m2m {
+namespace {
+
+void sort_unique(std::vector<std::uint32_t>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace
+
+std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
+  const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
+  asked_.clear();
+  nearest_.clear();
+  rows_.clear();
+  channels_.clear();
+  tally_ = {};
+  best_.assign(n_owned, {});
+  status_.assign(n_owned, Status::outside);
+  cover_ = cover_points(mesh.owned());
+  return std::exchange(cover_.boxes, {});
+}
+
+void TargetSide::add(const collide::Hits& hits) {
+  Asked& asked = asked_[hits.other];
+  for (const collide::LocalPair& pair : hits.pairs) {
+    asked.boxes.push_back(static_cast<std::uint32_t>(pair.mine));
+    asked.source_boxes.push_back(static_cast<std::uint32_t>(pair.theirs));
+  }
+}
+
+TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh,
+                                                            std::span<const SourcePiece> sources) {
+  Addressed<DonorQuery> out;
+  for (auto& [source, asked] : asked_) {
+    sort_unique(asked.boxes);
+    sort_unique(asked.source_boxes);
+    DonorQuery query{setup.id, {}, std::exchange(asked.source_boxes, {}), {}};
+    for (const std::uint32_t box : asked.boxes)
+      for (const std::uint32_t row : cover_.members_of(box)) {
+        asked.rows.push_back(static_cast<std::int32_t>(row));
+        query.points.push_back(mesh.points[row]);
+      }
+    asked.boxes = {};
+    out.emplace_back(source, std::move(query));
+  }
+  n_open_ = out.size();
+  cover_ = {};
+  if (!sources.empty()) {
+    std::vector<Aabb> boxes;
+    for (const SourcePiece& source : sources) {
+      boxes.push_back(source.box);
+      sources_.push_back(source.owner);
+    }
+    nearest_parts_ = NearestParts(boxes, collide::box_around(mesh.owned()));
+  }
+  return out;
+}
+
+void TargetSide::add(const DonorAnswer& answer) {
+  Asked& asked = asked_.at(answer.from);
+  asked.held.reserve(answer.points.size());
+  for (std::size_t i = 0; i < answer.points.size(); ++i) {
+    const std::int32_t row = asked.rows[answer.points[i]];
+    asked.held.push_back(row);
+    Best& best = best_[static_cast<std::size_t>(row)];
+    if (better(answer.candidates[i], best.candidate)) best = {answer.candidates[i], answer.from};
+  }
+  asked.rows = {};
+  tally_.n_candidates += answer.n_tested;
+  --n_open_;
+}
+
+TargetSide::Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
+  if (sources_.empty()) return {};
+  if (nearest_.empty())
+    for (std::size_t v = 0; v < best_.size(); ++v)
+      if (best_[v].candidate.status == Status::outside) {
+        const auto row = static_cast<std::int32_t>(v);
+        nearest_.emplace(row, NearestSoFar{.row = row});
+      }
+  std::map<collide::OwnerId, NearestQuery> queries;
+  for (auto& [row, so_far] : nearest_) {
+    const Point& point = mesh.points[static_cast<std::size_t>(row)];
+    const NearestParts::Part next = nearest_parts_.next(point, so_far.asked);
+    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) continue;
+    so_far.asked = next;
+    NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];
+    query.coupling = setup.id;
+    query.rows.push_back(row);
+    query.points.push_back(point);
+    query.squared_reaches.push_back(so_far.squared_distance);
+  }
+  n_open_ = queries.size();
+  return {std::make_move_iterator(queries.begin()), std::make_move_iterator(queries.end())};
+}
+
+void TargetSide::add(const NearestAnswer& answer) {
+  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+    NearestSoFar& mine = nearest_.at(answer.rows[i]);
+    const double d = answer.squared_distances[i];
+    if (answer.vertices[i] < 0 || d > mine.squared_distance ||
+        (d == mine.squared_distance && answer.ids[i] >= mine.id))
+      continue;
+    mine.squared_distance = d;
+    mine.id = answer.ids[i];
+    mine.vertex = answer.vertices[i];
+    mine.source = answer.from;
+  }
+  --n_open_;
+}
+
+TargetSide::Addressed<Choice> TargetSide::choices() {
+  std::map<collide::OwnerId, Choice> all;
+  for (auto& [source, asked] : asked_) {
+    Choice& choice = all[source];
+    std::vector<std::int32_t> mine;
+    for (std::size_t i = 0; i < asked.held.size(); ++i) {
+      if (best_[static_cast<std::size_t>(asked.held[i])].source != source) continue;
+      choice.answers.push_back(static_cast<std::uint32_t>(i));
+      mine.push_back(asked.held[i]);
+    }
+    if (!mine.empty()) rows_[source] = std::move(mine);
+  }
+  for (const auto& [row, nearest] : nearest_) {
+    if (nearest.vertex < 0) continue;
+    all[nearest.source].vertices.push_back(nearest.vertex);
+    rows_[nearest.source].push_back(row);
+  }
+  for (std::size_t v = 0; v < best_.size(); ++v) {
+    status_[v] = best_[v].candidate.status;
+    ++tally_.counts[static_cast<std::size_t>(status_[v])];
+  }
+  asked_.clear();
+  nearest_.clear();
+  best_ = {};
+  nearest_parts_ = {};
+  sources_ = {};
+  Addressed<Choice> out;
+  for (auto& [source, choice] : all) {
+    choice.coupling = setup.id;
+    out.emplace_back(source, std::move(choice));
+  }
+  return out;
+}
+
+void TargetSide::add(Rows rows) {
+  Channel& channel = channels_[rows.channel];
+  channel.rounds[rows.round].push_back(std::move(rows));
+}
+
+bool TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
+  Channel& channel = channels_[channel_id];
+  const auto at = channel.rounds.find(channel.next);
+  if (at == channel.rounds.end() || at->second.size() < rows_.size()) return false;
+  for (const Rows& message : at->second) {
+    const std::vector<std::int32_t>& rows = rows_.at(message.from);
+    const std::size_t n_components = message.values.size() / rows.size();
+    TESS_CHECK(values.size() == n_components * status_.size(), "the source gives ", n_components,
+               " components per point, but the target takes ", values.size(), " values for its ",
+               status_.size(), " points: take points × components");
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      std::copy_n(message.values.data() + i * n_components, n_components,
+                  values.data() + static_cast<std::size_t>(rows[i]) * n_components);
+  }
+  set_outside(values);
+  channel.rounds.erase(at);
+  ++channel.next;
+  return true;
+}
+
+void TargetSide::set_outside(std::span<double> values) const {
+  const auto* given = std::get_if<UseValue>(&setup.policy);
+  if (given == nullptr || status_.empty()) return;
+  const std::size_t n_components = values.size() / status_.size();
+  for (std::size_t v = 0; v < status_.size(); ++v)
+    if (status_[v] == Status::outside)
+      std::fill_n(values.data() + v * n_components, n_components, given->value);
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,107 @@
+// What a piece knows of a coupling that gives it values. During a search: the candidates so far.
+// After it: which source piece sends which rows, and the rows that have arrived.
+#pragma once
+
+#include "m2m/mesh_view.hpp"
+#include "m2m/parallel/messages.hpp"
+#include "m2m/search/cover.hpp"
+#include "m2m/search/nearest_parts.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tess::m2m {
+
+class TargetSide {
+ public:
+  template <class Message>
+  using Addressed = std::vector<std::pair<collide::OwnerId, Message>>;
+
+  CouplingSetup setup;
+
+  /// Forgets the last search, and returns boxes around the points.
+  [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
+  void add(const collide::Hits& hits);
+  /// The queries to all source pieces that may hold points. `sources`: all source pieces, sorted by
+  /// owner, if points outside are to have the nearest vertex.
+  [[nodiscard]] Addressed<DonorQuery> donor_queries(const MeshView& mesh,
+                                                    std::span<const SourcePiece> sources);
+  void add(const DonorAnswer& answer);
+  void add(const NearestAnswer& answer);
+  /// True if no answer is under way.
+  [[nodiscard]] bool has_all_answers() const { return n_open_ == 0; }
+  /// The next queries for points outside; none if all are answered or the policy needs none.
+  [[nodiscard]] Addressed<NearestQuery> nearest_queries(const MeshView& mesh);
+  /// Ends the search: what each source piece that was asked shall send.
+  [[nodiscard]] Addressed<Choice> choices();
+  [[nodiscard]] const Tally& tally() const { return tally_; }
+
+  /// Per point owned.
+  [[nodiscard]] std::span<const Status> status() const { return status_; }
+  [[nodiscard]] std::size_t n_sources() const { return rows_.size(); }
+
+  void add(Rows rows);
+  /// If the next application of a channel has arrived as a whole, writes it to `values`
+  /// (n_owned × n_components, row-major), and returns true.
+  [[nodiscard]] bool take_next(std::uint64_t channel, std::span<double> values);
+  /// The value of points outside, if the policy gives one.
+  void set_outside(std::span<double> values) const;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(setup, cover_, asked_, best_, nearest_, nearest_parts_, sources_, n_open_, tally_, status_,
+       rows_, channels_);
+  }
+
+ private:
+  /// The points that were sent to a source piece, and those of them that it holds.
+  struct Asked {
+    std::vector<std::uint32_t> boxes, source_boxes;  // of the two covers, from the hits
+    std::vector<std::int32_t> rows;                  // per point sent
+    std::vector<std::int32_t> held;                  // per answer: its row
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(boxes, source_boxes, rows, held);
+    }
+  };
+  /// The best candidate of a point, and the source piece that has it.
+  struct Best {
+    Candidate candidate{};
+    collide::OwnerId source{};
+  };
+  /// The nearest vertex found so far for a point outside, and the piece that was asked last.
+  struct NearestSoFar {
+    std::int32_t row = 0;
+    double squared_distance = std::numeric_limits<double>::infinity();
+    GlobalId id = std::numeric_limits<GlobalId>::max();
+    VertexId vertex = -1;
+    collide::OwnerId source{};
+    NearestParts::Part asked{};
+  };
+  struct Channel {
+    std::uint32_t next = 0;                               // the round to be written next
+    std::map<std::uint32_t, std::vector<Rows>> rounds{};  // what has arrived of it and later ones
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(next, rounds);
+    }
+  };
+
+  Cover cover_;
+  std::map<collide::OwnerId, Asked> asked_;
+  std::vector<Best> best_;                        // per point owned
+  std::map<std::int32_t, NearestSoFar> nearest_;  // by row
+  NearestParts nearest_parts_;
+  std::vector<collide::OwnerId> sources_;  // of the parts in nearest_parts_
+  std::uint64_t n_open_ = 0;
+  Tally tally_;
+  std::vector<Status> status_;
+  std::map<collide::OwnerId, std::vector<std::int32_t>> rows_;  // per source piece, in its order
+  std::map<std::uint64_t, Channel> channels_;
+};
+
+}  // namespace tess::m2m

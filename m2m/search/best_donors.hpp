@@ -1,0 +1,27 @@
+// Finds the best source tetrahedron of each point: the narrow phase of a search.
+#pragma once
+
+#include "m2m/interpolate/donor.hpp"
+#include "m2m/mesh_view.hpp"
+#include "m2m/search/cover.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tess::m2m {
+
+/// The best candidates among some tetrahedra of a part, for the points that have one.
+struct BestDonors {
+  std::vector<std::uint32_t> points;  ///< ascending
+  std::vector<Candidate> candidates;  ///< per point found
+  std::vector<Donor> donors;          ///< per point found
+  std::uint64_t n_tested = 0;         ///< pairs of a tetrahedron and a point in its box
+};
+
+/// Searches the tetrahedra of some boxes of the mesh's cover, each box given once.
+[[nodiscard]] BestDonors best_donors(const MeshView& mesh, const Cover& cover,
+                                     std::span<const std::uint32_t> boxes,
+                                     std::span<const Point> points);
+
+}  // namespace tess::m2m

@@ -1,0 +1,54 @@
+// Points sorted into cells, so that those in a box are found quickly. A search goes over the source
+// tetrahedra once and asks for the points in the box of each: neither side needs a tree, and no
+// list of candidates is stored.
+#pragma once
+
+#include "m2m/search/cells.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tess::m2m {
+
+class PointGrid {
+ public:
+  explicit PointGrid(std::span<const Point> points);
+
+  /// The points in the order of the grid, and their numbers in the list given.
+  [[nodiscard]] std::span<const Point> points() const { return points_; }
+  [[nodiscard]] std::span<const std::uint32_t> numbers() const { return numbers_; }
+
+  [[nodiscard]] bool is_in(std::int32_t position, const Aabb& box) const {
+    const Point& p = points_[static_cast<std::size_t>(position)];
+    return !((p[0] < box.lo[0]) | (p[0] > box.hi[0]) | (p[1] < box.lo[1]) | (p[1] > box.hi[1]) |
+             (p[2] < box.lo[2]) | (p[2] > box.hi[2]));
+  }
+  /// Calls found(position) for each point in the closed box; position is an index into points().
+  template <class Visit>
+  void visit_in(const Aabb& box, const Visit& found) const {
+    std::array<std::int32_t, 3> low{}, high{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (box.hi[axis] < around_.lo[axis] || box.lo[axis] > around_.hi[axis]) return;
+      low[axis] = cells_.along(axis, box.lo[axis]);
+      high[axis] = cells_.along(axis, box.hi[axis]);
+    }
+    for (std::int32_t z = low[2]; z <= high[2]; ++z)
+      for (std::int32_t y = low[1]; y <= high[1]; ++y) {
+        const std::uint32_t first = first_[cells_.number(low[0], y, z)];
+        const std::uint32_t last = first_[cells_.number(high[0], y, z) + 1];
+        for (std::uint32_t at = first; at < last; ++at) {
+          if (is_in(static_cast<std::int32_t>(at), box)) found(static_cast<std::int32_t>(at));
+        }
+      }
+  }
+
+ private:
+  Aabb around_;
+  Cells cells_;
+  std::vector<std::uint32_t> first_;  // per cell, and the end: position of its first point
+  std::vector<Point> points_;
+  std::vector<std::uint32_t> numbers_;
+};
+
+}  // namespace tess::m2m

@@ -1,0 +1,26 @@
+// Counts of a search.
+#pragma once
+
+#include "m2m/status.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tess::m2m {
+
+/// The number of target points per Status, and of pairs (tetrahedron, point in its box) tested.
+struct Tally {
+  std::array<std::uint64_t, 4> counts{};
+  std::uint64_t n_candidates = 0;
+
+  [[nodiscard]] std::uint64_t count(Status status) const {
+    return counts[static_cast<std::size_t>(status)];
+  }
+  Tally& operator+=(const Tally& other) {
+    for (std::size_t s = 0; s < counts.size(); ++s) counts[s] += other.counts[s];
+    n_candidates += other.n_candidates;
+    return *this;
+  }
+};
+
+}  // namespace tess::m2m
