@@ -3,7 +3,23 @@
 //
 // Sample: tests/samples/coupling.cpp
 //
-//     SAMPLE
+//     class Fluid : public tess::Chare<Fluid, tess::Index1>, public tess::m2m::Piece<Fluid> {
+//      public:
+//       tess::m2m::MeshView mesh_view() const { return mesh_.view(); }
+//       std::span<const double> temperature() const { return temperature_; }
+//       // …
+//     class Solid : public tess::Chare<Solid, tess::Index2>, public tess::m2m::Piece<Solid> {
+//      public:
+//       tess::m2m::MeshView mesh_view() const { return mesh_.view(); }
+//       std::span<double> heat() { return heat_; }
+//       void received(tess::m2m::CouplingId coupling) { n_outside_ += count_outside(coupling); }
+//       // …
+//       tess::m2m::Coupling to_solid(fluid, solid);
+//       co_await to_solid.search();
+//       for (int step = 1; step <= 10; ++step) {
+//         co_await tess::epoch([&] { fluid.broadcast<&Fluid::step>(step); });
+//         co_await to_solid.apply<&Fluid::temperature, &Solid::heat>();
+//       }
 //
 // A search finds the donors of every target point, once; apply() moves a field, any number of
 // times. If a mesh moves, search again. Values travel from piece to piece; no PE collects them. Any

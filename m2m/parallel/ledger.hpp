@@ -2,7 +2,7 @@
 // own array: it would mix with the application's reductions.
 #pragma once
 
-#include "collide/hit.hpp"
+#include "collide/collider.hpp"
 #include "m2m/mesh.hpp"
 #include "m2m/tally.hpp"
 #include "runtime/runtime.hpp"

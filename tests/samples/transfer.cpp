@@ -46,6 +46,23 @@ Task one_transfer(const Scene& scene, double& error, TransferSummary& result) {
   result = summary;
 }
 
+/// A search and ten applications.
+Task repeated_transfer(const Scene& scene, double& error) {
+  DistributedMesh source, target;
+  co_await epoch([&] {
+    source = scatter(scene.mesh_a, {scene.field}, 4, PartitionMethod::rcb);
+    target = scatter(scene.mesh_b, {scene.other}, 4, PartitionMethod::rcb);
+  });
+  Transfer repeated(source, target, {.policy = Nearest{}});
+  co_await repeated.search();
+  for (int step = 0; step < 10; ++step) co_await repeated.apply();
+  co_await epoch([&] { repeated.destroy(); });
+
+  Future<Outcome> outcome;
+  target.workers.broadcast<&Worker::gather>(outcome.callback());
+  error = largest_error(scene, co_await outcome);
+}
+
 Task two_transfers(const Scene& scene, double& error) {
   DistributedMesh a, b, c;
   const auto place = [&] {
@@ -77,6 +94,11 @@ TEST_CASE("the samples of m2m/transfer.hpp move a linear field exactly", "[m2m][
   REQUIRE(run(one, [&]() -> Task { return one_transfer(scene, error, summary); }) == 0);
   CHECK(error < 1e-14);
   CHECK(summary.tally.counts[static_cast<std::size_t>(Status::outside)] == 0);
+
+  double repeated = 1;
+  Setup ten{make_threads_machine(2), {}};
+  REQUIRE(run(ten, [&]() -> Task { return repeated_transfer(scene, repeated); }) == 0);
+  CHECK(repeated < 1e-14);
 
   double worst = 0;
   Setup two{make_threads_machine(2), {}};
