@@ -23,7 +23,7 @@ class Cells {
  public:
   /// A single cell.
   Cells() = default;
-  /// About `n_wanted` cells; more in thin boxes, at most 8 times as many.
+  /// About `n_wanted` cells, at most 8 times as many.
   Cells(const Aabb& box, std::size_t n_wanted);
 
   [[nodiscard]] std::size_t n_cells() const {

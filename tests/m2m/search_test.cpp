@@ -1,0 +1,155 @@
+// Covers, the grid of points, and the narrow phase of a search, against all pairs.
+#include "m2m/kuhn.hpp"
+#include "m2m/read_mesh.hpp"
+#include "m2m/search/best_donors.hpp"
+#include "m2m/search/point_grid.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+
+using namespace tess::m2m;
+using tess::collide::Touching;
+
+namespace {
+
+/// Random points in a box of very different sides, moved far from the origin; some equal.
+std::vector<Point> random_points(std::size_t n, const Point& sides, double offset) {
+  std::mt19937_64 random(n);
+  std::uniform_real_distribution<double> part(0, 1);
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    Point p{};
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = offset + sides[axis] * part(random);
+    points.push_back(i % 7 == 3 ? points.back() : p);
+  }
+  return points;
+}
+
+struct Cloud {
+  Point sides;
+  double offset;
+};
+const std::vector<Cloud> clouds{{{1, 1, 1}, 0},
+                                {{1, 0, 1}, -5},
+                                {{1e6, 1, 1e-6}, 0},
+                                {{0, 0, 0}, 3},
+                                {{1e-90, 1e-90, 1e-90}, 0},
+                                {{1e90, 1, 1e90}, 0},
+                                {{1, 1, 1e-12}, 1e12}};
+
+}  // namespace
+
+TEST_CASE("a cover lists each object once, in a box that contains it", "[m2m]") {
+  for (const Cloud& cloud : clouds)
+    for (const std::size_t n :
+         {std::size_t{0}, std::size_t{1}, std::size_t{65}, std::size_t{5000}}) {
+      INFO(n << " points in " << cloud.sides[0] << " x " << cloud.sides[1] << " x "
+             << cloud.sides[2]);
+      const std::vector<Point> points = random_points(n, cloud.sides, cloud.offset);
+      const Cover cover = cover_points(points);
+      std::vector<int> times(n);
+      bool contained = true;
+      for (std::uint32_t box = 0; box < cover.boxes.size(); ++box)
+        for (const std::uint32_t i : cover.members_of(box)) {
+          ++times[i];
+          contained = contained &&
+                      overlap(cover.boxes[box], tess::collide::box_of(points[i]), Touching::counts);
+        }
+      CHECK(contained);
+      CHECK(std::all_of(times.begin(), times.end(), [](int t) { return t == 1; }));
+      CHECK(cover.boxes.size() <= 8 * (n / 64 + 1));
+    }
+}
+
+TEST_CASE("a cover of tetrahedra contains the search box of each", "[m2m]") {
+  for (const double offset : {0.0, 1e9}) {
+    TetMesh mesh = read_mesh("kuhn:7@0.2");
+    for (Point& p : mesh.points) p[1] += offset;
+    const Cover cover = cover_tets(mesh.points, mesh.tets);
+    std::size_t n = 0;
+    bool contained = true;
+    for (std::uint32_t box = 0; box < cover.boxes.size(); ++box)
+      for (const std::uint32_t t : cover.members_of(box)) {
+        ++n;
+        const Aabb tet = search_box(corners_of(mesh.points, mesh.tets[t]));
+        contained = contained && merged(cover.boxes[box], tet) == cover.boxes[box];
+      }
+    CHECK(contained);
+    CHECK(n == mesh.n_tets());
+  }
+}
+
+TEST_CASE("a grid of points finds those in a box", "[m2m]") {
+  for (const Cloud& cloud : clouds) {
+    const std::vector<Point> points = random_points(700, cloud.sides, cloud.offset);
+    const PointGrid grid(points);
+    std::size_t n_found = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); i += 20) {
+      const Aabb box =
+          merged(tess::collide::box_of(points[i]), tess::collide::box_of(points[i + 1]));
+      std::vector<std::uint32_t> found, want;
+      grid.visit_in(box, [&](std::int32_t at) {
+        found.push_back(grid.numbers()[static_cast<std::size_t>(at)]);
+      });
+      for (std::uint32_t k = 0; k < points.size(); ++k)
+        if (overlap(box, tess::collide::box_of(points[k]), Touching::counts)) want.push_back(k);
+      std::sort(found.begin(), found.end());
+      REQUIRE(found == want);
+      n_found += found.size();
+    }
+    CHECK(n_found >= 70);  // each box has its two corners
+  }
+}
+
+TEST_CASE("the narrow phase finds the best tetrahedron of each point among all", "[m2m]") {
+  const TetMesh mesh = read_mesh("kuhn:6@0.2");
+  std::vector<GlobalId> ids(mesh.n_tets());
+  std::iota(ids.begin(), ids.end(), 1000);
+  std::reverse(ids.begin(), ids.end());  // ties go to the lowest id, not to the first
+  const MeshView view{mesh.points, mesh.tets, {}, ids, 0};
+  const Cover cover = cover_tets(mesh.points, mesh.tets);
+  std::vector<std::uint32_t> all(cover.boxes.size());
+  std::iota(all.begin(), all.end(), 0U);
+  // Few points and many, so that both ways to compare are taken; vertices lie in several tetrahedra.
+  for (const std::size_t n : {std::size_t{30}, std::size_t{3000}}) {
+    std::vector<Point> points = random_points(n, {1.2, 1.2, 1.2}, -0.1);
+    points.insert(points.end(), mesh.points.begin(), mesh.points.begin() + 100);
+    const BestDonors best = best_donors(view, cover, all, points);
+    std::map<std::uint32_t, std::size_t> at;
+    for (std::size_t i = 0; i < best.points.size(); ++i) at[best.points[i]] = i;
+    std::size_t n_inside = 0;
+    for (std::uint32_t p = 0; p < points.size(); ++p) {
+      Candidate want;
+      Donor donor;
+      for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+        const auto location = locate(points[p], corners_of(mesh.points, mesh.tets[t]));
+        if (!location || !better(candidate_of(*location, ids[t]), want)) continue;
+        want = candidate_of(*location, ids[t]);
+        donor = {mesh.tets[t], location->weights};
+      }
+      REQUIRE(at.contains(p) == (want.status != Status::outside));
+      if (!at.contains(p)) continue;
+      ++n_inside;
+      REQUIRE(best.candidates[at[p]].tet == want.tet);
+      REQUIRE(best.donors[at[p]].vertices == donor.vertices);
+      REQUIRE(best.donors[at[p]].weights == donor.weights);
+    }
+    CHECK(n_inside > n / 3);
+    CHECK(n_inside < points.size());
+  }
+}
+
+TEST_CASE("the narrow phase looks only at the boxes of the cover that it is given", "[m2m]") {
+  const TetMesh mesh = read_mesh("kuhn:6");
+  std::vector<GlobalId> ids(mesh.n_tets());
+  const MeshView view{mesh.points, mesh.tets, {}, ids, 0};
+  const Cover cover = cover_tets(mesh.points, mesh.tets);
+  const std::vector<std::uint32_t> first{0};
+  const BestDonors best = best_donors(view, cover, first, mesh.points);
+  CHECK(!best.points.empty());
+  CHECK(best.points.size() < mesh.n_points());
+  CHECK(best.n_tested < 100 * cover.members_of(0).size());
+}
