@@ -9,6 +9,7 @@
 #pragma once
 
 #include "m2m/conservative/coverage.hpp"
+#include "m2m/weights/mesh_view.hpp"
 #include "m2m/weights/rows.hpp"
 
 #include <cstdint>
@@ -22,12 +23,6 @@ enum class Basis {
   vertex,  ///< continuous and linear: a value per vertex
   cell,    ///< constant in each tetrahedron: a value per tetrahedron
   corner,  ///< linear in each tetrahedron, with jumps: four values per tetrahedron, 4 t + corner
-};
-
-/// Points and tetrahedra of one mesh or of one part of it; they belong to the caller.
-struct MeshView {
-  std::span<const Point> points;
-  std::span<const Tet> tets;
 };
 
 /// A source and a target tetrahedron that may overlap, as positions in two MeshViews.

@@ -16,7 +16,7 @@ constexpr std::size_t most_iterations = 200;
 }  // namespace
 
 Projection::Projection(const MassMatrix& mass, std::size_t n_owned, std::size_t n_components,
-                       std::vector<double> load, Form form, std::vector<Range> bounds)
+                       std::vector<double> load, Form form, std::vector<ValueRange> bounds)
     : mass_(mass),
       n_owned_(n_owned),
       n_(n_components),
@@ -198,7 +198,7 @@ Projection::Need Projection::after_fluxes() {
   for_each_flux([&](const Tet& tet, std::size_t c, const Weights& flux) {
     double admitted = 1;
     for (std::size_t a = 0; a < 4; ++a) {
-      const Range& ratio = ratios_[static_cast<std::size_t>(tet[a]) * n_ + c];
+      const ValueRange& ratio = ratios_[static_cast<std::size_t>(tet[a]) * n_ + c];
       if (flux[a] != 0) admitted = std::min(admitted, flux[a] > 0 ? ratio.high : ratio.low);
     }
     for (std::size_t a = 0; a < 4; ++a)

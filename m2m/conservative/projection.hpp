@@ -44,9 +44,9 @@ class Projection {
   /// `mass` must outlive the solver. The first `n_owned` vertices are owned by this part, the others
   /// are ghosts. `load`: n_points × n_components, row-major; every copy of a vertex has the whole
   /// load. `bounds`: of the source values that contribute, in the same shape and the same on all
-  /// copies (ranges() in rows.hpp); only for Form::bounded.
+  /// copies (value_ranges() in rows.hpp); only for Form::bounded.
   Projection(const MassMatrix& mass, std::size_t n_owned, std::size_t n_components,
-             std::vector<double> load, Form form, std::vector<Range> bounds = {});
+             std::vector<double> load, Form form, std::vector<ValueRange> bounds = {});
 
   [[nodiscard]] Need step();
   /// What the caller adds over the copies of each vertex, in place: n_points rows.
@@ -95,11 +95,11 @@ class Projection {
   std::size_t n_iterations_ = 0;
 
   std::vector<double> load_, x_, lumped_, inverse_diagonal_;
-  std::vector<Range> bounds_;
+  std::vector<ValueRange> bounds_;
   std::vector<double> residual_, z_, p_, s_;         // of conjugate gradients
   std::vector<double> gamma_, alpha_, first_gamma_;  // per component
   std::vector<double> low_order_;                    // the lumped solution
-  std::vector<Range> ratios_;                        // of admissible to wanted fluxes
+  std::vector<ValueRange> ratios_;                   // of admissible to wanted fluxes
   std::vector<double> rows_, scalars_;
 };
 

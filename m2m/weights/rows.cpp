@@ -44,16 +44,16 @@ void apply(const Rows<Point>& rows, std::span<const double> values, std::size_t 
   }
 }
 
-void ranges(const Rows<double>& rows, std::span<const double> values, std::size_t n_components,
-            std::span<Range> out) {
+void value_ranges(const Rows<double>& rows, std::span<const double> values,
+                  std::size_t n_components, std::span<ValueRange> out) {
   check_sizes(rows.n_rows(), n_components, out.size());
   constexpr double inf = std::numeric_limits<double>::infinity();
-  std::fill(out.begin(), out.end(), Range{inf, -inf});
+  std::fill(out.begin(), out.end(), ValueRange{inf, -inf});
   for (std::size_t row = 0; row < rows.n_rows(); ++row) {
     for (const VertexId column : rows.columns_of(row)) {
       for (std::size_t c = 0; c < n_components; ++c) {
         const double value = values[static_cast<std::size_t>(column) * n_components + c];
-        Range& range = out[row * n_components + c];
+        ValueRange& range = out[row * n_components + c];
         if (value < range.low) range.low = value;
         if (value > range.high) range.high = value;
       }

@@ -51,14 +51,14 @@ void apply(const Rows<Point>& rows, std::span<const double> values, std::size_t 
            std::span<Point> out);
 
 /// The least and the greatest value over the columns of a row.
-struct Range {
+struct ValueRange {
   double low;
   double high;
-  friend bool operator==(const Range&, const Range&) = default;
+  friend bool operator==(const ValueRange&, const ValueRange&) = default;
 };
 /// Per row and component. A row without columns has the range [+inf, -inf], so ranges of several
 /// parts are merged by min and max. A NaN is left out.
-void ranges(const Rows<double>& rows, std::span<const double> values, std::size_t n_components,
-            std::span<Range> out);
+void value_ranges(const Rows<double>& rows, std::span<const double> values,
+                  std::size_t n_components, std::span<ValueRange> out);
 
 }  // namespace tess::m2m

@@ -40,10 +40,10 @@ std::vector<TetPair> overlapping_pairs(MeshView source, MeshView target) {
   return pairs;
 }
 
-std::vector<Placed> place_points(MeshView source, std::span<const Point> points) {
+std::vector<PointInTet> place_points(MeshView source, std::span<const Point> points) {
   const std::vector<Aabb> boxes = boxes_of(source);
   const CellGrid grid(collide::box_around(source.points), source.tets.size(), boxes);
-  std::vector<Placed> placed(points.size());
+  std::vector<PointInTet> placed(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     Candidate best;
     for (const std::int32_t s : grid.items(grid.cell_of(points[i]))) {

@@ -3,6 +3,7 @@
 
 #include "m2m/conservative/loads.hpp"
 #include "m2m/mesh.hpp"
+#include "m2m/weights/point_rows.hpp"
 
 #include <span>
 #include <vector>
@@ -17,13 +18,8 @@ inline m2m::MeshView view(const m2m::TetMesh& mesh) {
 [[nodiscard]] std::vector<m2m::TetPair> overlapping_pairs(m2m::MeshView source,
                                                           m2m::MeshView target);
 
-/// The tetrahedron and the weights of a point.
-struct Placed {
-  std::int32_t tet = -1;  ///< -1 if no tetrahedron holds the point
-  m2m::Weights weights{};
-};
-/// The best candidate for each point.
-[[nodiscard]] std::vector<Placed> place_points(m2m::MeshView source,
-                                               std::span<const m2m::Point> points);
+/// The best candidate for each point; tetrahedron -1 if none holds it.
+[[nodiscard]] std::vector<m2m::PointInTet> place_points(m2m::MeshView source,
+                                                        std::span<const m2m::Point> points);
 
 }  // namespace tess::test

@@ -4,11 +4,11 @@
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
 #include "tests/m2m/overlapping.hpp"
+#include "tests/m2m/samples.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 using namespace tess::m2m;
 using tess::test::overlapping_pairs;
@@ -16,15 +16,12 @@ using tess::test::place_points;
 using tess::test::view;
 using Form = Projection::Form;
 using Need = Projection::Need;
-using Values = std::vector<double>;
+using tess::test::ball;
+using tess::test::gaussian;
+using tess::test::sampled;
+using tess::test::Values;
 
 namespace {
-
-Values sampled(const TetMesh& mesh, const std::function<double(const Point&)>& f) {
-  Values values;
-  for (const Point& p : mesh.points) values.push_back(f(p));
-  return values;
-}
 
 /// The integral of a linear field, with products added up exactly enough for 1e-15.
 double integral(const TetMesh& mesh, const Values& values) {
@@ -48,10 +45,10 @@ class Conservative {
   Values operator()(const Values& values, Form form, std::size_t n_components = 1) {
     Values load(mass_.n_points() * n_components);
     apply(loads_.rows, values, n_components, load);
-    std::vector<Range> bounds;
+    std::vector<ValueRange> bounds;
     if (form == Form::bounded) {
       bounds.resize(load.size());
-      ranges(loads_.rows, values, n_components, bounds);
+      value_ranges(loads_.rows, values, n_components, bounds);
     }
     Projection solver(mass_, mass_.n_points(), n_components, std::move(load), form,
                       std::move(bounds));
@@ -85,20 +82,8 @@ class Linear {
 
  private:
   std::span<const Tet> tets_;
-  std::vector<tess::test::Placed> placed_;
+  std::vector<PointInTet> placed_;
 };
-
-double gaussian(const Point& p) {
-  double squared = 0;
-  for (const double x : p) squared += (4 * x - 2) * (4 * x - 2);
-  return std::exp(-squared);
-}
-
-/// 1 within a ball, 0 outside.
-double ball(const Point& p) {
-  const double x = p[0] - 0.5, y = p[1] - 0.45, z = p[2] - 0.4;
-  return x * x + y * y + z * z < 0.09 ? 1.0 : 0.0;
-}
 
 }  // namespace
 
@@ -108,14 +93,14 @@ TEST_CASE("every form conserves the integral and keeps constants; consistent kee
   Conservative transfer(a, b);
   for (const Form form : {Form::lumped, Form::consistent, Form::bounded}) {
     CAPTURE(static_cast<int>(form));
-    const Values field = sampled(a, ball);
+    const Values field = sampled(a.points, ball);
     const double want = integral(a, field);
     CHECK(std::abs(integral(b, transfer(field, form)) - want) < 1e-14 * want);
     for (const double value : transfer(Values(a.n_points(), 3.0), form))
       CHECK(value == Approx(3.0).epsilon(1e-13));
   }
   const auto linear = [](const Point& p) { return 1 + 2 * p[0] - 3 * p[1] + 5 * p[2]; };
-  const Values got = transfer(sampled(a, linear), Form::consistent);
+  const Values got = transfer(sampled(a.points, linear), Form::consistent);
   for (std::size_t v = 0; v < b.n_points(); ++v)
     CHECK(std::abs(got[v] - linear(b.points[v])) < 1e-12);
   CHECK(transfer.n_iterations < 40);
@@ -130,7 +115,7 @@ TEST_CASE("the consistent projection is second order", "[m2m][conservative]") {
     for (const std::int32_t n : {4, 8, 16}) {
       const TetMesh a = kuhn_mesh({n, jitter}), b = kuhn_mesh({n + 1, jitter});
       Conservative transfer(a, b);
-      const Values got = transfer(sampled(a, f), Form::consistent);
+      const Values got = transfer(sampled(a.points, f), Form::consistent);
       double squared = 0;
       for (std::size_t v = 0; v < b.n_points(); ++v) {
         const double e = got[v] - f(b.points[v]);
@@ -149,7 +134,7 @@ TEST_CASE("100 round trips conserve a Gaussian to 1e-12, where linear interpolat
   const TetMesh a = kuhn_mesh({10, 0.2}), b = kuhn_mesh({9, 0.1});
   Conservative there(a, b), back(b, a);
   const Linear linear_there(a, b), linear_back(b, a);
-  const Values start = sampled(a, gaussian);
+  const Values start = sampled(a.points, gaussian);
   const double want = integral(a, start);
   const auto peak = [](const Values& values) {
     return *std::max_element(values.begin(), values.end());
@@ -178,7 +163,7 @@ TEST_CASE("the bounded form creates no new extremum at a jump, the consistent on
           "[m2m][conservative]") {
   const TetMesh a = kuhn_mesh({8, 0.2}), b = kuhn_mesh({11, 0.2});
   Conservative there(a, b), back(b, a);
-  const Values start = sampled(a, ball);
+  const Values start = sampled(a.points, ball);
   const double want = integral(a, start);
   const Values consistent = there(start, Form::consistent);
   const auto [low, high] = std::minmax_element(consistent.begin(), consistent.end());
@@ -209,7 +194,7 @@ TEST_CASE("the bounded form creates no new extremum at a jump, the consistent on
 TEST_CASE("several components at once give the bits of each alone", "[m2m][conservative]") {
   const TetMesh a = kuhn_mesh({4, 0.2}), b = kuhn_mesh({5, 0.2});
   Conservative transfer(a, b);
-  const Values one = sampled(a, gaussian), two = sampled(a, ball);
+  const Values one = sampled(a.points, gaussian), two = sampled(a.points, ball);
   Values both;
   for (std::size_t v = 0; v < a.n_points(); ++v) {
     both.push_back(one[v]);
@@ -243,11 +228,11 @@ TEST_CASE("a projection in parts, with sums over copies and parts, gives that of
   const TetMesh a = kuhn_mesh({5, 0.2}), b = kuhn_mesh({6, 0.2});
   const Loads loads = integrate_pairs(view(a), Basis::vertex, view(b), Basis::vertex,
                                       overlapping_pairs(view(a), view(b)));
-  const Values field = sampled(a, ball);
+  const Values field = sampled(a.points, ball);
   Values load(b.n_points());
   apply(loads.rows, field, 1, load);
-  std::vector<Range> bounds(b.n_points());
-  ranges(loads.rows, field, 1, bounds);
+  std::vector<ValueRange> bounds(b.n_points());
+  value_ranges(loads.rows, field, 1, bounds);
   Conservative whole(a, b);
   for (const std::int32_t n_parts : {2, 7}) {
     const auto parts = split(b, partition(b, n_parts, PartitionMethod::rcb), n_parts);
@@ -257,7 +242,7 @@ TEST_CASE("a projection in parts, with sums over copies and parts, gives that of
       for (const MeshPart& part : parts) masses.emplace_back(MeshView{part.points, part.tets});
       for (std::size_t p = 0; p < parts.size(); ++p) {
         Values my_load;
-        std::vector<Range> my_bounds;
+        std::vector<ValueRange> my_bounds;
         for (const GlobalId id : parts[p].point_ids) {
           my_load.push_back(load[static_cast<std::size_t>(id)]);
           if (form == Form::bounded) my_bounds.push_back(bounds[static_cast<std::size_t>(id)]);
@@ -332,7 +317,7 @@ TEST_CASE("a source that covers the target in part: constants stay, fractions ar
 
 TEST_CASE("projections follow the scale of the meshes from 1e-90 to 1e90", "[m2m][conservative]") {
   const TetMesh a = kuhn_mesh({3, 0.2}), b = kuhn_mesh({4, 0.2});
-  const Values field = sampled(a, gaussian);
+  const Values field = sampled(a.points, gaussian);
   for (const Form form : {Form::lumped, Form::consistent, Form::bounded}) {
     const Values want = Conservative(a, b)(field, form);
     for (const int power : {-299, 299}) {
