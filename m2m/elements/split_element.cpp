@@ -91,23 +91,53 @@ void split_element(ElementType type, std::span<const VertexId> vertices, std::ve
   }
 }
 
-void SplitBlock::add(std::span<const VertexId> vertices, TetMesh& mesh) {
-  first_tet_.push_back(static_cast<GlobalId>(mesh.n_tets()));
-  vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
-  split_element(type_, vertices, mesh.tets);
-  end_ = static_cast<GlobalId>(mesh.n_tets());
+void ElementSplitter::add(ElementType type, std::span<const VertexId> vertices) {
+  const auto first_tet = static_cast<GlobalId>(mesh_.n_tets());
+  if (runs_.empty() || runs_.back().type != type)
+    runs_.push_back({type, n_elements_, first_tet, {}, {}});
+  ++n_elements_;
+  split_element(type, vertices, mesh_.tets);
+  if (type == ElementType::tet4) return;
+  Run& run = runs_.back();
+  run.vertices.insert(run.vertices.end(), vertices.begin(), vertices.end());
+  run.first_tets.push_back(first_tet);
 }
 
-void SplitBlock::append_side(std::size_t element, std::int64_t side, const TetMesh& mesh,
-                             std::vector<Side>& sides) const {
-  const Shape& shape = shape_of(type_);
+const ElementSplitter::Run* ElementSplitter::run_of(GlobalId element) const {
+  if (element < 0 || element >= n_elements_) return nullptr;
+  return &*std::prev(std::partition_point(
+      runs_.begin(), runs_.end(), [&](const Run& r) { return r.first_element <= element; }));
+}
+
+std::size_t ElementSplitter::n_sides_of(GlobalId element) const {
+  const Run* const run = run_of(element);
+  return run == nullptr ? 0 : n_sides(run->type);
+}
+
+void ElementSplitter::append_side(GlobalId element, std::int64_t side,
+                                  std::vector<Side>& sides) const {
+  const Run* const run = run_of(element);
+  TESS_CHECK(run != nullptr, "there is no element ", element, " of ", n_elements_);
+  const auto number = static_cast<std::size_t>(element - run->first_element);
+  if (run->type == ElementType::tet4) {
+    sides.push_back(
+        {run->first_tet + static_cast<GlobalId>(number), static_cast<std::int32_t>(side)});
+    return;
+  }
+  const Shape& shape = shape_of(run->type);
   std::vector<VertexId> face;
   for (const std::int8_t v : shape.sides[static_cast<std::size_t>(side - 1)])
-    if (v >= 0) face.push_back(vertices_[element * shape.n_vertices + static_cast<std::size_t>(v)]);
-  const GlobalId end = element + 1 < first_tet_.size() ? first_tet_[element + 1] : end_;
+    if (v >= 0)
+      face.push_back(run->vertices[number * shape.n_vertices + static_cast<std::size_t>(v)]);
+  const Run* const next =
+      run_of(run->first_element + static_cast<GlobalId>(run->first_tets.size()));
+  const GlobalId end =
+      number + 1 < run->first_tets.size()
+          ? run->first_tets[number + 1]
+          : (next == nullptr ? static_cast<GlobalId>(mesh_.n_tets()) : next->first_tet);
   const std::vector<Face>& faces_of_tet = shape_of(ElementType::tet4).sides;
-  for (GlobalId t = first_tet_[element]; t < end; ++t) {
-    const Tet& tet = mesh.tets[static_cast<std::size_t>(t)];
+  for (GlobalId t = run->first_tets[number]; t < end; ++t) {
+    const Tet& tet = mesh_.tets[static_cast<std::size_t>(t)];
     for (std::size_t s = 0; s < 4; ++s) {
       const bool on_side = std::all_of(
           faces_of_tet[s].begin(), faces_of_tet[s].begin() + 3, [&](std::int8_t corner) {
@@ -116,6 +146,37 @@ void SplitBlock::append_side(std::size_t element, std::int64_t side, const TetMe
           });
       if (on_side) sides.push_back({t, static_cast<std::int32_t>(s + 1)});
     }
+  }
+}
+
+void ElementSplitter::finish() {
+  const bool any = std::any_of(runs_.begin(), runs_.end(),
+                               [](const Run& run) { return run.type != ElementType::tet4; });
+  if (!any) return;
+  mesh_.element_of_tet.resize(mesh_.n_tets());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const Run& run = runs_[r];
+    const GlobalId end =
+        r + 1 < runs_.size() ? runs_[r + 1].first_tet : static_cast<GlobalId>(mesh_.n_tets());
+    GlobalId element = run.first_element;
+    for (GlobalId t = run.first_tet; t < end; ++t) {
+      if (run.type == ElementType::tet4) {
+        element = run.first_element + (t - run.first_tet);
+      } else {
+        const auto after = std::upper_bound(run.first_tets.begin(), run.first_tets.end(), t);
+        element = run.first_element + (after - run.first_tets.begin()) - 1;
+      }
+      mesh_.element_of_tet[static_cast<std::size_t>(t)] = element;
+    }
+    if (run.type == ElementType::tet4) continue;
+    const auto known = std::find_if(mesh_.split.begin(), mesh_.split.end(), [&](const auto& split) {
+      return split.type == name_of(run.type);
+    });
+    SplitElements& split = known != mesh_.split.end()
+                               ? *known
+                               : mesh_.split.emplace_back(SplitElements{name_of(run.type)});
+    split.n_elements += run.first_tets.size();
+    split.n_tets += static_cast<std::uint64_t>(end - run.first_tet);
   }
 }
 

@@ -14,6 +14,7 @@
 
 #include "m2m/mesh.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,6 +25,11 @@ namespace tess::m2m {
 /// Volume elements. The order of vertices and the numbers of sides are those of ExodusII.
 enum class ElementType : std::uint8_t { tet4, hex8, wedge6, pyramid5, tet10 };
 
+[[nodiscard]] constexpr const char* name_of(ElementType type) noexcept {
+  constexpr std::array names{"TET4", "HEX8", "WEDGE6", "PYRAMID5", "TET10"};
+  return names[static_cast<std::size_t>(type)];
+}
+
 [[nodiscard]] std::size_t n_vertices(ElementType type) noexcept;
 [[nodiscard]] std::size_t n_sides(ElementType type) noexcept;
 
@@ -31,25 +37,38 @@ enum class ElementType : std::uint8_t { tet4, hex8, wedge6, pyramid5, tet10 };
 /// n_vertices(type) ids. Tetrahedra that name a vertex twice are left out.
 void split_element(ElementType type, std::span<const VertexId> vertices, std::vector<Tet>& tets);
 
-/// Elements of one type that were split, with their tetrahedra in a mesh.
-class SplitBlock {
+/// Adds elements of any type to a mesh as tetrahedra, counts those that are split, and knows which
+/// faces of tetrahedra make up a side of an element.
+class ElementSplitter {
  public:
-  explicit SplitBlock(ElementType type) : type_(type) {}
+  /// `mesh` must outlive the splitter; its tetrahedra are added through the splitter only.
+  explicit ElementSplitter(TetMesh& mesh) : mesh_(mesh) {}
 
-  [[nodiscard]] ElementType type() const noexcept { return type_; }
-  [[nodiscard]] std::size_t n_elements() const noexcept { return first_tet_.size(); }
+  /// Elements with a volume, added so far.
+  [[nodiscard]] GlobalId n_elements() const noexcept { return n_elements_; }
 
-  /// Splits an element into tetrahedra at the end of `mesh`.
-  void add(std::span<const VertexId> vertices, TetMesh& mesh);
-  /// Appends the faces of tetrahedra that make up a side (from 1 on) of an element (from 0 on).
-  void append_side(std::size_t element, std::int64_t side, const TetMesh& mesh,
-                   std::vector<Side>& sides) const;
+  void add(ElementType type, std::span<const VertexId> vertices);
+  /// Sides of an element (from 0 on) as numbers from 1 on; 0 if there is no such element.
+  [[nodiscard]] std::size_t n_sides_of(GlobalId element) const;
+  /// Appends the faces that make up a side of an element.
+  void append_side(GlobalId element, std::int64_t side, std::vector<Side>& sides) const;
+  /// Fills mesh.split and mesh.element_of_tet.
+  void finish();
 
  private:
-  ElementType type_;
-  std::vector<VertexId> vertices_;   // of all elements
-  std::vector<GlobalId> first_tet_;  // per element, in the mesh
-  GlobalId end_ = 0;                 // after the tetrahedra of the last element
+  /// Consecutive elements of one type. Tetrahedra need no lists.
+  struct Run {
+    ElementType type;
+    GlobalId first_element = 0;
+    GlobalId first_tet = 0;
+    std::vector<VertexId> vertices{};
+    std::vector<GlobalId> first_tets{};  // per element
+  };
+  [[nodiscard]] const Run* run_of(GlobalId element) const;
+
+  TetMesh& mesh_;
+  std::vector<Run> runs_;
+  GlobalId n_elements_ = 0;
 };
 
 }  // namespace tess::m2m

@@ -63,8 +63,8 @@ TEST_CASE("an element is filled by positive tetrahedra for every numbering of it
       mesh.points.resize(ids.size());
       for (std::size_t v = 0; v < ids.size(); ++v)
         mesh.points[static_cast<std::size_t>(ids[v])] = known.points[v];
-      SplitBlock block(known.type);
-      block.add(ids, mesh);
+      ElementSplitter splitter(mesh);
+      splitter.add(known.type, ids);
       double volume = 0;
       for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
         CHECK(signed_volume(mesh, t) > 0.01);
@@ -74,8 +74,8 @@ TEST_CASE("an element is filled by positive tetrahedra for every numbering of it
       CHECK(volume == Approx(known.volume).epsilon(1e-14));
       // The sides cover the boundary, each of its triangles once.
       std::vector<Side> sides;
-      for (std::size_t side = 1; side <= n_sides(known.type); ++side)
-        block.append_side(0, static_cast<std::int64_t>(side), mesh, sides);
+      for (std::size_t side = 1; side <= splitter.n_sides_of(0); ++side)
+        splitter.append_side(0, static_cast<std::int64_t>(side), sides);
       CHECK(sides.size() == boundary(mesh.tets).size());
       std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
         return a.tet < b.tet || (a.tet == b.tet && a.side < b.side);
@@ -146,4 +146,47 @@ TEST_CASE("elements with repeated vertices give the tetrahedra of what they are"
   tets.clear();
   split_element(ElementType::hex8, std::array{1, 1, 1, 1, 1, 1, 1, 1}, tets);
   CHECK(tets.empty());
+}
+
+TEST_CASE("tetrahedra know their element, and sides their tetrahedra, in a mix of types",
+          "[m2m][elements]") {
+  TetMesh mesh;
+  mesh.points.resize(12);
+  ElementSplitter splitter(mesh);
+  splitter.add(ElementType::tet4, std::array{0, 1, 2, 8});
+  splitter.add(ElementType::tet4, std::array{1, 2, 8, 9});
+  splitter.add(ElementType::hex8, std::array{0, 1, 2, 3, 4, 5, 6, 7});
+  splitter.add(ElementType::hex8, std::array{0, 1, 1, 1, 4, 4, 4, 4});  // no volume: no tetrahedron
+  splitter.add(ElementType::pyramid5, std::array{0, 1, 2, 3, 10});
+  splitter.add(ElementType::hex8, std::array{0, 1, 2, 3, 4, 5, 6, 7});
+  splitter.add(ElementType::tet4, std::array{1, 2, 8, 11});
+  splitter.finish();
+  CHECK(mesh.element_of_tet ==
+        std::vector<GlobalId>{0, 1, 2, 2, 2, 2, 2, 2, 4, 4, 5, 5, 5, 5, 5, 5, 6});
+  CHECK(mesh.split == std::vector<SplitElements>{{"HEX8", 3, 12}, {"PYRAMID5", 1, 2}});
+  CHECK(split_text(mesh) == "3 HEX8 into 12 tetrahedra, 1 PYRAMID5 into 2 tetrahedra");
+  CHECK(splitter.n_sides_of(0) == 4);
+  CHECK(splitter.n_sides_of(3) == 6);
+  CHECK(splitter.n_sides_of(7) == 0);
+  const auto n_faces = [&](GlobalId element, std::int64_t side) {
+    std::vector<Side> sides;
+    splitter.append_side(element, side, sides);
+    for (const Side& s : sides)
+      CHECK(mesh.element_of_tet[static_cast<std::size_t>(s.tet)] == element);
+    return sides.size();
+  };
+  CHECK(n_faces(1, 4) == 1);
+  CHECK(n_faces(2, 6) == 2);
+  CHECK(n_faces(3, 1) == 0);
+  CHECK(n_faces(4, 1) == 1);
+  CHECK(n_faces(4, 5) == 2);
+  CHECK(n_faces(5, 1) == 2);
+  CHECK(n_faces(6, 2) == 1);
+  TetMesh plain;
+  plain.points.resize(4);
+  ElementSplitter tets(plain);
+  tets.add(ElementType::tet4, std::array{0, 1, 2, 3});
+  tets.finish();
+  CHECK(plain.element_of_tet.empty());
+  CHECK(split_text(plain).empty());
 }

@@ -24,7 +24,6 @@ TetMesh quadratic_mesh(std::int32_t n) {
   TetMesh mesh;
   mesh.points = coarse.points;
   std::map<std::array<VertexId, 2>, VertexId> middles;
-  SplitBlock block(ElementType::tet10);
   for (const Tet& tet : coarse.tets) {
     Tet10 nodes{tet[0], tet[1], tet[2], tet[3]};
     constexpr std::size_t edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
@@ -38,7 +37,7 @@ TetMesh quadratic_mesh(std::int32_t n) {
       }
       nodes[4 + e] = at->second;
     }
-    block.add(nodes, mesh);
+    split_element(ElementType::tet10, nodes, mesh.tets);
   }
   return mesh;
 }
