@@ -29,6 +29,9 @@
 // without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a
 // target piece's received() is called when all of its rows are there.
 //
+// Kinds other than linear need gradients: the pieces show a halo of two layers of tetrahedra
+// (MeshView::n_own_tets, halo_layers()), so that the result does not depend on how the mesh is cut.
+//
 // The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
 // voxels, or the order of messages.
 #pragma once
@@ -46,6 +49,7 @@ struct CouplingOptions {
   Point voxel_origin{0, 0, 0};
   Point voxel_size{0, 0, 0};      ///< zero: chosen
   OutsidePolicy policy = Keep{};  ///< for target points outside the source
+  TransferKind kind = TransferKind::linear;
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
   std::function<void(const char*)> on_phase{};
 };
@@ -109,6 +113,7 @@ Task Coupling<S, T>::search(SearchSummary* summary) {
     setup_.source = source_.id();
     setup_.target = target_.id();
     setup_.policy = options_.policy;
+    setup_.kind = options_.kind;
     co_await epoch([&] {
       setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
       setup_.ledger = create_group<Ledger>();

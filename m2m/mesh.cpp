@@ -32,4 +32,14 @@ std::string skipped_text(const TetMesh& mesh) {
   return out;
 }
 
+std::string split_text(const TetMesh& mesh) {
+  std::string out;
+  for (const SplitElements& split : mesh.split) {
+    if (!out.empty()) out += ", ";
+    out += std::to_string(split.n_elements) + " " + split.type + " into " +
+           std::to_string(split.n_tets) + " tetrahedra";
+  }
+  return out;
+}
+
 }  // namespace tess::m2m

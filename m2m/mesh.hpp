@@ -57,6 +57,14 @@ struct Skipped {
   friend bool operator==(const Skipped&, const Skipped&) = default;
 };
 
+/// Elements of a file with a volume that the reader split into tetrahedra.
+struct SplitElements {
+  std::string type{};
+  std::uint64_t n_elements = 0;
+  std::uint64_t n_tets = 0;
+  friend bool operator==(const SplitElements&, const SplitElements&) = default;
+};
+
 struct TetMesh {
   std::string name;             ///< a path, "kuhn:8", or a name that the application chooses
   std::vector<Point> points;    ///< n_points × 3
@@ -65,6 +73,10 @@ struct TetMesh {
   std::vector<SideSet> side_sets{};
   std::vector<NodeSet> node_sets{};
   std::vector<Skipped> skipped{};
+  std::vector<SplitElements> split{};  ///< per type; empty if all elements are tetrahedra
+  /// Per tetrahedron: its element among all elements with a volume, in the order of the file. Empty
+  /// if all elements are tetrahedra.
+  std::vector<GlobalId> element_of_tet{};
 
   [[nodiscard]] std::size_t n_points() const noexcept { return points.size(); }
   [[nodiscard]] std::size_t n_tets() const noexcept { return tets.size(); }
@@ -91,6 +103,9 @@ MeshCensus validate(const TetMesh& mesh);
 
 /// "120 TRI3, 8 BAR2"; empty if the reader skipped nothing.
 [[nodiscard]] std::string skipped_text(const TetMesh& mesh);
+
+/// "27 HEX8 into 162 tetrahedra"; empty if the reader split nothing.
+[[nodiscard]] std::string split_text(const TetMesh& mesh);
 
 /// The box around all points.
 [[nodiscard]] Aabb bounds(const TetMesh& mesh);

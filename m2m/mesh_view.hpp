@@ -1,23 +1,31 @@
-// A part of a mesh as the owner of the data shows it: spans, so nothing is copied. A view is valid
-// during the call that it is passed to.
+// A mesh, or a part of it, as the owner of the data shows it: spans, so nothing is copied. A view is
+// valid during the call that it is passed to. Positions in `points` and `tets` are local ids.
 #pragma once
 
 #include "m2m/mesh.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
 namespace tess::m2m {
 
 struct MeshView {
-  std::span<const Point> points;        ///< those that this part owns first, then its ghosts
-  std::span<const Tet> tets;            ///< indices into points; empty for a cloud of targets
-  std::span<const GlobalId> point_ids;  ///< per point; unique in the mesh; ties are decided by them
-  std::span<const GlobalId> tet_ids;    ///< per tetrahedron; unique in the mesh
+  std::span<const Point> points{};  ///< those that this part owns first, then its ghosts
+  std::span<const Tet> tets{};      ///< indices into points; empty for a cloud of targets
+  std::span<const GlobalId>
+      point_ids{};                      ///< per point; unique in the mesh; ties are decided by them
+  std::span<const GlobalId> tet_ids{};  ///< per tetrahedron; unique in the mesh
   std::int64_t n_owned = 0;             ///< the first n_owned points receive values
+  /// The first tetrahedra are the part's own. The others are a halo, for recovered gradients: they
+  /// are also in other parts. -1: all are its own.
+  std::int64_t n_own_tets = -1;
 
   [[nodiscard]] std::span<const Point> owned() const {
     return points.first(static_cast<std::size_t>(n_owned));
+  }
+  [[nodiscard]] std::span<const Tet> own_tets() const {
+    return n_own_tets < 0 ? tets : tets.first(static_cast<std::size_t>(n_own_tets));
   }
 };
 

@@ -10,6 +10,9 @@ Transfer::Transfer(const DistributedMesh& source, const DistributedMesh& target,
   TESS_CHECK(source.n_components == target.n_components, "the source has ", source.n_components,
              " components per vertex, the target ", target.n_components,
              "; scatter both meshes with the same number of components");
+  TESS_CHECK(source.n_parts == 1 || source.halo_layers >= halo_layers(options.kind),
+             "this kind of transfer needs gradients: scatter the source with ",
+             halo_layers(options.kind), " halo layers instead of ", source.halo_layers);
 }
 
 Task Transfer::apply() {

@@ -93,7 +93,7 @@ MeshCensus validate(const TetMesh& mesh) {
   if (mesh.tets.empty()) {
     const std::string others = skipped_text(mesh);
     fail(ErrorCode::bad_mesh, mesh.name, ": has no tetrahedra",
-         others.empty() ? "" : " (but " + others + ")", "; give a volume mesh of TET4 elements");
+         others.empty() ? "" : " (but " + others + ")", "; give a volume mesh");
   }
   validate_groups(mesh);
   if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {

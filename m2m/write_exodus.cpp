@@ -183,13 +183,13 @@ void name_variables(const PartFile& file, ex_entity_type type, const std::vector
 }
 
 /// A range of rows of the fields: all vertices, or the tetrahedra of one block.
-struct Rows {
+struct Slab {
   ex_entity_type type;
   std::int64_t id;
   std::size_t first, n;
 };
 
-void put_variables(const PartFile& file, const std::vector<Variable>& all, const Rows& rows) {
+void put_variables(const PartFile& file, const std::vector<Variable>& all, const Slab& rows) {
   if (rows.n == 0) return;
   std::vector<double> column(rows.n);
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -24,6 +24,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
   line.option("--policy", options.policies,
               "value of vertices outside the source: keep, value:V or nearest");
+  line.option("--kind", request.kind,
+              "linear, second-order (recovered gradients) or limited (the same, bounded by the "
+              "vertices around)");
   line.option("--partition", request.partition,
               "method that cuts the meshes into chares: rcb or hsfc");
   line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")

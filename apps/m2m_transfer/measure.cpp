@@ -55,13 +55,15 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   const Time start = now();
   DistributedMesh source, target;
   co_await epoch([&] {
-    source = scatter(problem.source, problem.source_fields, report.chares, problem.partition);
+    source = scatter(problem.source, problem.source_fields, report.chares, problem.partition,
+                     halo_layers(problem.kind));
     target = scatter(problem.target, problem.target_fields, report.chares, problem.partition);
   });
   report.seconds.setup = seconds_since(start);
   TransferOptions options;
   options.voxel_size = problem.voxel;
   options.policy = problem.policy;
+  options.kind = problem.kind;
   options.on_phase = [&progress](const char* name) { progress.phase(name); };
   for (std::int32_t round = 0; round < problem.repeat; ++round) {
     Transfer transfer(source, target, options);

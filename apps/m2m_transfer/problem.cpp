@@ -23,6 +23,7 @@ Problem load(const Request& request, const Machine& machine) {
   Problem problem;
   problem.policy = parse_policy(request.policy);
   problem.partition = parse_partition_method(request.partition);
+  problem.kind = parse_transfer_kind(request.kind);
   problem.repeat = request.repeat;
   problem.steps = request.steps;
   problem.source = read_mesh(request.source);
@@ -44,6 +45,7 @@ Problem load(const Request& request, const Machine& machine) {
   report.source_skipped = skipped_text(problem.source);
   report.target_skipped = skipped_text(problem.target);
   report.policy = request.policy;
+  report.kind = request.kind;
   report.machine = machine.describe();
   report.pes = machine.n_pes();
   report.processes = machine.n_processes();

@@ -7,6 +7,7 @@
 #include "m2m/mesh.hpp"
 #include "m2m/partition_method.hpp"
 #include "m2m/policy.hpp"
+#include "m2m/transfer_kind.hpp"
 #include "runtime/machine/machine.hpp"
 
 #include <cstdint>
@@ -21,6 +22,7 @@ struct Request {
   std::vector<std::string> fields{"gaussian"};
   std::string policy = "keep";
   std::string partition = "rcb";
+  std::string kind = "linear";
   std::int32_t n_chares = 0;  ///< per mesh; 0: per_pe times the number of PEs
   std::int32_t per_pe = 8;
   double voxel = 0;         ///< edge; 0: chosen by the collider
@@ -35,6 +37,7 @@ struct Problem {
   std::vector<Field> truth{};  ///< on the target
   OutsidePolicy policy{};
   PartitionMethod partition{};
+  TransferKind kind{};
   Point voxel{};
   std::int32_t repeat = 1, steps = 1;
   TransferReport report{};  ///< load() fills in what is known before the run

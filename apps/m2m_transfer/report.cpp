@@ -63,6 +63,7 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair["bytes_sent"] = r.footprint.bytes_sent;
   pair["result_hash"] = fmt::format("{:016x}", r.result_hash);
   pair["policy"] = r.policy;
+  pair["kind"] = r.kind;
   pair["source_tets"] = r.source_tets;
   pair["source_edge"] = r.source_edge;
   pair["machine"] = r.machine;

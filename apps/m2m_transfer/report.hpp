@@ -27,7 +27,7 @@ struct FieldError {
 };
 
 struct TransferReport {
-  std::string source, target, policy, machine;
+  std::string source, target, policy, kind, machine;
   std::string source_skipped, target_skipped;  ///< elements without volume: "120 TRI3"
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;

@@ -2,32 +2,43 @@
 // TETRA, TET4 or tetrahedra, and TRI, TRI3 or TRIANGLE, in upper or lower case.
 #pragma once
 
+#include "m2m/elements/split_element.hpp"
+
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace tess::m2m {
 
-enum class ExodusElement {
-  tetrahedron,  ///< with four vertices: read
-  no_volume,    ///< surfaces, lines and points: skipped
-  other         ///< solids that are not supported, and unknown types
-};
+/// The volume element of this name and number of vertices, if it is supported: TET4, TET10, HEX8,
+/// WEDGE6, PYRAMID5, also without the number. `type`: in upper case.
+[[nodiscard]] constexpr std::optional<ElementType> exodus_volume(std::string_view type,
+                                                                 std::int64_t n_vertices) {
+  struct Known {
+    std::string_view start;
+    std::int64_t n;
+    std::string_view digits;
+    ElementType element;
+  };
+  constexpr std::array known{
+      Known{"TET", 4, "4", ElementType::tet4}, Known{"TET", 10, "10", ElementType::tet10},
+      Known{"HEX", 8, "8", ElementType::hex8}, Known{"WEDGE", 6, "6", ElementType::wedge6},
+      Known{"PYR", 5, "5", ElementType::pyramid5}};
+  const std::string_view digits = type.substr(type.find_last_not_of("0123456789") + 1);
+  for (const Known& k : known)
+    if (type.starts_with(k.start) && n_vertices == k.n && (digits.empty() || digits == k.digits))
+      return k.element;
+  return std::nullopt;
+}
 
-/// `type`: in upper case.
-[[nodiscard]] constexpr ExodusElement exodus_element(std::string_view type,
-                                                     std::int64_t n_vertices) {
-  constexpr std::string_view digits = "0123456789";
-  if (type.starts_with("TET")) {
-    const std::string_view count = type.substr(type.find_last_not_of(digits) + 1);
-    return n_vertices == 4 && (count.empty() || count == "4") ? ExodusElement::tetrahedron
-                                                              : ExodusElement::other;
-  }
+/// True for surfaces, lines and points, which are skipped. `type`: in upper case.
+[[nodiscard]] constexpr bool exodus_has_no_volume(std::string_view type) {
   constexpr std::array no_volume{"TRI",  "QUAD", "SHELL", "BAR",    "BEAM",   "TRUSS", "ROD",
                                  "LINE", "EDGE", "CURVE", "SPHERE", "CIRCLE", "POINT", "NODE"};
   for (const std::string_view start : no_volume)
-    if (type.starts_with(start)) return ExodusElement::no_volume;
-  return ExodusElement::other;
+    if (type.starts_with(start)) return true;
+  return false;
 }
 
 }  // namespace tess::m2m

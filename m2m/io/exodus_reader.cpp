@@ -20,6 +20,8 @@
 namespace tess::m2m {
 namespace {
 
+constexpr const char* supported_volumes = "TET4, TET10, HEX8, WEDGE6 and PYRAMID5";
+
 /// Discards standard error while the object lives. libexodusII prints a message if it cannot open a
 /// NetCDF-4 file, and has no option against it. The whole process is affected, so an object lives
 /// only during one call.
@@ -86,8 +88,11 @@ class ExodusReader {
     }
     if (n > 0) read_points(mesh, n);
     set_name_length();
-    for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks)) read_block(mesh, block, most);
-    read_sets(mesh, most);
+    ElementSplitter elements(mesh);
+    for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks))
+      read_block(mesh, elements, block, most);
+    elements.finish();
+    read_sets(mesh, elements, most);
     return mesh;
   }
 
@@ -139,7 +144,7 @@ class ExodusReader {
       mesh.points[i] = {axes[0][i], axes[1][i], axes[2][i]};
   }
 
-  void read_block(TetMesh& mesh, std::int64_t id, std::int64_t most) {
+  void read_block(TetMesh& mesh, ElementSplitter& elements, std::int64_t id, std::int64_t most) {
     ex_block block{};
     block.id = id;
     block.type = EX_ELEM_BLOCK;
@@ -155,36 +160,36 @@ class ExodusReader {
               ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
               : '?';
     }
-    const ExodusElement element = exodus_element(type, block.num_nodes_per_entry);
-    if (element == ExodusElement::other) {
+    const auto element = exodus_volume(type, block.num_nodes_per_entry);
+    if (!element) {
+      if (exodus_has_no_volume(type)) return skip(mesh, type, block.num_entry);
       fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", type, " with ",
-           block.num_nodes_per_entry,
-           " vertices; only TET4 is supported: mesh it with linear tetrahedra");
+           block.num_nodes_per_entry, " vertices; ", supported_volumes,
+           " are supported: mesh it with one of these");
     }
-    if (element == ExodusElement::no_volume) return skip(mesh, type, block.num_entry);
-    mesh.blocks.push_back(
-        {id, name_of(EX_ELEM_BLOCK, id), static_cast<std::size_t>(block.num_entry)});
-    element_runs_.push_back(
-        {n_elements_, static_cast<GlobalId>(mesh.n_tets()) - (n_elements_ - block.num_entry)});
+    element_runs_.push_back({n_elements_, elements.n_elements() - (n_elements_ - block.num_entry)});
+    const std::size_t n_tets_before = mesh.n_tets();
     const auto n = static_cast<std::size_t>(block.num_entry);
-    std::vector<std::int64_t> vertices(4 * n);
+    const std::size_t n_each = n_vertices(*element);
+    std::vector<std::int64_t> vertices(n_each * n);
     check(ex_get_n_conn(id_, EX_ELEM_BLOCK, id, 1, block.num_entry, vertices.data(), nullptr,
                         nullptr),
           "ex_get_conn");
     const auto n_points = static_cast<std::int64_t>(mesh.n_points());
     mesh.tets.reserve(mesh.n_tets() + n);
+    std::vector<VertexId> corners(n_each);
     for (std::size_t t = 0; t < n; ++t) {
-      Tet tetrahedron;
-      for (std::size_t corner = 0; corner < 4; ++corner) {
-        const std::int64_t vertex = vertices[4 * t + corner];
+      for (std::size_t corner = 0; corner < n_each; ++corner) {
+        const std::int64_t vertex = vertices[n_each * t + corner];
         if (vertex < 1 || vertex > n_points) {
           fail(ErrorCode::bad_mesh, path_, ": element ", t + 1, " of block ", id, " names vertex ",
                vertex, " of ", n_points, "; write the mesh again");
         }
-        tetrahedron[corner] = static_cast<VertexId>(vertex - 1);
+        corners[corner] = static_cast<VertexId>(vertex - 1);
       }
-      mesh.tets.push_back(tetrahedron);
+      elements.add(*element, corners);
     }
+    mesh.blocks.push_back({id, name_of(EX_ELEM_BLOCK, id), mesh.n_tets() - n_tets_before});
   }
 
   void skip(TetMesh& mesh, const std::string& type, std::int64_t n) {
@@ -197,20 +202,21 @@ class ExodusReader {
     element_runs_.push_back({n_elements_, std::nullopt});
   }
 
-  /// The tetrahedron of an element of the file (counted from 1 over all blocks): -1 for an element
-  /// that was skipped, -2 for an element that does not exist.
-  [[nodiscard]] GlobalId tet_of(std::int64_t element) const {
+  /// The number of an element of the file (counted from 1 over all blocks) among those with a
+  /// volume: -1 for an element that was skipped, -2 for an element that does not exist.
+  [[nodiscard]] GlobalId volume_of(std::int64_t element) const {
     const auto run = std::partition_point(element_runs_.begin(), element_runs_.end(),
                                           [&](const Run& r) { return r.last < element; });
     if (element < 1 || run == element_runs_.end()) return -2;
     return run->shift ? element - 1 + *run->shift : -1;
   }
 
-  void read_sets(TetMesh& mesh, std::int64_t most) const {
+  void read_sets(TetMesh& mesh, const ElementSplitter& elements, std::int64_t most) const {
     const std::int64_t n_side_sets = inquire(EX_INQ_SIDE_SETS);
     const std::int64_t n_node_sets = inquire(EX_INQ_NODE_SETS);
     if (n_side_sets > most || n_node_sets > most) damaged("number of sets", -1);
-    for (const std::int64_t id : ids_of(EX_SIDE_SET, n_side_sets)) read_side_set(mesh, id, most);
+    for (const std::int64_t id : ids_of(EX_SIDE_SET, n_side_sets))
+      read_side_set(mesh, elements, id, most);
     for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id, most);
   }
 
@@ -230,23 +236,27 @@ class ExodusReader {
     return factors;
   }
 
-  /// Leaves out the sides of skipped elements. The factors of such a set are left out too, because
-  /// the file does not say which factor belongs to which side.
-  void read_side_set(TetMesh& mesh, std::int64_t id, std::int64_t most) const {
+  /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of their
+  /// tetrahedra. The factors of such a set are left out too, because the file does not say which
+  /// factor belongs to which side.
+  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id,
+                     std::int64_t most) const {
     const auto [n, n_factors] = size_of(EX_SIDE_SET, id, most);
     std::vector<std::int64_t> elements(n), sides(n);
     if (n > 0) check(ex_get_set(id_, EX_SIDE_SET, id, elements.data(), sides.data()), "ex_get_set");
     SideSet set{id, name_of(EX_SIDE_SET, id)};
     for (std::size_t i = 0; i < n; ++i) {
-      const GlobalId tet = tet_of(elements[i]);
-      if (tet == -1) continue;
-      if (tet < 0 || sides[i] < 1 || sides[i] > 4) {
+      const GlobalId element = volume_of(elements[i]);
+      if (element == -1) continue;
+      if (element < 0 || sides[i] < 1 ||
+          sides[i] > static_cast<std::int64_t>(volumes.n_sides_of(element))) {
         fail(ErrorCode::bad_mesh, path_, ": side set ", id, " names side ", sides[i],
              " of element ", elements[i], " of ", n_elements_, "; write the mesh again");
       }
-      set.entries.push_back({tet, static_cast<std::int32_t>(sides[i])});
+      volumes.append_side(element, sides[i], set.entries);
     }
-    if (set.entries.size() == n) set.factors = factors_of(EX_SIDE_SET, id, n_factors);
+    if (set.entries.size() == n && mesh.split.empty())
+      set.factors = factors_of(EX_SIDE_SET, id, n_factors);
     mesh.side_sets.push_back(std::move(set));
   }
 
@@ -268,7 +278,7 @@ class ExodusReader {
   /// The elements of a block of the file.
   struct Run {
     std::int64_t last;              // of the file's elements, counted from 1
-    std::optional<GlobalId> shift;  // from element - 1 to tetrahedron; none if skipped
+    std::optional<GlobalId> shift;  // from element - 1 to volume_of(); none if skipped
   };
 
   const std::string& path_;

@@ -1,6 +1,10 @@
-// The element types of gmsh's MSH format (gmsh reference manual, section 10.1).
+// The element types of gmsh's MSH format (gmsh reference manual, section 10.1). Vertices are in the
+// order of ExodusII but for the last two of a tet10.
 #pragma once
 
+#include "m2m/elements/split_element.hpp"
+
+#include <optional>
 #include <string_view>
 
 namespace tess::m2m {
@@ -11,8 +15,6 @@ struct GmshElement {
   int dimension;
   int n_vertices;
 };
-
-inline constexpr int gmsh_tet4 = 4;
 
 inline constexpr GmshElement gmsh_elements[] = {
     {1, "line2", 1, 2},        {2, "triangle3", 2, 3},    {3, "quad4", 2, 4},
@@ -35,6 +37,24 @@ constexpr const GmshElement* gmsh_element(int number) {
     if (element.number == number) return &element;
   }
   return nullptr;
+}
+
+/// The volume element of a type number, if it is supported.
+constexpr std::optional<ElementType> gmsh_volume(int number) {
+  switch (number) {
+    case 4:
+      return ElementType::tet4;
+    case 5:
+      return ElementType::hex8;
+    case 6:
+      return ElementType::wedge6;
+    case 7:
+      return ElementType::pyramid5;
+    case 11:
+      return ElementType::tet10;
+    default:
+      return std::nullopt;
+  }
 }
 
 }  // namespace tess::m2m

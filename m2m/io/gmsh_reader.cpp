@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,7 @@ class GmshReader {
       const std::uint64_t n = n_skipped_[static_cast<std::size_t>(type.number)];
       if (n > 0) mesh_.skipped.push_back({std::string(type.name), n});
     }
+    elements_.finish();
     return std::move(mesh_);
   }
 
@@ -188,35 +190,37 @@ class GmshReader {
       file_.damaged(n, " nodes announced, ", mesh_.points.size(), " found");
   }
 
-  /// The type with this number. Refuses unknown types and volume elements other than tet4.
+  /// The type with this number. Refuses unknown types and volume elements that are not supported.
   const GmshElement& element_type(int number) const {
     const GmshElement* const type = gmsh_element(number);
     if (type == nullptr)
-      file_.refuse("has elements of unknown gmsh type ", number,
-                   "; only tet4 volumes are supported");
-    if (type->dimension == 3 && number != gmsh_tet4) {
-      file_.refuse("has elements of type ", type->name,
-                   "; only tet4 volumes are supported: mesh it with linear tetrahedra");
+      file_.refuse("has elements of unknown gmsh type ", number, "; ", supported);
+    if (type->dimension == 3 && !gmsh_volume(number)) {
+      file_.refuse("has elements of type ", type->name, "; ", supported,
+                   ": mesh it with one of these");
     }
     return *type;
   }
 
   template <class Tag>
   void vertices(const GmshElement& type) {
-    if (type.number != gmsh_tet4) {
+    const auto volume = gmsh_volume(type.number);
+    if (!volume) {
       ++n_skipped_[static_cast<std::size_t>(type.number)];
       return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
     }
-    Tet tet;
-    for (VertexId& vertex : tet) {
+    std::array<VertexId, 10> ids;
+    const auto corners = std::span(ids).first(static_cast<std::size_t>(type.n_vertices));
+    for (VertexId& vertex : corners) {
       const Tag tag = file_.number<Tag>();
       vertex = tag < Tag{0} ? -1 : tags_.find(static_cast<std::uint64_t>(tag));
       if (vertex < 0) {
-        file_.refuse("tetrahedron ", mesh_.n_tets(), " names node ", tag,
+        file_.refuse(type.name, " ", elements_.n_elements(), " names node ", tag,
                      ", which does not exist; write the mesh again");
       }
     }
-    mesh_.tets.push_back(tet);
+    if (*volume == ElementType::tet10) std::swap(ids[8], ids[9]);
+    elements_.add(*volume, corners);
   }
 
   void elements_22() {
@@ -255,7 +259,7 @@ class GmshReader {
       file_.skip<int>(2);  // dimension and entity
       const GmshElement& type = element_type(file_.number<int>());
       const auto m = file_.count<std::uint64_t>("elements in a block", 16);
-      if (type.number == gmsh_tet4) mesh_.tets.reserve(mesh_.n_tets() + m);
+      if (gmsh_volume(type.number)) mesh_.tets.reserve(mesh_.n_tets() + m);
       for (std::size_t i = 0; i < m; ++i) {
         file_.skip<std::uint64_t>(1);  // tag
         vertices<std::uint64_t>(type);
@@ -265,8 +269,12 @@ class GmshReader {
     if (found != n) file_.damaged(n, " elements announced, ", found, " found");
   }
 
+  static constexpr const char* supported =
+      "of volumes, tet4, tet10, hex8, prism6 and pyramid5 are supported";
+
   GmshScanner file_;
   TetMesh mesh_;
+  ElementSplitter elements_{mesh_};
   std::vector<std::uint64_t> node_tags_;
   TagMap tags_;
   std::array<std::uint64_t, 128> n_skipped_{};  // per type number

@@ -6,6 +6,7 @@
 #include "m2m/interpolate/donor.hpp"
 #include "m2m/parallel/ledger.hpp"
 #include "m2m/policy.hpp"
+#include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -23,6 +24,7 @@ struct CouplingSetup {
   GroupProxy<Ledger> ledger;
   CollectionId source{}, target{};
   OutsidePolicy policy{};
+  TransferKind kind{};
 };
 
 /// From a target piece to a source piece: which of your tetrahedra hold these points?
@@ -69,7 +71,7 @@ struct Choice {
 };
 
 /// Values for a target piece, in the order of its Choice.
-struct Rows {
+struct GivenValues {
   CouplingId coupling{};
   collide::OwnerId from{};
   std::uint64_t channel = 0;   ///< one per function that takes the values

@@ -11,7 +11,7 @@
 //   outside    its nearest vertex       ← NearestQuery  if the policy says so
 //                                       NearestAnswer →
 //   choose     keeps what was chosen    ← Choice        decides
-//   give       interpolates             Rows →          writes a round that is complete
+//   give       interpolates             GivenValues →          writes a round that is complete
 #pragma once
 
 #include "m2m/parallel/source_side.hpp"
@@ -80,15 +80,15 @@ class Piece {
   void m2m_give(CouplingId id) {
     SourceSide& from = couplings.source(id);
     const std::span<const double> values = detail::values_of<Give>(self(), id);
-    const std::size_t n_points = self().mesh_view().points.size();
-    TESS_CHECK(n_points == 0 || values.size() % n_points == 0, "a piece of ", n_points,
-               " points gives ", values.size(), " values: give points × components");
-    from.give(values, n_points == 0 ? 0 : values.size() / n_points, channel<Take>(),
-              [&](collide::OwnerId target, Rows rows) {
-                rows.from = me();
-                at<T>(from.setup.target, target)
-                    .template send<&Piece<T>::template m2m_take<Take>>(std::move(rows));
-              });
+    const MeshView mesh = self().mesh_view();
+    TESS_CHECK(mesh.points.empty() || values.size() % mesh.points.size() == 0, "a piece of ",
+               mesh.points.size(), " points gives ", values.size(),
+               " values: give points × components");
+    from.give(mesh, values, channel<Take>(), [&](collide::OwnerId target, GivenValues given) {
+      given.from = me();
+      at<T>(from.setup.target, target)
+          .template send<&Piece<T>::template m2m_take<Take>>(std::move(given));
+    });
   }
   /// A piece without sources has nothing to wait for.
   template <auto Take>
@@ -99,7 +99,7 @@ class Piece {
     notify(id);
   }
   template <auto Take>
-  void m2m_take(Rows rows) {
+  void m2m_take(GivenValues rows) {
     const CouplingId id = rows.coupling;
     couplings.target(id).add(std::move(rows));
     while (couplings.target(id).take_next(channel<Take>(), detail::values_of<Take>(self(), id)))

@@ -28,16 +28,17 @@ std::vector<double> rows_of(const MeshPart& part, const std::vector<Field>& fiel
 }  // namespace
 
 DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields, std::int32_t n_parts,
-                        PartitionMethod method) {
+                        PartitionMethod method, std::int32_t halo_layers) {
   DistributedMesh out;
   out.n_parts = n_parts;
+  out.halo_layers = halo_layers;
   for (const Field& field : fields) {
     TESS_CHECK(field.values.size() == mesh.n_points() * field.n_components, "field ", field.name,
                ": expected ", mesh.n_points() * field.n_components, " values, got ",
                field.values.size());
     out.n_components += field.n_components;
   }
-  std::vector<MeshPart> parts = split(mesh, partition(mesh, n_parts, method), n_parts);
+  std::vector<MeshPart> parts = split(mesh, partition(mesh, n_parts, method), n_parts, halo_layers);
   out.workers = create<Worker>(range(n_parts));
   for (std::int32_t k = 0; k < n_parts; ++k) {
     MeshPart& part = parts[static_cast<std::size_t>(k)];

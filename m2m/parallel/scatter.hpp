@@ -18,6 +18,7 @@ struct DistributedMesh {
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 0;
   std::size_t n_components = 0;  ///< of all fields together
+  std::int32_t halo_layers = 0;
 
   /// Frees the Workers on all PEs. No transfer may be running. The enclosing epoch includes this.
   void destroy() const { workers.destroy(); }
@@ -25,8 +26,9 @@ struct DistributedMesh {
 
 /// Partitions the mesh by tetrahedra, creates the Workers, spread evenly over all PEs, and sends
 /// each its part with the rows of the fields. The mesh is in place when the enclosing epoch is
-/// done.
+/// done. A source of a kind other than linear needs its halo_layers() (transfer_kind.hpp).
 [[nodiscard]] DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields,
-                                      std::int32_t n_parts, PartitionMethod method);
+                                      std::int32_t n_parts, PartitionMethod method,
+                                      std::int32_t halo_layers = 0);
 
 }  // namespace tess::m2m

@@ -1,7 +1,10 @@
 #include "m2m/parallel/source_side.hpp"
 
+#include "m2m/reconstruct/gradients.hpp"
+#include "m2m/reconstruct/second_order.hpp"
 #include "m2m/search/best_donors.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tess::m2m {
@@ -10,8 +13,9 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   drafts_.clear();
   donors_.clear();
   rounds_.clear();
+  gradient_vertices_.clear();
   nearest_.reset();
-  cover_ = cover_tets(mesh.points, mesh.tets);
+  cover_ = cover_tets(mesh.points, mesh.own_tets());
   return cover_.boxes;
 }
 
@@ -54,10 +58,49 @@ std::size_t SourceSide::n_donors() const {
   return n;
 }
 
-std::vector<double> SourceSide::interpolate(std::span<const Donor> donors,
+void SourceSide::prepare(const MeshView& mesh) {
+  cover_ = {};
+  nearest_.reset();
+  if (setup.kind == TransferKind::linear || !gradient_vertices_.empty()) return;
+  for (const auto& [target, donors] : donors_)
+    for (const Donor& donor : donors)
+      gradient_vertices_.insert(gradient_vertices_.end(), donor.vertices.begin(),
+                                donor.vertices.end());
+  std::sort(gradient_vertices_.begin(), gradient_vertices_.end());
+  gradient_vertices_.erase(std::unique(gradient_vertices_.begin(), gradient_vertices_.end()),
+                           gradient_vertices_.end());
+  gradient_rows_ = gradient_rows(mesh, mesh.point_ids, gradient_vertices_);
+}
+
+std::vector<Point> SourceSide::gradients(std::span<const double> values,
+                                         std::size_t n_components) const {
+  if (setup.kind == TransferKind::linear) return {};
+  std::vector<Point> mine(gradient_vertices_.size() * n_components), all(values.size());
+  m2m::apply(gradient_rows_, values, n_components, std::span(mine));
+  for (std::size_t i = 0; i < gradient_vertices_.size(); ++i)
+    std::copy_n(mine.data() + i * n_components, n_components,
+                all.data() + static_cast<std::size_t>(gradient_vertices_[i]) * n_components);
+  return all;
+}
+
+std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<const Donor> donors,
                                             std::span<const double> values,
-                                            std::size_t n_components) {
+                                            std::span<const Point> gradients,
+                                            std::size_t n_components) const {
   std::vector<double> out;
+  if (setup.kind != TransferKind::linear) {
+    std::vector<Tet> tets;
+    std::vector<PointInTet> points;
+    for (const Donor& donor : donors) {
+      points.push_back({static_cast<std::int32_t>(tets.size()), donor.weights});
+      tets.push_back(donor.vertices);
+    }
+    const Limit limit = setup.kind == TransferKind::limited ? Limit::tetrahedron : Limit::none;
+    out.resize(donors.size() * n_components);
+    second_order_values({mesh.points, tets}, points, values, gradients, n_components, limit, {},
+                        out);
+    return out;
+  }
   out.reserve(donors.size() * n_components);
   for (const Donor& donor : donors)
     for (std::size_t c = 0; c < n_components; ++c)

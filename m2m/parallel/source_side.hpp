@@ -7,6 +7,7 @@
 #include "m2m/parallel/messages.hpp"
 #include "m2m/search/cover.hpp"
 #include "m2m/search/nearest_vertex.hpp"
+#include "m2m/weights/rows.hpp"
 
 #include <cstdint>
 #include <map>
@@ -25,32 +26,47 @@ class SourceSide {
   [[nodiscard]] DonorAnswer answer(const MeshView& mesh, const DonorQuery& query);
   [[nodiscard]] NearestAnswer answer(const MeshView& mesh, NearestQuery query);
   void choose(Choice choice);
-  /// Frees what only the search needs. Calls send(target piece, rows) for every target piece that gets values from this one.
+  /// Calls send(target piece, values) for every target piece that gets values from this one.
   /// `values`: of all points of the piece, n_points × n_components, row-major.
   template <class Send>
-  void give(std::span<const double> values, std::size_t n_components, std::uint64_t channel,
+  void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
             const Send& send) {
-    cover_ = {};
-    nearest_.reset();
+    if (mesh.points.empty()) return;
+    prepare(mesh);
+    const std::size_t n_components = values.size() / mesh.points.size();
+    const std::vector<Point> slopes = gradients(values, n_components);
     const std::uint32_t round = rounds_[channel]++;
     for (const auto& [target, donors] : donors_)
-      send(target, Rows{setup.id, {}, channel, round, interpolate(donors, values, n_components)});
+      send(target, GivenValues{setup.id,
+                               {},
+                               channel,
+                               round,
+                               interpolate(mesh, donors, values, slopes, n_components)});
   }
   [[nodiscard]] std::size_t n_donors() const;
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, drafts_, donors_, rounds_);
+    ar(setup, cover_, drafts_, donors_, rounds_, gradient_vertices_, gradient_rows_);
   }
 
  private:
-  [[nodiscard]] static std::vector<double> interpolate(std::span<const Donor> donors,
-                                                       std::span<const double> values,
-                                                       std::size_t n_components);
+  /// Frees what only the search needs, and makes what only an application needs.
+  void prepare(const MeshView& mesh);
+  /// n_points × n_components where a donor needs them; empty if the kind needs none.
+  [[nodiscard]] std::vector<Point> gradients(std::span<const double> values,
+                                             std::size_t n_components) const;
+  [[nodiscard]] std::vector<double> interpolate(const MeshView& mesh, std::span<const Donor> donors,
+                                                std::span<const double> values,
+                                                std::span<const Point> gradients,
+                                                std::size_t n_components) const;
+
   Cover cover_;
   std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered
   std::map<collide::OwnerId, std::vector<Donor>> donors_;  // per target piece, as chosen
   std::map<std::uint64_t, std::uint32_t> rounds_;          // per channel
+  std::vector<VertexId> gradient_vertices_;                // the vertices of all donors
+  Rows<Point> gradient_rows_;                              // a row for each
   // Of the points owned; built when it is asked for, and again after a migration.
   std::optional<NearestVertex> nearest_;
 };

@@ -150,7 +150,7 @@ TargetSide::Addressed<Choice> TargetSide::choices() {
   return out;
 }
 
-void TargetSide::add(Rows rows) {
+void TargetSide::add(GivenValues rows) {
   Channel& channel = channels_[rows.channel];
   channel.rounds[rows.round].push_back(std::move(rows));
 }
@@ -159,7 +159,7 @@ bool TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
   Channel& channel = channels_[channel_id];
   const auto at = channel.rounds.find(channel.next);
   if (at == channel.rounds.end() || at->second.size() < rows_.size()) return false;
-  for (const Rows& message : at->second) {
+  for (const GivenValues& message : at->second) {
     const std::vector<std::int32_t>& rows = rows_.at(message.from);
     const std::size_t n_components = message.values.size() / rows.size();
     TESS_CHECK(values.size() == n_components * status_.size(), "the source gives ", n_components,

@@ -44,7 +44,7 @@ class TargetSide {
   [[nodiscard]] std::span<const Status> status() const { return status_; }
   [[nodiscard]] std::size_t n_sources() const { return rows_.size(); }
 
-  void add(Rows rows);
+  void add(GivenValues rows);
   /// If the next application of a channel has arrived as a whole, writes it to `values`
   /// (n_owned × n_components, row-major), and returns true.
   [[nodiscard]] bool take_next(std::uint64_t channel, std::span<double> values);
@@ -83,8 +83,9 @@ class TargetSide {
     NearestParts::Part asked{};
   };
   struct Channel {
-    std::uint32_t next = 0;                               // the round to be written next
-    std::map<std::uint32_t, std::vector<Rows>> rounds{};  // what has arrived of it and later ones
+    std::uint32_t next = 0;  // the round to be written next
+    std::map<std::uint32_t, std::vector<GivenValues>>
+        rounds{};  // what has arrived of it and later ones
     template <class Ar>
     void serialize(Ar& ar) {
       ar(next, rounds);

@@ -20,7 +20,8 @@ void Worker::load(PartLoad load) {
 }
 
 MeshView Worker::mesh_view() const {
-  return {part_.points, part_.tets, part_.point_ids, part_.tet_ids, part_.n_owned};
+  return {part_.points,  part_.tets,    part_.point_ids,
+          part_.tet_ids, part_.n_owned, part_.n_own_tets};
 }
 
 Worker::Pending& Worker::pending_of(CouplingId coupling) {

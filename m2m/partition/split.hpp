@@ -22,19 +22,21 @@ struct Ghosts {
 struct MeshPart {
   std::vector<Point> points;  ///< first the n_owned owned ones, then ghosts; each by global id
   std::vector<GlobalId> point_ids;  ///< global ids of points
-  std::vector<Tet> tets;            ///< indices into points
-  std::vector<GlobalId> tet_ids;    ///< global ids of tets, ascending
+  std::vector<Tet> tets;            ///< indices into points; first its own, then the halo
+  std::vector<GlobalId> tet_ids;    ///< global ids of tets, ascending in each of the two
   std::int64_t n_owned = 0;
+  std::int64_t n_own_tets = 0;
   std::vector<Ghosts> ghosts;  ///< ghosts of owned points in other parts, by ascending part
 
   template <class Archive>
   void serialize(Archive& ar) {
-    ar(points, point_ids, tets, tet_ids, n_owned, ghosts);
+    ar(points, point_ids, tets, tet_ids, n_owned, n_own_tets, ghosts);
   }
 };
 
-/// Returns the parts 0 to n_parts - 1. `parts`: the part of every tetrahedron.
+/// Returns the parts 0 to n_parts - 1. `parts`: the part of every tetrahedron. `halo_layers`: how
+/// many layers of tetrahedra of other parts each part also holds; a layer is what shares a vertex.
 [[nodiscard]] std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> parts,
-                                          std::int32_t n_parts);
+                                          std::int32_t n_parts, std::int32_t halo_layers = 0);
 
 }  // namespace tess::m2m

@@ -116,9 +116,9 @@ refuses --plot "${lab[@]}" --plot "$scratch/empty.exo/plots"
 refuses --json "$bin/lb_lab" --sim pes=4 --json "$scratch/missing/result.json"
 refuses --nonsense "${lab[@]}" --nonsense
 
-# A hexahedron, and a truncated ExodusII file.
-printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 5 2 0 0 1 2 3 4 5 6 7 8\n$EndElements\n' >"$scratch/hex.msh"
-refuses "hex.msh: .*hex8" "${transfer[@]}" "$scratch/hex.msh" kuhn:2
+# A hexahedron of second order, and a truncated ExodusII file.
+printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 17 2 0 0 1 2 3 4 5 6 7 8 1 2 3 4 5 6 7 8 1 2 3 4\n$EndElements\n' >"$scratch/hex.msh"
+refuses "hex.msh: .*hex20" "${transfer[@]}" "$scratch/hex.msh" kuhn:2
 "$bin/m2m_transfer" kuhn:4 kuhn:8 --out "$scratch/whole.exo" >/dev/null || fail "whole.exo"
 head -c $(($(stat -c %s "$scratch/whole.exo") / 2)) "$scratch/whole.exo" >"$scratch/cut.exo"
 refuses "cut.exo: is truncated" "${transfer[@]}" "$scratch/cut.exo" kuhn:2

@@ -289,8 +289,8 @@ TEST_CASE("surface and line elements beside tetrahedra are skipped, and counted 
     CHECK(mesh.node_sets.at(0) == NodeSet{8, "", {4}, {}});
   }
   for (const auto& [type, n] :
-       {std::pair{"HEX8", 8}, std::pair{"wedge", 6}, std::pair{"PYRAMID5", 5},
-        std::pair{"TET10", 10}, std::pair{"TETRA", 10}, std::pair{"superelement", 4}}) {
+       {std::pair{"HEX20", 20}, std::pair{"wedge", 15}, std::pair{"PYRAMID13", 13},
+        std::pair{"TET4", 10}, std::pair{"HEX8", 4}, std::pair{"superelement", 4}}) {
     CAPTURE(type);
     const std::string path = mixed_file(scratch, type, n);
     CHECK_THAT(message_of([&] { (void)read_mesh(path); }),
@@ -299,6 +299,98 @@ TEST_CASE("surface and line elements beside tetrahedra are skipped, and counted 
   }
   const TetMesh gmsh = read_gmsh("test", as_gmsh(kuhn_mesh({1}), false, false, 1));
   CHECK(gmsh.skipped == std::vector<Skipped>{{"point", 1}});
+}
+
+TEST_CASE("hexahedra, wedges and pyramids of ExodusII are split, and side sets follow",
+          "[m2m][io]") {
+  // A pyramid on a cube, a wedge beside it, and a tetrahedron.
+  const Scratch scratch;
+  const std::string path = scratch.path("solids.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 12> x{0, 1, 1, 0, 0, 1, 1, 0, 0.5, 2, 2, 3};
+  const std::array<double, 12> y{0, 0, 1, 1, 0, 0, 1, 1, 0.5, 0, 0, 0};
+  const std::array<double, 12> z{0, 0, 0, 0, 1, 1, 1, 1, 2, 0, 1, 0};
+  ex_put_init(id, "solids", 3, 12, 4, 4, 0, 2);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  const std::array<int, 8> hex{1, 2, 3, 4, 5, 6, 7, 8};
+  const std::array<int, 5> pyramid{5, 6, 7, 8, 9};
+  const std::array<int, 6> wedge{2, 10, 3, 6, 11, 7};
+  const std::array<int, 4> tet{10, 12, 3, 11};
+  const auto block = [&](int number, const char* type, const auto& vertices) {
+    ex_put_block(id, EX_ELEM_BLOCK, number, type, 1, static_cast<int>(vertices.size()), 0, 0, 0);
+    ex_put_conn(id, EX_ELEM_BLOCK, number, vertices.data(), nullptr, nullptr);
+  };
+  block(3, "HEX8", hex);
+  block(4, "PYRAMID", pyramid);
+  block(5, "TETRA", tet);
+  block(6, "wedge6", wedge);
+  const auto side_set = [&](int number, int element, int side) {
+    const std::array<double, 4> factors{1, 2, 3, 4};
+    ex_put_set_param(id, EX_SIDE_SET, number, 1, 4);
+    ex_put_set(id, EX_SIDE_SET, number, &element, &side);
+    ex_put_set_dist_fact(id, EX_SIDE_SET, number, factors.data());
+  };
+  side_set(1, 1, 6);
+  side_set(2, 2, 5);
+  ex_close(id);
+  const TetMesh mesh = read_mesh(path);
+  CHECK(split_text(mesh) ==
+        "1 HEX8 into 6 tetrahedra, 1 PYRAMID5 into 2 tetrahedra, 1 WEDGE6 into 3 tetrahedra");
+  CHECK(mesh.blocks == std::vector<Block>{{3, "", 6}, {4, "", 2}, {5, "", 1}, {6, "", 3}});
+  CHECK(mesh.element_of_tet == std::vector<GlobalId>{0, 0, 0, 0, 0, 0, 1, 1, 2, 3, 3, 3});
+  double volume = 0;
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    CHECK(signed_volume(mesh, t) > 0);
+    volume += signed_volume(mesh, t);
+  }
+  CHECK(volume == Approx(1 + 1.0 / 3 + 0.5 + 1.0 / 6).epsilon(1e-14));
+  // The square between cube and pyramid, from both sides: the same two triangles.
+  const auto triangles = [&](const SideSet& set) {
+    CHECK(set.factors.empty());
+    std::vector<std::array<VertexId, 3>> found;
+    for (const Side& side : set.entries) {
+      constexpr std::size_t opposite[] = {2, 0, 1, 3};
+      std::array<VertexId, 3> face{};
+      std::size_t n = 0;
+      for (std::size_t k = 0; k < 4; ++k)
+        if (k != opposite[side.side - 1])
+          face[n++] = mesh.tets[static_cast<std::size_t>(side.tet)][k];
+      std::sort(face.begin(), face.end());
+      found.push_back(face);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  CHECK(triangles(mesh.side_sets.at(0)) ==
+        std::vector<std::array<VertexId, 3>>{{4, 5, 6}, {4, 6, 7}});
+  CHECK(triangles(mesh.side_sets.at(1)) == triangles(mesh.side_sets.at(0)));
+  const std::string bytes = slurp(path);
+  damage_everywhere("cut.exo", bytes, 100, 500);
+}
+
+TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices swapped",
+          "[m2m][io]") {
+  const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n";
+  const TetMesh tet10 = read_gmsh(
+      "tet10", head +
+                   "10\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 .5 0 0\n6 .5 .5 0\n7 0 .5 0\n"
+                   "8 0 0 .5\n9 0 .5 .5\n10 .5 0 .5\n$EndNodes\n$Elements\n1\n"
+                   "1 11 2 0 0 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+  CHECK(split_text(tet10) == "1 TET10 into 8 tetrahedra");
+  for (std::size_t t = 0; t < 8; ++t)
+    CHECK(signed_volume(tet10, t) == Approx(1.0 / 48).epsilon(1e-14));
+  const TetMesh solids = read_gmsh(
+      "solids", head +
+                    "9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n"
+                    "8 0 1 1\n9 .5 .5 2\n$EndNodes\n$Elements\n3\n1 5 2 0 0 1 2 3 4 5 6 7 8\n"
+                    "2 7 2 0 0 5 6 7 8 9\n3 6 2 0 0 1 2 4 5 6 8\n$EndElements\n");
+  CHECK(split_text(solids) ==
+        "1 HEX8 into 6 tetrahedra, 1 PYRAMID5 into 2 tetrahedra, 1 WEDGE6 into 3 tetrahedra");
+  double volume = 0;
+  for (std::size_t t = 0; t < solids.n_tets(); ++t) volume += signed_volume(solids, t);
+  CHECK(volume == Approx(1 + 1.0 / 3 + 0.5).epsilon(1e-14));
 }
 
 TEST_CASE("a real mesh keeps its blocks and sets when it is written", "[m2m][io][.][shared_data]") {

@@ -6,11 +6,14 @@
 #include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 
 using namespace tess::m2m;
 using tess::test::made_mesh;
@@ -98,27 +101,65 @@ TEST_CASE("gmsh's files of both versions and modes give the same mesh", "[m2m][i
   }
 }
 
-TEST_CASE("gmsh's hexahedra and quadratic tetrahedra are refused by name", "[m2m][io][.][meshes]") {
-  CHECK_THAT(message_of([] { (void)read_mesh(made_mesh("hexes")); }),
-             Catch::Contains("hexes.msh: has elements of type hex8"));
-  CHECK_THAT(message_of([] { (void)read_mesh(made_mesh("shaft_quadratic")); }),
-             Catch::Contains("shaft_quadratic.msh: has elements of type tet10"));
+TEST_CASE("gmsh's hexahedra and quadratic tetrahedra are split", "[m2m][io][.][meshes]") {
+  const TetMesh hexes = read_mesh(made_mesh("hexes"));
+  CHECK(split_text(hexes) == "8 HEX8 into 48 tetrahedra");
+  CHECK(total_volume(hexes) == Approx(1).epsilon(1e-14));
+  const TetMesh shaft = read_mesh(made_mesh("shaft_quadratic"));
+  REQUIRE(shaft.split.size() == 1);
+  CHECK(shaft.split[0].type == "TET10");
+  CHECK(shaft.n_tets() == 8 * shaft.split[0].n_elements);
 }
 
-TEST_CASE("elements that are not linear tetrahedra are refused by name",
+TEST_CASE("real meshes of hexahedra, wedges, pyramids and quadratic tetrahedra are split",
           "[m2m][io][.][shared_data]") {
+  struct Known {
+    const char* file;
+    const char* split;
+    double volume;
+  };
+  for (const Known& known :
+       {Known{"mfem/simple-cube-hex8.e", "27 HEX8 into 162 tetrahedra", 1},
+        Known{"mfem/simple-cube-wedge6.e", "250 WEDGE6 into 750 tetrahedra", 1},
+        Known{"mfem/simple-cube-pyramid5.e", "750 PYRAMID5 into 1500 tetrahedra", 1},
+        Known{"mfem/simple-cube-tet10.e", "295 TET10 into 2360 tetrahedra", 1},
+        Known{"mfem/simple-cube-multi-element-order1.e",
+              "27 HEX8 into 162 tetrahedra, 250 WEDGE6 into 750 tetrahedra, "
+              "750 PYRAMID5 into 1500 tetrahedra",
+              4},
+        Known{"mfem/simple-cube-tet4.e", "", 1},
+        Known{"nalu/3d_hex8_taylor_green_0p2.exo", "29791 HEX8 into 178746 tetrahedra",
+              std::pow(2 * M_PI, 3)},
+        Known{"skfem/quadratic_sphere_tet.msh", "722 TET10 into 5776 tetrahedra", 0.519}}) {
+    const TetMesh mesh = read_mesh(shared_data(known.file));
+    CAPTURE(known.file);
+    CHECK(split_text(mesh) == known.split);
+    CHECK(total_volume(mesh) == Approx(known.volume).epsilon(1e-3));
+    CHECK(mesh.element_of_tet.size() == (mesh.split.empty() ? 0 : mesh.n_tets()));
+    CHECK(validate(mesh).n_inverted == 0);
+    // Every triangle belongs to one or two tetrahedra: neighbours are split alike.
+    std::map<std::array<VertexId, 3>, int> count;
+    for (const Tet& tet : mesh.tets) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        std::array<VertexId, 3> face{tet[(k + 1) % 4], tet[(k + 2) % 4], tet[(k + 3) % 4]};
+        std::sort(face.begin(), face.end());
+        ++count[face];
+      }
+    }
+    CHECK(
+        std::all_of(count.begin(), count.end(), [](const auto& face) { return face.second <= 2; }));
+    for (const SideSet& set : mesh.side_sets) CHECK_FALSE(set.entries.empty());
+  }
+}
+
+TEST_CASE("elements of higher order are refused by name", "[m2m][io][.][shared_data]") {
   struct Known {
     const char* file;
     const char* word;
   };
   for (const Known& known :
-       {Known{"mfem/simple-cube-hex8.e", "HEX"}, Known{"mfem/simple-cube-hex27.e", "HEX"},
-        Known{"mfem/simple-cube-wedge6.e", "WEDGE"},
-        Known{"mfem/simple-cube-pyramid5.e", "PYRAMID"}, Known{"mfem/simple-cube-tet10.e", "TET"},
-        Known{"mfem/simple-cube-multi-element-order1.e", "only TET4"},
-        Known{"nalu/3d_hex8_pipe.exo", "HEX8"},
-        Known{"nalu/3d_hex8_taylor_green_0p2.exo", "type HEX with 8"},
-        Known{"skfem/quadratic_sphere_tet.msh", "tet10"}}) {
+       {Known{"mfem/simple-cube-hex27.e", "HEX27"}, Known{"mfem/simple-cube-wedge18.e", "WEDGE18"},
+        Known{"mfem/simple-cube-pyramid14.e", "PYRAMID14"}}) {
     const std::string path = shared_data(known.file);
     const std::string message = message_of([&] { (void)read_mesh(path); });
     CHECK(one_line(message));

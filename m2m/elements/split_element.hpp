@@ -1,0 +1,74 @@
+// Splits hexahedra, wedges, pyramids and ten-node tetrahedra into linear tetrahedra without new
+// vertices. Elements that share a face split it alike, so a conforming mesh stays conforming:
+//
+//   - a quadrilateral is cut along the diagonal through its vertex of the smallest id;
+//   - the element is the pyramid from its vertex of the smallest id over the triangles of the faces
+//     that do not hold this vertex (Dompierre, Labbé, Vallet and Camarero 1999, "How to subdivide
+//     pyramids, prisms and hexahedra into tetrahedra").
+//
+// A hexahedron gives six tetrahedra, a wedge three, a pyramid two. Elements with repeated vertices
+// (a wedge written as a hexahedron) give fewer. A ten-node tetrahedron gives eight: four at its
+// corners, and four of the octahedron between them (Bey 1995); tet10.hpp evaluates it as a quadratic
+// element.
+#pragma once
+
+#include "m2m/mesh.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tess::m2m {
+
+/// Volume elements. The order of vertices and the numbers of sides are those of ExodusII.
+enum class ElementType : std::uint8_t { tet4, hex8, wedge6, pyramid5, tet10 };
+
+[[nodiscard]] constexpr const char* name_of(ElementType type) noexcept {
+  constexpr std::array names{"TET4", "HEX8", "WEDGE6", "PYRAMID5", "TET10"};
+  return names[static_cast<std::size_t>(type)];
+}
+
+[[nodiscard]] std::size_t n_vertices(ElementType type) noexcept;
+[[nodiscard]] std::size_t n_sides(ElementType type) noexcept;
+
+/// Appends the tetrahedra of an element to `tets`, oriented as the element is. `vertices`:
+/// n_vertices(type) ids. Tetrahedra that name a vertex twice are left out.
+void split_element(ElementType type, std::span<const VertexId> vertices, std::vector<Tet>& tets);
+
+/// Adds elements of any type to a mesh as tetrahedra, counts those that are split, and knows which
+/// faces of tetrahedra make up a side of an element.
+class ElementSplitter {
+ public:
+  /// `mesh` must outlive the splitter; its tetrahedra are added through the splitter only.
+  explicit ElementSplitter(TetMesh& mesh) : mesh_(mesh) {}
+
+  /// Elements with a volume, added so far.
+  [[nodiscard]] GlobalId n_elements() const noexcept { return n_elements_; }
+
+  void add(ElementType type, std::span<const VertexId> vertices);
+  /// Sides of an element (from 0 on) as numbers from 1 on; 0 if there is no such element.
+  [[nodiscard]] std::size_t n_sides_of(GlobalId element) const;
+  /// Appends the faces that make up a side of an element.
+  void append_side(GlobalId element, std::int64_t side, std::vector<Side>& sides) const;
+  /// Fills mesh.split and mesh.element_of_tet.
+  void finish();
+
+ private:
+  /// Consecutive elements of one type. Tetrahedra need no lists.
+  struct Run {
+    ElementType type;
+    GlobalId first_element = 0;
+    GlobalId first_tet = 0;
+    std::vector<VertexId> vertices{};
+    std::vector<GlobalId> first_tets{};  // per element
+  };
+  [[nodiscard]] const Run* run_of(GlobalId element) const;
+
+  TetMesh& mesh_;
+  std::vector<Run> runs_;
+  GlobalId n_elements_ = 0;
+};
+
+}  // namespace tess::m2m

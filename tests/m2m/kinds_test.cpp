@@ -1,0 +1,106 @@
+// Kinds of transfer through chares: the same bits for any number of parts, and their orders.
+#include "m2m/read_mesh.hpp"
+#include "m2m/transfer.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+constexpr const char* smooth = "sin(3*x)*cos(2*y) + z^2*x";
+
+struct KindCase {
+  TransferKind kind{};
+  int n = 4;
+  std::int32_t n_parts = 1;
+  std::string formula = smooth;
+};
+
+Task transfer_twice(const KindCase& c, std::vector<double>& values, double& error) {
+  const TetMesh from = read_mesh(fmt::format("kuhn:{}@0.2", c.n));
+  const TetMesh to = read_mesh(fmt::format("kuhn:{}", c.n + 1));
+  const Formula formula = make_formula(c.formula, bounds(from));
+  DistributedMesh source, target;
+  co_await epoch([&] {
+    source = scatter(from, {sample(from, "f", formula)}, c.n_parts, PartitionMethod::rcb,
+                     halo_layers(c.kind));
+    target = scatter(to, {{"f", 1, std::vector<double>(to.n_points())}}, c.n_parts + 1,
+                     PartitionMethod::hsfc);
+  });
+  Transfer transfer(source, target, {.kind = c.kind});
+  co_await transfer.search();
+  co_await transfer.apply();
+  co_await transfer.apply();  // the second uses what the first prepared
+  Future<Outcome> outcome;
+  target.workers.broadcast<&Worker::gather>(outcome.callback());
+  const Outcome all = co_await outcome;
+  values.assign(to.n_points(), 0);
+  for (std::size_t i = 0; i < all.points.size(); ++i)
+    values[static_cast<std::size_t>(all.points[i])] = all.values[i];
+  error = error_norms(to, values, sample(to, "f", formula).values).l2;
+}
+
+struct KindResult {
+  std::vector<double> values;
+  double error = 0;
+};
+
+KindResult result_of(const KindCase& c, std::uint64_t seed) {
+  SimulatedOptions options;
+  options.n_pes = 1 + static_cast<int>(seed % 4);
+  options.cost = Time(100);
+  options.seed = seed;
+  RuntimeOptions runtime_options;
+  runtime_options.seed = seed;
+  runtime_options.migration_chance = migration_chance(options);
+  Setup setup{make_simulated_machine(options), runtime_options};
+  KindResult result;
+  REQUIRE(run(setup, [&]() -> Task { return transfer_twice(c, result.values, result.error); }) ==
+          0);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("each kind gives the same bits for any number of parts and any schedule",
+          "[m2m][kinds]") {
+  for (const TransferKind kind :
+       {TransferKind::linear, TransferKind::second_order, TransferKind::limited}) {
+    const KindResult one = result_of({kind}, 1);
+    for (std::uint64_t seed = 2; seed <= 10; ++seed) {
+      INFO("seed " << seed);
+      const bool same =
+          result_of({kind, 4, static_cast<std::int32_t>(seed % 9) + 1}, seed).values == one.values;
+      REQUIRE(same);
+    }
+  }
+}
+
+TEST_CASE("the error falls with the order of the kind", "[m2m][kinds]") {
+  const auto order = [](TransferKind kind) {
+    return std::log2(result_of({kind, 6, 3}, 1).error / result_of({kind, 12, 3}, 1).error);
+  };
+  const double linear = order(TransferKind::linear), second = order(TransferKind::second_order);
+  CHECK(linear > 1.8);
+  CHECK(linear < 2.2);
+  CHECK(second > 2.8);
+}
+
+TEST_CASE("a limited transfer stays within the values of a step, a second-order one does not",
+          "[m2m][kinds]") {
+  const auto range = [](TransferKind kind) {
+    const std::vector<double> values =
+        result_of({kind, 8, 3, "(x - 0.4) / abs(x - 0.4)"}, 1).values;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return std::pair(*low, *high);
+  };
+  CHECK(range(TransferKind::limited) == std::pair(-1.0, 1.0));
+  CHECK(range(TransferKind::second_order).second > 1.01);
+}
