@@ -9,8 +9,6 @@ struct SentTable::Table {
 };
 
 SentTable::SentTable() = default;
-SentTable::SentTable(SentTable&& from) noexcept = default;
-SentTable& SentTable::operator=(SentTable&& from) noexcept = default;
 SentTable::~SentTable() = default;
 
 void SentTable::add(const ElementKey& to, const SentTo& more) {

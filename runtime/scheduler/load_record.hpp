@@ -24,8 +24,8 @@ struct SentTo {
 class SentTable {
  public:
   SentTable();
-  SentTable(SentTable&& from) noexcept;
-  SentTable& operator=(SentTable&& from) noexcept;
+  SentTable(const SentTable&) = delete;
+  SentTable& operator=(const SentTable&) = delete;
   ~SentTable();
 
   void add(const ElementKey& to, const SentTo& more);
