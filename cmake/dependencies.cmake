@@ -20,6 +20,7 @@ if("m2m" IN_LIST TESS_COMPONENTS)
   find_package(Zoltan REQUIRED)
 endif()
 if(TESS_APPS)
+  find_package(Catch2 2.13 REQUIRED)
   find_package(CLI11 REQUIRED)
   find_package(assimp REQUIRED)  # files of triangles
 endif()

@@ -98,6 +98,13 @@ function(tess_app name)
   endif()
 endfunction()
 
+# tess_not_timed(LIBRARY…): its speed is of no concern (options, reports, pictures), so it should compile fast.
+function(tess_not_timed)
+  foreach(library IN LISTS ARGN)
+    target_compile_options(${library} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endforeach()
+endfunction()
+
 # tess_test(NAME [TSAN] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
 # A test case tagged [.] is hidden: it runs by hand only (soak, seeds, benchmarks).
 # TSAN: it has threads, so the thread sanitizer has something to say about it; not about cases tagged [one_thread].

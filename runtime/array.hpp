@@ -100,10 +100,7 @@ class Array final : public ArrayOf<typename C::Index> {
           own(*arrival.element).destroy_requested_ = false;
         }
         ar(own(*arrival.element).state_);
-        if (ar.template take<bool>()) {
-          own(*arrival.element).balance_.reset(new BalanceRecord);
-          own(*arrival.element).balance_->unpack(ar, this->pe_.start_meter());
-        }
+        this->unpack_record(*arrival.element, ar);
         [[maybe_unused]] const auto sent = state.last(ar.remaining());
         read_all(
             ar, [&] { return this->name() + index_text(index); },
@@ -122,30 +119,21 @@ class Array final : public ArrayOf<typename C::Index> {
 
   static void pack_element(C& element, Writer& ar) {
     if constexpr (Migratable<C>) {
-      ar(own(element).index_, own(element).state_, own(element).balance_ != nullptr);
-      if (own(element).balance_ != nullptr)
-        own(element).balance_->pack(ar, current_pe().start_meter());
+      ar(own(element).index_, own(element).state_);
+      Base::pack_record(own(element), ar);
       element.serialize(ar);
     }
   }
 
   /// An element that arrives after the end of the array is destroyed.
   static void drop(Pe& pe, Arrival<C>& arrival) {
-    BalanceRecord unpacked;
-    const BalanceRecord* record = nullptr;
     if (arrival.element != nullptr) {
-      record = own(*arrival.element).balance_.get();
+      Base::drop_record(pe, own(*arrival.element));
     } else {
       Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
       (void)ar.template take<Index>();
-      (void)ar.template take<ElementState>();
-      if (ar.template take<bool>()) {
-        unpacked.unpack(ar, pe.start_meter());
-        record = &unpacked;
-      }
+      Base::drop_record(pe, ar);
     }
-    if (record != nullptr && record->sync.phase == SyncPhase::waits)
-      pe.completion().processed(record->sync.epoch);
     pe.completion().processed(arrival.epoch);
     if (arrival.element == nullptr) return;
     // The part of the array that the element left may have been freed, but its destructor may call
@@ -159,8 +147,7 @@ class Array final : public ArrayOf<typename C::Index> {
     if constexpr (ResumesFromSync<C>) {
       C& chare = static_cast<C&>(element);
       auto* message = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
-      message->epoch = own(chare).balance_->sync.epoch;  // counted in this epoch since at_sync()
-      message->led_by = own(chare).balance_->sync.led_by;
+      Base::continue_wait(own(chare), *message, message->led_by);
       this->post(message);
     } else {
       Base::resume(element);

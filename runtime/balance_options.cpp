@@ -4,6 +4,7 @@
 #include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 namespace tess {

@@ -1,7 +1,8 @@
 // How an array is balanced: the strategy, when rounds run, and the prediction of loads.
 #pragma once
 
-#include <chrono>
+#include "runtime/core/duration.hpp"
+
 #include <cstdint>
 #include <string>
 #include <string_view>

@@ -3,11 +3,11 @@
 // times.
 #pragma once
 
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/registry.hpp"
 #include "runtime/core/serialize.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -49,7 +49,7 @@ class TargetName {
 
   friend bool operator==(const TargetName& a, const TargetName& b) {
     if (a.n_ != b.n_) return false;
-    if (a.long_) return std::ranges::equal(a.view(), b.view());
+    if (a.long_) return *a.long_ == *b.long_;
     // In pieces as they were written: a load across two that were just written would stall.
     std::size_t at = 0;
     for (; at + 8 <= a.n_; at += 8)

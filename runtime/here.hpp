@@ -2,9 +2,9 @@
 // run.
 #pragma once
 
+#include "runtime/core/duration.hpp"
 #include "runtime/scheduler/pe.hpp"
 
-#include <chrono>
 #include <cstddef>
 
 namespace tess {

@@ -1,6 +1,7 @@
 #include "runtime/room.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess::detail {

@@ -5,6 +5,7 @@
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/scheduler/pe.hpp"
+#include "runtime/scheduler/runtime.hpp"
 #include "runtime/service/service.hpp"
 
 #include <charconv>

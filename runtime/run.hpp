@@ -19,15 +19,14 @@
 // handles or ignores itself is left alone; RuntimeOptions::signals turns this off.
 #pragma once
 
+#include "runtime/core/duration.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/machine.hpp"
-#include "runtime/scheduler/runtime.hpp"
+#include "runtime/scheduler/runtime_options.hpp"
 #include "runtime/task.hpp"
 
-#include <chrono>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <type_traits>
 #include <utility>

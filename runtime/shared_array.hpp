@@ -11,9 +11,9 @@
 // valid while there is an owner.
 #pragma once
 
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/serialize.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <span>
 #include <type_traits>

@@ -12,9 +12,9 @@
 #pragma once
 
 #include "runtime/callback.hpp"
+#include "runtime/core/duration.hpp"
 #include "runtime/scheduler/pe.hpp"
 
-#include <chrono>
 #include <concepts>
 #include <cstdint>
 #include <type_traits>

@@ -2,6 +2,8 @@
 // its neighbours and takes their mean; the largest change decides whether there is another step.
 #include "runtime/runtime.hpp"
 
+#include <cmath>
+
 struct Value {
   int step = 0;
   double value = 0;

@@ -7,8 +7,9 @@
 // the waiting thread's time reveals such a program; for a while the thread then sleeps at once.
 #pragma once
 
+#include "runtime/core/duration.hpp"
+
 #include <algorithm>
-#include <chrono>
 #include <sched.h>
 
 namespace tess::detail {

@@ -8,8 +8,9 @@
 // While the sleeper is awake, wake() is one load.
 #pragma once
 
+#include "runtime/core/duration.hpp"
+
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 
 namespace tess::detail {

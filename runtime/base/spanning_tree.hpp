@@ -3,9 +3,9 @@
 // PEs agree on it.
 #pragma once
 
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/ids.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 

@@ -2,7 +2,8 @@
 // machine; a reading costs a few nanoseconds and never enters the kernel.
 #pragma once
 
-#include <chrono>
+#include "runtime/core/duration.hpp"
+
 #include <cstdint>
 
 namespace tess::detail {

@@ -23,10 +23,12 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/index.hpp"
 #include "runtime/location/index_table.hpp"
+#include "runtime/scheduler/block.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
-
-#include <algorithm>
+#include <functional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace tess::detail {
 
@@ -91,6 +93,9 @@ class ArrayOf : public Collection {
         range_(range),
         block_map_(range, pe.n_pes()),
         table_(range) {}
+  ArrayOf(const ArrayOf&) = delete;
+  ArrayOf& operator=(const ArrayOf&) = delete;
+  ~ArrayOf() override;
 
   [[nodiscard]] const Range& range() const { return range_; }
   [[nodiscard]] const BlockMap& block_map() const { return block_map_; }
@@ -220,14 +225,7 @@ class ArrayOf : public Collection {
       const Pe::Construction construction(pe_, &index, this);
       return make();
     }();
-    element->state_.version = version;
-    register_new(*element);
-    table_.at(index).set_here(*element);
-    list(*element);
-    if (element->migrate_to_.value >= 0 || element->destroy_requested_) [[unlikely]]
-      after_construction([this, element] { settle(*element); });  // its constructor requested it
-    if (has_after_construction() && !makes_initial_) [[unlikely]]
-      run_after_construction();
+    add_constructed(*element, index, version);
   }
   /// Constructs the initial elements, which all count as created at once.
   template <class Make>
@@ -241,25 +239,22 @@ class ArrayOf : public Collection {
   /// Adds an element that arrived from another PE.
   void add_arrived(Indexed* element, PeId from);
 
-  void destroy_all() {
-    table_.for_each([this](const Index& /*index*/, const Record& record) {
-      if (record.element() != nullptr) destroy(*record.element());
-    });
-    for (Messages* messages : {&pending_, &waiting_, &destroyed_})
-      for (auto& [index, parked] : *messages)
-        for (CallMessage* message : parked) discard(message);
-  }
+  void destroy_all();
 
  private:
   using Record = IndexRecord<Indexed>;
   template <class Value>
-  using ByIndex = boost::unordered_flat_map<Index, Value, IndexHash<Index>>;
+  using ByIndex = std::unordered_map<Index, Value, IndexHash<Index>, std::equal_to<>,
+                                     PoolAllocator<std::pair<const Index, Value>>>;
   using Messages = ByIndex<std::vector<CallMessage*>>;
 
   static constexpr std::uint8_t most_hops = 6;
   static constexpr std::size_t most_hints = 1U << 18U;
 
+  void add_constructed(Indexed& element, const Index& index, Version version);
   void execute(Indexed& element, CallMessage* message);
+  /// insert() of an element that exists: misuse unless the message allows for that.
+  void refuse_insertion(CallMessage* message);
   void route(CallMessage* message, Record* record);
   void at_home(CallMessage* message, const Record* record);
   [[nodiscard]] Messages& parked(Parked why) {
@@ -306,10 +301,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
   const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
   const EpochId epoch = message->epoch;
   if (action.invoke == nullptr) [[unlikely]] {
-    TESS_CHECK(message->demand == Demand::insert_if_absent, name(), index_text(message->index),
-               " is inserted, but it exists already on ", pe_.id(),
-               "; insert_if_absent() allows for that");
-    discard(message);
+    refuse_insertion(message);
   } else {
     const ElementScope scope(pe_, element, message->action, epoch, message->led_by);
     try {

@@ -28,7 +28,7 @@ void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
   for (const LoadRecord::Entry& entry : load.entries)
     entries.push_back({entry.action->id(), 0, meter.seconds(entry.ticks), entry.calls});
   std::vector<PackedTraffic> traffic;
-  for (const auto& [to, sent] : load.sent) traffic.push_back({to, sent});
+  for (const auto& [to, sent] : load.sent.entries()) traffic.push_back({to, sent});
   ar(sync, size_bytes);
   ar(meter.seconds(load.ticks), load.since, entries, traffic);
 }
@@ -41,7 +41,7 @@ void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
     load.entries.push_back({&static_cast<const Action&>(Registry::at(entry.action)),
                             meter.ticks(entry.seconds), entry.calls});
   for (const PackedTraffic& one : ar.take<std::vector<PackedTraffic>>())
-    load.sent.emplace(one.to, one.sent);
+    load.sent.add(one.to, one.sent);
 }
 
 }  // namespace tess::detail

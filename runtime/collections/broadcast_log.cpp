@@ -3,6 +3,9 @@
 #include "runtime/base/spanning_tree.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <map>
+#include <utility>
 
 namespace tess::detail {
 namespace {
@@ -12,6 +15,13 @@ constexpr std::uint64_t portion = 16;
 
 }  // namespace
 
+struct BroadcastLog::Tables {
+  std::deque<NumberedCall> copies;              // first_kept_ … applied_
+  std::map<std::uint64_t, NumberedCall> early;  // arrived before their turn
+  std::map<std::uint64_t, std::uint64_t> in_flight;
+  std::map<PeId, std::uint64_t> settled_by;  // at the root
+};
+
 BroadcastLog::BroadcastLog(BroadcastHost& host, Completion& completion, PeId here, PeId root,
                            std::int32_t n_pes)
     : host_(host),
@@ -19,7 +29,18 @@ BroadcastLog::BroadcastLog(BroadcastHost& host, Completion& completion, PeId her
       here_(here),
       root_(root),
       n_pes_(n_pes),
-      children_(SpanningTree(here, root, n_pes).children()) {}
+      children_(SpanningTree(here, root, n_pes).children()),
+      tables_(std::make_unique<Tables>()) {}
+
+BroadcastLog::~BroadcastLog() = default;
+
+void BroadcastLog::left(std::uint64_t seen) {
+  ++tables_->in_flight[seen];
+}
+
+std::size_t BroadcastLog::n_kept() const {
+  return tables_->copies.size();
+}
 
 void BroadcastLog::on_start(NumberedCall&& call) {
   call.number = ++last_number_;
@@ -32,29 +53,29 @@ void BroadcastLog::on_call(NumberedCall&& call) {
     host_.send(child, call);
   }
   host_.flush();  // other processes do not wait for the local elements
-  early_.emplace(call.number, std::move(call));
-  while (!early_.empty() && early_.begin()->first == applied_ + 1) {
-    copies_.push_back(std::move(early_.begin()->second));
-    early_.erase(early_.begin());
+  tables_->early.emplace(call.number, std::move(call));
+  while (!tables_->early.empty() && tables_->early.begin()->first == applied_ + 1) {
+    tables_->copies.push_back(std::move(tables_->early.begin()->second));
+    tables_->early.erase(tables_->early.begin());
     ++applied_;
-    const NumberedCall current = copies_.back();
+    const NumberedCall current = tables_->copies.back();
     host_.apply(current);
     settle();
   }
 }
 
 void BroadcastLog::arrived(std::uint64_t seen) {
-  const auto at = in_flight_.find(seen);
-  if (--at->second == 0) in_flight_.erase(at);
+  const auto at = tables_->in_flight.find(seen);
+  if (--at->second == 0) tables_->in_flight.erase(at);
   settle();
 }
 
 void BroadcastLog::settle() {
   const std::uint64_t now =
-      in_flight_.empty() ? applied_ : std::min(applied_, in_flight_.begin()->first);
+      tables_->in_flight.empty() ? applied_ : std::min(applied_, tables_->in_flight.begin()->first);
   while (settled_ < now) {
     ++settled_;
-    completion_.processed(copies_[settled_ - first_kept_].epoch);
+    completion_.processed(tables_->copies[settled_ - first_kept_].epoch);
   }
   if (settled_ - told_ < portion) return;
   told_ = settled_;
@@ -64,27 +85,27 @@ void BroadcastLog::settle() {
 void BroadcastLog::end() {
   while (settled_ < applied_) {
     ++settled_;
-    completion_.processed(copies_[settled_ - first_kept_].epoch);
+    completion_.processed(tables_->copies[settled_ - first_kept_].epoch);
   }
-  for (const auto& [number, call] : early_) completion_.processed(call.epoch);
-  copies_.clear();
-  early_.clear();
-  in_flight_.clear();
+  for (const auto& [number, call] : tables_->early) completion_.processed(call.epoch);
+  tables_->copies.clear();
+  tables_->early.clear();
+  tables_->in_flight.clear();
 }
 
 std::vector<NumberedCall> BroadcastLog::missed(std::uint64_t seen) const {
   std::vector<NumberedCall> calls;
   for (std::uint64_t number = seen + 1; number <= applied_; ++number)
-    calls.push_back(copies_.at(number - first_kept_));
+    calls.push_back(tables_->copies.at(number - first_kept_));
   return calls;
 }
 
 void BroadcastLog::on_settled(const BroadcastSettled& settled) {
-  std::uint64_t& known = settled_by_[settled.from];
+  std::uint64_t& known = tables_->settled_by[settled.from];
   known = std::max(known, settled.number);
-  if (settled_by_.size() < static_cast<std::size_t>(n_pes_)) return;
+  if (tables_->settled_by.size() < static_cast<std::size_t>(n_pes_)) return;
   std::uint64_t all = known;
-  for (const auto& [pe, number] : settled_by_) all = std::min(all, number);
+  for (const auto& [pe, number] : tables_->settled_by) all = std::min(all, number);
   if (all == dropped_) return;
   dropped_ = all;
   for (std::int32_t pe = 0; pe < n_pes_; ++pe) host_.send(PeId{pe}, BroadcastDrop{all});
@@ -92,7 +113,7 @@ void BroadcastLog::on_settled(const BroadcastSettled& settled) {
 
 void BroadcastLog::on_drop(const BroadcastDrop& drop) {
   while (first_kept_ <= drop.number) {
-    copies_.pop_front();
+    tables_->copies.pop_front();
     ++first_kept_;
   }
 }

@@ -13,9 +13,9 @@
 #include "runtime/collections/broadcast_call.hpp"
 #include "runtime/completion/completion.hpp"
 
+#include <cstddef>
 #include <cstdint>
-#include <deque>
-#include <map>
+#include <memory>
 #include <vector>
 
 namespace tess::detail {
@@ -53,12 +53,15 @@ class BroadcastLog {
   /// The part of PE `here` of `n_pes`; `root` numbers the broadcasts.
   BroadcastLog(BroadcastHost& host, Completion& completion, PeId here, PeId root,
                std::int32_t n_pes);
+  BroadcastLog(const BroadcastLog&) = delete;
+  BroadcastLog& operator=(const BroadcastLog&) = delete;
+  ~BroadcastLog();
 
   /// The number of the last broadcast for an element that is created here now.
   [[nodiscard]] std::uint64_t applied() const { return applied_; }
 
   /// An element leaves and, later, has arrived elsewhere.
-  void left(std::uint64_t seen) { ++in_flight_[seen]; }
+  void left(std::uint64_t seen);
   void arrived(std::uint64_t seen);
 
   /// The collection ends: its broadcasts here are dropped.
@@ -73,7 +76,7 @@ class BroadcastLog {
   void on_settled(const BroadcastSettled& settled);
   void on_drop(const BroadcastDrop& drop);
 
-  [[nodiscard]] std::size_t n_kept() const { return copies_.size(); }
+  [[nodiscard]] std::size_t n_kept() const;
 
  private:
   void settle();
@@ -87,13 +90,11 @@ class BroadcastLog {
   std::uint64_t settled_ = 0;
   std::uint64_t told_ = 0;
   std::uint64_t first_kept_ = 1;
-  std::deque<NumberedCall> copies_;              // first_kept_ … applied_
-  std::map<std::uint64_t, NumberedCall> early_;  // arrived before their turn
-  std::map<std::uint64_t, std::uint64_t> in_flight_;
+  struct Tables;
+  const std::unique_ptr<Tables> tables_;  // the calls kept here
 
   // At the root.
   std::uint64_t last_number_ = 0;
-  std::map<PeId, std::uint64_t> settled_by_;
   std::uint64_t dropped_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "runtime/collections/collection.hpp"
 
+#include "runtime/collections/balance_record.hpp"
 #include "runtime/core/check.hpp"
 
 namespace tess::detail {
@@ -22,6 +23,8 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name)
       reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
                   {this->name() + ": reduction",
                    [this](std::uint32_t number) { return elements_before(number); }}) {}
+
+Collection::~Collection() = default;
 
 ReductionTree& Collection::tree(Track track) {
   return track == Track::own ? reductions_ : *second_tree_;
@@ -152,6 +155,41 @@ void Collection::describe_waiting(std::vector<std::string>& lines) const {
 BalanceRecord& Collection::make_record(Element& element) {
   if (!element.balance_) element.balance_.reset(new BalanceRecord);
   return *element.balance_;
+}
+
+void Collection::pack_record(const Element& element, Writer& ar) {
+  ar(element.balance_ != nullptr);
+  if (element.balance_) element.balance_->pack(ar, current_pe().start_meter());
+}
+
+void Collection::unpack_record(Element& element, Reader& ar) {
+  if (ar.take<bool>()) make_record(element).unpack(ar, current_pe().start_meter());
+}
+
+void Collection::drop_record(Pe& pe, Reader& ar) {
+  (void)ar.take<ElementState>();
+  if (!ar.take<bool>()) return;
+  BalanceRecord record;
+  record.unpack(ar, pe.start_meter());
+  if (record.sync.phase == SyncPhase::waits) pe.completion().processed(record.sync.epoch);
+}
+
+void Collection::drop_record(Pe& pe, const Element& element) {
+  if (element.balance_ && element.balance_->sync.phase == SyncPhase::waits)
+    pe.completion().processed(element.balance_->sync.epoch);
+}
+
+void Collection::continue_wait(const Element& element, Envelope& message, std::uint32_t& led_by) {
+  message.epoch = element.balance_->sync.epoch;  // counted in this epoch since at_sync()
+  led_by = element.balance_->sync.led_by;
+}
+
+bool Collection::known(const BalanceRecord& record) {
+  return record.sync.known;
+}
+
+LoadRecord* ElementScope::load_of(const Element& element) {
+  return element.balance_ ? &element.balance_->load : nullptr;
 }
 
 bool Collection::awake(Element& element) {

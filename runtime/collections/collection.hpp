@@ -2,7 +2,6 @@
 // reductions. ArrayOf and Array add what depends on the types of index and chare.
 #pragma once
 
-#include "runtime/collections/balance_record.hpp"
 #include "runtime/collections/collection_hosts.hpp"
 #include "runtime/collections/element.hpp"
 #include "runtime/scheduler/pe.hpp"
@@ -15,6 +14,8 @@
 #include <vector>
 
 namespace tess::detail {
+
+struct LoadRecord;
 
 /// The PE that numbers the broadcasts and completes the reductions of a collection.
 [[nodiscard]] inline PeId root_of(CollectionId id, std::int32_t n_pes) {
@@ -43,6 +44,9 @@ class ElementWatcher {
 class Collection : public HostedCollection {
  public:
   Collection(Pe& pe, CollectionId id, std::string name);
+  Collection(const Collection&) = delete;
+  Collection& operator=(const Collection&) = delete;
+  ~Collection() override;
 
   [[nodiscard]] Pe& pe() { return pe_; }
   /// The PE that numbers broadcasts and completes reductions.
@@ -103,6 +107,15 @@ class Collection : public HostedCollection {
     return element.balance_.get();
   }
   static BalanceRecord& make_record(Element& element);
+  /// A migrating element takes its record along, if it has one.
+  static void pack_record(const Element& element, Writer& ar);
+  static void unpack_record(Element& element, Reader& ar);
+  /// The element of this state, or this element, arrives after the end of its collection: releases
+  /// the epoch of its wait at a barrier.
+  static void drop_record(Pe& pe, Reader& ar);
+  static void drop_record(Pe& pe, const Element& element);
+  /// Gives the message that resumes the element the epoch and the broadcast of its wait.
+  static void continue_wait(const Element& element, Envelope& message, std::uint32_t& led_by);
   /// True if the element has not migrated yet.
   [[nodiscard]] static bool never_moved(const Element& element) {
     return element.state_.version.epoch <= 1;
@@ -176,9 +189,11 @@ class Collection : public HostedCollection {
   Pe& pe_;
 
  private:
+  /// True if a barrier has seen the element.
   [[nodiscard]] static bool known(const Element& element) {
-    return element.balance_ && element.balance_->sync.known;
+    return element.balance_ && known(*element.balance_);
   }
+  [[nodiscard]] static bool known(const BalanceRecord& record);
   void postpone(Element& element);
   [[nodiscard]] Cause cause_of(const Element& element) const {
     const Context& context = pe_.context();
@@ -232,9 +247,7 @@ class ElementScope {
 
  private:
   void force_migration();
-  [[nodiscard]] static LoadRecord* load_of(const Element& element) {
-    return element.balance_ ? &element.balance_->load : nullptr;
-  }
+  [[nodiscard]] static LoadRecord* load_of(const Element& element);
   Pe& pe_;
   Element& element_;
   Context context_;  // used by address: a copy of what was just written would stall

@@ -4,7 +4,8 @@
 // removed.
 #pragma once
 
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
+
 #include <cstdint>
 #include <vector>
 

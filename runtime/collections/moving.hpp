@@ -81,6 +81,19 @@ void ArrayOf<Index>::on_move_noted(const MoveNoted& noted) {
 }
 
 template <class Index>
+ArrayOf<Index>::~ArrayOf() = default;
+
+template <class Index>
+void ArrayOf<Index>::destroy_all() {
+  table_.for_each([this](const Index& /*index*/, const Record& record) {
+    if (record.element() != nullptr) destroy(*record.element());
+  });
+  for (Messages* messages : {&pending_, &waiting_, &destroyed_})
+    for (auto& [index, parked] : *messages)
+      for (CallMessage* message : parked) discard(message);
+}
+
+template <class Index>
 void ArrayOf<Index>::end() {
   Collection::end();
   const auto drop = [this](const auto& messages) {

@@ -29,6 +29,8 @@ ReductionTree::ReductionTree(ReductionHost& host, Completion& completion, PeId h
       parent_(SpanningTree(here, root, n_pes).parent()),
       children_(SpanningTree(here, root, n_pes).children()) {}
 
+ReductionTree::~ReductionTree() = default;
+
 void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
   for (const PeId child : children_) host_.send(child, ReductionBegin{number, cause});
 }

@@ -117,6 +117,9 @@ class ReductionTree {
   /// The part of PE `here` of `n_pes`; `root` completes the reductions.
   ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
                 std::int32_t n_pes, TreeWords words);
+  ReductionTree(const ReductionTree&) = delete;
+  ReductionTree& operator=(const ReductionTree&) = delete;
+  ~ReductionTree();
 
   /// The number at which an element joins that is created here now, unless it is postponed.
   [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }

@@ -6,6 +6,26 @@
 namespace tess::detail {
 
 template <class Index>
+void ArrayOf<Index>::add_constructed(Indexed& element, const Index& index, Version version) {
+  element.state_.version = version;
+  register_new(element);
+  table_.at(index).set_here(element);
+  list(element);
+  if (element.migrate_to_.value >= 0 || element.destroy_requested_) [[unlikely]]
+    after_construction([this, &element] { settle(element); });  // its constructor requested it
+  if (has_after_construction() && !makes_initial_) [[unlikely]]
+    run_after_construction();
+}
+
+template <class Index>
+void ArrayOf<Index>::refuse_insertion(CallMessage* message) {
+  TESS_CHECK(message->demand == Demand::insert_if_absent, name(), index_text(message->index),
+             " is inserted, but it exists already on ", pe_.id(),
+             "; insert_if_absent() allows for that");
+  discard(message);
+}
+
+template <class Index>
 void ArrayOf<Index>::forward(CallMessage* message, const Place& place) {
   message->tried = place.version;
   message->ask = false;

@@ -4,8 +4,8 @@
 
 #include "runtime/callback.hpp"
 #include "runtime/collections/partial.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <concepts>
 #include <memory>
 #include <utility>

@@ -3,6 +3,10 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/text.hpp"
 
+#include <boost/unordered/unordered_flat_map.hpp>
+
+#include <utility>
+
 namespace tess::detail {
 namespace {
 
@@ -13,9 +17,42 @@ PeId coordinator_of(EpochId epoch) {
 
 }  // namespace
 
+struct Completion::Relay {
+  Wave wave;
+  Counters sum;
+  std::int32_t waiting = 0;
+};
+
+/// What a PE knows of the epochs other than 0; `coordinated` has epoch 0, too, on PE 0.
+struct Completion::Epochs {
+  struct Coordinated {
+    std::uint64_t wave = 0;
+    std::uint64_t processed_before_wave = 0;
+    bool wave_runs = false, again = false, closed = false;
+    EpochId parent{};
+    std::function<void()> on_done;
+  };
+  template <class Value>
+  using ByEpoch = boost::unordered_flat_map<EpochId, Value, std::hash<EpochId>>;
+
+  ByEpoch<Tally> tallies;
+  ByEpoch<Coordinated> coordinated;
+  ByEpoch<Relay> relays;
+};
+
 Completion::Completion(CompletionMessages& messages, PeId here, std::int32_t n_pes)
-    : messages_(messages), here_(here), n_pes_(n_pes) {
-  if (here.value == 0) coordinated_[EpochId{}].closed = true;
+    : messages_(messages), here_(here), n_pes_(n_pes), epochs_(std::make_unique<Epochs>()) {
+  if (here.value == 0) epochs_->coordinated[EpochId{}].closed = true;
+}
+
+Completion::~Completion() = default;
+
+std::uint64_t Completion::run_sent_by_all() const {
+  return epochs_->coordinated.at(EpochId{}).processed_before_wave;
+}
+
+std::size_t Completion::n_epochs() const {
+  return epochs_->tallies.size();
 }
 
 SpanningTree Completion::tree_of(EpochId epoch) const {
@@ -24,8 +61,8 @@ SpanningTree Completion::tree_of(EpochId epoch) const {
 
 Tally* Completion::find(EpochId epoch) {
   if (epoch.value == 0) return &run_;
-  const auto at = tallies_.find(epoch);
-  return at == tallies_.end() ? nullptr : &at->second;
+  const auto at = epochs_->tallies.find(epoch);
+  return at == epochs_->tallies.end() ? nullptr : &at->second;
 }
 
 void Completion::list(EpochId epoch, Tally& tally) {
@@ -35,7 +72,7 @@ void Completion::list(EpochId epoch, Tally& tally) {
 }
 
 void Completion::find_own(EpochId epoch) {
-  Tally& tally = tallies_[epoch];
+  Tally& tally = epochs_->tallies[epoch];
   list(epoch, tally);
   last_epoch_ = epoch;
   last_ = &tally.own;
@@ -43,7 +80,7 @@ void Completion::find_own(EpochId epoch) {
 
 EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
   const EpochId epoch{(++n_opened_ << 24U) | static_cast<std::uint64_t>(here_.value)};
-  Coordinated& of = coordinated_[epoch];
+  Epochs::Coordinated& of = epochs_->coordinated[epoch];
   of.parent = parent;
   of.on_done = std::move(on_done);
   sent(parent);
@@ -51,7 +88,7 @@ EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
 }
 
 void Completion::close(EpochId epoch) {
-  coordinated_.at(epoch).closed = true;
+  epochs_->coordinated.at(epoch).closed = true;
   find_own(epoch);
   check_later(epoch);
 }
@@ -68,8 +105,8 @@ bool Completion::report_epochs() {
   changed.swap(changed_);
   bool any = false;
   for (const EpochId epoch : changed) {
-    const auto at = tallies_.find(epoch);
-    if (at == tallies_.end()) continue;
+    const auto at = epochs_->tallies.find(epoch);
+    if (at == epochs_->tallies.end()) continue;
     at->second.listed = false;
     forget_last();  // in each pass: reporting one epoch may have counted messages of the next
     any = report(epoch, at->second) || any;
@@ -78,7 +115,7 @@ bool Completion::report_epochs() {
 }
 
 bool Completion::is_over(EpochId epoch) const {
-  return coordinator_of(epoch) == here_ && !coordinated_.contains(epoch);
+  return coordinator_of(epoch) == here_ && !epochs_->coordinated.contains(epoch);
 }
 
 bool Completion::report(EpochId epoch, Tally& tally) {
@@ -108,7 +145,7 @@ void Completion::on(const Report& report) {
     return;
   }
   if (report.epoch.value != 0) forget_last();
-  Tally& tally = report.epoch.value == 0 ? run_ : tallies_[report.epoch];
+  Tally& tally = report.epoch.value == 0 ? run_ : epochs_->tallies[report.epoch];
   const std::int32_t slot = tree_of(report.epoch).slot_of(report.from);
   tally.below.at(static_cast<std::size_t>(slot)) = report.counters;
   const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(slot));
@@ -125,7 +162,7 @@ void Completion::on(const Answer& answer) {
 }
 
 void Completion::check(EpochId epoch, Counters sum) {
-  Coordinated& of = coordinated_.at(epoch);
+  Epochs::Coordinated& of = epochs_->coordinated.at(epoch);
   if (!of.closed || sum.sent != sum.processed) return;
   if (of.wave_runs) {
     of.again = true;
@@ -139,8 +176,8 @@ void Completion::check(EpochId epoch, Counters sum) {
 
 Counters Completion::reading(EpochId epoch) const {
   if (epoch.value == 0) return run_.own;
-  const auto at = tallies_.find(epoch);
-  return at == tallies_.end() ? Counters{} : at->second.own;
+  const auto at = epochs_->tallies.find(epoch);
+  return at == epochs_->tallies.end() ? Counters{} : at->second.own;
 }
 
 void Completion::on(const Wave& wave) {
@@ -152,18 +189,18 @@ void Completion::on(const Wave& wave) {
   if (relay.waiting == 0) {
     echo(relay);
   } else {
-    relays_[wave.epoch] = relay;
+    epochs_->relays[wave.epoch] = relay;
   }
 }
 
 void Completion::on(const Echo& message) {
-  Relay& relay = relays_.at(message.epoch);
+  Relay& relay = epochs_->relays.at(message.epoch);
   TESS_CHECK(relay.wave.number == message.number, "epoch ", message.epoch.value, ": echo of wave ",
              message.number, " while wave ", relay.wave.number, " runs");
   relay.sum = relay.sum + message.sum;
   if (--relay.waiting != 0) return;
   Relay complete = relay;
-  relays_.erase(message.epoch);
+  epochs_->relays.erase(message.epoch);
   echo(complete);
 }
 
@@ -174,7 +211,7 @@ void Completion::echo(Relay& relay) {
     messages_.send(parent, Echo{epoch, relay.wave.number, relay.sum});
     return;
   }
-  Coordinated& of = coordinated_.at(epoch);
+  Epochs::Coordinated& of = epochs_->coordinated.at(epoch);
   of.wave_runs = false;
   if (relay.sum.sent != of.processed_before_wave) {
     if (of.again) check_later(epoch);
@@ -187,21 +224,21 @@ void Completion::echo(Relay& relay) {
   end(epoch);
   const EpochId parent = of.parent;
   const auto on_done = std::move(of.on_done);
-  coordinated_.erase(epoch);
+  epochs_->coordinated.erase(epoch);
   on_done();
   processed(parent);
 }
 
 /// Frees the epoch's tallies here and on all PEs below.
 void Completion::end(EpochId epoch) {
-  const auto at = tallies_.find(epoch);
-  if (at == tallies_.end()) return;
+  const auto at = epochs_->tallies.find(epoch);
+  if (at == epochs_->tallies.end()) return;
   const SpanningTree tree = tree_of(epoch);
   for (std::int32_t slot = 0; slot < tree.n_children(); ++slot)
     if ((static_cast<unsigned>(at->second.heard) >> static_cast<unsigned>(slot) & 1U) != 0)
       messages_.send(tree.child(slot), End{epoch});
   forget_last();
-  tallies_.erase(epoch);
+  epochs_->tallies.erase(epoch);
 }
 
 void Completion::on(const End& end_of) {
@@ -209,10 +246,10 @@ void Completion::on(const End& end_of) {
 }
 
 void Completion::describe_open(std::vector<std::string>& lines) const {
-  for (const auto& [epoch, of] : coordinated_) {
+  for (const auto& [epoch, of] : epochs_->coordinated) {
     if (epoch.value == 0) continue;
-    const auto at = tallies_.find(epoch);
-    const Counters sum = at == tallies_.end() ? Counters{} : at->second.sum();
+    const auto at = epochs_->tallies.find(epoch);
+    const Counters sum = at == epochs_->tallies.end() ? Counters{} : at->second.sum();
     lines.push_back(text("epoch ", epoch.value >> 24U, " opened on ", here_, ": ", sum.sent,
                          " messages sent, ", sum.processed, " done"));
   }

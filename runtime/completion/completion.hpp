@@ -29,11 +29,10 @@
 #include "runtime/base/spanning_tree.hpp"
 #include "runtime/core/ids.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
-
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -120,6 +119,9 @@ class Completion {
 
   /// The part of PE `here` of `n_pes`.
   Completion(CompletionMessages& messages, PeId here, std::int32_t n_pes);
+  Completion(const Completion&) = delete;
+  Completion& operator=(const Completion&) = delete;
+  ~Completion();
 
   /// Counts a hop of a message in epoch 0. Inline, since every message passes here.
   void hop_sent() { ++run_.own.sent; }
@@ -152,14 +154,12 @@ class Completion {
   /// The messages of epoch 0 that this PE has sent.
   [[nodiscard]] std::uint64_t run_sent() const { return run_.own.sent; }
   /// On PE 0: the messages of epoch 0 that all PEs had sent when it was found to be done.
-  [[nodiscard]] std::uint64_t run_sent_by_all() const {
-    return coordinated_.at(EpochId{}).processed_before_wave;
-  }
+  [[nodiscard]] std::uint64_t run_sent_by_all() const;
   /// On PE 0: epoch 0 was found to be done, but messages were sent since.
   void check_run_again() { check_later(EpochId{}); }
 
   /// The number of epochs that this PE keeps counters of.
-  [[nodiscard]] std::size_t n_epochs() const { return tallies_.size(); }
+  [[nodiscard]] std::size_t n_epochs() const;
   /// Appends one line for each unfinished epoch that this PE opened.
   void describe_open(std::vector<std::string>& lines) const;
 
@@ -171,18 +171,8 @@ class Completion {
   void on(const End& end);
 
  private:
-  struct Coordinated {
-    std::uint64_t wave = 0;
-    std::uint64_t processed_before_wave = 0;
-    bool wave_runs = false, again = false, closed = false;
-    EpochId parent{};
-    std::function<void()> on_done;
-  };
-  struct Relay {
-    Wave wave;
-    Counters sum;
-    std::int32_t waiting = 0;
-  };
+  struct Relay;
+  struct Epochs;
 
   /// The counters of an epoch, to be changed immediately. The last epoch's are cached, since
   /// consecutive messages often belong to one epoch.
@@ -211,13 +201,11 @@ class Completion {
   CompletionMessages& messages_;
   const PeId here_;
   const std::int32_t n_pes_;
-  Tally run_;                                                              // of epoch 0
-  boost::unordered_flat_map<EpochId, Tally, std::hash<EpochId>> tallies_;  // of other epochs
-  std::vector<EpochId> changed_;  // something to report or to answer
-  EpochId last_epoch_{};          // 0: none. It is listed, and tallies_ is unchanged since.
+  Tally run_;                             // of epoch 0
+  const std::unique_ptr<Epochs> epochs_;  // the others; its tables are costly to compile
+  std::vector<EpochId> changed_;          // something to report or to answer
+  EpochId last_epoch_{};  // 0: none. It is listed, and its tally has not moved since.
   Counters* last_ = nullptr;
-  boost::unordered_flat_map<EpochId, Coordinated, std::hash<EpochId>> coordinated_;
-  boost::unordered_flat_map<EpochId, Relay, std::hash<EpochId>> relays_;
   std::uint64_t n_opened_ = 0;
 };
 

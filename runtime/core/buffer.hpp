@@ -2,7 +2,8 @@
 // request. A std::vector would fill new bytes with zeros that are overwritten at once.
 #pragma once
 
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
+
 #include <cstddef>
 #include <cstring>
 #include <memory>

@@ -22,10 +22,10 @@ void set_check_abort(CheckAbort end) noexcept;
 
 }  // namespace tess
 
-#define TESS_CHECK(condition, ...)                                                     \
-  do {                                                                                 \
-    if (!(condition)) [[unlikely]]                                                     \
-      ::tess::check_failed(#condition, __FILE__, __LINE__, ::tess::text(__VA_ARGS__)); \
+#define TESS_CHECK(condition, ...)                                                             \
+  do {                                                                                         \
+    if (!(condition)) [[unlikely]]                                                             \
+      ::tess::check_failed(#condition, __FILE__, __LINE__, ::tess::failure_text(__VA_ARGS__)); \
   } while (false)
 
 #ifdef TESS_CHECKS_ALL

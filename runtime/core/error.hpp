@@ -24,8 +24,8 @@ class Error : public std::runtime_error {
 
 /// Throws an Error whose message is the parts, one after the other.
 template <class... Parts>
-[[noreturn]] void fail(ErrorCode code, const Parts&... parts) {
-  throw Error(code, text(parts...));
+[[noreturn, gnu::cold]] void fail(ErrorCode code, const Parts&... parts) {
+  throw Error(code, failure_text(parts...));
 }
 
 }  // namespace tess

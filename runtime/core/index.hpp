@@ -96,7 +96,7 @@ struct IndexHash {
 
 /// An index as text for reports: [3], [1,2,3], ["name"], or its bytes.
 template <class Index>
-[[nodiscard]] std::string index_text(const Index& index) {
+[[nodiscard, gnu::cold]] std::string index_text(const Index& index) {
   if constexpr (std::is_convertible_v<const Index&, std::string_view>) {
     return text("[\"", std::string_view(index), "\"]");
   } else if constexpr (Writable<Index>) {

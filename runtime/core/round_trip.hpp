@@ -6,10 +6,10 @@
 // that it reads.
 #pragma once
 
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/serialize.hpp"
 #include "runtime/core/type_name.hpp"
 
-#include <algorithm>
 #include <string>
 #include <vector>
 

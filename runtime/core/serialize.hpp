@@ -39,7 +39,6 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace tess {
@@ -86,8 +85,15 @@ template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 template <class T>
 struct IsVariant : std::false_type {};
-template <class... T>
-struct IsVariant<std::variant<T...>> : std::true_type {};
+/// std::variant and Boost's, without their headers: most programs have none.
+template <template <class...> class V, class... T>
+  requires requires(const V<T...>& value) {
+    value.valueless_by_exception();
+    value.index();
+  }
+struct IsVariant<V<T...>> : std::true_type {
+  static constexpr std::size_t n_alternatives = sizeof...(T);
+};
 template <class T>
 struct IsUnique : std::false_type {};
 template <class T>
@@ -293,7 +299,7 @@ class Reader {
   void place(void* memory, std::size_t n_bytes) {
     if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
         places_->sizes[places_->taken.size()] != n_bytes)
-      fail(ErrorCode::bad_value, "message has no attached part of ", n_bytes, " bytes here");
+      refuse_part(n_bytes, " bytes here");
     places_->taken.emplace_back(static_cast<std::byte*>(memory), n_bytes);
   }
   /// The length of data that may be attached, in items of `bytes_each` bytes, and whether it is
@@ -305,7 +311,7 @@ class Reader {
     const std::uint64_t length = n & ~attached_bit;
     if (places_ == nullptr || places_->taken.size() == places_->sizes.size() ||
         places_->sizes[places_->taken.size()] / bytes_each != length)
-      fail(ErrorCode::bad_value, "message has no attached part of ", length, " elements here");
+      refuse_part(length, " elements here");
     return {length, true};
   }
   static constexpr std::uint64_t attached_bit = std::uint64_t{1} << 63U;
@@ -314,19 +320,21 @@ class Reader {
   template <class T>
   void get(T& value);
   void need(std::size_t n) const {
-    if (n > remaining())
-      fail(ErrorCode::bad_value, "message ends early: ", n, " bytes wanted at byte ", at_, " of ",
-           in_.size());
+    if (n > remaining()) refuse_bytes(n);
   }
   std::size_t length(std::size_t least_bytes_each) {
     return checked_length(take<std::uint64_t>(), least_bytes_each);
   }
   std::size_t checked_length(std::uint64_t n, std::size_t least_bytes_each) const {
-    if (least_bytes_each != 0 && n > remaining() / least_bytes_each)
-      fail(ErrorCode::bad_value, "message ends early: ", n, " elements announced, ", remaining(),
-           " bytes left");
+    if (least_bytes_each != 0 && n > remaining() / least_bytes_each) refuse_length(n);
     return n;
   }
+
+  // These throw Error.
+  [[noreturn]] void refuse_bytes(std::size_t n) const;
+  [[noreturn]] void refuse_length(std::uint64_t n) const;
+  [[noreturn]] static void refuse_part(std::uint64_t n, const char* unit);
+  [[noreturn]] static void refuse_alternative(std::uint64_t which, std::size_t n);
 
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
@@ -355,7 +363,10 @@ void Writer::put(const T& value) {
     if (value) put(*value);
   } else if constexpr (IsVariant<T>::value) {
     put(static_cast<std::uint64_t>(value.index()));
-    std::visit([this](const auto& held) { this->put(held); }, value);
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      using std::get;
+      ((value.index() == I ? put(get<I>(value)) : void()), ...);
+    }(std::make_index_sequence<serialization::IsVariant<T>::n_alternatives>());
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
     const std::uint64_t n = value.size();
@@ -414,12 +425,11 @@ void Reader::get(T& value) {
     }
   } else if constexpr (IsVariant<T>::value) {
     const auto which = take<std::uint64_t>();
-    if (which >= std::variant_size_v<T>)
-      fail(ErrorCode::bad_value, "message holds alternative ", which, " of a variant of ",
-           std::variant_size_v<T>);
+    constexpr std::size_t n_alternatives = serialization::IsVariant<T>::n_alternatives;
+    if (which >= n_alternatives) refuse_alternative(which, n_alternatives);
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       ((which == I ? get(value.template emplace<I>()) : void()), ...);
-    }(std::make_index_sequence<std::variant_size_v<T>>());
+    }(std::make_index_sequence<n_alternatives>());
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
     if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, detail::Buffer>)) {

@@ -56,6 +56,12 @@ template <Writable... Parts>
   return out;
 }
 
+/// The same for failures: it is kept out of the code that runs, and is not optimised.
+template <Writable... Parts>
+[[nodiscard, gnu::cold, gnu::noinline]] std::string failure_text(const Parts&... parts) {
+  return text(parts...);
+}
+
 /// The text in one line: control characters become escapes (\n, \x1b). It is used for messages that
 /// quote user input.
 [[nodiscard]] std::string one_line(std::string_view text);

@@ -16,9 +16,9 @@
 #include "runtime/base/bundle.hpp"
 #include "runtime/base/link.hpp"
 #include "runtime/core/buffer.hpp"
+#include "runtime/core/duration.hpp"
 #include "runtime/core/ids.hpp"
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

@@ -19,6 +19,7 @@ inline void release_block(void* block, std::size_t /*n_bytes*/) {
 template <class T>
 struct PoolAllocator {
   using value_type = T;
+  static constexpr std::size_t bytes_each = sizeof(value_type);
   PoolAllocator() = default;
   template <class Other>
   PoolAllocator(const PoolAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor)
@@ -26,9 +27,9 @@ struct PoolAllocator {
   [[nodiscard]] T* allocate(std::size_t n) {
     static_assert(alignof(T) <= 16, "blocks of the pool are aligned to 16 bytes");
     Pe* const pe = current_pe_or_null();
-    return static_cast<T*>(Pool::allocate(n * sizeof(T), pe != nullptr ? &pe->pool() : nullptr));
+    return static_cast<T*>(Pool::allocate(n * bytes_each, pe != nullptr ? &pe->pool() : nullptr));
   }
-  void deallocate(T* at, std::size_t n) { release_block(at, n * sizeof(T)); }
+  void deallocate(T* at, std::size_t n) { release_block(at, n * bytes_each); }
   friend bool operator==(const PoolAllocator&, const PoolAllocator&) { return true; }
 };
 

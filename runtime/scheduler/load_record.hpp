@@ -5,9 +5,9 @@
 
 #include "runtime/core/element_key.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
-
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace tess::detail {
@@ -18,6 +18,24 @@ struct Action;
 struct SentTo {
   std::uint64_t bytes = 0;
   std::uint64_t messages = 0;
+};
+
+/// What one element sent, by receiver. The hash table is in the source: it is costly to compile.
+class SentTable {
+ public:
+  SentTable();
+  SentTable(const SentTable&) = delete;
+  SentTable& operator=(const SentTable&) = delete;
+  ~SentTable();
+
+  void add(const ElementKey& to, const SentTo& more);
+  void clear();
+  /// All receivers, in no order.
+  [[nodiscard]] std::vector<std::pair<ElementKey, SentTo>> entries() const;
+
+ private:
+  struct Table;
+  std::unique_ptr<Table> table_;  // null until something was sent
 };
 
 struct LoadRecord {
@@ -36,7 +54,7 @@ struct LoadRecord {
 
   std::uint64_t ticks = 0;     ///< ticks of the PE's meter
   std::vector<Entry> entries;  ///< by entry method
-  boost::unordered_flat_map<ElementKey, SentTo, ElementKeyHash> sent;
+  SentTable sent;
   std::uint64_t* of_pe = nullptr;  ///< the PE's sum of the ticks of all such elements
   Since since = Since::somewhere;
 

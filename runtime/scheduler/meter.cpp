@@ -1,6 +1,7 @@
 #include "runtime/scheduler/meter.hpp"
 
 #include "runtime/core/cpu_clock.hpp"
+#include "runtime/scheduler/load_record.hpp"
 
 #include <algorithm>
 
@@ -37,6 +38,10 @@ std::uint64_t Meter::pass() {
   }
   since_ = at;
   return at;
+}
+
+void Meter::sent(const ElementKey& to, std::uint64_t bytes) {
+  scope_.record->sent.add(to, {bytes, 1});
 }
 
 void Meter::step_begins() {

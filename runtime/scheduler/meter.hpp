@@ -13,8 +13,8 @@
 #pragma once
 
 #include "runtime/base/ticks.hpp"
+#include "runtime/core/element_key.hpp"
 #include "runtime/machine/machine.hpp"
-#include "runtime/scheduler/load_record.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -22,6 +22,9 @@
 #include <vector>
 
 namespace tess::detail {
+
+struct Action;
+struct LoadRecord;
 
 class Meter {
  public:
@@ -62,11 +65,7 @@ class Meter {
   /// record.
   [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
   /// The running element sends a payload to another element.
-  void sent(const ElementKey& to, std::uint64_t bytes) {
-    SentTo& sum = scope_.record->sent[to];
-    sum.bytes += bytes;
-    ++sum.messages;
-  }
+  void sent(const ElementKey& to, std::uint64_t bytes);
   /// The record is destroyed or leaves this PE.
   void forget(const LoadRecord* record) {
     if (scope_.record == record) scope_.record = nullptr;

@@ -27,6 +27,7 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
+#include "runtime/scheduler/runtime_options.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -62,14 +63,6 @@ static_assert(Bitwise<PackedFrom> && Bitwise<PackedHeader>);
 [[nodiscard]] constexpr std::uint32_t credit_of(std::uint64_t n_bytes) {
   return static_cast<std::uint32_t>(n_bytes / 16 + 1);
 }
-
-/// Options of messages between processes.
-struct MessageOptions {
-  std::size_t attach_bytes = std::size_t{16}
-                             << 10;  ///< a vector of this size or more is attached as a part
-  std::size_t memory_bytes = std::size_t{32}
-                             << 20;  ///< most bytes under way from one process to another
-};
 
 class Outbox {
  public:
@@ -139,9 +132,3 @@ class Outbox {
 };
 
 }  // namespace tess::detail
-
-namespace tess {
-
-using detail::MessageOptions;
-
-}  // namespace tess

@@ -3,7 +3,10 @@
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/block.hpp"
+#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/runtime.hpp"
+
+#include <boost/unordered/unordered_flat_map.hpp>
 
 #include <algorithm>
 #include <new>
@@ -31,6 +34,15 @@ Pe& current_pe() {
   return *the_current_pe;
 }
 
+struct Pe::Tables {
+  template <class Value>
+  using ById = boost::unordered_flat_map<CollectionId, Value, std::hash<CollectionId>>;
+
+  ById<std::unique_ptr<HostedCollection>> collections;
+  ById<std::vector<Envelope*>> early;  // messages that arrived before their collection
+  boost::unordered_flat_map<std::uint64_t, void*> futures;
+};
+
 Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
        const MessageOptions& messages)
     : id_(id),
@@ -48,8 +60,9 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       completion_messages_(*this),
       completion_(completion_messages_, id_, n_pes_),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      outbox_(id, machine, messages, statistics_.bytes_sent),
-      bundles_(machine.takes_bundles() ? static_cast<std::size_t>(n_here_) : 0) {}
+      outbox_(std::make_unique<Outbox>(id, machine, messages, statistics_.bytes_sent)),
+      bundles_(machine.takes_bundles() ? static_cast<std::size_t>(n_here_) : 0),
+      tables_(std::make_unique<Tables>()) {}
 
 Pe::~Pe() = default;
 
@@ -63,8 +76,8 @@ void Pe::route(PeId to, Envelope* message) {
     pass(to, message, sizeof(Envelope));
   } else {
     ++statistics_.sent_remote;
-    outbox_.put(message);
-    if (outbox_.holds()) hold();
+    outbox_->put(message);
+    if (outbox_->holds()) hold();
   }
 }
 
@@ -125,7 +138,7 @@ void Pe::look_at_clock(const Action& action) {
     flush();
   } else if (now - held_since_ > bundle_ticks_) {
     flush_bundles();
-    holds_ = outbox_.holds();
+    holds_ = outbox_->holds();
   }
 }
 
@@ -141,7 +154,7 @@ bool Pe::flush() {
   if (!holds_) return false;
   holds_ = false;
   flush_bundles();
-  outbox_.flush();
+  outbox_->flush();
   return true;
 }
 
@@ -275,24 +288,24 @@ bool Pe::idle() {
 
 void Pe::drop_all() {
   while (!ready_.empty()) discard(static_cast<Envelope*>(ready_.pop()));
-  for (auto& [id, messages] : early_) {
+  for (auto& [id, messages] : tables_->early) {
     for (Envelope* message : messages) discard(message);
   }
-  early_.clear();
+  tables_->early.clear();
   for (Bundle*& bundle : bundles_) {
     if (bundle == nullptr) continue;
     for (std::uint32_t i = 0; i < bundle->n; ++i)
       discard(static_cast<Envelope*>(bundle->messages[i]));
     Pool::release(std::exchange(bundle, nullptr), &pool_);
   }
-  outbox_.drop_all();
+  outbox_->drop_all();
   dropping_ = true;
   end_all(suspended_);
 }
 
 HostedCollection* Pe::find_slow(CollectionId id) {
-  const auto at = collections_.find(id);
-  if (at == collections_.end()) return nullptr;
+  const auto at = tables_->collections.find(id);
+  if (at == tables_->collections.end()) return nullptr;
   last_id_ = id;
   last_ = at->second.get();
   return last_;
@@ -300,13 +313,13 @@ HostedCollection* Pe::find_slow(CollectionId id) {
 
 void Pe::add(std::unique_ptr<HostedCollection> collection) {
   const CollectionId id = collection->id();
-  TESS_CHECK(!collections_.contains(id), id, " exists already on ", id_);
-  collections_.emplace(id, std::move(collection));
+  TESS_CHECK(!tables_->collections.contains(id), id, " exists already on ", id_);
+  tables_->collections.emplace(id, std::move(collection));
   last_id_ = CollectionId{~std::uint64_t{0}};
-  const auto early = early_.find(id);
-  if (early == early_.end()) return;
+  const auto early = tables_->early.find(id);
+  if (early == tables_->early.end()) return;
   const std::vector<Envelope*> messages = std::move(early->second);
-  early_.erase(early);
+  tables_->early.erase(early);
   for (Envelope* message : messages) send_here(message);
 }
 
@@ -318,13 +331,13 @@ void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe
     discard(message);
     return;
   }
-  early_[id].push_back(message);
+  tables_->early[id].push_back(message);
 }
 
 std::unique_ptr<HostedCollection> Pe::take_out(CollectionId id) {
-  const auto at = collections_.find(id);
+  const auto at = tables_->collections.find(id);
   std::unique_ptr<HostedCollection> collection = std::move(at->second);
-  collections_.erase(at);
+  tables_->collections.erase(at);
   last_id_ = CollectionId{~std::uint64_t{0}};
   ended_.add(id);
   return collection;
@@ -342,9 +355,27 @@ Pe::Ending Pe::take_ending(CollectionId id) {
   return taken;
 }
 
+std::uint64_t Pe::enter_future(void* future) {
+  tables_->futures.emplace(++n_futures_, future);
+  return n_futures_;
+}
+
+void Pe::move_future(std::uint64_t id, void* future) {
+  tables_->futures[id] = future;
+}
+
+void Pe::leave_future(std::uint64_t id) {
+  tables_->futures.erase(id);
+}
+
+void* Pe::find_future(std::uint64_t id) const {
+  const auto at = tables_->futures.find(id);
+  return at == tables_->futures.end() ? nullptr : at->second;
+}
+
 std::vector<HostedCollection*> Pe::collections() const {
   std::vector<HostedCollection*> all;
-  for (const auto& [id, collection] : collections_) all.push_back(collection.get());
+  for (const auto& [id, collection] : tables_->collections) all.push_back(collection.get());
   return all;
 }
 
@@ -363,11 +394,11 @@ std::vector<std::string> Pe::census() const {
         one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
         " waits for ", one.waits_for()));
   }
-  for (const auto& [id, collection] : collections_) collection->describe_waiting(lines);
+  for (const auto& [id, collection] : tables_->collections) collection->describe_waiting(lines);
   for (const Ending& one : ending_)
     lines.push_back(text(one.collection->name(), " on ", id_,
                          " was destroyed, but coroutines of its elements wait"));
-  for (const auto& [id, messages] : early_)
+  for (const auto& [id, messages] : tables_->early)
     lines.push_back(
         text(messages.size(), " messages on ", id_, " wait for ", id, ", which was never created"));
   completion_.describe_open(lines);

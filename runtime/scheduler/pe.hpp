@@ -12,13 +12,10 @@
 #include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/hosted_collection.hpp"
 #include "runtime/scheduler/meter.hpp"
-#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
 #include "runtime/scheduler/timers.hpp"
 #include "runtime/scheduler/trace.hpp"
-
-#include <boost/unordered/unordered_flat_map.hpp>
 
 #include <atomic>
 #include <cstdint>
@@ -34,7 +31,9 @@ namespace tess::detail {
 
 class TessElement;
 using Element = TessElement;
+class Outbox;
 class Runtime;
+struct MessageOptions;
 
 /// The context of running code: its element, its epoch, and the broadcast of the element's
 /// collection that led to it (0: none).
@@ -176,7 +175,7 @@ class Pe {
   [[nodiscard]] Envelope* place(std::span<const std::byte> head,
                                 std::span<const std::uint64_t> sizes,
                                 std::vector<std::span<std::byte>>& taken);
-  [[nodiscard]] Outbox& outbox() { return outbox_; }
+  [[nodiscard]] Outbox& outbox() { return *outbox_; }
   /// A PE of another process has run messages that this PE sent to it.
   void on_repaid(PeId from, std::uint64_t amount);
   /// Passes a message that arrived from another process to its PE.
@@ -214,16 +213,11 @@ class Pe {
   void set_migration_chance(double chance) { migration_chance_ = chance; }
 
   /// The futures that were made on this PE, by number. A result for a destroyed future is an error.
-  std::uint64_t enter_future(void* future) {
-    futures_.emplace(++n_futures_, future);
-    return n_futures_;
-  }
-  void move_future(std::uint64_t id, void* future) { futures_[id] = future; }
-  void leave_future(std::uint64_t id) { futures_.erase(id); }
-  [[nodiscard]] void* find_future(std::uint64_t id) const {
-    const auto at = futures_.find(id);
-    return at == futures_.end() ? nullptr : at->second;
-  }
+  std::uint64_t enter_future(void* future);
+  void move_future(std::uint64_t id, void* future);
+  void leave_future(std::uint64_t id);
+  /// Null if the future was destroyed.
+  [[nodiscard]] void* find_future(std::uint64_t id) const;
 
   /// Keeps an exception that a coroutine threw after it had waited; it is rethrown at the end of
   /// the message.
@@ -301,7 +295,6 @@ class Pe {
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
   std::uint64_t n_futures_ = 0;
-  boost::unordered_flat_map<std::uint64_t, void*> futures_;
   std::string place_;  // where the pending exception was thrown
   const void* constructed_index_ = nullptr;
   HostedCollection* constructing_collection_ = nullptr;
@@ -319,7 +312,7 @@ class Pe {
   unsigned idle_calls_ = 0;
   std::size_t messages_since_report_ = 0;
 
-  Outbox outbox_;  // messages to other processes
+  const std::unique_ptr<Outbox> outbox_;  // messages to other processes
 
   // Messages that are held back to leave together: in the outbox, and pointers by PE of this
   // process.
@@ -331,10 +324,8 @@ class Pe {
   CollectionId last_id_{~std::uint64_t{0}};
   HostedCollection* last_ = nullptr;
   CollectionNumbers collection_numbers_;
-  boost::unordered_flat_map<CollectionId, std::unique_ptr<HostedCollection>,
-                            std::hash<CollectionId>>
-      collections_;
-  boost::unordered_flat_map<CollectionId, std::vector<Envelope*>, std::hash<CollectionId>> early_;
+  struct Tables;
+  const std::unique_ptr<Tables> tables_;  // hash tables, which are costly to compile
   EndedCollections ended_;
   std::vector<Ending> ending_;
   Timers timers_{*this};

@@ -2,6 +2,7 @@
 // PE, and repaid once they have run.
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
+#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
@@ -87,15 +88,15 @@ void Pe::hand_over(Envelope* message, std::size_t n_bytes) {
 }
 
 void Pe::repay(PeId sender, std::uint32_t charge) {
-  if (const std::uint64_t amount = outbox_.owe(sender, charge); amount != 0)
+  if (const std::uint64_t amount = outbox_->owe(sender, charge); amount != 0)
     send_system<&credit_arrives>(*this, sender, Credit{id_, amount});
 }
 
 void Pe::on_repaid(PeId from, std::uint64_t amount) {
   const ProcessId process = machine_.process_of(from);
-  outbox_.repaid(process, amount);
-  if (outbox_.holds()) hold();
-  if (outbox_.awaited(process)) send_system<&room_arrives>(*this, id_, Room{process});
+  outbox_->repaid(process, amount);
+  if (outbox_->holds()) hold();
+  if (outbox_->awaited(process)) send_system<&room_arrives>(*this, id_, Room{process});
 }
 
 }  // namespace tess::detail

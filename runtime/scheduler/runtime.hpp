@@ -18,6 +18,7 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/process_service.hpp"
+#include "runtime/scheduler/runtime_options.hpp"
 
 #include <atomic>
 #include <cstddef>
@@ -29,19 +30,6 @@
 #include <vector>
 
 namespace tess::detail {
-
-struct RuntimeOptions {
-  std::uint64_t seed = 0;
-  double migration_chance = 0;  ///< probability of a forced migration after a message, for testing
-  bool statistics = false;      ///< print the counters of each PE
-  MessageOptions messages;
-  std::string trace;  ///< the file of the trace; empty: no trace
-  /// Takes SIGINT, SIGTERM and SIGUSR1, where the program has left them to the system.
-  bool signals = true;
-  /// Receives the lines of reports (deadlock, exception, statistics); if empty, they go to standard
-  /// error.
-  std::function<void(const std::string&)> report;
-};
 
 /// "3 wait:" and a line for each, sorted; the last ones of very many are left out.
 [[nodiscard]] std::string list_of_waiting(std::vector<std::string> lines);
@@ -151,9 +139,3 @@ class Runtime final : public Program {
 };
 
 }  // namespace tess::detail
-
-namespace tess {
-
-using detail::RuntimeOptions;
-
-}  // namespace tess

@@ -12,11 +12,10 @@
 
 #include "runtime/machine/machine.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <unordered_map>
 #include <vector>
 
 namespace tess::detail {
@@ -58,7 +57,7 @@ class Timers {
   Pe& pe_;
   std::size_t n_waiting_ = 0;
   std::uint64_t n_made_ = 0;
-  boost::unordered_flat_map<std::uint64_t, Periodic> periodic_;
+  std::unordered_map<std::uint64_t, Periodic> periodic_;
   bool frozen_ = false;
   std::vector<std::uint64_t> kept_;  // timers whose tick came while they were frozen
 };

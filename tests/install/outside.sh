@@ -25,7 +25,7 @@ if [[ $way == installed ]]; then
   options+=("-DCMAKE_PREFIX_PATH=$scratch/prefix")
 else
   # Without optimisation: what is tested is the way, not the speed.
-  options+=("-DTESSERA=$from" -DCMAKE_BUILD_TYPE=Debug)
+  options+=("-DTESSERA=$from" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
 fi
 
 cmake -S "$here/outside" -B "$scratch/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }

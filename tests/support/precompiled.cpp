@@ -1,1 +1,1 @@
-// Carries the precompiled header; catch_main.cpp cannot, since it defines what Catch reads first.
+// The precompiled header of the tests belongs to this source.

@@ -2,6 +2,8 @@
 
 #include "runtime/scheduler/runtime.hpp"
 
+#include <boost/unordered/unordered_flat_map.hpp>
+
 #include <algorithm>
 
 namespace tess::balance {

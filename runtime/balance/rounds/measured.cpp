@@ -64,7 +64,7 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
   if (const auto position = array_->position_of(element)) report.positions.push_back(*position);
-  for (const auto& [to, sent] : record.load.sent)
+  for (const auto& [to, sent] : record.load.sent.entries())
     report.parcels.push_back({record.position, to, sent.bytes, sent.messages});
   for (const LoadRecord::Entry& entry : record.load.entries) {
     const std::uint32_t action = entry.action->id();

@@ -3,6 +3,7 @@
 #include "runtime/balance/loads.hpp"
 #include "runtime/balance/metrics.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 

@@ -5,6 +5,7 @@
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <set>

@@ -6,6 +6,8 @@
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+
 using namespace tess;
 using namespace tess::balance;
 

@@ -1,4 +1,5 @@
 // The meter by itself: whose time it is, and that stolen time counts for none.
+#include "runtime/scheduler/load_record.hpp"
 #include "runtime/scheduler/meter.hpp"
 
 #include "runtime/machine/simulated.hpp"

@@ -1,0 +1,39 @@
+// Options of a run that the program, the command line or a test sets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace tess::detail {
+
+/// Options of messages between processes.
+struct MessageOptions {
+  std::size_t attach_bytes = std::size_t{16}
+                             << 10;  ///< a vector of this size or more is attached as a part
+  std::size_t memory_bytes = std::size_t{32}
+                             << 20;  ///< most bytes under way from one process to another
+};
+
+struct RuntimeOptions {
+  std::uint64_t seed = 0;
+  double migration_chance = 0;  ///< probability of a forced migration after a message, for testing
+  bool statistics = false;      ///< print the counters of each PE
+  MessageOptions messages;
+  std::string trace;  ///< the file of the trace; empty: no trace
+  /// Takes SIGINT, SIGTERM and SIGUSR1, where the program has left them to the system.
+  bool signals = true;
+  /// Receives the lines of reports (deadlock, exception, statistics); if empty, they go to standard
+  /// error.
+  std::function<void(const std::string&)> report;
+};
+
+}  // namespace tess::detail
+
+namespace tess {
+
+using detail::MessageOptions;
+using detail::RuntimeOptions;
+
+}  // namespace tess
