@@ -38,9 +38,9 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
   statistics_.n_candidates = pairs_.n_total();
   statistics_.bytes = 0;
   for (const Level& level : levels_)
-    statistics_.bytes += level.cells.capacity() * sizeof(Cell) + level.cell_of.bytes() +
-                         level.entry_of.bytes() + level.sorted.bytes() +
-                         level.voxels.capacity() * sizeof(Voxel) + level.models.capacity() * 8;
+    statistics_.bytes += level.cells.capacity() * sizeof(Cell) + level.codes.bytes() +
+                         level.sorted.bytes() + level.voxels.capacity() * sizeof(Voxel) +
+                         level.models.capacity() * 8;
   return true;
 }
 
@@ -99,7 +99,7 @@ CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& 
                                        std::size_t depth) {
   const double n = static_cast<double>(problem.a.size() + problem.b.size());
   if (options_.voxel_size > 0)
-    return cells_of_size(bounds, options_.voxel_size, std::max(4 * n, 4096.0));
+    return cells_of_size(bounds, options_.voxel_size, std::clamp(4 * n, 4096.0, 0x1p26));
   if (options_.method == PairMethod::bisection && depth > 0) {
     CellAt<D> n_cells;
     n_cells.fill(1);
@@ -112,82 +112,74 @@ CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& 
   return chooser_.choose(problem, bounds).n_cells;
 }
 
-/// Writes the cells that the boxes touch, in the order of the boxes; false if they are too many.
+/// Calls take(cells, entries, n) for the cells that the boxes touch, some hundred at a time, in the
+/// order of the boxes. False if take() is. The first time, the codes of all boxes are found.
 template <class Real, std::size_t D>
-template <bool is_b>
-bool VoxelSearch<Real, D>::spread(const TheBox* boxes, std::span<const Entry> entries,
-                                  const TheBox& bounds, const Grid<Real, D>& grid, Level& level) {
-  constexpr std::size_t ahead = 24;
+template <bool is_b, bool again, class Take>
+bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& bounds,
+                                  const Grid<Real, D>& grid, Level& level, const Take& take) {
+  constexpr std::size_t ahead = 24, most = 512;
+  const TheBox* const boxes = is_b ? problem.boxes_b : problem.boxes_a;
+  const std::span<const Entry> entries = is_b ? problem.b : problem.a;
   const Corners<D> corners(grid.strides());
-  const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
-  std::size_t n = level.n_entries, room = 0;
-  const auto make_room = [&](std::size_t more) {
-    level.cell_of.reserve(n + more);
-    level.entry_of.reserve(n + more);
-    room = std::min(level.cell_of.capacity(), level.entry_of.capacity());
-  };
+  std::array<std::uint32_t, most + Corners<D>::room> cell_of, entry_of;
+  std::uint32_t* const codes = level.codes.data() + (is_b ? problem.a.size() : 0);
+  constexpr std::uint32_t outside = Grid<Real, D>::large - 1;
+  std::size_t n = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (i + ahead < entries.size()) prefetch(boxes[object_of(entries[i + ahead])]);
     const Entry entry = entries[i];
     const TheBox& box = boxes[object_of(entry)];
-    if (is_b && !overlap(box, bounds, Touching::counts)) continue;
-    const CellRange<D> cells = grid.cells(box);
-    std::uint32_t two = 0, longest = 0;
-    for (std::size_t k = 0; k < D; ++k) {
-      const auto more = static_cast<std::uint32_t>(cells.hi[k] - cells.lo[k]);
-      two |= (more & 1U) << k;
-      longest |= more;
+    if constexpr (!again) {
+      if (i + ahead < entries.size()) prefetch(boxes[object_of(entries[i + ahead])]);
+      codes[i] = is_b && !overlap(box, bounds, Touching::counts) ? outside : grid.code(box);
     }
-    if (n + Corners<D>::room > room) make_room(Corners<D>::room);
-    if (longest < 2) [[likely]] {
-      n += corners.write(grid.number(cells.lo), static_cast<std::uint32_t>(entry), two,
-                         level.cell_of.data() + n, level.entry_of.data() + n);
+    const std::uint32_t code = codes[i];
+    if (is_b && code == outside) continue;
+    if (n >= most && !take(cell_of.data(), entry_of.data(), std::exchange(n, 0))) return false;
+    if (code != Grid<Real, D>::large) [[likely]] {
+      n += corners.write(code >> D, static_cast<std::uint32_t>(entry), code & ((1U << D) - 1),
+                         cell_of.data() + n, entry_of.data() + n);
       continue;
     }
-    std::size_t n_cells = 1;
-    for (std::size_t k = 0; k < D; ++k)
-      n_cells *= static_cast<std::size_t>(cells.hi[k] - cells.lo[k] + 1);
-    if (n + n_cells > most) return false;
-    make_room(n_cells);
-    CellAt<D> at = cells.lo;
-    for (std::size_t c = 0; c < n_cells; ++c) {
+    const CellRange<D> cells = grid.cells(box);
+    for (CellAt<D> at = cells.lo;;) {
       std::uint32_t below = below_of(entry);
       for (std::size_t k = 0; k < D; ++k) below |= (at[k] != cells.lo[k] ? 1U : 0U) << k;
-      level.cell_of.data()[n] = grid.number(at);
-      level.entry_of.data()[n++] = static_cast<std::uint32_t>(make_entry(object_of(entry), below));
-      for (std::size_t k = D; k-- > 0;) {
-        if (at[k] < cells.hi[k]) {
-          ++at[k];
-          break;
-        }
-        at[k] = cells.lo[k];
-      }
+      cell_of[n] = grid.number(at);
+      entry_of[n++] = static_cast<std::uint32_t>(make_entry(object_of(entry), below));
+      if (n >= most && !take(cell_of.data(), entry_of.data(), std::exchange(n, 0))) return false;
+      std::size_t k = D;
+      while (k > 0 && at[k - 1] == cells.hi[k - 1]) --k, at[k] = cells.lo[k];
+      if (k == 0) break;
+      ++at[k - 1];
     }
   }
-  level.n_entries = n;
-  return true;
+  return take(cell_of.data(), entry_of.data(), n);
 }
 
+/// A counting sort.
 template <class Real, std::size_t D>
 bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const TheBox& bounds,
                                             const Grid<Real, D>& grid, Level& level) {
-  level.n_entries = 0;
-  const std::size_t n_objects = problem.a.size() + problem.b.size();
-  level.cell_of.reserve(n_objects + n_objects / 2);
-  level.entry_of.reserve(n_objects + n_objects / 2);
-  if (!spread<false>(problem.boxes_a, problem.a, bounds, grid, level)) return false;
-  const std::size_t n_of_a = level.n_entries;
-  if (!spread<true>(problem.boxes_b, problem.b, bounds, grid, level)) return false;
-  const std::size_t n = level.n_entries;
-  statistics_.n_entries += n;
-
   const std::size_t n_cells = grid.size();
+  const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
   level.cells.assign(n_cells, Cell{});
+  level.codes.resize(problem.a.size() + problem.b.size());
+  level.models.assign(by_model_ ? n_cells : 0, 0);
   Cell* const cells = level.cells.data();
-  const std::uint32_t* const cell_of = level.cell_of.data();
-  for (std::size_t i = 0; i < n_of_a; ++i) ++cells[cell_of[i]].a;
-  for (std::size_t i = n_of_a; i < n; ++i) ++cells[cell_of[i]].b;
-  if (by_model_) note_models(level, n_cells);
+  std::size_t n_entries = 0;
+  const auto count = [&](std::uint32_t Cell::*set) {
+    return [&, set](const std::uint32_t* cell_of, const std::uint32_t* entry_of, std::size_t n) {
+      n_entries += n;
+      for (std::size_t i = 0; i < n; ++i) ++(cells[cell_of[i]].*set);
+      if (by_model_) note_models(level, cell_of, entry_of, n);
+      return n_entries <= most;
+    };
+  };
+  if (!spread<false, false>(problem, bounds, grid, level, count(&Cell::a)) ||
+      !spread<true, false>(problem, bounds, grid, level, count(&Cell::b)))
+    return false;
+  statistics_.n_entries += n_entries;
 
   // Where the objects of each voxel stand: first those of a, then those of b.
   level.voxels.clear();
@@ -209,22 +201,26 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
   statistics_.n_voxels += level.voxels.size();
   level.sorted.resize(end);
   Entry* const sorted = level.sorted.data();
-  const std::uint32_t* const entry_of = level.entry_of.data();
-  for (std::size_t i = 0; i < n; ++i) {
-    Cell& cell = cells[cell_of[i]];
-    std::uint32_t& place = i < n_of_a ? cell.a : cell.b;
-    if (place != no_place) sorted[place++] = static_cast<Entry>(entry_of[i]);
-  }
-  return true;
+  const auto place = [&](std::uint32_t Cell::*set) {
+    return [=](const std::uint32_t* cell_of, const std::uint32_t* entry_of, std::size_t n) {
+      for (std::size_t i = 0; i < n; ++i) {
+        std::uint32_t& to = cells[cell_of[i]].*set;
+        if (to != no_place) sorted[to++] = static_cast<Entry>(entry_of[i]);
+      }
+      return true;
+    };
+  };
+  return spread<false, true>(problem, bounds, grid, level, place(&Cell::a)) &&
+         spread<true, true>(problem, bounds, grid, level, place(&Cell::b));
 }
 
 template <class Real, std::size_t D>
-void VoxelSearch<Real, D>::note_models(Level& level, std::size_t n_cells) {
-  level.models.assign(n_cells, 0);
-  for (std::size_t i = 0; i < level.n_entries; ++i) {
-    const std::uint32_t object = object_of(static_cast<Entry>(level.entry_of.data()[i]));
+void VoxelSearch<Real, D>::note_models(Level& level, const std::uint32_t* cell_of,
+                                       const std::uint32_t* entry_of, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t object = object_of(static_cast<Entry>(entry_of[i]));
     const std::uint64_t code = std::uint64_t{options_.models[object]} + 1;
-    std::uint64_t& state = level.models[level.cell_of.data()[i]];
+    std::uint64_t& state = level.models[cell_of[i]];
     state = state == 0 || state == code ? code : several_models;
   }
 }

@@ -58,10 +58,8 @@ class VoxelSearch {
   struct Level {
     std::vector<Cell> cells;
     std::vector<std::uint64_t> models;  // per cell: 0, model + 1, or several
-    Scratch<std::uint32_t> cell_of;     // per object and voxel, in the order of the objects
-    Scratch<std::uint32_t> entry_of;
-    std::size_t n_entries = 0;  // of these two
-    Scratch<Entry> sorted;      // the same by voxel
+    Scratch<std::uint32_t> codes;       // per object: Grid::code()
+    Scratch<Entry> sorted;              // by voxel
     std::vector<Voxel> voxels;
   };
 
@@ -70,10 +68,11 @@ class VoxelSearch {
                                  std::size_t depth);
   bool sort_into_voxels(const TheProblem& problem, const TheBox& bounds, const Grid<Real, D>& grid,
                         Level& level);
-  template <bool is_b>
-  bool spread(const TheBox* boxes, std::span<const Entry> entries, const TheBox& bounds,
-              const Grid<Real, D>& grid, Level& level);
-  void note_models(Level& level, std::size_t n_cells);
+  template <bool is_b, bool again, class Take>
+  static bool spread(const TheProblem& problem, const TheBox& bounds, const Grid<Real, D>& grid,
+                     Level& level, const Take& take);
+  void note_models(Level& level, const std::uint32_t* cell_of, const std::uint32_t* entry_of,
+                   std::size_t n);
   void compare(const TheProblem& problem);
   template <Touching touching, bool by_model>
   void compare_as(const TheProblem& problem);
