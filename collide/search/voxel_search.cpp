@@ -256,10 +256,10 @@ void VoxelSearch<Real, D>::fill(const TheBox* boxes, std::span<const Entry> entr
   lanes_.resize(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::uint32_t object = object_of(entries[i]);
-    lanes_.set(in_slices ? slices_.place(i) : i, boxes[object], entries[i],
-               by_model ? options_.models[object] : 0);
+    const std::size_t at = in_slices ? slices_.place(i) : i;
+    lanes_.set(at, boxes[object], entries[i]);
+    if constexpr (by_model) lanes_.set_model(at, options_.models[object]);
   }
-  if (in_slices) slices_.find_firsts();
 }
 
 /// All pairs of a, or a sweep.
@@ -269,11 +269,13 @@ void VoxelSearch<Real, D>::within(const TheProblem& problem) {
   const std::size_t n = problem.a.size();
   const bool in_slices = sweeps(n);
   fill<by_model>(problem.boxes_a, problem.a, in_slices);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto probe = lanes_.probe(i);
-    pairs_.prepare(n, swapped_);
-    lanes_.template compare<touching, by_model>(probe, i + 1,
-                                                in_slices ? slices_.end(probe.box.hi) : n, pairs_);
+  // A vector of neighbours has a common end: a loop of equal length for each predicts well.
+  for (std::size_t begin = 0; begin < n; begin += lanes_.width) {
+    const std::size_t end = in_slices ? slices_.end(lanes_.highest(begin, slices_.axis())) : n;
+    for (std::size_t i = begin; i < std::min(begin + lanes_.width, n); ++i) {
+      pairs_.prepare(n, swapped_);
+      lanes_.template compare<touching, by_model>(lanes_.probe(i), i + 1, end, pairs_);
+    }
   }
 }
 
@@ -287,12 +289,13 @@ void VoxelSearch<Real, D>::across(const TheProblem& problem) {
   const TheBox* const boxes = b_is_smaller ? problem.boxes_b : problem.boxes_a;
   const bool in_slices = few.size() > 1 && sweeps(many.size());
   fill<by_model>(b_is_smaller ? problem.boxes_a : problem.boxes_b, many, in_slices);
+  if (in_slices) slices_.find_firsts(lanes_.upper_ends(slices_.axis()));
   for (const Entry entry : few) {
     const std::uint32_t object = object_of(entry);
     const TheBox& box = boxes[object];
     pairs_.prepare(many.size(), swapped_ != b_is_smaller);
     lanes_.template compare<touching, by_model>(
-        {box, below_of(entry), by_model ? options_.models[object] : 0, object},
+        lanes_.probe(box, entry, by_model ? options_.models[object] : 0),
         in_slices ? slices_.first(box.lo) : 0, in_slices ? slices_.end(box.hi) : many.size(),
         pairs_);
   }
