@@ -31,9 +31,10 @@ void prefetch(const Box<Real, D>& box) {
 }  // namespace
 
 template <class Real, std::size_t D>
-bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, bool swapped) {
+bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, bool swapped,
+                                 const std::optional<Choice<D>>& choice) {
   swapped_ = swapped;
-  if (!solve(problem, region, std::size_t{0})) return false;
+  if (!solve(problem, region, std::size_t{0}, choice)) return false;
   pairs_.flush();
   statistics_.n_candidates = pairs_.n_total();
   statistics_.bytes = 0;
@@ -45,8 +46,8 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
 }
 
 template <class Real, std::size_t D>
-bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region,
-                                 std::size_t depth) {
+bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, std::size_t depth,
+                                 const std::optional<Choice<D>>& choice) {
   if (problem.n_comparisons() == 0) return true;
   const std::size_t n = problem.a.size() + problem.b.size();
   const bool is_chosen = options_.voxel_size > 0;
@@ -56,7 +57,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
   }
   const TheBox bounds =
       depth == 0 ? region : clipped(bounds_of(problem.boxes_a, problem.a), region);
-  const Grid<Real, D> grid(bounds, choose(problem, bounds, depth));
+  const Grid<Real, D> grid(bounds, choice ? choice->n_cells : choose(problem, bounds, depth));
   if (grid.size() == 1) {
     compare(problem);
     return true;
@@ -86,7 +87,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
                           {level.sorted.data() + voxel.begin + voxel.n_a, voxel.n_b},
                           problem.within_a};
     if (again && voxel.n_a + voxel.n_b > costs::few_objects) {
-      static_cast<void>(solve(part, clipped(grid.region(voxel.cell), bounds), depth + 1));
+      static_cast<void>(solve(part, clipped(grid.region(voxel.cell), bounds), depth + 1, {}));
     } else {
       compare(part);
     }

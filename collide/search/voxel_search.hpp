@@ -15,6 +15,7 @@
 #include "collide/search/slices.hpp"
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 namespace tess::collide::search {
@@ -34,10 +35,10 @@ class VoxelSearch {
     statistics_ = {};
   }
   /// Finds the pairs of a problem. `region` contains the objects of `a`. With `swapped` the sink is
-  /// told that `a` is the second set. Returns false, without a pair, if more than the greatest
+  /// told that `a` is the second set. `choice` is that of chooser(), if it is known. Returns false, without a pair, if more than the greatest
   /// number of entries were needed.
   [[nodiscard]] bool solve(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                           bool swapped);
+                           bool swapped, const std::optional<Choice<D>>& choice = {});
   void set_most_entries(std::size_t n) noexcept { most_entries_ = n; }
 
   [[nodiscard]] PairStatistics& statistics() noexcept { return statistics_; }
@@ -63,7 +64,8 @@ class VoxelSearch {
     std::vector<Voxel> voxels;
   };
 
-  bool solve(const TheProblem& problem, const TheBox& region, std::size_t depth);
+  bool solve(const TheProblem& problem, const TheBox& region, std::size_t depth,
+             const std::optional<Choice<D>>& choice);
   [[nodiscard]] CellAt<D> choose(const TheProblem& problem, const TheBox& region,
                                  std::size_t depth);
   bool sort_into_voxels(const TheProblem& problem, const TheBox& bounds, const Grid<Real, D>& grid,
