@@ -145,9 +145,6 @@ class Plan {
 
   void check_memory(Boxes boxes_a, Boxes boxes_b, const TheBox& bounds) const {
     const double size = options_.voxel_size;
-    if (!std::isfinite(size))
-      fail(ErrorCode::bad_value, "pairs: voxel size ", size,
-           " is not finite; give 0 to have it chosen");
     double n_entries = 0;
     std::array<double, D> most;  // voxels per axis
     for (std::size_t k = 0; k < D; ++k)
@@ -172,7 +169,12 @@ class Plan {
   VoxelSearch<Real, D> search_;
 };
 
-template <class Real, std::size_t D>
+void check_voxel_size(const PairOptions& options) {
+  if (!std::isfinite(options.voxel_size) || options.voxel_size < 0)
+    fail(ErrorCode::bad_value, "pairs: voxel size ", options.voxel_size,
+         " is no size; give a positive and finite one, or 0 to have it chosen");
+}
+
 void check_count(std::size_t n) {
   if (n > most_objects)
     fail(ErrorCode::bad_value, "pairs: ", n, " objects; the limit of a search is ", most_objects,
@@ -204,7 +206,8 @@ Models count(std::span<const std::uint32_t> models) {
 
 template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& options, PairSink sink) {
-  check_count<Real, D>(boxes.size());
+  check_voxel_size(options);
+  check_count(boxes.size());
   const bool by_model = !options.models.empty() && !options.within_model;
   if (by_model && options.models.size() != boxes.size())
     fail(ErrorCode::bad_value, "pairs: ", options.models.size(), " models for ", boxes.size(),
@@ -232,8 +235,9 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
 template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
                   const PairOptions& options, PairSink sink) {
-  check_count<Real, D>(a.size());
-  check_count<Real, D>(b.size());
+  check_voxel_size(options);
+  check_count(a.size());
+  check_count(b.size());
   Plan<Real, D> plan(options, false, sink);
   const Box<Real, D> bounds_a = checked_bounds(a, " of the first set");
   const Box<Real, D> bounds_b = checked_bounds(b, " of the second set");

@@ -285,6 +285,8 @@ TEST_CASE("a bad box, voxel size or list of models is an error that names it", "
   }
   const Aabb good{{0, 0, 0}, {1, 1, 1}};
   REQUIRE_THAT(refused(good, 0, {.voxel_size = 1e-6}), Catch::Contains("voxel size 1e-06 puts"));
+  for (const double bad : {-0.5, nan, inf, -inf})
+    REQUIRE_THAT(refused(good, 0, {.voxel_size = bad}), Catch::Contains("is no size"));
   const std::vector<std::uint32_t> models(49);
   REQUIRE_THAT(refused(good, 0, {.models = models}), Catch::Contains("49 models for 50 objects"));
   REQUIRE(n_found == 0);
