@@ -19,6 +19,7 @@
 
 #include "collide/box.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -59,7 +60,7 @@ struct PairOptions {
   /// Empty: all pairs are tested.
   std::span<const std::uint32_t> models = {};
   bool within_model = false;  ///< with models: tests pairs within a model, too
-  double voxel_size = 0;      ///< 0: chosen by expected cost
+  double voxel_size = 0;      ///< positive and finite; or 0: chosen by expected cost
   PairMethod method = PairMethod::automatic;
   PairStatistics* statistics = nullptr;  ///< is filled
 };
@@ -113,11 +114,13 @@ struct TestedPairs {
     auto& self = *static_cast<TestedPairs*>(context);
     const std::uint32_t* const first = swapped ? partners : objects;
     const std::uint32_t* const second = swapped ? objects : partners;
+    std::uint64_t n = 0;
     for (std::size_t p = 0; p < n_pairs; ++p) {
       if (!self.test(first[p], second[p])) continue;
-      ++self.n;
+      ++n;
       self.found(first[p], second[p]);
     }
+    self.n += n;
   }
 };
 
@@ -131,14 +134,23 @@ void for_each_tested(const PairOptions& options, const Test& test, Found& found,
 
 }  // namespace detail
 
-/// Calls found(i, j) once per pair of objects that intersect, with i < j. Throws Error (bad_value)
-/// before the first call, with the position of an object whose box is not valid, or if the voxel
-/// size is too small for the memory.
-template <class Object, class Found>
-void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found) {
+/// The filter of searches that have none; it costs nothing.
+struct EveryPair {
+  constexpr bool operator()(std::uint32_t, std::uint32_t) const noexcept { return true; }
+};
+
+/// Calls found(i, j) once per pair of objects that intersect, with i < j. With a filter, only pairs
+/// count for which wanted(i, j) is true; it is asked before the exact test, once per pair of boxes
+/// that overlap. Throws Error (bad_value) before the first call, with the position of an object
+/// whose box is not valid, or if the voxel size is no size or too small for the memory.
+template <class Object, class Found, class Wanted = EveryPair>
+void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found,
+                   const Wanted& wanted = {}) {
   const auto boxes = detail::boxes_of(objects);
-  auto ordered = [&](std::uint32_t i, std::uint32_t j) { i < j ? found(i, j) : found(j, i); };
-  const auto test = [&]([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t j) {
+  // Without a branch, which would be mispredicted for every second pair.
+  auto ordered = [&](std::uint32_t i, std::uint32_t j) { found(std::min(i, j), std::max(i, j)); };
+  const auto test = [&](std::uint32_t i, std::uint32_t j) {
+    if (!wanted(std::min(i, j), std::max(i, j))) return false;
     if constexpr (detail::is_box<Object>) {
       return true;
     } else {
@@ -151,14 +163,15 @@ void for_each_pair(std::span<const Object> objects, const PairOptions& options, 
 }
 
 /// The same, for pairs of an object `i` of the first set and an object `j` of the second.
-template <class A, class B, class Found>
+template <class A, class B, class Found, class Wanted = EveryPair>
 void for_each_pair(std::span<const A> a, std::span<const B> b, const PairOptions& options,
-                   Found&& found) {
+                   Found&& found, const Wanted& wanted = {}) {
   static_assert(std::is_same_v<detail::BoxOf<A>, detail::BoxOf<B>>,
                 "the boxes of the two sets have different types");
   const auto boxes_a = detail::boxes_of(a);
   const auto boxes_b = detail::boxes_of(b);
-  const auto test = [&]([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t j) {
+  const auto test = [&](std::uint32_t i, std::uint32_t j) {
+    if (!wanted(i, j)) return false;
     if constexpr (detail::is_box<A> && detail::is_box<B>) {
       return true;
     } else {
@@ -172,34 +185,48 @@ void for_each_pair(std::span<const A> a, std::span<const B> b, const PairOptions
 }
 
 /// The pairs as a list.
-template <class Object>
+template <class Object, class Wanted = EveryPair>
 [[nodiscard]] std::vector<Pair> pairs(std::span<const Object> objects,
-                                      const PairOptions& options = {}) {
+                                      const PairOptions& options = {}, const Wanted& wanted = {}) {
   std::vector<Pair> out;
-  for_each_pair(objects, options, [&](std::uint32_t i, std::uint32_t j) { out.push_back({i, j}); });
+  for_each_pair(
+      objects, options,
+      [&](std::uint32_t i, std::uint32_t j) {
+        out.push_back({i, j});
+      },
+      wanted);
   return out;
 }
-template <class A, class B>
+template <class A, class B, class Wanted = EveryPair>
 [[nodiscard]] std::vector<Pair> pairs(std::span<const A> a, std::span<const B> b,
-                                      const PairOptions& options = {}) {
+                                      const PairOptions& options = {}, const Wanted& wanted = {}) {
   std::vector<Pair> out;
-  for_each_pair(a, b, options, [&](std::uint32_t i, std::uint32_t j) { out.push_back({i, j}); });
+  for_each_pair(
+      a, b, options,
+      [&](std::uint32_t i, std::uint32_t j) {
+        out.push_back({i, j});
+      },
+      wanted);
   return out;
 }
 
 /// The number of pairs.
-template <class Object>
+template <class Object, class Wanted = EveryPair>
 [[nodiscard]] std::uint64_t count_pairs(std::span<const Object> objects,
-                                        const PairOptions& options = {}) {
+                                        const PairOptions& options = {},
+                                        const Wanted& wanted = {}) {
   std::uint64_t n = 0;
-  for_each_pair(objects, options, [&](std::uint32_t, std::uint32_t) { ++n; });
+  for_each_pair(
+      objects, options, [&](std::uint32_t, std::uint32_t) { ++n; }, wanted);
   return n;
 }
-template <class A, class B>
+template <class A, class B, class Wanted = EveryPair>
 [[nodiscard]] std::uint64_t count_pairs(std::span<const A> a, std::span<const B> b,
-                                        const PairOptions& options = {}) {
+                                        const PairOptions& options = {},
+                                        const Wanted& wanted = {}) {
   std::uint64_t n = 0;
-  for_each_pair(a, b, options, [&](std::uint32_t, std::uint32_t) { ++n; });
+  for_each_pair(
+      a, b, options, [&](std::uint32_t, std::uint32_t) { ++n; }, wanted);
   return n;
 }
 

@@ -2,18 +2,19 @@
 // same scenes in the same run: CSV on standard output. Methods run in turns, and a row is printed
 // after the sets of pairs were compared. Times are processor times of the process, which stays on
 // one core: on an idle machine they equal wall-clock times, and other programs disturb them only
-// through the caches.
+// through the caches. Some cases are run on chares, too; times on two PEs are elapsed times.
 //
 //     bench_collide;  bench_collide planes wave_self_embree;  bench_collide --growth;  bench_collide --list
 //
-// The limit of our rows is the fastest other library of this run.
+// The limit of our rows is the fastest other library of this run, if one has a row; of a collider on one PE the serial
+// face, and on two PEs half the time of one.
 #include "apps/bench/collide/box_rows.hpp"
 #include "apps/bench/collide/case.hpp"
+#include "apps/bench/collide/chare_rows.hpp"
 #include "apps/bench/collide/conversion_rows.hpp"
 #include "apps/bench/collide/one_core.hpp"
 #include "apps/command_line.hpp"
 #include "apps/plot/write_file.hpp"
-#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>
@@ -31,6 +32,10 @@ void list() {
   fmt::print("conversion: a coordinate to the index of its voxel\n");
   for (const auto& [row, meaning] : conversion_row_texts())
     fmt::print("  {:<26} {}\n", row, meaning);
+  fmt::print("colliders on chares: rows of the cases above\n");
+  for (const Case& of : box_cases())
+    for (const auto& [row, meaning] : chare_row_texts(of.name))
+      fmt::print("  {:<26} {}\n", row, meaning);
   fmt::print("growth: our ns per object from 2^10 to 2^22 objects; with --growth or by its name\n");
 }
 
@@ -41,8 +46,9 @@ void require_known(const std::string& name) {
   for (const Case& of : box_cases()) {
     if (name == of.name) return;
     if (!name.starts_with(of.name + "_")) continue;
-    for (const auto& [row, meaning] : box_row_texts(of.name))
-      if (name == row) return;
+    for (const auto& rows : {box_row_texts(of.name), chare_row_texts(of.name)})
+      for (const auto& [row, meaning] : rows)
+        if (name == row) return;
   }
   tess::fail(tess::ErrorCode::bad_argument, "no case and no row is named ", name, " (see --list)");
 }
@@ -72,14 +78,17 @@ int main(int argc, char** argv) {
     if (options.quick && !repeat.is_given()) options.repeat = 1;
     for (const std::string& name : options.names) bench::require_known(name);
     plot::require_writable("--json", json);
-    TESS_CHECK(bench::stay_on_one_core(), "the system does not bind this process to a core");
 
     bench::Output output(options, "one core");
     output.header();
-    bench::box_rows(output);
-    if (output.wants_any("conversion")) bench::conversion_rows(output);
-    if (options.growth || (!options.names.empty() && output.wants("growth", "growth")))
-      bench::growth_rows(output);
+    {
+      const bench::OneCore one_core;
+      bench::box_rows(output);
+      if (output.wants_any("conversion")) bench::conversion_rows(output);
+      if (options.growth || (!options.names.empty() && output.wants("growth", "growth")))
+        bench::growth_rows(output);
+    }
+    bench::chare_rows(output);
     if (!json.empty()) plot::write_file(json, output.json());
     return 0;
   });

@@ -38,15 +38,20 @@ double Samples::spread() const {
 }
 
 Row make_row(std::string_view name, const Samples& samples, std::string_view unit, double limit) {
-  return {std::string(name), samples.median(), std::string(unit),
-          samples.least(),   samples.spread(), limit};
+  return {.name = std::string(name),
+          .median = samples.median(),
+          .unit = std::string(unit),
+          .least = samples.least(),
+          .spread = samples.spread(),
+          .limit = limit};
 }
 
 std::string csv_header() {
   return "name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit\n";
 }
 
-std::string csv_line(const Row& row, const Origin& origin) {
+std::string csv_line(const Row& row, const Origin& common) {
+  const Origin origin = row.origin.value_or(common);
   const std::string limit =
       row.limit == 0 ? "," : fmt::format("{},{:.3f}", shown(row.limit), row.median / row.limit);
   return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n", row.name, shown(row.median),
@@ -54,9 +59,10 @@ std::string csv_line(const Row& row, const Origin& origin) {
                      origin.machine, build_preset, build_commit);
 }
 
-std::string json_text(const std::vector<Row>& rows, const Origin& origin) {
+std::string json_text(const std::vector<Row>& rows, const Origin& common) {
   std::string out = "{\"rows\": [";
   for (const Row& row : rows) {
+    const Origin origin = row.origin.value_or(common);
     const std::string limit = row.limit == 0 ? "\"limit\": null, \"ratio\": null"
                                              : fmt::format("\"limit\": {:.6g}, \"ratio\": {:.4f}",
                                                            row.limit, row.median / row.limit);

@@ -4,6 +4,7 @@
 
 #include "runtime/machine/machine.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,13 @@ class Samples {
   std::vector<double> values_;
 };
 
+/// Where rows were measured.
+struct Origin {
+  std::string machine;
+  std::int32_t pes = 1;
+  std::int32_t ranks = 1;
+};
+
 /// One figure as it is shown.
 struct Row {
   std::string name;
@@ -43,16 +51,10 @@ struct Row {
   double least = 0;
   double spread = 0;
   double limit = 0;  ///< what the machine allows at best, in the same unit; 0: not known
+  std::optional<Origin> origin{};  ///< if it is not that of the other rows
 };
 [[nodiscard]] Row make_row(std::string_view name, const Samples& samples, std::string_view unit,
                            double limit = 0);
-
-/// Where rows were measured.
-struct Origin {
-  std::string machine;
-  std::int32_t pes = 1;
-  std::int32_t ranks = 1;
-};
 
 /// "name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit", a line.
 [[nodiscard]] std::string csv_header();

@@ -12,6 +12,7 @@
 
 #include "collide/box.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #ifdef __AVX512VL__
@@ -48,6 +49,8 @@ class Grid {
         lanes_last_[lane] = last_[k];
       }
     }
+    const std::array<std::uint32_t, D> strides = this->strides();
+    std::copy(strides.begin(), strides.end(), lanes_strides_);
   }
 
   [[nodiscard]] std::int32_t cell(Real x, std::size_t k) const noexcept {
@@ -55,37 +58,57 @@ class Grid {
     const Real above = at > 0 ? at : Real{0};  // also for NaN, if x - lo_ overflows
     return static_cast<std::int32_t>(above < last_[k] ? above : last_[k]);
   }
-  /// The cells of both corners, with vectors where the processor has them; the same operations.
+  /// The cells of both corners.
   [[nodiscard]] CellRange<D> cells(const Box<Real, D>& box) const noexcept {
     CellRange<D> out;
-#ifdef __AVX512VL__
-    constexpr __mmask8 used = (1U << 2 * D) - 1;
-    const Real* const x = box.lo.data();
-    alignas(32) std::int32_t all[8];
-    if constexpr (sizeof(Real) == sizeof(float)) {
-      __m256 at = _mm256_sub_ps(_mm256_maskz_loadu_ps(used, x), _mm256_load_ps(lanes_lo_));
-      at = _mm256_mul_ps(at, _mm256_load_ps(lanes_per_length_));
-      // max and min give their second operand if one is NaN.
-      at = _mm256_min_ps(_mm256_max_ps(at, _mm256_setzero_ps()), _mm256_load_ps(lanes_last_));
-      _mm256_store_si256(reinterpret_cast<__m256i*>(all), _mm256_cvttps_epi32(at));
-    } else {
-      __m512d at = _mm512_sub_pd(_mm512_maskz_loadu_pd(used, x), _mm512_load_pd(lanes_lo_));
-      at = _mm512_mul_pd(at, _mm512_load_pd(lanes_per_length_));
-      at = _mm512_maskz_max_pd(0xFF, at, _mm512_setzero_pd());
-      at = _mm512_maskz_min_pd(0xFF, at, _mm512_load_pd(lanes_last_));
-      _mm256_store_si256(reinterpret_cast<__m256i*>(all), _mm512_maskz_cvttpd_epi32(0xFF, at));
-    }
-    for (std::size_t k = 0; k < D; ++k) {
-      out.lo[k] = all[k];
-      out.hi[k] = all[k + D];
-    }
-#else
     for (std::size_t k = 0; k < D; ++k) {
       out.lo[k] = cell(box.lo[k], k);
       out.hi[k] = cell(box.hi[k], k);
     }
-#endif
     return out;
+  }
+  /// The cells of a box in a word: the number of the lower corner's cell, then a bit per axis that
+  /// has two of them; `large` if an axis has more. Grids have fewer than 2^28 cells.
+  static constexpr std::uint32_t large = ~std::uint32_t{0};
+  [[nodiscard]] std::uint32_t code(const Box<Real, D>& box) const noexcept {
+#ifdef __AVX512VL__
+    // With vectors; the same operations.
+    constexpr __mmask8 corner = (1U << D) - 1, both = (1U << 2 * D) - 1;
+    const Real* const x = box.lo.data();
+    __m256i lo;
+    if constexpr (sizeof(Real) == sizeof(float)) {
+      __m256 at = _mm256_sub_ps(_mm256_maskz_loadu_ps(both, x), _mm256_load_ps(lanes_lo_));
+      at = _mm256_mul_ps(at, _mm256_load_ps(lanes_per_length_));
+      // max and min give their second operand if one is NaN.
+      at = _mm256_min_ps(_mm256_max_ps(at, _mm256_setzero_ps()), _mm256_load_ps(lanes_last_));
+      lo = _mm256_cvttps_epi32(at);
+    } else {
+      __m512d at = _mm512_sub_pd(_mm512_maskz_loadu_pd(both, x), _mm512_load_pd(lanes_lo_));
+      at = _mm512_mul_pd(at, _mm512_load_pd(lanes_per_length_));
+      at = _mm512_maskz_max_pd(0xFF, at, _mm512_setzero_pd());
+      at = _mm512_maskz_min_pd(0xFF, at, _mm512_load_pd(lanes_last_));
+      lo = _mm512_maskz_cvttpd_epi32(0xFF, at);
+    }
+    const __m256i hi = _mm256_maskz_alignr_epi32(0xFF, lo, lo, D);
+    const __m256i more = _mm256_sub_epi32(hi, lo), one = _mm256_set1_epi32(1);
+    const __m256i strides = _mm256_load_si256(reinterpret_cast<const __m256i*>(lanes_strides_));
+    const __m256i parts = _mm256_mullo_epi32(lo, strides);  // beyond the corner they are 0
+    __m128i sum = _mm256_castsi256_si128(parts);
+    sum = _mm_add_epi32(sum, _mm_srli_si128(sum, 8));
+    sum = _mm_add_epi32(sum, _mm_srli_si128(sum, 4));
+    if (_mm256_mask_cmpgt_epi32_mask(corner, more, one) != 0) return large;
+    return static_cast<std::uint32_t>(_mm_cvtsi128_si32(sum)) << D |
+           _mm256_mask_cmpeq_epi32_mask(corner, more, one);
+#else
+    const CellRange<D> range = cells(box);
+    std::uint32_t two = 0, longest = 0;
+    for (std::size_t k = 0; k < D; ++k) {
+      const auto more = static_cast<std::uint32_t>(range.hi[k] - range.lo[k]);
+      two |= (more & 1U) << k;
+      longest |= more;
+    }
+    return longest < 2 ? number(range.lo) << D | two : large;
+#endif
   }
 
   [[nodiscard]] const CellAt<D>& n_cells() const noexcept { return n_cells_; }
@@ -135,6 +158,7 @@ class Grid {
   std::array<Real, D> lo_, per_length_, last_;
   // The same for both corners of a box.
   alignas(64) Real lanes_lo_[8]{}, lanes_per_length_[8]{}, lanes_last_[8]{};
+  alignas(32) std::uint32_t lanes_strides_[8]{};
   CellAt<D> n_cells_;
 };
 

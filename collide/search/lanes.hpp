@@ -11,6 +11,7 @@
 #include "collide/search/scratch.hpp"
 #include "collide/search/wide.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace tess::collide::search {
@@ -26,14 +27,13 @@ class Lanes {
     if (n + width > stride_) {
       stride_ = (2 * n + 4 * width) / (2 * width) * (2 * width);
       coordinates_.resize(2 * D * stride_);
-      numbers_.resize(3 * stride_);
+      numbers_.resize(2 * stride_);
       for (std::size_t k = 0; k < D; ++k) {
         lo_[k] = coordinates_.data() + k * stride_;
         hi_[k] = lo_[0] + (k + D) * stride_;
       }
-      below_ = numbers_.data();
-      model_ = below_ + stride_;
-      object_ = model_ + stride_;
+      entry_ = numbers_.data();
+      model_ = entry_ + stride_;
     }
     n_ = n;
     for (std::size_t i = n; i < n + width; ++i) {
@@ -41,44 +41,56 @@ class Lanes {
         lo_[k][i] = std::numeric_limits<Real>::infinity();
         hi_[k][i] = -std::numeric_limits<Real>::infinity();
       }
-      below_[i] = model_[i] = object_[i] = 0;
+      entry_[i] = model_[i] = 0;
     }
   }
-  void set(std::size_t i, const Box<Real, D>& box, Entry entry, std::uint32_t model) noexcept {
+  void set(std::size_t i, const Box<Real, D>& box, Entry entry) noexcept {
     for (std::size_t k = 0; k < D; ++k) {
       lo_[k][i] = box.lo[k];
       hi_[k][i] = box.hi[k];
     }
-    below_[i] = below_of(entry);
-    object_[i] = object_of(entry);
-    model_[i] = model;
+    entry_[i] = static_cast<std::uint32_t>(entry);
   }
+  void set_model(std::size_t i, std::uint32_t model) noexcept { model_[i] = model; }
   [[nodiscard]] std::size_t size() const noexcept { return n_; }
 
   /// The box at a position, to be compared with others.
   struct Probe {
-    Box<Real, D> box;
-    std::uint32_t below, model, object;
+    typename Vector::Register lo[D], hi[D];
+    Entry entry;
+    std::uint32_t model;
   };
-  [[nodiscard]] Probe probe(std::size_t i) const noexcept {
-    Probe out{{}, below_[i], model_[i], object_[i]};
+  [[nodiscard, gnu::always_inline]] Probe probe(std::size_t i) const noexcept {
+    Probe out{{}, {}, static_cast<Entry>(entry_[i]), model_[i]};
     for (std::size_t k = 0; k < D; ++k) {
-      out.box.lo[k] = lo_[k][i];
-      out.box.hi[k] = hi_[k][i];
+      out.lo[k] = Vector::all(lo_[k][i]);
+      out.hi[k] = Vector::all(hi_[k][i]);
     }
     return out;
   }
-
-  /// Compares a box with the boxes from `begin` to `end`, and adds the pairs to `out`, without a
-  /// branch per pair. A pair counts if the boxes overlap, if the voxel is responsible for it, and
-  /// with `by_model` if the models differ.
-  template <Touching touching, bool by_model>
-  void compare(const Probe& probe, std::size_t begin, std::size_t end, PairBuffer& out) const {
-    typename Vector::Register lo[D], hi[D];
+  [[nodiscard, gnu::always_inline]] static Probe probe(const Box<Real, D>& box, Entry entry,
+                                                       std::uint32_t model) noexcept {
+    Probe out{{}, {}, entry, model};
     for (std::size_t k = 0; k < D; ++k) {
-      lo[k] = Vector::all(probe.box.lo[k]);
-      hi[k] = Vector::all(probe.box.hi[k]);
+      out.lo[k] = Vector::all(box.lo[k]);
+      out.hi[k] = Vector::all(box.hi[k]);
     }
+    return out;
+  }
+  [[nodiscard]] const Real* upper_ends(std::size_t axis) const noexcept { return hi_[axis]; }
+  /// The greatest upper end of the `width` boxes from a position on.
+  [[nodiscard]] Real highest(std::size_t begin, std::size_t axis) const noexcept {
+    Real out = hi_[axis][begin];
+    for (std::size_t i = 1; i < width; ++i) out = std::max(out, hi_[axis][begin + i]);
+    return out;
+  }
+
+  /// Compares a box with the boxes from `begin` to at least `end` (the last vector is completed), and
+  /// adds the pairs to `out`, without a branch per pair. A pair counts if the boxes overlap, if the
+  /// voxel is responsible for it, and with `by_model` if the models differ.
+  template <Touching touching, bool by_model>
+  [[gnu::always_inline]] void compare(const Probe& probe, std::size_t begin, std::size_t end,
+                                      PairBuffer& out) const {
     std::uint32_t* next = out.next();
     std::size_t j = begin / width * width;
     Mask among = all_lanes << (begin - j);
@@ -87,26 +99,25 @@ class Lanes {
       for (std::size_t k = 0; k < D; ++k) {
         const auto other_lo = Vector::load(lo_[k] + j), other_hi = Vector::load(hi_[k] + j);
         if constexpr (touching == Touching::counts) {
-          hits = Vector::template less<true>(hits, Vector::greater(lo[k], other_lo),
-                                             Vector::lesser(hi[k], other_hi));
+          hits = Vector::template less<true>(hits, Vector::greater(probe.lo[k], other_lo),
+                                             Vector::lesser(probe.hi[k], other_hi));
         } else {
-          hits = Vector::template less<false>(hits, other_lo, hi[k]);
-          hits = Vector::template less<false>(hits, lo[k], other_hi);
+          hits = Vector::template less<false>(hits, other_lo, probe.hi[k]);
+          hits = Vector::template less<false>(hits, probe.lo[k], other_hi);
         }
       }
-      hits = Vector::disjoint(hits, below_ + j, probe.below);
+      hits = Vector::disjoint(hits, entry_ + j, below_of(probe.entry));
       if constexpr (by_model) hits = Vector::differ(hits, model_ + j, probe.model);
-      if (end - j < width) hits &= (Mask{1} << (end - j)) - 1;
-      next = Vector::compress(next, hits, object_ + j);
+      next = Vector::compress(next, hits, entry_ + j);
     }
-    out.template added<Vector>(probe.object, next);
+    out.template added<Vector>(object_of(probe.entry), next);
   }
 
  private:
   static constexpr Mask all_lanes = static_cast<Mask>((std::uint64_t{1} << width) - 1);
 
   std::array<Real*, D> lo_{}, hi_{};
-  std::uint32_t *below_ = nullptr, *model_ = nullptr, *object_ = nullptr;
+  std::uint32_t *entry_ = nullptr, *model_ = nullptr;
   Scratch<Real> coordinates_;
   Scratch<std::uint32_t> numbers_;
   std::size_t n_ = 0, stride_ = 0;

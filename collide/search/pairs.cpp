@@ -7,6 +7,8 @@
 #include "collide/search/voxel_search.hpp"
 #include "runtime/core/error.hpp"
 
+#include <optional>
+
 namespace tess::collide::detail {
 namespace {
 
@@ -25,22 +27,14 @@ class Plan {
   /// Pairs of `a` with `b`, or within `a` if `b` has no boxes.
   void run(Boxes boxes_a, const Entries& a, Boxes boxes_b, const Entries& b, bool within,
            const TheBox& bounds) {
-    const Part whole{{boxes_a.data(), boxes_b.data(), a, b, within}, bounds, false};
+    Part whole{{boxes_a.data(), boxes_b.data(), a, b, within}, bounds};
     if (options_.voxel_size > 0) {
       check_memory(boxes_a, boxes_b, bounds);
       solve(whole);
     } else if (!solved_on_one_level(whole)) {
-      OctaveCounts<Real> sizes{};
-      count_octaves(boxes_a, sizes);
-      count_octaves(boxes_b, sizes);
-      const SizeClasses<Real> classes(base_of_classes(sizes, whole));
-      const ByClass by_class_a(boxes_a, a, classes), by_class_b(boxes_b, b, classes);
-      const std::vector<Part> parts =
-          parts_by_class(whole.problem, by_class_a, by_class_b, classes.size());
-      double cost = 0;
-      for (const Part& part : parts) cost += cost_of(part);
-      if (parts.size() > 1 && cost < cost_of(whole)) {
-        for (const Part& part : parts) solve(part);
+      Levels levels(*this, whole, 1);
+      if (levels.parts.size() > 1 && levels.cost < cost_of(whole)) {
+        for (Part& part : levels.parts) solve(part);
       } else {
         solve(whole);
       }
@@ -54,67 +48,103 @@ class Plan {
   /// A problem that is solved with one grid.
   struct Part {
     Problem<Real, D> problem;
-    TheBox bounds;  // of the objects of a
-    bool swapped;   // a is the second set
+    TheBox bounds;                         // of the objects of a
+    bool swapped = false;                  // a is the second set
+    std::optional<Choice<D>> choice = {};  // once it is known
+  };
+  /// A problem divided by the sizes of its objects (size_classes.hpp): each class with itself and
+  /// with all smaller ones.
+  struct Levels {
+    /// As if there were `scale` objects for each.
+    Levels(Plan& plan, const Part& whole, double scale)
+        : Levels(plan, whole, scale,
+                 SizeClasses<Real>(
+                     base_of_classes(whole, plan.search_.chooser()
+                                                .choose(whole.problem, whole.bounds, true, scale)
+                                                .n_cells))) {}
+    Levels(Plan& plan, const Part& whole, double scale, const SizeClasses<Real>& classes)
+        : by_class_a(whole.problem.boxes_a, whole.problem.a, classes),
+          by_class_b(whole.problem.boxes_b, whole.problem.b, classes) {
+      const Problem<Real, D>& all = whole.problem;
+      const auto add = [&](const Problem<Real, D>& problem, bool swapped) {
+        if (problem.n_comparisons() == 0) return;
+        parts.push_back({problem, bounds_of(problem.boxes_a, problem.a), swapped});
+        cost += plan.cost_of(parts.back(), scale);
+      };
+      for (std::size_t c = 0; c < classes.size(); ++c) {
+        const auto a = by_class_a.of(c), b = by_class_b.of(c);
+        if (all.within_a) {
+          add({all.boxes_a, all.boxes_a, a, by_class_a.below(c), true}, false);
+        } else {
+          add({all.boxes_a, all.boxes_b, a, by_class_b.below(c + 1), false}, false);
+          add({all.boxes_b, all.boxes_a, b, by_class_a.below(c), false}, true);
+        }
+      }
+    }
+
+    ByClass by_class_a, by_class_b;
+    std::vector<Part> parts;
+    double cost = 0;
   };
 
-  double cost_of(const Part& part) {
-    return search_.chooser().choose(part.problem, part.bounds).cost;
+  double cost_of(Part& part, double scale = 1) {
+    if (!part.choice)
+      part.choice = search_.chooser().choose(part.problem, part.bounds, false, scale);
+    return part.choice->cost;
   }
   void solve(const Part& part) {
-    static_cast<void>(search_.solve(part.problem, part.bounds, part.swapped));
+    static_cast<void>(search_.solve(part.problem, part.bounds, part.swapped, part.choice));
     ++search_.statistics().n_levels;
   }
   /// False, without a pair, if large objects touch so many voxels that levels may cost less.
-  bool solved_on_one_level(const Part& whole) {
+  bool solved_on_one_level(Part& whole) {
     const std::size_t n = whole.problem.a.size() + whole.problem.b.size();
     constexpr std::size_t many = 4096;
     if (n > many &&
-        cost_of(whole) > 2 * search_.chooser().choose(whole.problem, whole.bounds, true).cost)
+        cost_of(whole) > 2 * search_.chooser().choose(whole.problem, whole.bounds, true).cost &&
+        levels_seem_cheaper(whole))
       return false;
     search_.set_most_entries(4 * n + many);
-    const bool solved = search_.solve(whole.problem, whole.bounds, false);
+    const bool solved = search_.solve(whole.problem, whole.bounds, false, whole.choice);
     search_.set_most_entries(~std::size_t{0});
     if (solved) ++search_.statistics().n_levels;
     return solved;
   }
+  /// From a sample of the objects.
+  bool levels_seem_cheaper(Part& whole) {
+    const double n = static_cast<double>(whole.problem.a.size() + whole.problem.b.size());
+    const double scale = std::max(1.0, n / 4096);
+    Entries a, b;
+    const auto take = [&](std::span<const Entry> from, Entries& sample) {
+      const auto n_sample =
+          static_cast<std::size_t>(std::ceil(static_cast<double>(from.size()) / scale));
+      for (std::size_t i = 0; i < n_sample; ++i)
+        sample.push_back(from[scattered(i, n_sample, from.size())]);
+    };
+    take(whole.problem.a, a);
+    take(whole.problem.b, b);
+    Part sample = whole;
+    sample.problem.a = a;
+    sample.problem.b = b;
+    return Levels(*this, sample, scale).cost < cost_of(whole);
+  }
   /// The largest size of class 0: the voxel that would be chosen if all objects were points, or the
   /// smallest object.
-  Real base_of_classes(const OctaveCounts<Real>& sizes, const Part& whole) {
-    std::uint32_t least = 0;
-    while (sizes[least] == 0) ++least;
-    const CellAt<D> cells = search_.chooser().choose(whole.problem, whole.bounds, true).n_cells;
-    Real voxel = std::numeric_limits<Real>::infinity();
+  static Real base_of_classes(const Part& whole, const CellAt<D>& cells_of_points) {
+    Real smallest = std::numeric_limits<Real>::infinity(), voxel = smallest;
+    for (const Entry entry : whole.problem.a)
+      smallest = std::min(smallest, longest_extent(whole.problem.boxes_a[object_of(entry)]));
+    for (const Entry entry : whole.problem.b)
+      smallest = std::min(smallest, longest_extent(whole.problem.boxes_b[object_of(entry)]));
     for (std::size_t k = 0; k < D; ++k)
-      if (cells[k] > 1)
-        voxel = std::min(voxel,
-                         (whole.bounds.hi[k] - whole.bounds.lo[k]) / static_cast<Real>(cells[k]));
-    return std::max(std::isfinite(voxel) ? voxel : Real{0}, size_of_octave<Real>(least));
-  }
-  /// The levels of size_classes.hpp: each class with itself and with all smaller ones.
-  static std::vector<Part> parts_by_class(const Problem<Real, D>& whole, const ByClass& a,
-                                          const ByClass& b, std::size_t n_classes) {
-    std::vector<Part> parts;
-    const auto add = [&](const Problem<Real, D>& problem, bool swapped) {
-      if (problem.n_comparisons() == 0) return;
-      parts.push_back({problem, bounds_of(problem.boxes_a, problem.a), swapped});
-    };
-    for (std::size_t c = 0; c < n_classes; ++c) {
-      if (whole.within_a) {
-        add({whole.boxes_a, whole.boxes_a, a.of(c), a.below(c), true}, false);
-      } else {
-        add({whole.boxes_a, whole.boxes_b, a.of(c), b.below(c + 1), false}, false);
-        add({whole.boxes_b, whole.boxes_a, b.of(c), a.below(c), false}, true);
-      }
-    }
-    return parts;
+      if (cells_of_points[k] > 1)
+        voxel = std::min(voxel, (whole.bounds.hi[k] - whole.bounds.lo[k]) /
+                                    static_cast<Real>(cells_of_points[k]));
+    return std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
   }
 
   void check_memory(Boxes boxes_a, Boxes boxes_b, const TheBox& bounds) const {
     const double size = options_.voxel_size;
-    if (!std::isfinite(size))
-      fail(ErrorCode::bad_value, "pairs: voxel size ", size,
-           " is not finite; give 0 to have it chosen");
     double n_entries = 0;
     std::array<double, D> most;  // voxels per axis
     for (std::size_t k = 0; k < D; ++k)
@@ -139,7 +169,12 @@ class Plan {
   VoxelSearch<Real, D> search_;
 };
 
-template <class Real, std::size_t D>
+void check_voxel_size(const PairOptions& options) {
+  if (!std::isfinite(options.voxel_size) || options.voxel_size < 0)
+    fail(ErrorCode::bad_value, "pairs: voxel size ", options.voxel_size,
+         " is no size; give a positive and finite one, or 0 to have it chosen");
+}
+
 void check_count(std::size_t n) {
   if (n > most_objects)
     fail(ErrorCode::bad_value, "pairs: ", n, " objects; the limit of a search is ", most_objects,
@@ -171,7 +206,8 @@ Models count(std::span<const std::uint32_t> models) {
 
 template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& options, PairSink sink) {
-  check_count<Real, D>(boxes.size());
+  check_voxel_size(options);
+  check_count(boxes.size());
   const bool by_model = !options.models.empty() && !options.within_model;
   if (by_model && options.models.size() != boxes.size())
     fail(ErrorCode::bad_value, "pairs: ", options.models.size(), " models for ", boxes.size(),
@@ -199,8 +235,9 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
 template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
                   const PairOptions& options, PairSink sink) {
-  check_count<Real, D>(a.size());
-  check_count<Real, D>(b.size());
+  check_voxel_size(options);
+  check_count(a.size());
+  check_count(b.size());
   Plan<Real, D> plan(options, false, sink);
   const Box<Real, D> bounds_a = checked_bounds(a, " of the first set");
   const Box<Real, D> bounds_b = checked_bounds(b, " of the second set");

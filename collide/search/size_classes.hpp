@@ -34,7 +34,7 @@ class SizeClasses {
 class ByClass {
  public:
   template <class Real, std::size_t D>
-  ByClass(std::span<const Box<Real, D>> boxes, std::span<const Entry> entries,
+  ByClass(const Box<Real, D>* boxes, std::span<const Entry> entries,
           const SizeClasses<Real>& classes);
 
   [[nodiscard]] std::span<const Entry> of(std::size_t c) const noexcept {
@@ -51,7 +51,7 @@ class ByClass {
 };
 
 template <class Real, std::size_t D>
-ByClass::ByClass(std::span<const Box<Real, D>> boxes, std::span<const Entry> entries,
+ByClass::ByClass(const Box<Real, D>* boxes, std::span<const Entry> entries,
                  const SizeClasses<Real>& classes)
     : entries_(entries.size()), begin_(classes.size() + 1) {
   const auto class_of = [&](Entry entry) {

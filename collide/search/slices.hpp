@@ -8,6 +8,7 @@
 #include "collide/box.hpp"
 #include "collide/search/entry.hpp"
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,14 +21,11 @@ class Slices {
   void sort(const Box<Real, D>* boxes, std::span<const Entry> entries) {
     choose(boxes, entries);
     begin_.assign(n_ + 2, 0);
-    reach_.assign(n_, 0);
     slice_.resize(entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const Box<Real, D>& box = boxes[object_of(entries[i])];
-      const std::uint32_t slice = of(box.lo[axis_]);
+      const std::uint32_t slice = of(boxes[object_of(entries[i])].lo[axis_]);
       slice_[i] = slice;
       ++begin_[slice + 2];
-      reach_[slice] = std::max(reach_[slice], of(box.hi[axis_]));
     }
     // begin_[s + 1] is where the next box of slice s goes, and finally where it ends.
     for (std::size_t s = 2; s < n_ + 2; ++s) begin_[s] += begin_[s - 1];
@@ -35,11 +33,16 @@ class Slices {
   /// The position of box i, called once per box in the order of the entries.
   [[nodiscard]] std::uint32_t place(std::size_t i) noexcept { return begin_[slice_[i] + 1]++; }
 
-  /// Call it after the boxes are placed, before first().
-  void find_firsts() {
+  /// Call it after the boxes are placed, before first(), with their upper ends by position.
+  void find_firsts(const Real* upper_ends) {
     first_.resize(n_);
+    reach_.resize(n_);
     std::uint32_t at = 0;
     for (std::uint32_t s = 0; s < n_; ++s) {
+      Real highest = -std::numeric_limits<Real>::infinity();
+      for (std::uint32_t i = begin_[s]; i < begin_[s + 1]; ++i)
+        highest = std::max(highest, upper_ends[i]);
+      reach_[s] = of(highest);
       while (at < s && (begin_[at] == begin_[at + 1] || reach_[at] < s)) ++at;
       first_[s] = begin_[at];
     }

@@ -33,32 +33,32 @@ template <class Real, std::size_t D>
 Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set) {
   Box<Real, D> bounds = no_box<Real, D>();
   if (boxes.empty()) return bounds;
-  // Eight numbers at a time: a box, and of the next one what fits.
+  // Eight numbers at a time: a box, and of the next one what fits. Four streams keep the memory twice
+  // as busy as one.
   using Eight [[gnu::vector_size(8 * sizeof(Real))]] = Real;
   using Bits = decltype(Eight{} < Eight{});
   Eight least = Eight{} + std::numeric_limits<Real>::infinity(), greatest = -least;
   Bits bad{};
-  const Real* at = boxes[0].lo.data();
-  const Real* const last = boxes.back().lo.data();
-  for (; at + 8 <= last + 2 * D; at += 2 * D) {
-    Eight x;
-    std::memcpy(&x, at, sizeof x);
-    least = x < least ? x : least;
-    greatest = x > greatest ? x : greatest;
-    bad |= ~(x <= upper_ends<D>(x, std::make_index_sequence<8>()));  // also for NaN
-  }
+  constexpr std::size_t n_streams = 4;
+  const std::size_t length = (boxes.size() - 1) / n_streams;
+  for (std::size_t i = 0; i < length; ++i)
+    for (std::size_t s = 0; s < n_streams; ++s) {
+      Eight x;
+      std::memcpy(&x, boxes[i + s * length].lo.data(), sizeof x);
+      least = x < least ? x : least;
+      greatest = x > greatest ? x : greatest;
+      bad |= ~(x <= upper_ends<D>(x, std::make_index_sequence<8>()));  // also for NaN
+    }
   bool good = true;
   for (std::size_t k = 0; k < D; ++k) {
     bounds.lo[k] = least[k];
     bounds.hi[k] = greatest[k + D];
     good = good && bad[k] == 0;
   }
-  for (; at <= last; at += 2 * D)
-    for (std::size_t k = 0; k < D; ++k) {
-      good = good && at[k] <= at[k + D];
-      bounds.lo[k] = std::min(bounds.lo[k], at[k]);
-      bounds.hi[k] = std::max(bounds.hi[k], at[k + D]);
-    }
+  for (const Box<Real, D>& box : boxes.subspan(n_streams * length)) {
+    for (std::size_t k = 0; k < D; ++k) good = good && box.lo[k] <= box.hi[k];
+    bounds = merged(bounds, box);
+  }
   if (!good || !is_valid(bounds)) refuse(boxes, set);
   return bounds;
 }

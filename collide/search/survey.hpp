@@ -1,5 +1,5 @@
-// What is known of the boxes before a search: their bounds, whether all are valid, and how many have
-// which size.
+// What is known of the boxes before a search: their bounds, whether all are valid, and how large each
+// is.
 #pragma once
 
 #include "collide/box.hpp"
@@ -40,13 +40,5 @@ template <class Real, std::size_t D>
 /// valid; `set` is "" or " of the second set" and the like.
 template <class Real, std::size_t D>
 [[nodiscard]] Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set);
-
-/// How many boxes have their longest extent in each octave.
-template <class Real>
-using OctaveCounts = std::array<std::uint32_t, n_octaves<Real>>;
-template <class Real, std::size_t D>
-void count_octaves(std::span<const Box<Real, D>> boxes, OctaveCounts<Real>& counts) {
-  for (const Box<Real, D>& box : boxes) ++counts[octave_of(longest_extent(box))];
-}
 
 }  // namespace tess::collide::search

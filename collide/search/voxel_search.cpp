@@ -31,22 +31,23 @@ void prefetch(const Box<Real, D>& box) {
 }  // namespace
 
 template <class Real, std::size_t D>
-bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, bool swapped) {
+bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, bool swapped,
+                                 const std::optional<Choice<D>>& choice) {
   swapped_ = swapped;
-  if (!solve(problem, region, std::size_t{0})) return false;
+  if (!solve(problem, region, std::size_t{0}, choice)) return false;
   pairs_.flush();
   statistics_.n_candidates = pairs_.n_total();
   statistics_.bytes = 0;
   for (const Level& level : levels_)
-    statistics_.bytes += level.cells.capacity() * sizeof(Cell) + level.cell_of.bytes() +
-                         level.entry_of.bytes() + level.sorted.bytes() +
-                         level.voxels.capacity() * sizeof(Voxel) + level.models.capacity() * 8;
+    statistics_.bytes += level.cells.capacity() * sizeof(Cell) + level.codes.bytes() +
+                         level.sorted.bytes() + level.voxels.capacity() * sizeof(Voxel) +
+                         level.models.capacity() * 8;
   return true;
 }
 
 template <class Real, std::size_t D>
-bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region,
-                                 std::size_t depth) {
+bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region, std::size_t depth,
+                                 const std::optional<Choice<D>>& choice) {
   if (problem.n_comparisons() == 0) return true;
   const std::size_t n = problem.a.size() + problem.b.size();
   const bool is_chosen = options_.voxel_size > 0;
@@ -56,7 +57,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
   }
   const TheBox bounds =
       depth == 0 ? region : clipped(bounds_of(problem.boxes_a, problem.a), region);
-  const Grid<Real, D> grid(bounds, choose(problem, bounds, depth));
+  const Grid<Real, D> grid(bounds, choice ? choice->n_cells : choose(problem, bounds, depth));
   if (grid.size() == 1) {
     compare(problem);
     return true;
@@ -86,7 +87,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
                           {level.sorted.data() + voxel.begin + voxel.n_a, voxel.n_b},
                           problem.within_a};
     if (again && voxel.n_a + voxel.n_b > costs::few_objects) {
-      static_cast<void>(solve(part, clipped(grid.region(voxel.cell), bounds), depth + 1));
+      static_cast<void>(solve(part, clipped(grid.region(voxel.cell), bounds), depth + 1, {}));
     } else {
       compare(part);
     }
@@ -99,7 +100,7 @@ CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& 
                                        std::size_t depth) {
   const double n = static_cast<double>(problem.a.size() + problem.b.size());
   if (options_.voxel_size > 0)
-    return cells_of_size(bounds, options_.voxel_size, std::max(4 * n, 4096.0));
+    return cells_of_size(bounds, options_.voxel_size, std::clamp(4 * n, 4096.0, 0x1p26));
   if (options_.method == PairMethod::bisection && depth > 0) {
     CellAt<D> n_cells;
     n_cells.fill(1);
@@ -112,82 +113,74 @@ CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& 
   return chooser_.choose(problem, bounds).n_cells;
 }
 
-/// Writes the cells that the boxes touch, in the order of the boxes; false if they are too many.
+/// Calls take(cells, entries, n) for the cells that the boxes touch, some hundred at a time, in the
+/// order of the boxes. False if take() is. The first time, the codes of all boxes are found.
 template <class Real, std::size_t D>
-template <bool is_b>
-bool VoxelSearch<Real, D>::spread(const TheBox* boxes, std::span<const Entry> entries,
-                                  const TheBox& bounds, const Grid<Real, D>& grid, Level& level) {
-  constexpr std::size_t ahead = 24;
+template <bool is_b, bool again, class Take>
+bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& bounds,
+                                  const Grid<Real, D>& grid, Level& level, const Take& take) {
+  constexpr std::size_t ahead = 24, most = 512;
+  const TheBox* const boxes = is_b ? problem.boxes_b : problem.boxes_a;
+  const std::span<const Entry> entries = is_b ? problem.b : problem.a;
   const Corners<D> corners(grid.strides());
-  const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
-  std::size_t n = level.n_entries, room = 0;
-  const auto make_room = [&](std::size_t more) {
-    level.cell_of.reserve(n + more);
-    level.entry_of.reserve(n + more);
-    room = std::min(level.cell_of.capacity(), level.entry_of.capacity());
-  };
+  std::array<std::uint32_t, most + Corners<D>::room> cell_of, entry_of;
+  std::uint32_t* const codes = level.codes.data() + (is_b ? problem.a.size() : 0);
+  constexpr std::uint32_t outside = Grid<Real, D>::large - 1;
+  std::size_t n = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (i + ahead < entries.size()) prefetch(boxes[object_of(entries[i + ahead])]);
     const Entry entry = entries[i];
     const TheBox& box = boxes[object_of(entry)];
-    if (is_b && !overlap(box, bounds, Touching::counts)) continue;
-    const CellRange<D> cells = grid.cells(box);
-    std::uint32_t two = 0, longest = 0;
-    for (std::size_t k = 0; k < D; ++k) {
-      const auto more = static_cast<std::uint32_t>(cells.hi[k] - cells.lo[k]);
-      two |= (more & 1U) << k;
-      longest |= more;
+    if constexpr (!again) {
+      if (i + ahead < entries.size()) prefetch(boxes[object_of(entries[i + ahead])]);
+      codes[i] = is_b && !overlap(box, bounds, Touching::counts) ? outside : grid.code(box);
     }
-    if (n + Corners<D>::room > room) make_room(Corners<D>::room);
-    if (longest < 2) [[likely]] {
-      n += corners.write(grid.number(cells.lo), static_cast<std::uint32_t>(entry), two,
-                         level.cell_of.data() + n, level.entry_of.data() + n);
+    const std::uint32_t code = codes[i];
+    if (is_b && code == outside) continue;
+    if (n >= most && !take(cell_of.data(), entry_of.data(), std::exchange(n, 0))) return false;
+    if (code != Grid<Real, D>::large) [[likely]] {
+      n += corners.write(code >> D, static_cast<std::uint32_t>(entry), code & ((1U << D) - 1),
+                         cell_of.data() + n, entry_of.data() + n);
       continue;
     }
-    std::size_t n_cells = 1;
-    for (std::size_t k = 0; k < D; ++k)
-      n_cells *= static_cast<std::size_t>(cells.hi[k] - cells.lo[k] + 1);
-    if (n + n_cells > most) return false;
-    make_room(n_cells);
-    CellAt<D> at = cells.lo;
-    for (std::size_t c = 0; c < n_cells; ++c) {
+    const CellRange<D> cells = grid.cells(box);
+    for (CellAt<D> at = cells.lo;;) {
       std::uint32_t below = below_of(entry);
       for (std::size_t k = 0; k < D; ++k) below |= (at[k] != cells.lo[k] ? 1U : 0U) << k;
-      level.cell_of.data()[n] = grid.number(at);
-      level.entry_of.data()[n++] = static_cast<std::uint32_t>(make_entry(object_of(entry), below));
-      for (std::size_t k = D; k-- > 0;) {
-        if (at[k] < cells.hi[k]) {
-          ++at[k];
-          break;
-        }
-        at[k] = cells.lo[k];
-      }
+      cell_of[n] = grid.number(at);
+      entry_of[n++] = static_cast<std::uint32_t>(make_entry(object_of(entry), below));
+      if (n >= most && !take(cell_of.data(), entry_of.data(), std::exchange(n, 0))) return false;
+      std::size_t k = D;
+      while (k > 0 && at[k - 1] == cells.hi[k - 1]) --k, at[k] = cells.lo[k];
+      if (k == 0) break;
+      ++at[k - 1];
     }
   }
-  level.n_entries = n;
-  return true;
+  return take(cell_of.data(), entry_of.data(), n);
 }
 
+/// A counting sort.
 template <class Real, std::size_t D>
 bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const TheBox& bounds,
                                             const Grid<Real, D>& grid, Level& level) {
-  level.n_entries = 0;
-  const std::size_t n_objects = problem.a.size() + problem.b.size();
-  level.cell_of.reserve(n_objects + n_objects / 2);
-  level.entry_of.reserve(n_objects + n_objects / 2);
-  if (!spread<false>(problem.boxes_a, problem.a, bounds, grid, level)) return false;
-  const std::size_t n_of_a = level.n_entries;
-  if (!spread<true>(problem.boxes_b, problem.b, bounds, grid, level)) return false;
-  const std::size_t n = level.n_entries;
-  statistics_.n_entries += n;
-
   const std::size_t n_cells = grid.size();
+  const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
   level.cells.assign(n_cells, Cell{});
+  level.codes.resize(problem.a.size() + problem.b.size());
+  level.models.assign(by_model_ ? n_cells : 0, 0);
   Cell* const cells = level.cells.data();
-  const std::uint32_t* const cell_of = level.cell_of.data();
-  for (std::size_t i = 0; i < n_of_a; ++i) ++cells[cell_of[i]].a;
-  for (std::size_t i = n_of_a; i < n; ++i) ++cells[cell_of[i]].b;
-  if (by_model_) note_models(level, n_cells);
+  std::size_t n_entries = 0;
+  const auto count = [&](std::uint32_t Cell::*set) {
+    return [&, set](const std::uint32_t* cell_of, const std::uint32_t* entry_of, std::size_t n) {
+      n_entries += n;
+      for (std::size_t i = 0; i < n; ++i) ++(cells[cell_of[i]].*set);
+      if (by_model_) note_models(level, cell_of, entry_of, n);
+      return n_entries <= most;
+    };
+  };
+  if (!spread<false, false>(problem, bounds, grid, level, count(&Cell::a)) ||
+      !spread<true, false>(problem, bounds, grid, level, count(&Cell::b)))
+    return false;
+  statistics_.n_entries += n_entries;
 
   // Where the objects of each voxel stand: first those of a, then those of b.
   level.voxels.clear();
@@ -209,22 +202,26 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
   statistics_.n_voxels += level.voxels.size();
   level.sorted.resize(end);
   Entry* const sorted = level.sorted.data();
-  const std::uint32_t* const entry_of = level.entry_of.data();
-  for (std::size_t i = 0; i < n; ++i) {
-    Cell& cell = cells[cell_of[i]];
-    std::uint32_t& place = i < n_of_a ? cell.a : cell.b;
-    if (place != no_place) sorted[place++] = static_cast<Entry>(entry_of[i]);
-  }
-  return true;
+  const auto place = [&](std::uint32_t Cell::*set) {
+    return [=](const std::uint32_t* cell_of, const std::uint32_t* entry_of, std::size_t n) {
+      for (std::size_t i = 0; i < n; ++i) {
+        std::uint32_t& to = cells[cell_of[i]].*set;
+        if (to != no_place) sorted[to++] = static_cast<Entry>(entry_of[i]);
+      }
+      return true;
+    };
+  };
+  return spread<false, true>(problem, bounds, grid, level, place(&Cell::a)) &&
+         spread<true, true>(problem, bounds, grid, level, place(&Cell::b));
 }
 
 template <class Real, std::size_t D>
-void VoxelSearch<Real, D>::note_models(Level& level, std::size_t n_cells) {
-  level.models.assign(n_cells, 0);
-  for (std::size_t i = 0; i < level.n_entries; ++i) {
-    const std::uint32_t object = object_of(static_cast<Entry>(level.entry_of.data()[i]));
+void VoxelSearch<Real, D>::note_models(Level& level, const std::uint32_t* cell_of,
+                                       const std::uint32_t* entry_of, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t object = object_of(static_cast<Entry>(entry_of[i]));
     const std::uint64_t code = std::uint64_t{options_.models[object]} + 1;
-    std::uint64_t& state = level.models[level.cell_of.data()[i]];
+    std::uint64_t& state = level.models[cell_of[i]];
     state = state == 0 || state == code ? code : several_models;
   }
 }
@@ -260,10 +257,10 @@ void VoxelSearch<Real, D>::fill(const TheBox* boxes, std::span<const Entry> entr
   lanes_.resize(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::uint32_t object = object_of(entries[i]);
-    lanes_.set(in_slices ? slices_.place(i) : i, boxes[object], entries[i],
-               by_model ? options_.models[object] : 0);
+    const std::size_t at = in_slices ? slices_.place(i) : i;
+    lanes_.set(at, boxes[object], entries[i]);
+    if constexpr (by_model) lanes_.set_model(at, options_.models[object]);
   }
-  if (in_slices) slices_.find_firsts();
 }
 
 /// All pairs of a, or a sweep.
@@ -273,11 +270,13 @@ void VoxelSearch<Real, D>::within(const TheProblem& problem) {
   const std::size_t n = problem.a.size();
   const bool in_slices = sweeps(n);
   fill<by_model>(problem.boxes_a, problem.a, in_slices);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto probe = lanes_.probe(i);
-    pairs_.prepare(n, swapped_);
-    lanes_.template compare<touching, by_model>(probe, i + 1,
-                                                in_slices ? slices_.end(probe.box.hi) : n, pairs_);
+  // A vector of neighbours has a common end: a loop of equal length for each predicts well.
+  for (std::size_t begin = 0; begin < n; begin += lanes_.width) {
+    const std::size_t end = in_slices ? slices_.end(lanes_.highest(begin, slices_.axis())) : n;
+    for (std::size_t i = begin; i < std::min(begin + lanes_.width, n); ++i) {
+      pairs_.prepare(n, swapped_);
+      lanes_.template compare<touching, by_model>(lanes_.probe(i), i + 1, end, pairs_);
+    }
   }
 }
 
@@ -291,12 +290,13 @@ void VoxelSearch<Real, D>::across(const TheProblem& problem) {
   const TheBox* const boxes = b_is_smaller ? problem.boxes_b : problem.boxes_a;
   const bool in_slices = few.size() > 1 && sweeps(many.size());
   fill<by_model>(b_is_smaller ? problem.boxes_a : problem.boxes_b, many, in_slices);
+  if (in_slices) slices_.find_firsts(lanes_.upper_ends(slices_.axis()));
   for (const Entry entry : few) {
     const std::uint32_t object = object_of(entry);
     const TheBox& box = boxes[object];
     pairs_.prepare(many.size(), swapped_ != b_is_smaller);
     lanes_.template compare<touching, by_model>(
-        {box, below_of(entry), by_model ? options_.models[object] : 0, object},
+        lanes_.probe(box, entry, by_model ? options_.models[object] : 0),
         in_slices ? slices_.first(box.lo) : 0, in_slices ? slices_.end(box.hi) : many.size(),
         pairs_);
   }

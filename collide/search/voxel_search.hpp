@@ -15,6 +15,7 @@
 #include "collide/search/slices.hpp"
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 namespace tess::collide::search {
@@ -34,10 +35,10 @@ class VoxelSearch {
     statistics_ = {};
   }
   /// Finds the pairs of a problem. `region` contains the objects of `a`. With `swapped` the sink is
-  /// told that `a` is the second set. Returns false, without a pair, if more than the greatest
+  /// told that `a` is the second set. `choice` is that of chooser(), if it is known. Returns false, without a pair, if more than the greatest
   /// number of entries were needed.
   [[nodiscard]] bool solve(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                           bool swapped);
+                           bool swapped, const std::optional<Choice<D>>& choice = {});
   void set_most_entries(std::size_t n) noexcept { most_entries_ = n; }
 
   [[nodiscard]] PairStatistics& statistics() noexcept { return statistics_; }
@@ -58,22 +59,22 @@ class VoxelSearch {
   struct Level {
     std::vector<Cell> cells;
     std::vector<std::uint64_t> models;  // per cell: 0, model + 1, or several
-    Scratch<std::uint32_t> cell_of;     // per object and voxel, in the order of the objects
-    Scratch<std::uint32_t> entry_of;
-    std::size_t n_entries = 0;  // of these two
-    Scratch<Entry> sorted;      // the same by voxel
+    Scratch<std::uint32_t> codes;       // per object: Grid::code()
+    Scratch<Entry> sorted;              // by voxel
     std::vector<Voxel> voxels;
   };
 
-  bool solve(const TheProblem& problem, const TheBox& region, std::size_t depth);
+  bool solve(const TheProblem& problem, const TheBox& region, std::size_t depth,
+             const std::optional<Choice<D>>& choice);
   [[nodiscard]] CellAt<D> choose(const TheProblem& problem, const TheBox& region,
                                  std::size_t depth);
   bool sort_into_voxels(const TheProblem& problem, const TheBox& bounds, const Grid<Real, D>& grid,
                         Level& level);
-  template <bool is_b>
-  bool spread(const TheBox* boxes, std::span<const Entry> entries, const TheBox& bounds,
-              const Grid<Real, D>& grid, Level& level);
-  void note_models(Level& level, std::size_t n_cells);
+  template <bool is_b, bool again, class Take>
+  static bool spread(const TheProblem& problem, const TheBox& bounds, const Grid<Real, D>& grid,
+                     Level& level, const Take& take);
+  void note_models(Level& level, const std::uint32_t* cell_of, const std::uint32_t* entry_of,
+                   std::size_t n);
   void compare(const TheProblem& problem);
   template <Touching touching, bool by_model>
   void compare_as(const TheProblem& problem);

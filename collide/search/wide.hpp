@@ -68,10 +68,11 @@ struct PlainWide {
   static void fill(std::uint32_t* out, std::uint32_t value) noexcept {
     for (std::size_t i = 0; i < W; ++i) out[i] = value;
   }
-  /// Writes the numbers of the lanes in `which` to `out`, which has room for W. Returns their end.
+  /// Writes the objects of the entries of the lanes in `which` to `out`, which has room for W.
+  /// Returns their end.
   static std::uint32_t* compress(std::uint32_t* out, Mask which,
                                  const std::uint32_t* from) noexcept {
-    for (; which != 0; which &= which - 1) *out++ = from[std::countr_zero(which)];
+    for (; which != 0; which &= which - 1) *out++ = from[std::countr_zero(which)] >> 4;
     return out;
   }
 };
@@ -107,8 +108,9 @@ struct Wide512Float {
   }
   static std::uint32_t* compress(std::uint32_t* out, Mask which,
                                  const std::uint32_t* from) noexcept {
-    _mm512_storeu_si512(
-        out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(which), _mm512_loadu_si512(from)));
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(
+                                 static_cast<__mmask16>(which),
+                                 _mm512_maskz_srli_epi32(0xFFFF, _mm512_loadu_si512(from), 4)));
     return out + std::popcount(which);
   }
 };
@@ -144,7 +146,8 @@ struct Wide512Double {
   static std::uint32_t* compress(std::uint32_t* out, Mask which,
                                  const std::uint32_t* from) noexcept {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(which), ints(from)));
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(which),
+                                                    _mm256_srli_epi32(ints(from), 4)));
     return out + std::popcount(which);
   }
 

@@ -219,6 +219,29 @@ TEST_CASE("a user's type is searched by its box and its exact test", "[pairs]") 
   REQUIRE(statistics.n_candidates > statistics.n_pairs);
 }
 
+TEST_CASE("a filter is asked once per pair of boxes that overlap, in the order of the pair",
+          "[pairs]") {
+  const auto scene = random_scene<double, 3>(8, {.n = 1000});
+  const std::span<const Aabb> boxes(scene.boxes), a = boxes.first(300), b = boxes.subspan(300);
+  std::uint64_t n_asked = 0;
+  const auto wanted = [&](std::uint32_t i, std::uint32_t j) {
+    ++n_asked;
+    return (i + 2 * j) % 3 == 0;
+  };
+  const auto filtered = [&](std::vector<Pair> all) {
+    std::erase_if(all, [](const Pair& pair) { return (pair.first + 2 * pair.second) % 3 != 0; });
+    return sorted(all);
+  };
+  PairStatistics statistics;
+  const auto all = pairs(boxes), across = pairs(a, b);
+  REQUIRE((sorted(pairs(boxes, {.statistics = &statistics}, wanted)) == filtered(all)));
+  REQUIRE(n_asked == all.size());
+  REQUIRE(statistics.n_candidates == all.size());
+  REQUIRE(statistics.n_pairs == filtered(all).size());
+  REQUIRE((sorted(pairs(a, b, {}, wanted)) == filtered(across)));
+  REQUIRE(count_pairs(a, b, {}, wanted) == filtered(across).size());
+}
+
 TEST_CASE("one model alone is left out; identical boxes make n^2 pairs in bounded memory",
           "[pairs]") {
   const std::vector<Aabb> boxes(3000, Aabb{{1, 2, 3}, {4, 5, 6}});
@@ -262,6 +285,8 @@ TEST_CASE("a bad box, voxel size or list of models is an error that names it", "
   }
   const Aabb good{{0, 0, 0}, {1, 1, 1}};
   REQUIRE_THAT(refused(good, 0, {.voxel_size = 1e-6}), Catch::Contains("voxel size 1e-06 puts"));
+  for (const double bad : {-0.5, nan, inf, -inf})
+    REQUIRE_THAT(refused(good, 0, {.voxel_size = bad}), Catch::Contains("is no size"));
   const std::vector<std::uint32_t> models(49);
   REQUIRE_THAT(refused(good, 0, {.models = models}), Catch::Contains("49 models for 50 objects"));
   REQUIRE(n_found == 0);

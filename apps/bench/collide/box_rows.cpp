@@ -68,20 +68,13 @@ bool is_listed(const MethodKind& kind, const Case& of) {
   return kind.whose != Whose::brute_force || of.name == "few";
 }
 
-std::vector<Run> runs_of(const Problem& problem) {
-  std::vector<Run> runs;
-  for (const MethodKind& kind : method_kinds())
-    if (auto method = kind.make(problem)) runs.push_back({&kind, std::move(method)});
-  return runs;
-}
-
 class BoxCase {
  public:
   BoxCase(Output& output, const Case& of, const std::map<std::string, std::size_t>& peaks)
       : output_(output), case_(of), peaks_(peaks), problem_(make_problem(of)) {}
 
   void measure() {
-    std::vector<Run> runs = runs_of(problem_);
+    std::vector<Run> runs = wanted_runs();
     for (Run& run : runs) check(run);
     for (int i = 0; i < output_.options().repeat; ++i)
       for (std::size_t k = 0; k < runs.size(); ++k)
@@ -107,6 +100,18 @@ class BoxCase {
  private:
   [[nodiscard]] std::string name(std::string_view row) const {
     return fmt::format("{}_{}", case_.name, row);
+  }
+
+  /// Ours, and others that have a row.
+  [[nodiscard]] std::vector<Run> wanted_runs() const {
+    std::vector<Run> runs;
+    for (const MethodKind& kind : method_kinds()) {
+      const std::string row = name(kind.name);
+      if (kind.whose != Whose::ours && !output_.wants(case_.name, row) && !output_.wants_any(row))
+        continue;
+      if (auto method = kind.make(problem_)) runs.push_back({&kind, std::move(method)});
+    }
+    return runs;
   }
 
   /// The first run, which also warms up: compares its pairs with those of the first method, ours on
@@ -208,6 +213,14 @@ std::map<std::string, std::size_t> peaks_of(const Output& output, const Case& of
   return peaks;
 }
 
+/// True if a row of the case is wanted that is none of chare_rows.hpp.
+bool wants_box_rows(const Output& output, const std::string& of_case) {
+  if (output.wants(of_case, of_case)) return true;
+  for (const auto& [row, meaning] : box_row_texts(of_case))
+    if (output.wants(of_case, row)) return true;
+  return false;
+}
+
 Case sized(const Output& output, const Case& of) {
   return output.options().quick ? smaller(of, 64) : of;
 }
@@ -251,9 +264,9 @@ std::vector<std::pair<std::string, std::string>> box_row_texts(const std::string
 void box_rows(Output& output) {
   std::map<std::string, std::size_t> peaks;
   for (const Case& of : box_cases())
-    if (output.wants_any(of.name)) peaks.merge(peaks_of(output, sized(output, of)));
+    if (wants_box_rows(output, of.name)) peaks.merge(peaks_of(output, sized(output, of)));
   for (const Case& each : box_cases()) {
-    if (!output.wants_any(each.name)) continue;
+    if (!wants_box_rows(output, each.name)) continue;
     const Case of = sized(output, each);
     BoxCase(output, of, peaks).measure();
   }

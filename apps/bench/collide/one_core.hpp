@@ -2,6 +2,8 @@
 // gains nothing from them, and other programs on the machine are not counted.
 #pragma once
 
+#include "runtime/core/check.hpp"
+
 #include <ctime>
 #include <sched.h>
 
@@ -21,13 +23,23 @@ class ProcessWatch {
   double begin_;
 };
 
-/// Binds this thread, and those that it starts from now on, to the core that it runs on. False if
-/// the system refuses.
-inline bool stay_on_one_core() {
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(static_cast<unsigned>(sched_getcpu()), &one);
-  return sched_setaffinity(0, sizeof one, &one) == 0;
-}
+/// Binds this thread, and those that it starts, to the core that it runs on, as long as it lives.
+class OneCore {
+ public:
+  OneCore() {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<unsigned>(sched_getcpu()), &one);
+    TESS_CHECK(sched_getaffinity(0, sizeof before_, &before_) == 0 &&
+                   sched_setaffinity(0, sizeof one, &one) == 0,
+               "the system does not bind this process to a core");
+  }
+  OneCore(const OneCore&) = delete;
+  OneCore& operator=(const OneCore&) = delete;
+  ~OneCore() { sched_setaffinity(0, sizeof before_, &before_); }
+
+ private:
+  cpu_set_t before_{};
+};
 
 }  // namespace bench

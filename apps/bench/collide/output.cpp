@@ -25,9 +25,10 @@ void Output::header() const {
 }
 
 void Output::row(std::string_view of, const std::string& name, const Samples& samples,
-                 std::string_view unit, double limit) {
+                 std::string_view unit, double limit, std::optional<Origin> origin) {
   if (!wants(of, name)) return;
   rows_.push_back(make_row(name, samples, unit, limit));
+  rows_.back().origin = std::move(origin);
   fmt::print("{}", csv_line(rows_.back(), origin_));
   std::fflush(stdout);
 }

@@ -29,7 +29,7 @@ class Output {
 
   void header() const;
   void row(std::string_view of, const std::string& name, const Samples& samples,
-           std::string_view unit, double limit = 0);
+           std::string_view unit, double limit = 0, std::optional<Origin> origin = {});
   /// A row of one value.
   void row(std::string_view of, const std::string& name, double value, std::string_view unit);
   [[nodiscard]] std::string json() const { return json_text(rows_, origin_); }

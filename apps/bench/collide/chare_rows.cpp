@@ -1,0 +1,172 @@
+#include "apps/bench/collide/chare_rows.hpp"
+
+#include "apps/bench/collide/method.hpp"
+#include "apps/bench/collide/one_core.hpp"
+#include "collide/collider.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <thread>
+
+namespace bench {
+namespace {
+
+using namespace tess::collide;
+
+/// What each client, of which there is one per PE, has of the scene.
+enum class Division { strips, models };
+
+/// A row: a case on a number of PEs.
+struct Setting {
+  const char* of_case;
+  const char* row;
+  const char* meaning;
+  std::int32_t n_pes;
+  Division division = Division::strips;
+};
+constexpr Setting settings[] = {
+    {"one_model", "chares_1", "a collider on one PE", 1},
+    {"one_model", "chares_2", "elapsed time on two PEs", 2},
+    {"wave_self", "chares_1", "a collider on one PE", 1},
+    {"wave_self", "chares_2", "elapsed time on two PEs", 2},
+    {"planes", "chares_1", "a collider on one PE", 1},
+    {"planes", "chares_2", "elapsed time on two PEs; each client has a strip of both planes", 2},
+    {"planes", "chares_2_models", "the same; each client has one plane", 2, Division::models},
+};
+
+bool is_possible(const Setting& setting) {
+  return static_cast<unsigned>(setting.n_pes) <= std::thread::hardware_concurrency();
+}
+std::string name_of(const Setting& setting) {
+  return fmt::format("{}_{}", setting.of_case, setting.row);
+}
+
+/// Submits boxes of the scene, and counts their pairs.
+class Client : public tess::Chare<Client, tess::Index1> {
+ public:
+  void take(ModelId model, std::vector<Aabb> boxes) {
+    mine_.push_back({owner_of(index()), model, std::move(boxes)});
+  }
+  void submit(const Collider& collider) {
+    for (Objects& objects : mine_) collider.submit(std::move(objects));
+    mine_.clear();
+  }
+  void receive(const Hits& hits) {
+    if (hits.owner <= hits.other) n_pairs_ += hits.pairs.size();  // otherwise the other one counts
+  }
+  void give_count(tess::Callback<std::uint64_t> target) {
+    contribute(tess::sum, std::exchange(n_pairs_, 0), std::move(target));
+  }
+
+ private:
+  std::vector<Objects> mine_;
+  std::uint64_t n_pairs_ = 0;
+};
+
+/// Sends each client its boxes.
+void hand_out(const Problem& problem, const Setting& setting,
+              const tess::ArrayProxy<Client>& clients) {
+  const auto n_clients = static_cast<std::size_t>(setting.n_pes);
+  const auto send = [&](std::size_t client, std::uint32_t model, std::size_t begin,
+                        std::size_t end) {
+    const auto at = [&](std::size_t i) {
+      return problem.boxes.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    clients[{static_cast<std::int32_t>(client)}].send<&Client::take>(
+        ModelId{model}, std::vector<Aabb>(at(begin), at(end)));
+  };
+  const std::size_t n = problem.boxes.size(), second = problem.second_set();
+  for (std::uint32_t model = 0; model < (second == 0 ? 1U : 2U); ++model) {
+    const std::size_t begin = model == 0 ? 0 : second, end = model == 0 && second != 0 ? second : n;
+    if (setting.division == Division::models) {
+      send(model % n_clients, model, begin, end);
+      continue;
+    }
+    for (std::size_t c = 0; c < n_clients; ++c)
+      send(c, model, begin + (end - begin) * c / n_clients,
+           begin + (end - begin) * (c + 1) / n_clients);
+  }
+}
+
+/// The second collision of a collider: the first one warms up.
+tess::Task collide(const Problem& problem, const Setting& setting, double& nanoseconds,
+                   std::uint64_t& n_pairs) {
+  const WithinModel within =
+      problem.pairing == Pairing::all ? WithinModel::test : WithinModel::skip;
+  Collider collider;
+  tess::ArrayProxy<Client> clients;
+  co_await tess::epoch([&] {
+    collider = make_collider({.rules = {problem.touching, within}});
+    clients = tess::create<Client>(tess::range(setting.n_pes));
+  });
+  const tess::collide::Report report{report_to<&Client::receive>(clients), {}};
+  for (int i = 0; i < 2; ++i) {
+    co_await tess::epoch([&] { hand_out(problem, setting, clients); });
+    const ProcessWatch processor;
+    const Stopwatch elapsed;
+    co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
+    co_await run_collision(collider, report);
+    nanoseconds = setting.n_pes == 1 ? processor.nanoseconds() : elapsed.nanoseconds();
+    tess::Future<std::uint64_t> total;
+    clients.broadcast<&Client::give_count>(total.callback());
+    n_pairs = co_await total;
+  }
+}
+
+void measure(Output& output, const Case& of, const std::vector<Setting>& chosen) {
+  const Problem problem = make_problem(of);
+  const auto n = static_cast<double>(problem.boxes.size());
+  const auto serial = our_doubles(problem);
+  const std::uint64_t expected = serial->count();
+  Samples on_serial;
+  std::vector<Samples> samples(chosen.size());
+  for (int i = 0; i < output.options().repeat; ++i) {
+    const ProcessWatch watch;
+    static_cast<void>(serial->count());
+    on_serial.add(watch.nanoseconds() / n);
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      double nanoseconds = 0;
+      std::uint64_t n_pairs = 0;
+      tess::Setup setup{tess::make_threads_machine(chosen[k].n_pes), {}};
+      const int code = tess::run(
+          setup, [&]() -> tess::Task { return collide(problem, chosen[k], nanoseconds, n_pairs); });
+      if (code != 0 || n_pairs != expected)
+        tess::fail(tess::ErrorCode::bad_value, "benchmark: wrong result: ", name_of(chosen[k]),
+                   ": exit code ", code, ", ", n_pairs, " pairs instead of ", expected);
+      samples[k].add(nanoseconds / n);
+    }
+  }
+  double on_one_pe = 0;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (chosen[k].n_pes == 1) on_one_pe = samples[k].median();
+    output.row(of.name, name_of(chosen[k]), samples[k], "ns",
+               chosen[k].n_pes == 1 ? on_serial.median() : on_one_pe / chosen[k].n_pes,
+               Origin{chosen[k].n_pes == 1 ? "threads: 1 PE" : "threads: 2 PEs", chosen[k].n_pes});
+  }
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> chare_row_texts(const std::string& of_case) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Setting& setting : settings)
+    if (of_case == setting.of_case && is_possible(setting))
+      rows.emplace_back(name_of(setting), fmt::format("ns per object: {}", setting.meaning));
+  return rows;
+}
+
+void chare_rows(Output& output) {
+  for (const Case& each : box_cases()) {
+    std::vector<Setting> chosen;
+    for (const Setting& setting : settings)
+      if (each.name == setting.of_case && is_possible(setting) &&
+          output.wants(each.name, name_of(setting)))
+        chosen.push_back(setting);
+    if (!chosen.empty()) measure(output, output.options().quick ? smaller(each, 64) : each, chosen);
+  }
+}
+
+}  // namespace bench
