@@ -87,6 +87,9 @@ tess::Task collide_rounds() {
       if (size == 0) throw;
       problem->is_refused = true;
     }
+    // Ends all voxels; the next collision makes them again.
+    if (look.seed % 3 == 1)
+      for (int call = 0; call < 2; ++call) co_await tess::epoch([&] { retire(collider); });
   }
   co_await tess::epoch([&] {
     collider.destroy();
