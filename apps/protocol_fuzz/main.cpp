@@ -8,9 +8,9 @@
 // A failure prints the command that repeats it; the last line is "N passed, N failed".
 #include "apps/command_line.hpp"
 #include "apps/protocol_fuzz/scenarios.hpp"
+#include "apps/seeds.hpp"
 #include "runtime/machine/mpi.hpp"
 
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <fmt/core.h>
@@ -41,27 +41,6 @@ void on_crash(int signal) {
   print_repeat();
   std::signal(signal, SIG_DFL);
   std::raise(signal);
-}
-
-struct Seeds {
-  std::uint64_t first = 0, last = 0;
-};
-
-Seeds parse_seeds(const std::string& given) {
-  const std::size_t colon = given.find(':');
-  const auto number = [&](std::size_t from, std::size_t to) {
-    std::uint64_t value = 0;
-    const char* end = given.data() + to;
-    const auto [at, error] = std::from_chars(given.data() + from, end, value);
-    if (error != std::errc() || at != end)
-      tess::fail(tess::ErrorCode::bad_argument, "--seeds: ", given, " is not of the form FROM:TO");
-    return value;
-  };
-  if (colon == std::string::npos) return {number(0, given.size()), number(0, given.size())};
-  const Seeds seeds{number(0, colon), number(colon + 1, given.size())};
-  if (seeds.last < seeds.first)
-    tess::fail(tess::ErrorCode::bad_argument, "--seeds: ", given, " ends before it begins");
-  return seeds;
 }
 
 /// The job that mpirun started; none otherwise.
@@ -103,7 +82,7 @@ int fuzz(int argc, char** argv) {
   for (const Scenario& one : tess::fuzz::scenarios())
     scenarios += fmt::format("  {:<18} {}\n", one.name, one.claim);
   if (!line.parse(argc, argv, scenarios)) return 0;
-  const Seeds seeds = parse_seeds(given_seeds);
+  const apps::Seeds seeds = apps::parse_seeds(given_seeds);
   if (name != "all" && !tess::fuzz::scenario(name).in_jobs && tess::under_mpirun())
     tess::fail(tess::ErrorCode::bad_argument, "--scenario: ", name,
                " needs the memory of one process; without mpirun it runs on a simulated machine");

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
+#include <span>
 #include <utility>
 
 namespace tess::collide {
@@ -20,6 +22,13 @@ void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
   contribute(in_order(JoinSummaries{}), std::move(summary), target);
 }
 
+template <auto F>
+auto Manager::sender(std::uint64_t step) {
+  return [this, step](std::int32_t to, auto&& bundle) {
+    group()[PeId{to}].template send<F>(step, std::move(bundle));
+  };
+}
+
 void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) {
   Prepared prepared = std::move(prepared_.extract(step).mapped());
   last_ = {};
@@ -34,54 +43,75 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   r.sort = VoxelSort(plan, r.delivery->objects, prepared.bounds);
   const std::vector<VoxelRecord>& all = r.sort.records();
   const auto n = static_cast<std::size_t>(n_pes());
-  std::vector<std::vector<VoxelRecord>> records(n);
-  r.records_of.resize(n);
-  for (std::uint32_t i = 0; i < all.size(); ++i) {
-    const std::size_t home = home_of(all[i].voxel, n);
-    records[home].push_back(all[i]);
-    r.records_of[home].push_back(i);
+  std::vector<std::uint32_t> home(all.size());
+  r.ends.assign(n, 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    home[i] = static_cast<std::uint32_t>(home_of(all[i].voxel, n));
+    ++r.ends[home[i]];
   }
-  r.answers.resize(all.size());
-  const WithinModel within_model = plan.rules.within_model;
-  for (std::size_t home = 0; home < n; ++home)
-    group()[PeId{static_cast<std::int32_t>(home)}].send<&Manager::receive_records>(
-        step, pe(), within_model, std::move(records[home]));
+  std::exclusive_scan(r.ends.begin(), r.ends.end(), r.ends.begin(), 0U);
+  r.by_home.resize(all.size());
+  std::vector<VoxelRecord> sorted(all.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    const std::uint32_t place = r.ends[home[i]]++;
+    r.by_home[place] = i;
+    sorted[place] = all[i];
+  }
+  for (std::size_t to = 0, begin = 0; to < n; begin = r.ends[to++])
+    if (begin != r.ends[to])
+      r.records.put(static_cast<std::int32_t>(to),
+                    std::span(sorted).subspan(begin, r.ends[to] - begin));
+  r.records.start(sender<&Manager::receive_records>(step));
+  answer_if_asked(step, r);
 }
 
 Manager::Round& Manager::round(std::uint64_t step) {
-  Round& r = rounds_[step];
-  r.received.resize(static_cast<std::size_t>(n_pes()));
-  return r;
+  return rounds_.try_emplace(step, pe().value, n_pes()).first->second;
 }
 
-void Manager::receive_records(std::uint64_t step, PeId from, WithinModel within_model,
-                              std::vector<VoxelRecord> records) {
+void Manager::receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bundle) {
   Round& r = round(step);
-  r.received[static_cast<std::size_t>(from.value)] = std::move(records);
-  if (++r.n_received != n_pes()) return;
-  std::vector<std::vector<VoxelAnswer>> answers = answers_to(r.received, within_model);
-  for (std::int32_t to = 0; to < n_pes(); ++to)
-    group()[PeId{to}].send<&Manager::receive_answers>(
-        step, pe(), std::move(answers[static_cast<std::size_t>(to)]));
+  r.records.receive(bundle, sender<&Manager::receive_records>(step));
+  answer_if_asked(step, r);
 }
 
-void Manager::receive_answers(std::uint64_t step, PeId home, std::vector<VoxelAnswer> answers) {
+void Manager::answer_if_asked(std::uint64_t step, Round& r) {
+  if (!r.records.is_done()) return;
+  const auto asked = r.records.received();
+  std::vector<std::span<const VoxelRecord>> records;
+  for (const auto& parcel : asked) records.push_back(parcel.items);
+  const auto answers = answers_to(records, r.delivery->plan.rules.within_model);
+  for (std::size_t i = 0; i < asked.size(); ++i) r.answers.put(asked[i].from, answers[i]);
+  r.answers.start(sender<&Manager::receive_answers>(step));
+  deliver_if_answered(step, r);
+}
+
+void Manager::receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bundle) {
   Round& r = round(step);
-  const std::vector<std::uint32_t>& asked = r.records_of[static_cast<std::size_t>(home.value)];
-  for (std::size_t i = 0; i < asked.size(); ++i) r.answers[asked[i]] = answers[i];
-  if (++r.n_answers != n_pes()) return;
-  deliver(r);
-  rounds_.erase(step);  // its own home has answered, too
+  r.answers.receive(bundle, sender<&Manager::receive_answers>(step));
+  deliver_if_answered(step, r);
 }
 
-void Manager::deliver(Round& r) {
-  r.delivery->sorted = r.sort.sorted(r.answers);
+void Manager::deliver_if_answered(std::uint64_t step, Round& r) {
+  if (!r.answers.is_done()) return;
+  std::vector<VoxelAnswer> answers(r.sort.records().size());
+  for (const auto& [home, items] : r.answers.received()) {
+    const std::uint32_t end = r.ends[static_cast<std::size_t>(home)];
+    const std::uint32_t* const asked = r.by_home.data() + end - items.size();
+    for (std::size_t i = 0; i < items.size(); ++i) answers[asked[i]] = items[i];
+  }
+  deliver(r, answers);
+  rounds_.erase(step);
+}
+
+void Manager::deliver(const Round& r, const std::vector<VoxelAnswer>& answers) {
+  r.delivery->sorted = r.sort.sorted(answers);
   const std::vector<VoxelRecord>& records = r.sort.records();
   std::uint32_t begin = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const VoxelRecord& record = records[i];
     const std::uint32_t n = record.n_natives + record.n_visitors;
-    const VoxelAnswer& answer = r.answers[i];
+    const VoxelAnswer& answer = answers[i];
     if (answer.n_senders == 0) {
       last_.n_left_out += n;
       continue;

@@ -8,9 +8,11 @@
 //     deliver    send one message per voxel, which starts at once when it has heard from all
 //
 // There is no barrier: a voxel does not wait for other voxels, and several collisions may overlap.
+// What Managers tell homes, and the answers, are exchanged in a few messages (exchange.hpp).
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/parallel/exchange.hpp"
 #include "collide/parallel/part.hpp"
 #include "collide/parallel/plan.hpp"
 #include "collide/parallel/voxel.hpp"
@@ -56,9 +58,8 @@ class Manager : public Group<Manager> {
   void prepare(std::uint64_t step, const Callback<Summary>& target);
   /// Without a plan: the objects are dropped.
   void begin(std::uint64_t step, const Plan& plan, const Report& report);
-  void receive_records(std::uint64_t step, PeId from, WithinModel within_model,
-                       std::vector<VoxelRecord> records);
-  void receive_answers(std::uint64_t step, PeId home, std::vector<VoxelAnswer> answers);
+  void receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bundle);
+  void receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bundle);
 
   /// What this PE did in the last collision.
   [[nodiscard]] const CollisionStatistics& last() const { return last_; }
@@ -72,17 +73,22 @@ class Manager : public Group<Manager> {
   };
   /// A collision, as its sender and as the home of voxels.
   struct Round {
+    Round(std::int32_t me, std::int32_t n_pes) : records(me, n_pes), answers(me, n_pes) {}
+
     std::shared_ptr<Delivery> delivery;
     VoxelSort sort;
-    std::vector<std::vector<std::uint32_t>> records_of;  // by home: positions in sort.records()
-    std::vector<VoxelAnswer> answers;                    // per record
-    std::int32_t n_answers = 0;                          // homes that have answered
-
-    std::vector<std::vector<VoxelRecord>> received;  // by PE
-    std::int32_t n_received = 0;
+    std::vector<std::uint32_t> by_home;  // positions in sort.records(), home after home
+    std::vector<std::uint32_t> ends;     // by home, in by_home
+    Exchange<VoxelRecord> records;
+    Exchange<VoxelAnswer> answers;
   };
   Round& round(std::uint64_t step);
-  void deliver(Round& round);
+  /// Sends bundles of an exchange to the entry method F.
+  template <auto F>
+  auto sender(std::uint64_t step);
+  void answer_if_asked(std::uint64_t step, Round& round);
+  void deliver_if_answered(std::uint64_t step, Round& round);
+  void deliver(const Round& round, const std::vector<VoxelAnswer>& answers);
 
   const ArrayProxy<Voxel> voxels_;
   ObjectList pending_;

@@ -17,6 +17,9 @@ namespace tess::collide {
 
 class Voxel : public Chare<Voxel, Index4> {
  public:
+  /// After retire(), objects may arrive before the ones that make the voxel again.
+  static constexpr tess::DeadLetters dead_letters = tess::DeadLetters::wait;
+
   /// Adds the objects of one of `n_senders` PEs; the last one starts the search.
   void add(Part part, std::uint32_t n_senders);
 

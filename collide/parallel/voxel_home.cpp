@@ -25,7 +25,7 @@ std::size_t home_of(const Index4& voxel, std::size_t n_pes) {
 }
 
 std::vector<std::vector<VoxelAnswer>> answers_to(
-    const std::vector<std::vector<VoxelRecord>>& records, WithinModel within_model) {
+    std::span<const std::span<const VoxelRecord>> records, WithinModel within_model) {
   std::vector<std::vector<VoxelAnswer>> answers(records.size());
   if (records.size() == 1) {
     for (const VoxelRecord& record : records[0])

@@ -1,0 +1,173 @@
+#include "apps/collide_fuzz/compare.hpp"
+#include "apps/collide_fuzz/objects.hpp"
+#include "collide/collider.hpp"
+#include "runtime/runtime.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace collide_fuzz {
+namespace {
+
+using namespace tess::collide;
+
+/// A scene, and the exact test of its objects.
+struct Objects {
+  std::vector<Aabb> boxes;
+  std::vector<std::uint32_t> models;
+  std::function<bool(std::uint32_t, std::uint32_t)> are_pair;
+};
+
+/// What all simulated PEs see; they share the memory of one process.
+struct Problem {
+  Look look;
+  std::int32_t n_clients = 1;
+  std::optional<ModelId> only;
+  std::array<Objects, 2> rounds;
+  std::array<PairList, 2> found;  ///< (mine, theirs), by the owner that received the pair
+  bool is_refused = false;
+};
+Problem* problem = nullptr;
+
+/// Owns every n-th object. Its local ids are the positions in the scene.
+class Client : public tess::Chare<Client, tess::Index1> {
+ public:
+  void submit(const Collider& collider, int round) {
+    round_ = round;
+    const Objects& scene = problem->rounds[static_cast<std::size_t>(round)];
+    std::vector<Item> items;
+    for (std::size_t i = 0; i < scene.boxes.size(); ++i)
+      if (owner(i) == index().x)
+        items.push_back(
+            {scene.boxes[i],
+             {owner_of(index()), static_cast<LocalId>(i), static_cast<ModelId>(scene.models[i])}});
+    collider.submit(items);
+  }
+  /// The exact test is the receiver's.
+  void receive(const Hits& hits) {
+    TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
+    const auto round = static_cast<std::size_t>(round_);
+    for (const LocalPair& pair : hits.pairs) {
+      const auto mine = static_cast<std::uint32_t>(pair.mine),
+                 theirs = static_cast<std::uint32_t>(pair.theirs);
+      if (problem->rounds[round].are_pair(mine, theirs))
+        problem->found[round].push_back({mine, theirs});
+    }
+  }
+  [[nodiscard]] static std::int32_t owner(std::size_t object) {
+    return static_cast<std::int32_t>(object % static_cast<std::size_t>(problem->n_clients));
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(round_);
+  }
+
+ private:
+  int round_ = 0;
+};
+
+tess::Task collide_rounds() {
+  const Look& look = problem->look;
+  const double size = look.voxel_size;
+  const ColliderOptions options{
+      .size = {size, size, size},
+      .rules = {look.touching, look.within_model ? WithinModel::test : WithinModel::skip}};
+  Collider collider;
+  tess::ArrayProxy<Client> clients;
+  co_await tess::epoch([&] {
+    collider = make_collider(options);
+    clients = tess::create<Client>(tess::range(problem->n_clients));
+  });
+  const Report report{report_to<&Client::receive>(clients), problem->only};
+  for (int round = 0; round < 2; ++round) {
+    co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
+    try {
+      co_await run_collision(collider, report);
+    } catch (const tess::Error&) {  // voxels that are too small for 32-bit cells
+      if (size == 0) throw;
+      problem->is_refused = true;
+    }
+    // Ends all voxels; the next collision makes them again.
+    if (look.seed % 3 == 1)
+      for (int call = 0; call < 2; ++call) co_await tess::epoch([&] { retire(collider); });
+  }
+  co_await tess::epoch([&] {
+    collider.destroy();
+    clients.destroy();
+  });
+}
+
+/// Each owner of a pair receives it, once if they are the same; with `only` the owner of the object
+/// of that model.
+PairList expected(const Objects& scene, const Problem& p) {
+  PairList out;
+  for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
+    for (std::uint32_t j = i + 1; j < scene.boxes.size(); ++j) {
+      const ModelId a{scene.models[i]}, b{scene.models[j]};
+      if ((!p.look.within_model && a == b) || !scene.are_pair(i, j)) continue;
+      if (!p.only || a == *p.only) out.push_back({i, j});
+      if (p.only ? b == *p.only : Client::owner(i) != Client::owner(j)) out.push_back({j, i});
+    }
+  return out;
+}
+
+/// The two objects of one owner are in no order.
+PairList in_order(PairList list) {
+  for (Pair& pair : list)
+    if (Client::owner(pair.first) == Client::owner(pair.second) && pair.second < pair.first)
+      std::swap(pair.first, pair.second);
+  return list;
+}
+
+bool is_in_chares(Shape shape) {
+  return shape != Shape::box_of_float && shape != Shape::box_in_2d &&
+         shape != Shape::box_of_float_in_4d && shape != Shape::triangle_of_float;
+}
+
+Objects objects_of(const Look& look) {
+  Objects out;
+  with_objects(look, [&](auto objects, Drawer& drawer) {
+    using Object = typename decltype(objects)::value_type;
+    if constexpr (std::is_same_v<decltype(box_of(std::declval<const Object&>())), Aabb>) {
+      for (const Object& object : objects) out.boxes.push_back(box_of(object));
+      out.models = drawer.models();
+      const auto kept = std::make_shared<const std::vector<Object>>(std::move(objects));
+      out.are_pair = [kept, test = pair_test(*kept, look.touching)](
+                         std::uint32_t i, std::uint32_t j) { return test(i, j); };
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+Outcome try_chares(const Look& look, std::int32_t n_pes) {
+  Problem here;
+  here.look = look;
+  if (!is_in_chares(look.shape)) here.look.shape = Shape::box;
+  here.n_clients = static_cast<std::int32_t>(1 + look.seed % 7);
+  if (look.seed % 5 == 0) here.only = ModelId{0};
+  here.rounds[0] = objects_of(here.look);
+  Look moved = here.look;
+  moved.seed ^= 0xaaaa;
+  here.rounds[1] = objects_of(moved);
+  problem = &here;
+
+  Outcome outcome;
+  std::string name = "collide_fuzz",
+              machine = fmt::format("--sim=pes={},cost=100ns,migrate=0.05,seed={}{}", n_pes,
+                                    look.seed, look.seed % 2 == 0 ? ",per-process=1" : "");
+  std::array<char*, 3> argv{name.data(), machine.data(), nullptr};
+  int argc = 2;
+  tess::Setup setup = tess::take_options(argc, argv.data());
+  const int code = tess::run(setup, [] { return collide_rounds(); });
+  if (code != 0) outcome.failure = fmt::format("chares: exit code {}", code);
+  if (here.is_refused) ++outcome.n_refused;
+  for (std::size_t round = 0; round < 2 && !here.is_refused; ++round)
+    compare(in_order(here.found[round]), in_order(expected(here.rounds[round], here)),
+            fmt::format("collision {} on {} PEs", round, n_pes), outcome);
+  problem = nullptr;
+  return outcome;
+}
+
+}  // namespace collide_fuzz

@@ -1,0 +1,26 @@
+#include "apps/seeds.hpp"
+
+#include "runtime/core/error.hpp"
+
+#include <charconv>
+
+namespace apps {
+
+Seeds parse_seeds(const std::string& given) {
+  const std::size_t colon = given.find(':');
+  const auto number = [&](std::size_t from, std::size_t to) {
+    std::uint64_t value = 0;
+    const char* end = given.data() + to;
+    const auto [at, error] = std::from_chars(given.data() + from, end, value);
+    if (error != std::errc() || at != end)
+      tess::fail(tess::ErrorCode::bad_argument, "--seeds: ", given, " is not of the form FROM:TO");
+    return value;
+  };
+  if (colon == std::string::npos) return {number(0, given.size()), number(0, given.size())};
+  const Seeds seeds{number(0, colon), number(colon + 1, given.size())};
+  if (seeds.last < seeds.first)
+    tess::fail(tess::ErrorCode::bad_argument, "--seeds: ", given, " ends before it begins");
+  return seeds;
+}
+
+}  // namespace apps

@@ -1,0 +1,16 @@
+// A range of seeds on the command line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace apps {
+
+struct Seeds {
+  std::uint64_t first = 0, last = 0;
+};
+
+/// "FROM:TO", both included, or one seed. Throws tess::Error (bad_argument) otherwise.
+[[nodiscard]] Seeds parse_seeds(const std::string& given);
+
+}  // namespace apps
