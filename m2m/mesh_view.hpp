@@ -29,4 +29,8 @@ struct MeshView {
   }
 };
 
+/// Throws Error (bad_mesh) with the first point, index or list that cannot be used: coordinates must
+/// be finite and at most 1e100, corners in range, and ids as many as points and tetrahedra.
+void validate(const MeshView& mesh);
+
 }  // namespace tess::m2m

@@ -1,5 +1,5 @@
 // Checks a mesh before it is used.
-#include "m2m/mesh.hpp"
+#include "m2m/mesh_view.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -134,6 +134,30 @@ MeshCensus validate(const TetMesh& mesh) {
   census.n_unused = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
   census.bounds = bounds(mesh);
   return census;
+}
+
+void validate(const MeshView& mesh) {
+  const auto n = static_cast<VertexId>(mesh.points.size());
+  if (mesh.n_owned < 0 || mesh.n_owned > n)
+    fail(ErrorCode::bad_mesh, "a piece owns ", mesh.n_owned, " of ", n,
+         " points; n_owned counts points of the piece");
+  if (mesh.n_own_tets > static_cast<std::int64_t>(mesh.tets.size()))
+    fail(ErrorCode::bad_mesh, "a piece has ", mesh.n_own_tets, " own tetrahedra of ",
+         mesh.tets.size(), "; n_own_tets counts tetrahedra of the piece");
+  if (mesh.tet_ids.size() != mesh.tets.size() || mesh.point_ids.size() != mesh.points.size())
+    fail(ErrorCode::bad_mesh, "a piece of ", n, " points and ", mesh.tets.size(),
+         " tetrahedra has ", mesh.point_ids.size(), " point_ids and ", mesh.tet_ids.size(),
+         " tet_ids; give an id for each");
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    for (const double x : mesh.points[i])
+      if (!(std::abs(x) <= 1e100))
+        fail(ErrorCode::bad_mesh, "point ", i, " of a piece has the coordinate ", x,
+             "; coordinates must be finite and at most 1e100");
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (const VertexId v : mesh.tets[t])
+      if (v < 0 || v >= n)
+        fail(ErrorCode::bad_mesh, "tetrahedron ", t, " of a piece names point ", v,
+             ", but the piece has ", n, " points");
 }
 
 }  // namespace tess::m2m

@@ -10,6 +10,7 @@
 namespace tess::m2m {
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
+  validate(mesh);
   drafts_.clear();
   donors_.clear();
   rounds_.clear();
@@ -87,7 +88,7 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
                                             std::span<const double> values,
                                             std::span<const Point> gradients,
                                             std::size_t n_components) const {
-  std::vector<double> out;
+  std::vector<double> out(donors.size() * n_components);
   if (setup.kind != TransferKind::linear) {
     std::vector<Tet> tets;
     std::vector<PointInTet> points;
@@ -96,15 +97,14 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
       tets.push_back(donor.vertices);
     }
     const Limit limit = setup.kind == TransferKind::limited ? Limit::tetrahedron : Limit::none;
-    out.resize(donors.size() * n_components);
     second_order_values({mesh.points, tets}, points, values, gradients, n_components, limit, {},
                         out);
     return out;
   }
-  out.reserve(donors.size() * n_components);
+  double* to = out.data();
   for (const Donor& donor : donors)
     for (std::size_t c = 0; c < n_components; ++c)
-      out.push_back(interpolated(donor.weights, donor.vertices, values.data() + c, n_components));
+      *to++ = interpolated(donor.weights, donor.vertices, values.data() + c, n_components);
   return out;
 }
 

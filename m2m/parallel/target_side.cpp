@@ -15,6 +15,7 @@ void sort_unique(std::vector<std::uint32_t>& list) {
 }  // namespace
 
 std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
+  validate(mesh);
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
   asked_.clear();
   nearest_.clear();

@@ -1,0 +1,55 @@
+// Pieces of an application's mesh are checked before a search.
+#include "m2m/mesh_view.hpp"
+#include "runtime/core/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace tess::m2m;
+
+namespace {
+
+/// One tetrahedron, whose view a test changes.
+struct OneTet {
+  std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<Tet> tets{{0, 1, 2, 3}};
+  std::vector<GlobalId> point_ids{0, 1, 2, 3}, tet_ids{0};
+  std::int64_t n_owned = 4, n_own_tets = -1;
+
+  [[nodiscard]] std::string complaint() const {
+    try {
+      validate({points, tets, point_ids, tet_ids, n_owned, n_own_tets});
+    } catch (const tess::Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a piece with bad coordinates, indices or counts is refused by name", "[m2m]") {
+  CHECK(OneTet().complaint().empty());
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                           -std::numeric_limits<double>::infinity(), 2e100}) {
+    OneTet piece;
+    piece.points[2][1] = bad;
+    CHECK(piece.complaint().find("point 2") != std::string::npos);
+  }
+  for (const VertexId bad : {-1, 4}) {
+    OneTet piece;
+    piece.tets[0][3] = bad;
+    CHECK(piece.complaint().find("tetrahedron 0 of a piece names point") != std::string::npos);
+  }
+  OneTet too_many;
+  too_many.n_owned = 5;
+  CHECK(too_many.complaint().find("owns 5 of 4 points") != std::string::npos);
+  OneTet halo;
+  halo.n_own_tets = 2;
+  CHECK(halo.complaint().find("2 own tetrahedra of 1") != std::string::npos);
+  OneTet no_ids;
+  no_ids.tet_ids.clear();
+  CHECK(no_ids.complaint().find("0 tet_ids") != std::string::npos);
+}
