@@ -157,6 +157,9 @@ TEST_CASE("fields in tetrahedra: constant is first order, linear by gradients se
     constant.push_back(rms(got, want));
     cell_values(view(source), at, values, gradients, 1, got);
     linear.push_back(rms(got, want));
+    Values by_rows(at.size());
+    apply(cell_rows(view(source), at, rows), values, 1, by_rows);
+    CHECK(rms(by_rows, got) < 1e-14);
   }
   CAPTURE(constant, linear);
   CHECK(std::abs(order_of(constant) - 1) < 0.15);
