@@ -23,7 +23,9 @@ struct CellCoverage {
 };
 
 /// A tetrahedron whose covered fraction exceeds 1 - full_coverage counts as covered.
-inline constexpr double full_coverage = 1e-9;
+inline constexpr double full_coverage = 1e-12;
+/// A tetrahedron that is covered to a smaller fraction has a lumped mass matrix.
+inline constexpr double consistent_coverage = 0.5;
 /// What is covered to a smaller fraction counts as not covered.
 inline constexpr double no_coverage = 1e-12;
 

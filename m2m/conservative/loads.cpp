@@ -76,14 +76,35 @@ Rows<double> rows_of(std::span<const Entry> entries, std::size_t n_rows, std::si
   return rows;
 }
 
+/// Adds the entries of the same row and column. The order of addition stays, so the sums have the
+/// same bits however often this is called.
+void merge_entries(std::vector<Entry>& entries, std::size_t n_rows, std::size_t n_columns) {
+  const Rows<double> rows = rows_of(entries, n_rows, n_columns);
+  entries.clear();
+  for (std::size_t row = 0; row < n_rows; ++row)
+    for (std::uint64_t k = rows.begin[row]; k < rows.begin[row + 1]; ++k)
+      entries.push_back({static_cast<VertexId>(row), rows.columns[k], rows.weights[k]});
+}
+
+/// Entries are merged when there are so many, and again when there are four times as many as after
+/// the last time. Without that, they take ten times the memory of the rows.
+constexpr std::size_t first_merge = std::size_t{1} << 18;
+
 }  // namespace
 
 Loads integrate_pairs(MeshView source, Basis source_basis, MeshView target, Basis target_basis,
                       std::span<const TetPair> pairs) {
   Loads loads;
   loads.coverage.resize(target.tets.size());
+  const std::size_t n_rows = n_unknowns(target, target_basis);
+  const std::size_t n_columns = n_unknowns(source, source_basis);
   std::vector<Entry> entries;
+  std::size_t next_merge = first_merge;
   for (const TetPair& pair : pairs) {
+    if (entries.size() > next_merge) {
+      merge_entries(entries, n_rows, n_columns);
+      next_merge = std::max(first_merge, 4 * entries.size());
+    }
     const Tet& s = source.tets[static_cast<std::size_t>(pair.source)];
     const Tet& t = target.tets[static_cast<std::size_t>(pair.target)];
     const PairMoments moments =
@@ -99,7 +120,7 @@ Loads integrate_pairs(MeshView source, Basis source_basis, MeshView target, Basi
     entries.insert(entries.end(), block.entries.begin(),
                    block.entries.begin() + static_cast<std::ptrdiff_t>(block.n));
   }
-  loads.rows = rows_of(entries, n_unknowns(target, target_basis), n_unknowns(source, source_basis));
+  loads.rows = rows_of(entries, n_rows, n_columns);
   return loads;
 }
 

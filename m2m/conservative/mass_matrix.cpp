@@ -7,6 +7,19 @@
 #include <cmath>
 
 namespace tess::m2m {
+namespace {
+
+/// The row sums on the diagonal.
+Symmetric4 lumped(const Symmetric4& m) {
+  Symmetric4 out{};
+  out[0] = (m[0] + m[1]) + (m[2] + m[3]);
+  out[4] = (m[1] + m[4]) + (m[5] + m[6]);
+  out[7] = (m[2] + m[5]) + (m[7] + m[8]);
+  out[9] = (m[3] + m[6]) + (m[8] + m[9]);
+  return out;
+}
+
+}  // namespace
 
 MassMatrix::MassMatrix(MeshView mesh, std::span<const CellCoverage> coverage)
     : tets_(mesh.tets), n_points_(mesh.points.size()) {
@@ -25,7 +38,8 @@ MassMatrix::MassMatrix(MeshView mesh, std::span<const CellCoverage> coverage)
       partial_.push_back(whole);
     } else {
       partial_.push_back(static_cast<std::int32_t>(cut_.size()));
-      cut_.push_back(coverage[t].mass);
+      cut_.push_back(covered >= consistent_coverage * volume ? coverage[t].mass
+                                                             : lumped(coverage[t].mass));
     }
   }
 }

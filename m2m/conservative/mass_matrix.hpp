@@ -4,8 +4,10 @@
 //     integral over T of psi_i psi_j = |T| (1 + delta_ij) / 20 .
 //
 // A tetrahedron that the source covers in part contributes the integral over its covered region,
-// and one that is not covered contributes nothing. Every tetrahedron is in one part, and the parts
-// of a sum over all of them add up over the copies of a vertex.
+// and one that is not covered contributes nothing. Where less than half is covered, only the row sums
+// of that integral are used: values at the corners would otherwise extrapolate from a sliver. This
+// keeps constants and integrals, and no vertex gets a value far outside those of the source. Every
+// tetrahedron is in one part; the caller adds the contributions of parts over the copies of a vertex.
 #pragma once
 
 #include "m2m/conservative/loads.hpp"

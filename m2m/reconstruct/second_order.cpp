@@ -41,6 +41,15 @@ Point centroid(const std::array<Point, 4>& c) {
   return centre;
 }
 
+/// From the centroid to the point with these weights.
+Point cell_arm(const Weights& weights, const std::array<Point, 4>& corners) {
+  Point arm{};
+  for (std::size_t i = 1; i < 4; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      arm[k] += (weights[i] - 0.25) * (corners[i][k] - corners[0][k]);
+  return arm;
+}
+
 }  // namespace
 
 std::array<Point, 4> second_order_arms(const Weights& weights,
@@ -148,17 +157,33 @@ void cell_values(MeshView mesh, std::span<const PointInTet> points, std::span<co
              " rows of ", n_components, " components, got ", out.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto tet = static_cast<std::size_t>(points[p].tet);
-    Point arm{};  // from the centroid to the point
-    const std::array<Point, 4> corners = corners_of(mesh.points, mesh.tets[tet]);
-    for (std::size_t i = 1; i < 4; ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        arm[k] += (points[p].weights[i] - 0.25) * (corners[i][k] - corners[0][k]);
+    const Point arm = cell_arm(points[p].weights, corners_of(mesh.points, mesh.tets[tet]));
     for (std::size_t c = 0; c < n_components; ++c) {
       double& to = out[p * n_components + c];
       to = values[tet * n_components + c];
       if (!gradients.empty()) to += dot(arm, gradients[tet * n_components + c]);
     }
   }
+}
+
+Rows<double> cell_rows(MeshView mesh, std::span<const PointInTet> points,
+                       const Rows<Point>& gradients) {
+  Rows<double> rows;
+  for (const PointInTet& point : points) {
+    const auto tet = static_cast<std::size_t>(point.tet);
+    if (gradients.n_rows() == 0) {
+      rows.add(point.tet, 1.0);
+    } else {
+      const Point arm = cell_arm(point.weights, corners_of(mesh.points, mesh.tets[tet]));
+      const auto columns = gradients.columns_of(tet);
+      const auto weights = gradients.weights_of(tet);
+      if (columns.empty()) rows.add(point.tet, 1.0);
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        rows.add(columns[k], dot(arm, weights[k]) + (columns[k] == point.tet ? 1.0 : 0.0));
+    }
+    rows.end_row();
+  }
+  return rows;
 }
 
 std::vector<double> corner_values(MeshView mesh, std::span<const double> values,

@@ -61,6 +61,11 @@ void second_order_values(MeshView mesh, std::span<const PointInTet> points,
 void cell_values(MeshView mesh, std::span<const PointInTet> points, std::span<const double> values,
                  std::span<const Point> gradients, std::size_t n_components, std::span<double> out);
 
+/// The same as rows over tetrahedra. `gradients`: a row per tetrahedron, or no rows for a field that
+/// is constant in each.
+[[nodiscard]] Rows<double> cell_rows(MeshView mesh, std::span<const PointInTet> points,
+                                     const Rows<Point>& gradients);
+
 /// The values of a field in tetrahedra at the four corners of each, 4 tetrahedra × n_components: the
 /// unknowns of Basis::corner. Their mean is the value of the tetrahedron, so integrals stay.
 [[nodiscard]] std::vector<double> corner_values(MeshView mesh, std::span<const double> values,

@@ -4,7 +4,9 @@
 #include "tests/m2m/overlapping.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 using namespace tess::m2m;
@@ -123,4 +125,28 @@ TEST_CASE("rows and coverage of parts of the source add up to those of the whole
   for (std::size_t v = 0; v < total.size(); ++v) CHECK(total[v] == Approx(want[v]).epsilon(1e-13));
   for (std::size_t t = 0; t < coverage.size(); ++t)
     CHECK(coverage[t].volume == Approx(signed_volume(b, t)).epsilon(1e-13));
+}
+
+TEST_CASE("weights are the sums over pairs in their order, bit for bit, however many there are",
+          "[m2m][conservative]") {
+  const TetMesh a = kuhn_mesh({8, 0.2}), b = kuhn_mesh({9, 0.2});
+  const auto pairs = overlapping_pairs(view(a), view(b));
+  const Loads loads = integrate_pairs(view(a), Basis::vertex, view(b), Basis::vertex, pairs);
+  CHECK(16 * loads.n_overlaps > 3 * (1U << 18));  // more than are kept without a merge
+  std::map<std::array<VertexId, 2>, double> want;
+  for (const TetPair& pair : pairs) {
+    const Tet &s = a.tets[static_cast<std::size_t>(pair.source)],
+              &t = b.tets[static_cast<std::size_t>(pair.target)];
+    const PairMoments moments = pair_moments(corners_of(a.points, s), corners_of(b.points, t));
+    if (!(moments.volume > 0)) continue;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) want[{t[j], s[i]}] += moments.mixed[i][j];
+  }
+  REQUIRE(loads.rows.weights.size() == want.size());
+  std::size_t k = 0, n_wrong = 0;
+  for (const auto& [entry, weight] : want) {
+    n_wrong += loads.rows.columns[k] != entry[1] || loads.rows.weights[k] != weight;
+    ++k;
+  }
+  CHECK(n_wrong == 0);
 }
