@@ -1,4 +1,4 @@
-// A straight segment, its box and its exact test against another segment.
+// A straight segment, its box, and exact tests against other segments and boxes.
 #pragma once
 
 #include "collide/box.hpp"
@@ -21,5 +21,11 @@ struct Segment {
 /// Whether two segments have a common point: exact for all finite coordinates. If touching does not
 /// count, never: two segments come apart by a small translation.
 [[nodiscard]] bool intersect(const Segment& a, const Segment& b, Touching touching) noexcept;
+
+/// With a box, which is solid: exact as well.
+[[nodiscard]] bool intersect(const Segment& a, const Aabb& b, Touching touching) noexcept;
+[[nodiscard]] inline bool intersect(const Aabb& a, const Segment& b, Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
 
 }  // namespace tess::collide

@@ -1,5 +1,5 @@
-// Tetrahedra, their boxes, and exact tests against points, segments, triangles, balls and each
-// other. A tetrahedron is solid: what lies inside intersects it.
+// Tetrahedra, their boxes, and exact tests against points, segments, triangles, balls, boxes and
+// each other. A tetrahedron is solid: what lies inside intersects it.
 //
 // The tests are exact for all finite coordinates, degenerate tetrahedra included (those without
 // volume). If touching does not count, the intersection must survive every small enough translation:
@@ -42,6 +42,13 @@ struct Tetrahedron {
   return intersect(b, a, touching);
 }
 [[nodiscard]] inline bool intersect(const Sphere& a, const Tetrahedron& b,
+                                    Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+
+/// With a box, which is solid: exact as well.
+[[nodiscard]] bool intersect(const Tetrahedron& a, const Aabb& b, Touching touching) noexcept;
+[[nodiscard]] inline bool intersect(const Aabb& a, const Tetrahedron& b,
                                     Touching touching) noexcept {
   return intersect(b, a, touching);
 }

@@ -43,6 +43,12 @@ template <class Real>
   return intersect(b, a, touching);
 }
 
+/// With a box, which is solid: exact as well.
+[[nodiscard]] bool intersect(const Triangle& a, const Aabb& b, Touching touching) noexcept;
+[[nodiscard]] inline bool intersect(const Aabb& a, const Triangle& b, Touching touching) noexcept {
+  return intersect(b, a, touching);
+}
+
 /// Floats are converted to double, which is exact.
 [[nodiscard]] inline Triangle in_double(const TriangleOf<float>& t) noexcept {
   Triangle out{};

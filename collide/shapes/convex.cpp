@@ -98,7 +98,8 @@ struct Union {
   }
 };
 
-/// Whether the difference of the hulls, the set of all p - q, is a body with volume.
+}  // namespace
+
 bool difference_has_volume(Points a, Points b) noexcept {
   const auto edge = [&](std::size_t i) -> Difference {
     const bool of_a = i < a.size() - 1;
@@ -111,8 +112,6 @@ bool difference_has_volume(Points a, Points b) noexcept {
         if (Sides(edge(k).from, edge(i), edge(j)).of(edge(k).to) != 0) return true;
   return false;
 }
-
-}  // namespace
 
 bool hulls_intersect(Points a, Points b) noexcept {
   const Union all(a, b);

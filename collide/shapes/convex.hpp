@@ -17,4 +17,8 @@ namespace tess::collide::shapes {
 /// Whether they still have a common point after every small enough translation of one of them.
 [[nodiscard]] bool hulls_cross(std::span<const Point> a, std::span<const Point> b) noexcept;
 
+/// Whether the difference of the hulls, the set of all p - q, is a body with volume.
+[[nodiscard]] bool difference_has_volume(std::span<const Point> a,
+                                         std::span<const Point> b) noexcept;
+
 }  // namespace tess::collide::shapes

@@ -1,0 +1,104 @@
+// collide_scaling: steps of a collision on simulated machines of 1 to 1 500 PEs.
+//
+//     collide_scaling --out PREFIX         weak: two wavy planes, 65 536 triangles per PE
+//     collide_scaling --study strong       a crowd of moving bodies, with the balancer on and off
+#include "apps/collide_scaling/report.hpp"
+#include "apps/command_line.hpp"
+#include "runtime/core/error.hpp"
+
+#include <cstdio>
+#include <fmt/core.h>
+
+namespace collide_scaling {
+namespace {
+
+/// Sets what a pair costs, so that the model takes as long on one PE as was measured there, with its
+/// messages; and the voxel size that one PE chooses.
+void calibrate(Case& given) {
+  Case one = given;
+  one.n_pes = one.thinned = 1;
+  one.steps = 12;
+  one.work = Work::measured;
+  const Row measured = run_case(one);
+  if (!given.is_strong) one.voxel_size = given.voxel_size = measured.voxel_size;
+  one.work = Work::model;
+  one.ns_per_pair = 0;
+  one.steps = 3;
+  const Row messages = run_case(one);
+  given.ns_per_pair = 1e9 * (measured.step.seconds - messages.step.seconds) /
+                      static_cast<double>(measured.step.n_pairs);
+  fmt::print(
+      "One PE, measured: {:.2f} ms per step, {} voxels of size {:.3g}. Model: {} ns per message, "
+      "{:.1f} ns per pair, latency {} ns, {:.1f} GB/s.\n\n",
+      1e3 * measured.step.seconds, measured.n_voxels, measured.voxel_size, given.message_ns,
+      given.ns_per_pair, given.latency_ns, given.bandwidth / 1e9);
+}
+
+int study(int argc, char** argv) {
+  std::string kind = "weak", work = "model", out;
+  std::vector<std::int32_t> pes;
+  std::vector<std::string> balances;
+  Case given;
+  std::uint64_t n_triangles = 0;
+  std::int32_t thinned = 0;
+  apps::CommandLine line("Steps of a collision on simulated machines of many PEs",
+                         "collide_scaling");
+  line.option("--study", kind,
+              "weak: as many triangles on each PE; strong: one crowd on more and more PEs")
+      .one_of({"weak", "strong"});
+  line.option("--pes", pes, "PEs of the machines (1,4,16,64,256,1024,1500; strong 1,4,16,64,256)")
+      .separated_by(',');
+  line.option("--triangles", n_triangles, "per PE (65536), or of the crowd (262144)");
+  line.option("--steps", given.steps, "steps, of which the first does not count")
+      .between(2, 100000);
+  line.option("--thinned", thinned,
+              "weak: one of so many triangles is there, at so many times the cost: 1, 4, 16 "
+              "(default: 4 for more than 32 million triangles)")
+      .between(1, 64);
+  line.option("--balance", balances, "strategies, or none (strong: none,greedy_refine)")
+      .separated_by(',');
+  line.option("--work", work,
+              "model: a fixed time per message and per pair; measured: processor time of all")
+      .one_of({"measured", "model"});
+  line.option("--message-ns", given.message_ns, "of a PE per message, in the model");
+  line.option("--latency-ns", given.latency_ns, "of a message");
+  line.option("--bandwidth", given.bandwidth, "bytes per second").positive();
+  line.option("--per-process", given.per_process, "PEs per process").between(1, 4096);
+  line.option("--out", out, "write PREFIX.svg and PREFIX.csv");
+  if (!line.parse(argc, argv, "")) return 0;
+  given.is_strong = kind == "strong";
+  given.work = work == "model" ? Work::model : Work::measured;
+  given.n_triangles = n_triangles != 0 ? n_triangles : given.is_strong ? 262144 : 65536;
+  if (pes.empty() && given.is_strong) pes = {1, 4, 16, 64, 256};
+  if (pes.empty()) pes = {1, 4, 16, 64, 256, 1024, 1500};
+  if (balances.empty() && given.is_strong) balances = {"none", "greedy_refine"};
+  if (balances.empty()) balances = {"none"};
+  if (given.work == Work::model) calibrate(given);
+  fmt::print("{}", head(given.is_strong));
+  std::vector<Row> rows;
+  for (const std::int32_t n : pes)
+    for (const std::string& balance : balances) {
+      given.n_pes = n;
+      given.balance = balance;
+      const std::uint64_t n_all = given.n_triangles * static_cast<std::uint64_t>(n);
+      given.thinned = thinned != 0 ? thinned : !given.is_strong && n_all > 32'000'000 ? 4 : 1;
+      rows.push_back(run_case(given));
+      fmt::print("{}", collide_scaling::line(rows.back(), rows.front()));
+      std::fflush(stdout);
+    }
+  if (!out.empty()) draw(out, rows);
+  // A crowd has the same pairs on every machine.
+  for (const Row& row : rows)
+    if (given.is_strong && row.step.n_pairs != rows.front().step.n_pairs) {
+      std::fprintf(stderr, "collide_scaling: %d PEs find other pairs\n", row.given.n_pes);
+      return 1;
+    }
+  return 0;
+}
+
+}  // namespace
+}  // namespace collide_scaling
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] { return collide_scaling::study(argc, argv); });
+}
