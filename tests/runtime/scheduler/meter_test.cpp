@@ -1,9 +1,9 @@
 // The meter by itself: whose time it is, and that stolen time counts for none.
-#include "runtime/scheduler/load_record.hpp"
 #include "runtime/scheduler/meter.hpp"
 
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
+#include "runtime/scheduler/load_record.hpp"
 #include "tests/support/catch.hpp"
 
 #include <chrono>
