@@ -19,6 +19,7 @@ inline void release_block(void* block, std::size_t /*n_bytes*/) {
 template <class T>
 struct PoolAllocator {
   using value_type = T;
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): nodes may be pointers
   static constexpr std::size_t bytes_each = sizeof(value_type);
   PoolAllocator() = default;
   template <class Other>

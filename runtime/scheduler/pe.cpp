@@ -40,7 +40,10 @@ struct Pe::Tables {
 
   ById<std::unique_ptr<HostedCollection>> collections;
   ById<std::vector<Envelope*>> early;  // messages that arrived before their collection
-  boost::unordered_flat_map<std::uint64_t, void*> futures;
+};
+
+struct Pe::Futures {
+  boost::unordered_flat_map<std::uint64_t, void*> by_number;
 };
 
 Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
@@ -57,6 +60,7 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       n_here_(machine.pes_per_process()),
       bundle_ticks_(static_cast<std::uint64_t>(bundle_seconds / seconds_per_tick())),
       packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),
+      futures_(std::make_unique<Futures>()),
       completion_messages_(*this),
       completion_(completion_messages_, id_, n_pes_),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
@@ -356,21 +360,21 @@ Pe::Ending Pe::take_ending(CollectionId id) {
 }
 
 std::uint64_t Pe::enter_future(void* future) {
-  tables_->futures.emplace(++n_futures_, future);
+  futures_->by_number.emplace(++n_futures_, future);
   return n_futures_;
 }
 
 void Pe::move_future(std::uint64_t id, void* future) {
-  tables_->futures[id] = future;
+  futures_->by_number[id] = future;
 }
 
 void Pe::leave_future(std::uint64_t id) {
-  tables_->futures.erase(id);
+  futures_->by_number.erase(id);
 }
 
 void* Pe::find_future(std::uint64_t id) const {
-  const auto at = tables_->futures.find(id);
-  return at == tables_->futures.end() ? nullptr : at->second;
+  const auto at = futures_->by_number.find(id);
+  return at == futures_->by_number.end() ? nullptr : at->second;
 }
 
 std::vector<HostedCollection*> Pe::collections() const {

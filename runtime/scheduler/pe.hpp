@@ -295,7 +295,9 @@ class Pe {
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
   std::uint64_t n_futures_ = 0;
-  std::string place_;  // where the pending exception was thrown
+  struct Futures;
+  const std::unique_ptr<Futures> futures_;  // outlives the elements below, whose members they are
+  std::string place_;                       // where the pending exception was thrown
   const void* constructed_index_ = nullptr;
   HostedCollection* constructing_collection_ = nullptr;
   ReadyQueue ready_;
