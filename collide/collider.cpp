@@ -35,6 +35,7 @@ void report_statistics(const Collider& collider, const Callback<CollisionStatist
 
 void retire(const Collider& collider) {
   collider.voxels.broadcast<&Voxel::retire>();
+  collider.managers.broadcast<&Manager::shrink>();
 }
 
 }  // namespace tess::collide

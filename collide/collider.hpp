@@ -52,8 +52,9 @@ struct Collider {
   GroupProxy<Manager> managers;
   ColliderOptions options;
 
-  /// Pass objects of a client on this PE to the local Manager. They throw Error as it does.
-  void submit(Objects objects) const { managers.local().submit(std::move(objects)); }
+  /// Pass objects of a client on this PE to the local Manager, which copies them. They throw Error as
+  /// it does.
+  void submit(const Objects& objects) const { managers.local().submit(objects); }
   void submit(const std::vector<Item>& items) const { managers.local().submit(items); }
 
   /// Frees the voxels, their balancer and the Managers on all PEs. No collision may be running. The
@@ -80,7 +81,8 @@ Task run_collision(Collider collider, Report report);
 ///     const CollisionStatistics statistics = co_await done;
 void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target);
 
-/// Ends the voxels that had no objects since the last call. No collision may be running.
+/// Ends the voxels that had no objects since the last call, and frees the memory that Managers keep
+/// for the next collision. No collision may be running.
 void retire(const Collider& collider);
 
 }  // namespace tess::collide

@@ -1,6 +1,7 @@
 #include "collide/parallel/voxel.hpp"
 
 #include "collide/parallel/hit_sorter.hpp"
+#include "collide/search/costs.hpp"
 #include "collide/search/voxel_search.hpp"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ class VoxelProblem {
       visitors_ = first.visitors();
       return;
     }
-    merged_ = {};
+    merged_.clear();
     entries_.clear();
     for (const Part& part : parts) part.copy(part.natives(), merged_, entries_);
     const std::size_t n_natives = entries_.size();
@@ -129,8 +130,7 @@ struct Receiver {
   static void call(void* context, const std::uint32_t* first, const std::uint32_t* second,
                    std::size_t n, bool /*swapped*/) {
     auto& self = *static_cast<Receiver*>(context);
-    for (std::size_t i = 0; i < n; ++i)
-      self.hits.add(self.objects.id(first[i]), self.objects.id(second[i]), self.report.only);
+    self.hits.add(self.objects, first, second, n, self.report.only);
   }
 };
 
@@ -144,7 +144,9 @@ void search_pairs(std::span<const Part> parts) {
   options.touching = rules.touching;
   scratch.search.restart(options, false, {&receiver, &Receiver::call});
   scratch.problem.for_each_search(rules.within_model, [&](const Problem& problem) {
-    const Aabb bounds = search::bounds_of(problem.boxes_a, problem.a);
+    // Few objects are compared wherever they are.
+    const bool is_small = problem.a.size() + problem.b.size() <= search::costs::few_objects;
+    const Aabb bounds = is_small ? Aabb{} : search::bounds_of(problem.boxes_a, problem.a);
     static_cast<void>(scratch.search.solve(problem, bounds, false));
   });
   receiver.hits.send(delivery.report.call);

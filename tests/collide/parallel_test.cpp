@@ -229,7 +229,7 @@ Task collide_apart(Problem& problem) {
   for (std::int64_t* sent : {&problem.n_sent_of_one_model, &problem.n_sent_of_two_models}) {
     co_await epoch([&] { clients.broadcast<&Client::submit>(collider, problem.scene); });
     if (sent == &problem.n_sent_of_two_models)
-      collider.submit(Objects{owner_of(Index1{0}), ModelId{7}, {far_box, far_box}});
+      collider.submit(Objects{owner_of(Index1{0}), ModelId{7}, std::array{far_box, far_box}});
     co_await run_collision(collider, report);
     Future<CollisionStatistics> done;
     report_statistics(collider, done.callback());
@@ -290,8 +290,8 @@ class CountingMember : public Group<CountingMember> {
 template <class Owners, class Owner>
 Task collide_two(Owners owners, OwnerId a, OwnerId b, Callback<Hits> call, std::int64_t& n) {
   const Collider collider = make_collider({});
-  collider.submit(Objects{a, ModelId{0}, {{{0, 0, 0}, {1, 1, 1}}}});
-  collider.submit(Objects{b, ModelId{1}, {{{1, 1, 1}, {2, 2, 2}}}});
+  collider.submit(Objects{a, ModelId{0}, std::array{Aabb{{0, 0, 0}, {1, 1, 1}}}});
+  collider.submit(Objects{b, ModelId{1}, std::array{Aabb{{1, 1, 1}, {2, 2, 2}}}});
   co_await run_collision(collider, {call, {}});
   Future<std::int64_t> all;
   owners.template broadcast<&Owner::count>(all.callback());
