@@ -42,6 +42,7 @@ class HitSorter {
       if (only ? of_b.model == *only : of_a.owner != of_b.owner) copy(second, b, first, a);
     }
   }
+  [[nodiscard]] bool empty() const noexcept { return lists_.empty(); }
   void send(const Callback<Hits>& call) {
     for (Hits& hits : lists_) call(std::move(hits));
   }

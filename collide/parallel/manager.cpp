@@ -1,5 +1,6 @@
 #include "collide/parallel/manager.hpp"
 
+#include "collide/parallel/pair_search.hpp"
 #include "collide/parallel/voxel_home.hpp"
 
 #include <algorithm>
@@ -39,6 +40,7 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   r.statistics.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
   r.delivery->plan = plan;
   r.delivery->report = report;
+  r.delivery->managers = group();
   r.delivery->sort.run(plan, r.delivery->objects);
   const std::vector<VoxelRecord>& all = r.delivery->sort.records();
   const auto n = static_cast<std::size_t>(n_pes());
@@ -134,6 +136,25 @@ void Manager::deliver(std::uint64_t step) {
   }
   last_ = r.statistics;
   rounds_.erase(step);
+}
+
+Task Manager::search_in_portions(std::vector<Part> parts) {
+  if (is_searching_) {
+    Future<void> turn;
+    turns_.push_back(turn.callback());
+    co_await turn;
+  }
+  is_searching_ = true;
+  PortionSearch search(std::move(parts));
+  for (HitSorter hits = search.next(); !hits.empty(); hits = search.next())
+    co_await epoch([&] { hits.send(search.call()); });
+  if (turns_.empty()) {
+    is_searching_ = false;
+  } else {
+    const auto next = std::move(turns_.front());
+    turns_.pop_front();
+    next();
+  }
 }
 
 }  // namespace tess::collide

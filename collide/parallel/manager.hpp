@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <vector>
@@ -63,6 +64,9 @@ class Manager : public Group<Manager> {
   void receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bundle);
   /// Sends some voxels' parts; then the next ones, when other messages had their turn.
   void deliver(std::uint64_t step);
+  /// Sends the pairs of a voxel on this PE that has too many for one message. The next portion is
+  /// searched when the owners have handled the last one; one voxel of a PE after another.
+  Task search_in_portions(std::vector<Part> parts);
 
   /// Frees the memory that is kept for the next collision.
   void shrink() { pool_.shrink(); }
@@ -99,6 +103,8 @@ class Manager : public Group<Manager> {
   DeliveryPool pool_;
   std::shared_ptr<Delivery> pending_;      // what is submitted for the next collision
   std::map<std::uint64_t, Round> rounds_;  // by step
+  bool is_searching_ = false;              // in portions
+  std::deque<Callback<void>> turns_;       // of the voxels that wait for it
   std::uint64_t n_steps_ = 0;
   CollisionStatistics last_;
 };

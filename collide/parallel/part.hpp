@@ -15,10 +15,13 @@
 
 namespace tess::collide {
 
+class Manager;
+
 /// The objects of a PE in a collision, and which of them are in which voxel.
 struct Delivery {
   Plan plan;
   Report report;
+  GroupProxy<Manager> managers;
   ObjectList objects;
   std::vector<search::Entry> sorted;  ///< by voxel
   VoxelSort sort;                     ///< on the PE of the objects
@@ -31,7 +34,7 @@ struct Delivery {
   }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(plan, report, objects, sorted);
+    ar(plan, report, managers, objects, sorted);
   }
 };
 
@@ -84,6 +87,7 @@ class Part {
     auto alone = std::make_shared<Delivery>();
     alone->plan = delivery_->plan;
     alone->report = delivery_->report;
+    alone->managers = delivery_->managers;
     copy(natives(), alone->objects, alone->sorted);
     copy(visitors(), alone->objects, alone->sorted);
     delivery_ = std::move(alone);
