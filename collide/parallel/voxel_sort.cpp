@@ -22,18 +22,6 @@ void VoxelSort::clear() {
   n_entries_ = 0;
 }
 
-namespace {
-
-/// As find_cells(), for objects that a plan has accepted.
-CellRange cells_in(const VoxelGrid& grid, const Aabb& box) {
-  CellRange range;
-  if (!grid.find_cells(box, range)) [[unlikely]]
-    range = grid.cells_of(box);  // throws
-  return range;
-}
-
-}  // namespace
-
 template <class IsWanted>
 void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
                        serial::CellNumbers& numbers, const IsWanted& is_wanted) {
@@ -51,7 +39,9 @@ void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!is_wanted(i)) continue;
     make_room(Corners::room);
-    const CellRange range = cells_in(grid, boxes[i]);
+    CellRange range;
+    if (!grid.find_cells(boxes[i], range)) [[unlikely]]
+      range = grid.cells_of(boxes[i]);  // throws
     const auto more = [](std::int32_t lo, std::int32_t hi) {
       return static_cast<std::uint32_t>(hi) - static_cast<std::uint32_t>(lo);
     };
