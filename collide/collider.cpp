@@ -11,12 +11,13 @@ Collider make_collider(const ColliderOptions& options) {
   return {voxels, create_group<Manager>(voxels), options};
 }
 
-Task run_collision(Collider collider, Report report) {
+Task run_collision(Collider collider, Report report, Callback<void> taken) {
   const ColliderOptions& o = collider.options;
   const std::uint64_t step = collider.managers.local().new_step();
   Future<Summary> known;
   collider.managers.broadcast<&Manager::prepare>(step, known.callback());
   const Summary summary = co_await known;
+  if (taken) taken();
   Plan plan;
   std::exception_ptr refused;
   try {
@@ -35,6 +36,7 @@ void report_statistics(const Collider& collider, const Callback<CollisionStatist
 
 void retire(const Collider& collider) {
   collider.voxels.broadcast<&Voxel::retire>();
+  collider.managers.broadcast<&Manager::shrink>();
 }
 
 }  // namespace tess::collide

@@ -19,8 +19,9 @@
 // submit() is a call to the local Manager. Before a collision, the main coroutine awaits an epoch
 // in which the clients submit. run_collision() collides what was submitted: it chooses the voxels
 // from all objects, and is done when the owners have handled all hits. A voxel starts as soon as
-// its objects are there. Collisions of several colliders may overlap, and of one, if what was
-// submitted to the earlier one has been taken: a collision takes what it finds on each PE.
+// its objects are there. Collisions of several colliders may overlap. Those of one may, too, if its
+// clients submit for the next one only when the objects of the one before are taken on all PEs,
+// which it reports: a collision takes what it finds on each PE.
 //
 // The voxels remain for the next collision; retire() ends those that are idle. They can be
 // balanced: call tess::start_balancing(collider.voxels, options) before the first collision, and
@@ -52,8 +53,9 @@ struct Collider {
   GroupProxy<Manager> managers;
   ColliderOptions options;
 
-  /// Pass objects of a client on this PE to the local Manager. They throw Error as it does.
-  void submit(Objects objects) const { managers.local().submit(std::move(objects)); }
+  /// Pass objects of a client on this PE to the local Manager, which copies them. They throw Error as
+  /// it does.
+  void submit(const Objects& objects) const { managers.local().submit(objects); }
   void submit(const std::vector<Item>& items) const { managers.local().submit(items); }
 
   /// Frees the voxels, their balancer and the Managers on all PEs. No collision may be running. The
@@ -69,9 +71,9 @@ struct Collider {
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all
-/// hits. Throws Error (out_of_range) if a coordinate exceeds the range of cells; then the objects are
+/// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws Error (out_of_range) if a coordinate exceeds the range of cells; then the objects are
 /// dropped.
-Task run_collision(Collider collider, Report report);
+Task run_collision(Collider collider, Report report, Callback<void> taken = {});
 
 /// What the last collision did, for example
 ///
@@ -80,7 +82,8 @@ Task run_collision(Collider collider, Report report);
 ///     const CollisionStatistics statistics = co_await done;
 void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target);
 
-/// Ends the voxels that had no objects since the last call. No collision may be running.
+/// Ends the voxels that had no objects since the last call, and frees the memory that Managers keep
+/// for the next collision. No collision may be running.
 void retire(const Collider& collider);
 
 }  // namespace tess::collide

@@ -1,5 +1,6 @@
 #include "collide/parallel/manager.hpp"
 
+#include "collide/parallel/pair_search.hpp"
 #include "collide/parallel/voxel_home.hpp"
 
 #include <algorithm>
@@ -10,16 +11,14 @@
 
 namespace tess::collide {
 
+ObjectList& Manager::pending() {
+  if (pending_ == nullptr) pending_ = pool_.take();
+  return pending_->objects;
+}
+
 void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
-  Prepared& prepared = prepared_[step];
-  prepared.objects = std::exchange(pending_, {});
-  const ObjectList& objects = prepared.objects;
-  Summary summary;
-  for (const Aabb& box : objects.boxes()) summary.add(box);
-  objects.for_each_model([&](ModelId model) { summary.add(model); });
-  summary.add_sample(objects.boxes(), n_pes());
-  prepared.bounds = summary.bounds;
-  contribute(in_order(JoinSummaries{}), std::move(summary), target);
+  contribute(in_order(JoinSummaries{}), Summary(pending(), n_pes()), target);
+  round(step).delivery = std::move(pending_);
 }
 
 template <auto F>
@@ -30,18 +29,20 @@ auto Manager::sender(std::uint64_t step) {
 }
 
 void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) {
-  Prepared prepared = std::move(prepared_.extract(step).mapped());
-  last_ = {};
+  Round& r = round(step);
   if (plan.nothing) {
-    last_.n_left_out = prepared.objects.boxes().size();
+    last_ = {};
+    last_.n_left_out = r.delivery->objects.size();
+    rounds_.erase(step);
     return;
   }
-  last_.voxel_size = std::min({plan.size[0], plan.size[1], plan.size[2]});
-  last_.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
-  Round& r = round(step);
-  r.delivery = std::make_shared<Delivery>(Delivery{plan, report, std::move(prepared.objects), {}});
-  r.sort = VoxelSort(plan, r.delivery->objects, prepared.bounds);
-  const std::vector<VoxelRecord>& all = r.sort.records();
+  r.statistics.voxel_size = std::min({plan.size[0], plan.size[1], plan.size[2]});
+  r.statistics.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
+  r.delivery->plan = plan;
+  r.delivery->report = report;
+  r.delivery->managers = group();
+  r.delivery->sort.run(plan, r.delivery->objects);
+  const std::vector<VoxelRecord>& all = r.delivery->sort.records();
   const auto n = static_cast<std::size_t>(n_pes());
   std::vector<std::uint32_t> home(all.size());
   r.ends.assign(n, 0);
@@ -94,38 +95,65 @@ void Manager::receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bun
 
 void Manager::deliver_if_answered(std::uint64_t step, Round& r) {
   if (!r.answers.is_done()) return;
-  std::vector<VoxelAnswer> answers(r.sort.records().size());
+  r.answer_of.resize(r.delivery->sort.records().size());
   for (const auto& [home, items] : r.answers.received()) {
     const std::uint32_t end = r.ends[static_cast<std::size_t>(home)];
     const std::uint32_t* const asked = r.by_home.data() + end - items.size();
-    for (std::size_t i = 0; i < items.size(); ++i) answers[asked[i]] = items[i];
+    for (std::size_t i = 0; i < items.size(); ++i) r.answer_of[asked[i]] = items[i];
   }
-  deliver(r, answers);
-  rounds_.erase(step);
+  r.delivery->sort.write_sorted(r.answer_of, r.delivery->sorted);
+  deliver(step);
 }
 
-void Manager::deliver(const Round& r, const std::vector<VoxelAnswer>& answers) {
-  r.delivery->sorted = r.sort.sorted(answers);
-  const std::vector<VoxelRecord>& records = r.sort.records();
-  std::uint32_t begin = 0;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const VoxelRecord& record = records[i];
+void Manager::deliver(std::uint64_t step) {
+  // The hits of so many entries fit into the cache until their owners receive them.
+  constexpr std::uint32_t most_entries = 4096;
+  Round& r = round(step);
+  const std::vector<VoxelRecord>& records = r.delivery->sort.records();
+  const std::uint32_t end = r.begin + most_entries;
+  for (; r.n_delivered < records.size() && r.begin < end; ++r.n_delivered) {
+    const VoxelRecord& record = records[r.n_delivered];
     const std::uint32_t n = record.n_natives + record.n_visitors;
-    const VoxelAnswer& answer = answers[i];
+    const VoxelAnswer& answer = r.answer_of[r.n_delivered];
     if (answer.n_senders == 0) {
-      last_.n_left_out += n;
+      r.statistics.n_left_out += n;
       continue;
     }
-    last_.n_entries += n;
-    last_.n_voxels += answer.makes_it;
-    Part part(r.delivery, begin, record.n_natives, record.n_visitors);
+    r.statistics.n_entries += n;
+    r.statistics.n_voxels += answer.makes_it;
+    Part part(r.delivery, r.begin, record.n_natives, record.n_visitors);
     const std::uint32_t n_senders = answer.n_senders;
     if (answer.makes_it != 0) {
       voxels_[record.voxel].send_or_create_here<&Voxel::add>(std::move(part), n_senders);
     } else {
       voxels_[record.voxel].send<&Voxel::add>(std::move(part), n_senders);
     }
-    begin += n;
+    r.begin += n;
+  }
+  if (r.n_delivered < records.size()) {
+    group()[pe()].send<&Manager::deliver>(step);
+    return;
+  }
+  last_ = r.statistics;
+  rounds_.erase(step);
+}
+
+Task Manager::search_in_portions(std::vector<Part> parts) {
+  if (is_searching_) {
+    Future<void> turn;
+    turns_.push_back(turn.callback());
+    co_await turn;
+  }
+  is_searching_ = true;
+  PortionSearch search(std::move(parts));
+  for (HitSorter hits = search.next(); !hits.empty(); hits = search.next())
+    co_await epoch([&] { hits.send(search.call()); });
+  if (turns_.empty()) {
+    is_searching_ = false;
+  } else {
+    const auto next = std::move(turns_.front());
+    turns_.pop_front();
+    next();
   }
 }
 

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/parallel/delivery_pool.hpp"
 #include "collide/parallel/exchange.hpp"
 #include "collide/parallel/part.hpp"
 #include "collide/parallel/plan.hpp"
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <vector>
@@ -47,8 +49,8 @@ class Manager : public Group<Manager> {
 
   /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid;
   /// then no object of the list is accepted.
-  void submit(Objects objects) { pending_.append(std::move(objects)); }
-  void submit(const std::vector<Item>& items) { pending_.append(items); }
+  void submit(const Objects& objects) { pending().append(objects); }
+  void submit(const std::vector<Item>& items) { pending().append(items); }
 
   /// A number for a collision that starts on this PE.
   [[nodiscard]] std::uint64_t new_step() {
@@ -60,40 +62,49 @@ class Manager : public Group<Manager> {
   void begin(std::uint64_t step, const Plan& plan, const Report& report);
   void receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bundle);
   void receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bundle);
+  /// Sends some voxels' parts; then the next ones, when other messages had their turn.
+  void deliver(std::uint64_t step);
+  /// Sends the pairs of a voxel on this PE that has too many for one message. The next portion is
+  /// searched when the owners have handled the last one; one voxel of a PE after another.
+  Task search_in_portions(std::vector<Part> parts);
+
+  /// Frees the memory that is kept for the next collision.
+  void shrink() { pool_.shrink(); }
 
   /// What this PE did in the last collision.
   [[nodiscard]] const CollisionStatistics& last() const { return last_; }
   void report_last(const Callback<CollisionStatistics>& target) { contribute(sum, last_, target); }
 
  private:
-  /// What was submitted for a collision.
-  struct Prepared {
-    ObjectList objects;
-    Aabb bounds{};
-  };
   /// A collision, as its sender and as the home of voxels.
   struct Round {
     Round(std::int32_t me, std::int32_t n_pes) : records(me, n_pes), answers(me, n_pes) {}
 
     std::shared_ptr<Delivery> delivery;
-    VoxelSort sort;
-    std::vector<std::uint32_t> by_home;  // positions in sort.records(), home after home
+    CollisionStatistics statistics;
+    std::vector<std::uint32_t> by_home;  // positions in the sort's records, home after home
     std::vector<std::uint32_t> ends;     // by home, in by_home
     Exchange<VoxelRecord> records;
     Exchange<VoxelAnswer> answers;
+
+    std::vector<VoxelAnswer> answer_of;  // per record
+    std::size_t n_delivered = 0;         // records
+    std::uint32_t begin = 0;             // of the next one's entries
   };
+  ObjectList& pending();
   Round& round(std::uint64_t step);
   /// Sends bundles of an exchange to the entry method F.
   template <auto F>
   auto sender(std::uint64_t step);
   void answer_if_asked(std::uint64_t step, Round& round);
   void deliver_if_answered(std::uint64_t step, Round& round);
-  void deliver(const Round& round, const std::vector<VoxelAnswer>& answers);
 
   const ArrayProxy<Voxel> voxels_;
-  ObjectList pending_;
-  std::map<std::uint64_t, Prepared> prepared_;  // by step
-  std::map<std::uint64_t, Round> rounds_;
+  DeliveryPool pool_;
+  std::shared_ptr<Delivery> pending_;      // what is submitted for the next collision
+  std::map<std::uint64_t, Round> rounds_;  // by step
+  bool is_searching_ = false;              // in portions
+  std::deque<Callback<void>> turns_;       // of the voxels that wait for it
   std::uint64_t n_steps_ = 0;
   CollisionStatistics last_;
 };

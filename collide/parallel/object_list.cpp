@@ -1,13 +1,25 @@
 #include "collide/parallel/object_list.hpp"
 
 #include "collide/search/entry.hpp"
+#include "collide/search/survey.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
-#include <utility>
 
 namespace tess::collide {
+namespace {
+
+[[noreturn]] void refuse(const Objects& objects) {
+  for (std::uint32_t i = 0;; ++i)
+    check_boxes(
+        {{Item{objects.boxes[i],
+               {objects.owner, static_cast<LocalId>(static_cast<std::uint32_t>(objects.first) + i),
+                objects.model}}}});
+}
+
+}  // namespace
 
 /// Entries have 28 bits for an object.
 void ObjectList::check_room(std::size_t n_more) const {
@@ -17,61 +29,91 @@ void ObjectList::check_room(std::size_t n_more) const {
          ": spread them over more PEs");
 }
 
-void ObjectList::number_objects() {
-  if (local_.size() == boxes_.size()) return;
-  source_of_.assign(boxes_.size(), 0);
-  local_.resize(boxes_.size());
-  std::iota(local_.begin(), local_.end(), 0U);
+void ObjectList::set_sources() {
+  if (source_of_.empty()) source_of_.assign(boxes_.size(), 0);
 }
 
-std::uint32_t ObjectList::source(OwnerId owner, ModelId model) {
-  const Source wanted{owner, model, 0};
+void ObjectList::number_objects() {
+  set_sources();
+  local_.reserve(boxes_.size());
+  for (auto i = static_cast<std::uint32_t>(local_.size()); i < boxes_.size(); ++i)
+    local_.push_back(i + sources_[source_of_[i]].shift);
+}
+
+/// For a list whose objects have numbers.
+std::uint32_t ObjectList::find_source(OwnerId owner, ModelId model) {
+  const auto is_wanted = [&](const Source& s) { return s.owner == owner && s.model == model; };
   // Most objects have the source of the one before.
-  if (!sources_.empty() && sources_.back() == wanted)
+  if (!sources_.empty() && is_wanted(sources_.back()))
     return static_cast<std::uint32_t>(sources_.size() - 1);
-  const auto known = std::find(sources_.begin(), sources_.end(), wanted);
+  const auto known = std::find_if(sources_.begin(), sources_.end(), is_wanted);
   const auto at = static_cast<std::uint32_t>(known - sources_.begin());
-  if (known == sources_.end()) sources_.push_back(wanted);
+  if (known == sources_.end()) sources_.push_back({owner, model, 0});
   return at;
 }
 
-void ObjectList::append(Objects objects) {
-  for (std::size_t i = 0; i < objects.boxes.size(); ++i)
-    if (!is_valid(objects.boxes[i]))
-      check_boxes(
-          {{Item{objects.boxes[i], {objects.owner, static_cast<LocalId>(i), objects.model}}}});
-  if (objects.boxes.empty()) return;
-  check_room(objects.boxes.size());
-  const std::uint32_t of = source(objects.owner, objects.model);
-  if (boxes_.empty() && of == 0) {
-    boxes_ = std::move(objects.boxes);
-    return;
+/// One pass over the boxes, in blocks that stay in the cache: they are checked, surveyed and copied.
+/// Only then does the list have them.
+void ObjectList::append(const Objects& objects) {
+  const std::size_t n = objects.boxes.size(), begin = boxes_.size();
+  if (n == 0) return;
+  check_room(n);
+  boxes_.reserve(begin + n);
+  Aabb bounds = bounds_;
+  std::array<std::uint8_t, search::n_octaves<double>> octaves = octaves_;
+  constexpr std::size_t most = 256;
+  for (std::size_t at = 0; at < n; at += most) {
+    const auto block = objects.boxes.subspan(at, std::min(most, n - at));
+    try {
+      bounds = merged(bounds, search::checked_bounds(block, ""));
+    } catch (const Error&) {
+      refuse(objects);
+    }
+    for (const Aabb& box : block) octaves[search::octave_of(search::longest_extent(box))] = 1;
+    std::memcpy(boxes_.data() + begin + at, block.data(), block.size_bytes());
   }
-  number_objects();
-  const std::size_t n = objects.boxes.size();
-  boxes_.insert(boxes_.end(), objects.boxes.begin(), objects.boxes.end());
-  source_of_.insert(source_of_.end(), n, of);
-  local_.resize(local_.size() + n);
-  std::iota(local_.end() - static_cast<std::ptrdiff_t>(n), local_.end(), 0U);
+  bounds_ = bounds;
+  octaves_ = octaves;
+  const Source source{
+      objects.owner, objects.model,
+      static_cast<std::uint32_t>(objects.first) - static_cast<std::uint32_t>(begin)};
+  if (sources_.empty() || sources_.back() != source) sources_.push_back(source);
+  if (sources_.size() > 1 || !source_of_.empty()) {
+    set_sources();
+    source_of_.insert(source_of_.end(), n, static_cast<std::uint32_t>(sources_.size() - 1));
+  }
+  boxes_.resize(begin + n);
+  if (!local_.empty()) number_objects();
 }
 
 void ObjectList::append(std::span<const Item> items) {
+  if (items.empty()) return;
   check_boxes(items);
   check_room(items.size());
   number_objects();
-  boxes_.reserve(boxes_.size() + items.size());
   for (const Item& item : items) {
     boxes_.push_back(item.box);
-    source_of_.push_back(source(item.id.owner, item.id.model));
+    bounds_ = merged(bounds_, item.box);
+    octaves_[search::octave_of(search::longest_extent(item.box))] = 1;
+    source_of_.push_back(find_source(item.id.owner, item.id.model));
     local_.push_back(static_cast<std::uint32_t>(item.id.local));
   }
 }
 
 void ObjectList::append(const ObjectList& from, std::uint32_t object) {
-  const ObjectId id = from.id(object);
-  boxes_.push_back(from.boxes_[object]);
-  source_of_.push_back(source(id.owner, id.model));
-  local_.push_back(static_cast<std::uint32_t>(id.local));
+  const std::uint32_t source = from.source(object);
+  boxes_.push_back(from.boxes_.data()[object]);
+  source_of_.push_back(find_source(from.sources_[source].owner, from.sources_[source].model));
+  local_.push_back(static_cast<std::uint32_t>(from.local(object, source)));
+}
+
+void ObjectList::clear() {
+  boxes_.resize(0);
+  sources_.clear();
+  source_of_.clear();
+  local_.clear();
+  bounds_ = no_box<double, 3>();
+  octaves_.fill(0);
 }
 
 bool ObjectList::has_one_model() const noexcept {

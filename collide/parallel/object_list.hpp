@@ -1,68 +1,91 @@
 // Objects of several clients in one list: the boxes, and per object a number of four bytes for its
-// client and model, and one for its number there. Lists of a single client have neither.
+// client and model, and one for its number there. Lists of a single client have neither. A list that
+// is cleared keeps its memory.
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/search/scratch.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace tess::collide {
 
-/// Objects of one owner and model; the number of an object is its position.
+/// Objects of one owner and model, numbered from `first` on. The boxes are copied when they are
+/// submitted.
 struct Objects {
   OwnerId owner{};
   ModelId model{};
-  std::vector<Aabb> boxes;
+  std::span<const Aabb> boxes;
+  LocalId first{};
 };
 
 class ObjectList {
  public:
   /// Both throw Error (bad_value) with the object if a box is not valid, or with the number of
   /// objects if it is above 2^28, and change nothing.
-  void append(Objects objects);
+  void append(const Objects& objects);
   void append(std::span<const Item> items);
-  /// An object of another list; its box is valid.
+  /// An object of another list. Not counted in bounds() and has_octave().
   void append(const ObjectList& from, std::uint32_t object);
+  void clear();
 
-  [[nodiscard]] const std::vector<Aabb>& boxes() const noexcept { return boxes_; }
-  [[nodiscard]] ObjectId id(std::uint32_t object) const noexcept {
-    const Source& source = sources_[source_of_.empty() ? 0 : source_of_[object]];
-    return {source.owner, static_cast<LocalId>(local_.empty() ? object : local_[object]),
-            source.model};
+  [[nodiscard]] std::uint32_t size() const noexcept {
+    return static_cast<std::uint32_t>(boxes_.size());
+  }
+  [[nodiscard]] std::span<const Aabb> boxes() const noexcept {
+    return {boxes_.data(), boxes_.size()};
+  }
+  [[nodiscard]] const Aabb& bounds() const noexcept { return bounds_; }
+  /// True if the longest extent of an object has this octave (search/survey.hpp).
+  [[nodiscard]] bool has_octave(std::size_t octave) const noexcept { return octaves_[octave] != 0; }
+
+  /// Where objects come from.
+  struct Source {
+    OwnerId owner{};
+    ModelId model{};
+    std::uint32_t shift = 0;  // the number of an object is its position plus this, modulo 2^32
+    friend bool operator==(const Source&, const Source&) = default;
+  };
+  [[nodiscard]] std::span<const Source> sources() const noexcept { return sources_; }
+  /// The position of an object's source in sources().
+  [[nodiscard]] std::uint32_t source(std::uint32_t object) const noexcept {
+    return source_of_.empty() ? 0 : source_of_[object];
   }
   [[nodiscard]] ModelId model(std::uint32_t object) const noexcept {
-    return sources_[source_of_.empty() ? 0 : source_of_[object]].model;
+    return sources_[source(object)].model;
+  }
+  /// The number of an object of sources()[source].
+  [[nodiscard]] LocalId local(std::uint32_t object, std::uint32_t source) const noexcept {
+    return static_cast<LocalId>(local_.empty() ? object + sources_[source].shift : local_[object]);
   }
   /// True if all objects have one model.
   [[nodiscard]] bool has_one_model() const noexcept;
 
-  template <class Visit>
-  void for_each_model(const Visit& visit) const {
-    for (const Source& source : sources_) visit(source.model);
-  }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(boxes_, sources_, source_of_, local_);
+    std::uint64_t n = boxes_.size();
+    ar(n, sources_, source_of_, local_);
+    boxes_.resize(n);
+    ar.bytes(boxes_.data(), n * sizeof(Aabb));
   }
 
  private:
-  struct Source {
-    OwnerId owner{};
-    ModelId model{};
-    std::uint32_t unused = 0;
-    friend bool operator==(const Source&, const Source&) = default;
-  };
   void check_room(std::size_t n_more) const;
   /// Sets the numbers of the objects that have none.
   void number_objects();
-  std::uint32_t source(OwnerId owner, ModelId model);
+  void set_sources();
+  std::uint32_t find_source(OwnerId owner, ModelId model);
 
-  std::vector<Aabb> boxes_;
+  search::Scratch<Aabb> boxes_;
   std::vector<Source> sources_;
   std::vector<std::uint32_t> source_of_;  // per object; empty: all 0
-  std::vector<std::uint32_t> local_;      // per object; empty: its position
+  std::vector<std::uint32_t> local_;      // per object; empty: by the shift of the source
+  Aabb bounds_ = no_box<double, 3>();
+  std::array<std::uint8_t, 2048> octaves_{};
 };
 
 }  // namespace tess::collide

@@ -6,6 +6,7 @@
 #include "collide/parallel/object_list.hpp"
 #include "collide/parallel/plan.hpp"
 #include "collide/parallel/report.hpp"
+#include "collide/parallel/voxel_sort.hpp"
 #include "collide/search/entry.hpp"
 
 #include <memory>
@@ -14,16 +15,26 @@
 
 namespace tess::collide {
 
+class Manager;
+
 /// The objects of a PE in a collision, and which of them are in which voxel.
 struct Delivery {
   Plan plan;
   Report report;
+  GroupProxy<Manager> managers;
   ObjectList objects;
   std::vector<search::Entry> sorted;  ///< by voxel
+  VoxelSort sort;                     ///< on the PE of the objects
 
+  /// Keeps the memory.
+  void clear() {
+    objects.clear();
+    sorted.clear();
+    sort.clear();
+  }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(plan, report, objects, sorted);
+    ar(plan, report, managers, objects, sorted);
   }
 };
 
@@ -50,7 +61,7 @@ class Part {
   void copy(std::span<const search::Entry> entries, ObjectList& objects,
             std::vector<search::Entry>& copies) const {
     for (const search::Entry entry : entries) {
-      const auto n = static_cast<std::uint32_t>(objects.boxes().size());
+      const std::uint32_t n = objects.size();
       objects.append(delivery_->objects, search::object_of(entry));
       copies.push_back(search::make_entry(n, search::below_of(entry)));
     }
@@ -73,7 +84,10 @@ class Part {
   /// Copies the objects of this part.
   void make_alone() {
     if (delivery_->sorted.size() == n_natives_ + n_visitors_) return;
-    auto alone = std::make_shared<Delivery>(Delivery{delivery_->plan, delivery_->report, {}, {}});
+    auto alone = std::make_shared<Delivery>();
+    alone->plan = delivery_->plan;
+    alone->report = delivery_->report;
+    alone->managers = delivery_->managers;
     copy(natives(), alone->objects, alone->sorted);
     copy(visitors(), alone->objects, alone->sorted);
     delivery_ = std::move(alone);

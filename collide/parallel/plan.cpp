@@ -10,23 +10,20 @@
 
 namespace tess::collide {
 
-void Summary::add(const Aabb& box) {
-  ++n;
-  bounds = merged(bounds, box);
-  const std::uint32_t octave = search::octave_of(search::longest_extent(box));
-  octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
+Summary::Summary(const ObjectList& objects, std::int32_t n_pes)
+    : n(objects.size()), bounds(objects.bounds()) {
+  for (std::size_t octave = 0; octave < search::n_octaves<double>; ++octave)
+    if (objects.has_octave(octave)) octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
+  for (const ObjectList::Source& source : objects.sources()) add(source.model);
+  const std::size_t wanted = std::max<std::size_t>(8, 4096 / static_cast<std::size_t>(n_pes));
+  const std::size_t n_taken = std::min<std::size_t>(n, wanted);
+  for (std::size_t i = 0; i < n_taken; ++i)
+    sample.push_back(objects.boxes()[search::scattered(i, n_taken, n)]);
 }
 
 void Summary::add(ModelId model) {
   if (models.size() < 3 && std::find(models.begin(), models.end(), model) == models.end())
     models.push_back(model);
-}
-
-void Summary::add_sample(std::span<const Aabb> boxes, std::int32_t n_pes) {
-  const std::size_t wanted = std::max<std::size_t>(8, 4096 / static_cast<std::size_t>(n_pes));
-  const std::size_t n_taken = std::min(boxes.size(), wanted);
-  for (std::size_t i = 0; i < n_taken; ++i)
-    sample.push_back(boxes[search::scattered(i, n_taken, boxes.size())]);
 }
 
 Summary JoinSummaries::operator()(Summary a, const Summary& b) const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/parallel/object_list.hpp"
 #include "collide/serial/voxel_grid.hpp"
 
 #include <array>
@@ -22,10 +23,10 @@ struct Summary {
   std::array<std::uint64_t, 32> octaves{};  ///< a bit per octave of the longest extents
   std::vector<ModelId> models;              ///< at most three different ones
 
-  void add(const Aabb& box);
+  Summary() = default;
+  /// Of the objects on one of so many PEs.
+  Summary(const ObjectList& objects, std::int32_t n_pes);
   void add(ModelId model);
-  /// Adds a sample of the boxes.
-  void add_sample(std::span<const Aabb> boxes, std::int32_t n_pes);
 
   template <class Ar>
   void serialize(Ar& ar) {

@@ -2,29 +2,25 @@
 
 #include "collide/search/survey.hpp"
 #include "collide/search/wide.hpp"
+#include "runtime/core/uninitialised.hpp"
 
 #include <algorithm>
 
 namespace tess::collide {
 
-VoxelSort::VoxelSort(const Plan& plan, const ObjectList& objects, const Aabb& bounds) {
-  if (objects.boxes().empty()) return;
+void VoxelSort::run(const Plan& plan, const ObjectList& objects) {
+  if (objects.size() == 0) return;
   for (Level level = 0; level < most_levels; ++level)
-    if (plan.has(level)) sort_level(plan, objects.boxes(), bounds, level);
+    if (plan.has(level)) sort_level(plan, objects, level);
   note_models(objects);
 }
 
-namespace {
-
-/// As find_cells(), for objects that a plan has accepted.
-CellRange cells_in(const VoxelGrid& grid, const Aabb& box) {
-  CellRange range;
-  if (!grid.find_cells(box, range)) [[unlikely]]
-    range = grid.cells_of(box);  // throws
-  return range;
+void VoxelSort::clear() {
+  records_.clear();
+  levels_.clear();
+  slots_.clear();
+  n_entries_ = 0;
 }
-
-}  // namespace
 
 template <class IsWanted>
 void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
@@ -35,15 +31,17 @@ void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
   std::size_t n = n_entries_, room = 0;
   const auto make_room = [&](std::size_t more) {
     if (n + more <= room) return;
-    slot_of_.reserve(n + more);
+    cell_of_.reserve(n + more);
     entry_of_.reserve(n + more);
-    room = std::min(slot_of_.capacity(), entry_of_.capacity());
+    room = std::min(cell_of_.capacity(), entry_of_.capacity());
   };
   make_room(boxes.size() + boxes.size() / 2);
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!is_wanted(i)) continue;
     make_room(Corners::room);
-    const CellRange range = cells_in(grid, boxes[i]);
+    CellRange range;
+    if (!grid.find_cells(boxes[i], range)) [[unlikely]]
+      range = grid.cells_of(boxes[i]);  // throws
     const auto more = [](std::int32_t lo, std::int32_t hi) {
       return static_cast<std::uint32_t>(hi) - static_cast<std::uint32_t>(lo);
     };
@@ -52,20 +50,20 @@ void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
     if (is_dense && (x | y | z) < 2) [[likely]] {
       n += corners.write(numbers.dense_number(range.lo),
                          static_cast<std::uint32_t>(search::make_entry(i, 0)), x | y << 1 | z << 2,
-                         slot_of_.data() + n, entry_of_.data() + n);
+                         cell_of_.data() + n, entry_of_.data() + n);
       continue;
     }
     make_room(static_cast<std::size_t>(range.n_cells()));
     numbers.for_each(range, [&](std::uint32_t number, std::uint32_t below) {
-      slot_of_.data()[n] = number;
+      cell_of_.data()[n] = number;
       entry_of_.data()[n++] = static_cast<std::uint32_t>(search::make_entry(i, below));
     });
   }
   n_entries_ = n;
 }
 
-void VoxelSort::sort_level(const Plan& plan, const std::vector<Aabb>& boxes, const Aabb& bounds,
-                           Level level) {
+void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level level) {
+  const std::span<const Aabb> boxes = objects.boxes();
   const VoxelGrid grid = plan.grid(level);
   const bool one_level = plan.levels == 1U << level;
   const auto level_of = [&](std::uint32_t i) {
@@ -73,65 +71,85 @@ void VoxelSort::sort_level(const Plan& plan, const std::vector<Aabb>& boxes, con
   };
   const auto is_native = [&](std::uint32_t i) { return one_level || level_of(i) == level; };
   const auto is_visitor = [&](std::uint32_t i) { return level_of(i) < level; };
-  serial::CellNumbers numbers(grid.cells_of(bounds), static_cast<double>(boxes.size()));
+  serial::CellNumbers numbers(grid.cells_of(objects.bounds()), static_cast<double>(boxes.size()));
 
-  const std::size_t begin = n_entries_;
+  Sorted& sorted = levels_.emplace_back();
+  sorted.begin = n_entries_;
   spread(boxes, grid, numbers, is_native);
-  const std::size_t first_visitor = n_entries_;
+  sorted.first_visitor = n_entries_;
   if (!one_level) spread(boxes, grid, numbers, is_visitor);
+  sorted.end = n_entries_;
+  sorted.first_slot = slots_.size();
+  sorted.n_cells = numbers.size();
 
-  // Per number: how many natives and visitors; then the position of the record.
-  std::vector<std::array<std::uint32_t, 2>> counts(numbers.size());
-  std::uint32_t* const slot_of = slot_of_.data();
-  for (std::size_t e = begin; e < first_visitor; ++e) ++counts[slot_of[e]][0];
-  for (std::size_t e = first_visitor; e < n_entries_; ++e) ++counts[slot_of[e]][1];
-  for (std::uint32_t number = 0; number < counts.size(); ++number) {
-    const auto [n_natives, n_visitors] = counts[number];
+  slots_.resize(slots_.size() + 2 * sorted.n_cells);
+  std::uint32_t* const counts = slots_.data() + sorted.first_slot;
+  const std::uint32_t* const cell_of = cell_of_.data();
+  for (std::size_t e = sorted.begin; e < sorted.first_visitor; ++e) ++counts[2 * cell_of[e]];
+  for (std::size_t e = sorted.first_visitor; e < sorted.end; ++e) ++counts[2 * cell_of[e] + 1];
+  for (std::uint32_t number = 0; number < sorted.n_cells; ++number) {
+    const std::uint32_t n_natives = counts[2 * number], n_visitors = counts[2 * number + 1];
     if (n_natives + n_visitors == 0) continue;
-    counts[number][0] = static_cast<std::uint32_t>(records_.size());
     const Cell cell = numbers.cell(number);
     records_.push_back({{cell.x, cell.y, cell.z, level}, n_natives, n_visitors, {}, 0});
   }
-  for (std::size_t e = begin; e < n_entries_; ++e)
-    slot_of[e] = 2 * counts[slot_of[e]][0] + (e < first_visitor ? 0U : 1U);
 }
 
 void VoxelSort::note_models(const ObjectList& objects) {
-  if (objects.boxes().empty()) return;
   if (objects.has_one_model()) {
     for (VoxelRecord& record : records_) record.model = objects.model(0);
     return;
   }
-  std::vector<bool> seen(records_.size());
-  for (std::size_t e = 0; e < n_entries_; ++e) {
-    const std::uint32_t r = slot_of_.data()[e] / 2;
-    const ModelId model =
-        objects.model(search::object_of(static_cast<search::Entry>(entry_of_.data()[e])));
-    if (!seen[r]) {
-      seen[r] = true;
-      records_[r].model = model;
-    } else if (records_[r].model != model) {
-      records_[r].several_models = 1;
+  // Per cell, in the order of the slots: 0, a model + 1, or several.
+  constexpr std::uint64_t several = ~std::uint64_t{0};
+  std::vector<std::uint64_t> models(slots_.size() / 2);
+  for (const Sorted& level : levels_) {
+    std::uint64_t* const of_cell = models.data() + level.first_slot / 2;
+    for (std::size_t e = level.begin; e < level.end; ++e) {
+      const auto object = search::object_of(static_cast<search::Entry>(entry_of_.data()[e]));
+      const std::uint64_t code = static_cast<std::uint64_t>(objects.model(object)) + 1;
+      std::uint64_t& known = of_cell[cell_of_.data()[e]];
+      known = known == 0 || known == code ? code : several;
     }
+  }
+  std::size_t r = 0;
+  for (const std::uint64_t known : models) {
+    if (known == 0) continue;
+    VoxelRecord& record = records_[r++];
+    record.several_models = known == several ? 1 : 0;
+    record.model = static_cast<ModelId>(known == several ? 0 : known - 1);
   }
 }
 
-std::vector<search::Entry> VoxelSort::sorted(std::span<const VoxelAnswer> answers) const {
+void VoxelSort::write_sorted(std::span<const VoxelAnswer> answers,
+                             std::vector<search::Entry>& sorted) {
   constexpr std::uint32_t nowhere = ~std::uint32_t{0};
-  std::vector<std::uint32_t> next(2 * records_.size(), nowhere);  // per slot: the next position
   std::uint32_t end = 0;
-  for (std::size_t r = 0; r < records_.size(); ++r) {
-    if (answers[r].n_senders == 0) continue;
-    next[2 * r] = end;
-    next[2 * r + 1] = end += records_[r].n_natives;
-    end += records_[r].n_visitors;
+  std::size_t r = 0;
+  for (std::size_t slot = 0; slot < slots_.size(); slot += 2) {
+    std::uint32_t &natives = slots_[slot], &visitors = slots_[slot + 1];
+    if (natives + visitors == 0) continue;
+    if (answers[r++].n_senders == 0) {
+      natives = visitors = nowhere;
+      continue;
+    }
+    const std::uint32_t n_natives = natives, n_visitors = visitors;
+    natives = end;
+    visitors = end + n_natives;
+    end += n_natives + n_visitors;
   }
-  std::vector<search::Entry> out(end);
-  for (std::size_t e = 0; e < n_entries_; ++e) {
-    std::uint32_t& place = next[slot_of_.data()[e]];
-    if (place != nowhere) out[place++] = static_cast<search::Entry>(entry_of_.data()[e]);
+  resize_uninitialised(sorted, end);
+  const auto place = [&](std::size_t first_slot, std::size_t begin, std::size_t after) {
+    std::uint32_t* const next = slots_.data() + first_slot;
+    for (std::size_t e = begin; e < after; ++e) {
+      std::uint32_t& at = next[2 * cell_of_.data()[e]];
+      if (at != nowhere) sorted[at++] = static_cast<search::Entry>(entry_of_.data()[e]);
+    }
+  };
+  for (const Sorted& level : levels_) {
+    place(level.first_slot, level.begin, level.first_visitor);
+    place(level.first_slot + 1, level.first_visitor, level.end);
   }
-  return out;
 }
 
 }  // namespace tess::collide

@@ -29,31 +29,38 @@ struct VoxelAnswer {
   std::uint32_t makes_it = 0;   ///< this PE makes the voxel
 };
 
+/// Keeps its memory from sort to sort.
 class VoxelSort {
  public:
-  VoxelSort() = default;
-  /// `bounds`: of the objects.
-  VoxelSort(const Plan& plan, const ObjectList& objects, const Aabb& bounds);
+  void run(const Plan& plan, const ObjectList& objects);
+  void clear();
 
   [[nodiscard]] const std::vector<VoxelRecord>& records() const noexcept { return records_; }
 
   /// The entries of the voxels that are not left out, voxel after voxel in the order of the
-  /// records: first the natives, then the visitors. One answer per record.
-  [[nodiscard]] std::vector<search::Entry> sorted(std::span<const VoxelAnswer> answers) const;
+  /// records: first the natives, then the visitors. One answer per record. Called once per sort.
+  void write_sorted(std::span<const VoxelAnswer> answers, std::vector<search::Entry>& sorted);
 
  private:
-  void sort_level(const Plan& plan, const std::vector<Aabb>& boxes, const Aabb& bounds,
-                  Level level);
-  /// Writes the numbers of the cells that objects touch, to slot_of_, and their entries.
+  void sort_level(const Plan& plan, const ObjectList& objects, Level level);
+  /// Writes the numbers of the cells that objects touch, and their entries.
   template <class IsWanted>
   void spread(std::span<const Aabb> boxes, const VoxelGrid& grid, serial::CellNumbers& numbers,
               const IsWanted& is_wanted);
   void note_models(const ObjectList& objects);
 
-  std::vector<VoxelRecord> records_;
-  // Per object and voxel: twice the position of the record, plus 1 for a visitor; and the entry.
-  search::Scratch<std::uint32_t> slot_of_, entry_of_;
+  /// A level: its cells are numbered from 0, and its entries stand together.
+  struct Sorted {
+    std::size_t begin, first_visitor, end;  // of the entries
+    std::size_t first_slot, n_cells;        // natives of a cell have the slot 2 * number, visitors
+                                            // the one after it
+  };
+
+  std::vector<VoxelRecord> records_;  // of the cells that have entries, in the order of the slots
+  std::vector<Sorted> levels_;
+  search::Scratch<std::uint32_t> cell_of_, entry_of_;  // per object and voxel
   std::size_t n_entries_ = 0;
+  std::vector<std::uint32_t> slots_;  // how many entries; then the position of the next
 };
 
 }  // namespace tess::collide

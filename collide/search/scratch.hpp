@@ -36,6 +36,10 @@ class Scratch {
   void reserve(std::size_t n) {
     if (n > capacity_) grow(std::max(n, capacity_ + capacity_ / 2));
   }
+  void push_back(const T& value) {
+    resize(size_ + 1);
+    data_[size_ - 1] = value;
+  }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
   [[nodiscard]] T* data() noexcept { return data_.get(); }

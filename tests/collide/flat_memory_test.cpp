@@ -1,8 +1,12 @@
-// Colliders that end leave no memory behind, as the system sees it.
+// Colliders that end leave no memory behind, as the system sees it, and pairs without number need
+// little.
 #include "collide/collider.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/resident.hpp"
+
+#include <sys/resource.h>
+#include <vector>
 
 namespace {
 
@@ -23,6 +27,40 @@ class Client : public Chare<Client> {
  private:
   std::uint64_t n_pairs_ = 0;
 };
+
+/// Owns boxes that are all equal.
+class Crowd : public Chare<Crowd> {
+ public:
+  void submit(const Collider& collider, std::int32_t n_boxes) {
+    const std::vector<Aabb> boxes(static_cast<std::size_t>(n_boxes), Aabb{{0, 0, 0}, {1, 1, 1}});
+    collider.submit(Objects{owner_of(index()), {}, boxes});
+  }
+  void receive(const Hits& hits) { n_pairs_ += hits.pairs.size(); }
+  void count(Callback<std::uint64_t> target) { contribute(sum, n_pairs_, std::move(target)); }
+
+ private:
+  std::uint64_t n_pairs_ = 0;
+};
+
+Task collide_crowd(std::int32_t n_boxes, std::uint64_t& n_pairs) {
+  Collider collider;
+  ArrayProxy<Crowd> crowd;
+  co_await epoch([&] {
+    collider = make_collider({.rules = {.within_model = WithinModel::test}});
+    crowd = create<Crowd>(range(1));
+  });
+  co_await epoch([&] { crowd.broadcast<&Crowd::submit>(collider, n_boxes); });
+  co_await run_collision(collider, {report_to<&Crowd::receive>(crowd), {}});
+  Future<std::uint64_t> total;
+  crowd.broadcast<&Crowd::count>(total.callback());
+  n_pairs = co_await total;
+}
+
+std::int64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
+}
 
 constexpr int n_clients = 8;
 
@@ -54,6 +92,16 @@ TEST_CASE("colliders in a loop leave memory flat", "[collide]") {
   INFO("grows by " << growth.bytes() << " bytes from round 2000 to 8000");
   REQUIRE(growth.bytes() >= 0);
   CHECK(growth.bytes() < 1 << 20);
+}
+
+TEST_CASE("the pairs of 20 000 equal boxes, 1.6 GB, take less than 64 MiB", "[collide]") {
+  constexpr std::uint64_t n = 20'000;
+  const std::int64_t before = peak_bytes();
+  std::uint64_t n_pairs = 0;
+  Setup setup{make_threads_machine(2), {}};
+  REQUIRE(run(setup, [&]() -> Task { return collide_crowd(n, n_pairs); }) == 0);
+  CHECK(n_pairs == n * (n - 1) / 2);
+  CHECK(peak_bytes() - before < 64 << 20);
 }
 
 }  // namespace

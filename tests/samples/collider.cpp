@@ -22,10 +22,10 @@ class Client : public tess::Chare<Client, tess::Index1> {
   }
 
  private:
-  [[nodiscard]] tess::collide::Objects boxes() const {
+  [[nodiscard]] std::vector<tess::collide::Item> boxes() const {
     const double x = index().x;
     const auto model = static_cast<tess::collide::ModelId>(index().x % 2);
-    return {tess::collide::owner_of(index()), model, {{{x, 0, 0}, {x + 1.5, 1, 1}}}};
+    return {{{{x, 0, 0}, {x + 1.5, 1, 1}}, {tess::collide::owner_of(index()), {}, model}}};
   }
   std::uint64_t n_pairs_ = 0;
 };

@@ -47,11 +47,10 @@ std::string name_of(const Setting& setting) {
 /// Submits boxes of the scene, and counts their pairs.
 class Client : public tess::Chare<Client, tess::Index1> {
  public:
-  void take(ModelId model, std::vector<Aabb> boxes) {
-    mine_.push_back({owner_of(index()), model, std::move(boxes)});
-  }
+  void take(ModelId model, std::vector<Aabb> boxes) { mine_.push_back({model, std::move(boxes)}); }
   void submit(const Collider& collider) {
-    for (Objects& objects : mine_) collider.submit(std::move(objects));
+    for (const auto& [model, boxes] : mine_)
+      collider.submit(Objects{owner_of(index()), model, boxes});
     mine_.clear();
   }
   void receive(const Hits& hits) {
@@ -62,7 +61,11 @@ class Client : public tess::Chare<Client, tess::Index1> {
   }
 
  private:
-  std::vector<Objects> mine_;
+  struct Set {
+    ModelId model;
+    std::vector<Aabb> boxes;
+  };
+  std::vector<Set> mine_;
   std::uint64_t n_pairs_ = 0;
 };
 

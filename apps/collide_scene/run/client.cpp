@@ -19,20 +19,18 @@ void Client::take(Piece piece) {
 }
 
 void Client::submit(const Collider& collider) {
-  std::vector<Aabb> boxes = piece_.boxes;
-  boxes.reserve(piece_.triangles.size() + piece_.boxes.size());
-  for (const Triangle& triangle : piece_.triangles) boxes.push_back(box_of(triangle));
-  const auto& models = piece_.models;
-  const OwnerId me = owner_of(index());
-  if (models.empty() || std::ranges::count(models, models.front()) == std::ssize(models)) {
-    collider.submit(Objects{me, ModelId{models.empty() ? 0 : models.front()}, std::move(boxes)});
-    return;
+  boxes_ = piece_.boxes;
+  boxes_.reserve(piece_.triangles.size() + piece_.boxes.size());
+  for (const Triangle& triangle : piece_.triangles) boxes_.push_back(box_of(triangle));
+  const std::vector<std::uint32_t>& models = piece_.models;
+  // One list per run of a model.
+  for (std::size_t begin = 0, end = 0; begin < boxes_.size(); begin = end) {
+    end = models.empty() ? boxes_.size() : begin + 1;
+    while (end < boxes_.size() && models[end] == models[begin]) ++end;
+    collider.submit(Objects{owner_of(index()), ModelId{models.empty() ? 0 : models[begin]},
+                            std::span(boxes_).subspan(begin, end - begin),
+                            static_cast<LocalId>(begin)});
   }
-  std::vector<Item> items;
-  items.reserve(boxes.size());
-  for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    items.push_back({boxes[i], {me, LocalId{i}, ModelId{models[i]}}});
-  collider.submit(items);
 }
 
 void Client::receive(const Hits& hits) {

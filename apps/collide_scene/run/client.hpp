@@ -56,7 +56,7 @@ class Client : public tess::Chare<Client, tess::Index1> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(piece_, answer_, pairs_);
+    ar(piece_, boxes_, answer_, pairs_);
   }
 
  private:
@@ -65,6 +65,7 @@ class Client : public tess::Chare<Client, tess::Index1> {
   [[nodiscard]] bool meet(const tess::collide::Triangle& a, const tess::collide::Triangle& b) const;
 
   Piece piece_;
+  std::vector<tess::collide::Aabb> boxes_;  // of the last submit(); the memory is kept
   Answer answer_;
   std::vector<ScenePair> pairs_;
 };

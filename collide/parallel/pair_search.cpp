@@ -1,0 +1,125 @@
+#include "collide/parallel/pair_search.hpp"
+
+#include "collide/search/costs.hpp"
+#include "collide/search/voxel_search.hpp"
+
+#include <utility>
+
+namespace tess::collide {
+namespace {
+
+using Search = search::VoxelSearch<double, 3>;
+
+/// The scratch memory of a thread.
+struct Scratch {
+  VoxelProblem problem;
+  Search search{{}, false, {nullptr, nullptr}};
+};
+Scratch& scratch() {
+  static thread_local Scratch memory;
+  return memory;
+}
+
+/// Ends a search early.
+struct TooManyPairs {};
+
+/// Sorts pairs by the owners of their objects.
+struct Receiver {
+  const ObjectList& objects;
+  const Report& report;
+  HitSorter hits;
+  std::size_t n_pairs = 0;
+
+  static void call(void* context, const std::uint32_t* first, const std::uint32_t* second,
+                   std::size_t n, bool /*swapped*/) {
+    auto& self = *static_cast<Receiver*>(context);
+    self.n_pairs += n;
+    if (self.n_pairs > most_pairs) throw TooManyPairs{};
+    self.hits.add(self.objects, first, second, n, self.report.only);
+  }
+};
+
+void solve(const Problem& problem, Search& search) {
+  // Few objects are compared wherever they are.
+  const bool is_small = problem.a.size() + problem.b.size() <= search::costs::few_objects;
+  const Aabb bounds = is_small ? Aabb{} : search::bounds_of(problem.boxes_a, problem.a);
+  static_cast<void>(search.solve(problem, bounds, false));
+}
+
+/// Calls run(search) for a search that has the receiver; false if there were too many pairs.
+template <class Run>
+bool run_search(const PairRules& rules, Receiver& receiver, const Run& run) {
+  Search& search = scratch().search;
+  PairOptions options;
+  options.touching = rules.touching;
+  search.restart(options, false, {&receiver, &Receiver::call});
+  try {
+    run(search);
+    return true;
+  } catch (const TooManyPairs&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+bool search_at_once(std::span<const Part> parts) {
+  VoxelProblem& voxel = scratch().problem;
+  const Delivery& delivery = parts.front().delivery();
+  const PairRules& rules = delivery.plan.rules;
+  voxel.gather(parts);
+  Receiver receiver{voxel.objects(), delivery.report, {}};
+  const bool found = run_search(rules, receiver, [&](Search& search) {
+    voxel.for_each_search(rules.within_model,
+                          [&](const Problem& problem) { solve(problem, search); });
+  });
+  if (found) receiver.hits.send(delivery.report.call);
+  return found;
+}
+
+PortionSearch::PortionSearch(std::vector<Part> parts) : parts_(std::move(parts)) {
+  objects_.gather(parts_);
+  objects_.for_each_search(parts_.front().delivery().plan.rules.within_model,
+                           [&](const Problem& problem) { remaining_.push_back(problem); });
+}
+
+HitSorter PortionSearch::next() {
+  const Delivery& delivery = parts_.front().delivery();
+  while (!remaining_.empty()) {
+    const Problem problem = remaining_.back();
+    remaining_.pop_back();
+    Receiver receiver{objects_.objects(), delivery.report, {}};
+    if (!run_search(delivery.plan.rules, receiver, [&](Search& search) { solve(problem, search); }))
+      divide(problem);
+    else if (!receiver.hits.empty())
+      return std::move(receiver.hits);
+  }
+  return {};
+}
+
+void PortionSearch::divide(const Problem& problem) {
+  const auto half = [](std::span<const search::Entry> all, bool second) {
+    const std::size_t n = all.size() / 2;
+    return second ? all.subspan(n) : all.first(n);
+  };
+  Problem one = problem, other = problem;
+  if (problem.within_a) {
+    const auto a1 = half(problem.a, false), a2 = half(problem.a, true);
+    one.a = a1;
+    other.a = a2;
+    one.b = other.b = {};
+    remaining_.push_back({problem.boxes_a, problem.boxes_a, a1, a2, false});
+    if (!problem.b.empty())
+      remaining_.push_back({problem.boxes_a, problem.boxes_b, problem.a, problem.b, false});
+  } else if (problem.a.size() > problem.b.size()) {
+    one.a = half(problem.a, false);
+    other.a = half(problem.a, true);
+  } else {
+    one.b = half(problem.b, false);
+    other.b = half(problem.b, true);
+  }
+  remaining_.push_back(one);
+  remaining_.push_back(other);
+}
+
+}  // namespace tess::collide
