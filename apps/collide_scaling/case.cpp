@@ -35,8 +35,8 @@ class Client : public tess::Group<Client> {
   void submit(const Collider& collider, std::int32_t step) {
     times_ = {};
     const std::int32_t me = tess::my_pe().value;
-    for (Objects& objects : given_.is_strong ? bodies_of(given_, me, step) : tile_of(given_, me))
-      collider.submit(std::move(objects));
+    for (const Body& body : given_.is_strong ? bodies_of(given_, me, step) : tile_of(given_, me))
+      collider.submit(Objects{owner_of(tess::PeId{me}), body.model, body.boxes});
   }
   void receive(const Hits& hits) { n_received_ += hits.pairs.size(); }
   /// A voxel on this PE has found pairs.

@@ -66,7 +66,7 @@ const Sorted& sorted_crowd(std::uint64_t n_triangles) {
 
 }  // namespace
 
-std::vector<Objects> tile_of(const Case& given, std::int32_t pe) {
+std::vector<Body> tile_of(const Case& given, std::int32_t pe) {
   const std::int32_t wide = columns_of(given.n_pes);
   const auto side = static_cast<std::int32_t>(
       std::sqrt(static_cast<double>(given.n_triangles) / (4 * given.thinned)));
@@ -75,7 +75,7 @@ std::vector<Objects> tile_of(const Case& given, std::int32_t pe) {
     return Point{x, y,
                  4 * collide_scene::sine(i / 32.0) * collide_scene::cosine(j / 32.0) + shift / 1.5};
   };
-  std::vector<Objects> out;
+  std::vector<Body> out;
   for (const std::uint32_t plane : {0U, 1U}) {
     const double shift = plane == 0 ? 0 : 0.3;
     std::vector<Aabb> boxes;
@@ -86,26 +86,25 @@ std::vector<Objects> tile_of(const Case& given, std::int32_t pe) {
         boxes.push_back(box_of(Triangle{{corner(i, j, shift), b, d}}));
         boxes.push_back(box_of(Triangle{{b, corner(i + 1, j + 1, shift), d}}));
       }
-    out.push_back({owner_of(tess::PeId{pe}), ModelId{plane}, std::move(boxes)});
+    out.push_back({ModelId{plane}, std::move(boxes)});
   }
   return out;
 }
 
-std::vector<Objects> bodies_of(const Case& given, std::int32_t pe, std::int32_t step) {
+std::vector<Body> bodies_of(const Case& given, std::int32_t pe, std::int32_t step) {
   const Sorted& sorted = sorted_crowd(given.n_triangles);
   const std::uint64_t n = sorted.order.size();
   const auto first = [&](std::int32_t of) {
     return n * static_cast<std::uint64_t>(of) / static_cast<std::uint64_t>(given.n_pes);
   };
-  std::vector<Objects> out;
+  std::vector<Body> out;
   std::vector<Triangle> triangles(Crowd::triangles_per_body);
   for (std::uint64_t i = first(pe); i < first(pe + 1); ++i) {
     const std::uint64_t body = sorted.order[i];
     sorted.crowd->triangles(body, step, triangles);
     std::vector<Aabb> boxes;
     for (const Triangle& triangle : triangles) boxes.push_back(box_of(triangle));
-    out.push_back(
-        {owner_of(tess::PeId{pe}), ModelId{static_cast<std::uint32_t>(body)}, std::move(boxes)});
+    out.push_back({ModelId{static_cast<std::uint32_t>(body)}, std::move(boxes)});
   }
   return out;
 }

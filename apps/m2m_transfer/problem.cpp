@@ -17,6 +17,19 @@ double typical_edge(const TetMesh& mesh) {
   return std::cbrt(6 * volume / static_cast<double>(mesh.n_tets()));
 }
 
+/// Refuses voxels so small that a cell index of either mesh exceeds 32 bits.
+void check_voxel(double voxel, const Problem& problem) {
+  double farthest = 0;
+  for (const Aabb& box : {problem.source_census.bounds, problem.target_census.bounds}) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      farthest = std::max({farthest, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
+  }
+  const double least = farthest * 0x1p-30;
+  if (voxel < least)
+    fail(ErrorCode::bad_argument, "--voxel ", voxel, " is too small for coordinates up to ",
+         farthest, "; it must be at least ", least);
+}
+
 }  // namespace
 
 Problem load(const Request& request, const Machine& machine) {
@@ -37,6 +50,7 @@ Problem load(const Request& request, const Machine& machine) {
     problem.truth.push_back(sample(problem.target, name, formula));
     problem.target_fields.push_back({name, 1, std::vector<double>(problem.target.n_points(), 0.0)});
   }
+  if (request.voxel > 0) check_voxel(request.voxel, problem);
   problem.voxel = {request.voxel, request.voxel, request.voxel};
 
   TransferReport& report = problem.report;

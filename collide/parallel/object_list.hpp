@@ -14,8 +14,8 @@
 
 namespace tess::collide {
 
-/// Objects of one owner and model, numbered from `first` on. The boxes are copied when they are
-/// submitted.
+/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes: they must
+/// live until it returns.
 struct Objects {
   OwnerId owner{};
   ModelId model{};
