@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs the packages that Tessera builds on, as far as they are missing. Quick when nothing is missing.
 #
-#   cmake/setup.sh [--dry-run] [--peers]      --dry-run: says what it would do, and does nothing
-#                                             --peers: also the libraries beside which benchmarks run
+#   cmake/setup.sh [--dry-run] [--peers] [--fuzz]   --dry-run: says what it would do, and does nothing
+#                                                   --peers: also the libraries beside which benchmarks run
+#                                                   --fuzz: also clang's libraries for tests/fuzz
 #
 # Exit code 2, and nothing is changed, where apt would remove a package or where it may not install.
 set -euo pipefail
@@ -21,13 +22,15 @@ refuse() {
 
 # Nothing else needs these: without them a benchmark leaves their rows out.
 peers=(libembree-dev libfcl-dev)
+fuzz=(clang-16 libclang-rt-16-dev libfuzzer-16-dev)
 dry=false
 for option; do
   case "$option" in
     --dry-run) dry=true ;;
     --peers) packages+=("${peers[@]}") ;;
-    --help | -h) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) refuse "unknown option $option: there are --dry-run and --peers" ;;
+    --fuzz) packages+=("${fuzz[@]}") ;;
+    --help | -h) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) refuse "unknown option $option: there are --dry-run, --peers and --fuzz" ;;
   esac
 done
 command -v apt-get >/dev/null || refuse "this script uses apt; install by hand what cmake/setup.sh lists, or the like: ${packages[*]}"

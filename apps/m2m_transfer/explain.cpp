@@ -31,6 +31,10 @@ std::string explain(const Problem& problem, Output output) {
   out += problem.voxel[0] == 0 ? "\n" : fmt::format(" with edges of {:.4g}\n", problem.voxel[0]);
   if (std::holds_alternative<Nearest>(problem.policy))
     out += "  the search for the nearest source vertex, for each vertex outside\n";
+  if (problem.kind != TransferKind::linear)
+    out +=
+        "  recovered gradients at the donors' vertices, from two layers of tetrahedra around a "
+        "chare\n";
   if (output == Output::mesh) out += "  ExodusII output\n";
 
   out += "it leaves out\n";
@@ -41,6 +45,8 @@ std::string explain(const Problem& problem, Output output) {
   if (r.processes == 1) out += "  serialisation: within a process messages are moved, not packed\n";
   if (!std::holds_alternative<Nearest>(problem.policy))
     out += "  the search for nearest vertices (--policy nearest)\n";
+  if (problem.kind == TransferKind::linear)
+    out += "  recovered gradients and halos (--kind second-order)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
   if (!overlap(problem.source_census.bounds, problem.target_census.bounds,
                tess::collide::Touching::counts))

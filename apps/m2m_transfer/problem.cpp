@@ -58,6 +58,8 @@ Problem load(const Request& request, const Machine& machine) {
   report.target = request.target;
   report.source_skipped = skipped_text(problem.source);
   report.target_skipped = skipped_text(problem.target);
+  report.source_split = split_text(problem.source);
+  report.target_split = split_text(problem.target);
   report.policy = request.policy;
   report.kind = request.kind;
   report.machine = machine.describe();

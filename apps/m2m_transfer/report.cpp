@@ -47,6 +47,7 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair["source"] = r.source;
   pair["target"] = r.target;
   pair["skipped"] = {{"source", r.source_skipped}, {"target", r.target_skipped}};
+  pair["split"] = {{"source", r.source_split}, {"target", r.target_split}};
   pair["targets"] = r.targets;
   pair["inside"] = r.counts[0];
   pair["boundary"] = r.counts[1];
@@ -95,6 +96,8 @@ std::string table(const TransferReport& r) {
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
   if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
   if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
+  if (!r.source_split.empty()) line("split", "in the source: " + r.source_split);
+  if (!r.target_split.empty()) line("split", "in the target: " + r.target_split);
   line("found", fmt::format("{} inside, {} boundary, {} snapped, {} outside", r.counts[0],
                             r.counts[1], r.counts[2], r.counts[3]));
   line("candidates",

@@ -29,6 +29,7 @@ struct FieldError {
 struct TransferReport {
   std::string source, target, policy, kind, machine;
   std::string source_skipped, target_skipped;  ///< elements without volume: "120 TRI3"
+  std::string source_split, target_split;      ///< elements cut: "27 HEX8 into 162 tetrahedra"
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
   double source_edge = 0;                 ///< of a cube with the volume of six average tetrahedra
