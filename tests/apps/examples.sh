@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# examples.sh BIN: hello, ring and stencil on threads, under mpirun and on the simulated machine, with their answers.
+# examples.sh BIN: hello, ring, stencil and coupled on threads, under mpirun and on the simulated machine, with their answers.
 source "$(dirname "$0")/../support/checks.sh"
 bin=$1
 
@@ -55,5 +55,18 @@ distance() { "$bin/stencil" --size "$1" --steps "$2" --pes 2 | grep -o 'from the
 coarse=$(distance 7 2000) fine=$(distance 15 8000)
 python3 -c "import sys; sys.exit(0 if 3.7 < $coarse / $fine < 4.3 else 1)"
 check "the stencil is not second order: $coarse and $fine from the solution" $?
+
+# coupled: the same bits for every cut and machine, and second order.
+coupled=("$bin/coupled" --cubes 12)
+answers 'taken [1-9][0-9]* and [1-9][0-9]*; hash' "${coupled[@]}" --pes 1 --slabs 1
+want=$(hash_of)
+same "${coupled[@]}" --pes 2 --slabs 5
+same "${coupled[@]}" --pes 3 --slabs 9
+same "${mpirun[@]}" -n 2 "${coupled[@]}" --pes 1 --slabs 4
+same "${coupled[@]}" --sim pes=5,cost=100ns,seed=3 --slabs 7
+overset_error() { "$bin/coupled" --cubes "$1" --pes 2 | grep -o 'overset [0-9.e+-]*' | grep -o '[0-9.e+-]*$'; }
+coarse=$(overset_error 12) fine=$(overset_error 18)
+python3 -c "import sys; sys.exit(0 if 1.9 < $coarse / $fine < 2.7 else 1)"
+check "coupled is not second order: $coarse and $fine from the solution" $?
 
 finish

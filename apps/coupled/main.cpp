@@ -1,0 +1,89 @@
+// An overset mesh that moves through a background mesh; on both, a field diffuses. In each step both
+// solve, the small mesh moves, and two transfers couple them: the fringe of the small mesh gets the
+// values of the background, and the background those of the small mesh where it is deep inside.
+#include "apps/command_line.hpp"
+#include "apps/coupled/slab.hpp"
+
+#include <cmath>
+#include <fmt/core.h>
+#include <vector>
+
+namespace coupled {
+namespace {
+
+struct Options {
+  std::int32_t n = 16;       // cubes on an edge of each box
+  std::int32_t n_slabs = 0;  // per mesh; 0: two per PE
+  double end = 0.0025;       // time
+};
+
+/// The small box goes round the middle of the cube.
+Point low_at(double fraction) {
+  return {0.3 + 0.1 * std::cos(fraction), 0.3 + 0.1 * std::sin(fraction), 0.3};
+}
+
+tess::Task compute(Options options) {
+  const std::int32_t n_slabs = options.n_slabs != 0 ? options.n_slabs : 2 * tess::n_pes();
+  Box big{.n = options.n, .n_slabs = n_slabs};
+  big.least_depth = 2 * big.spacing();
+  const Box small{
+      .low = low_at(0), .edge = 0.4, .n = options.n, .n_slabs = n_slabs, .has_fringe = true};
+  const auto background = tess::create<Slab>(tess::range(n_slabs), big);
+  const auto overset = tess::create<Slab>(tess::range(n_slabs), small);
+  tess::m2m::Coupling to_overset(background, overset), to_background(overset, background);
+  const auto exchange = [&] {
+    background.broadcast<&Slab::exchange>();
+    overset.broadcast<&Slab::exchange>();
+  };
+  const auto n_steps =
+      static_cast<std::int32_t>(std::ceil(options.end / (0.1 * small.spacing() * small.spacing())));
+  const double dt = options.end / n_steps;
+  const tess::Time begin = tess::now();
+  for (std::int32_t k = 0; k < n_steps; ++k) {
+    const Point from = low_at(double(k) / n_steps), to = low_at(double(k + 1) / n_steps);
+    Point velocity{};
+    for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis] = (to[axis] - from[axis]) / dt;
+    co_await tess::epoch(exchange);
+    co_await tess::epoch([&] {
+      background.broadcast<&Slab::step>(dt, Point{});
+      overset.broadcast<&Slab::step>(dt, velocity);
+    });
+    co_await tess::epoch([&] { overset.broadcast<&Slab::move_to>(to); });
+    co_await tess::epoch(exchange);
+    tess::Task one = to_overset.search(), other = to_background.search();
+    co_await one;
+    co_await other;
+    co_await to_overset.apply<&Slab::give, &Slab::take>();
+    co_await to_background.apply<&Slab::give, &Slab::take>();
+  }
+  const double seconds = tess::seconds(tess::now() - begin);
+  tess::Future<Outcome> on_background, on_overset;
+  background.broadcast<&Slab::compare>(options.end, on_background.callback());
+  overset.broadcast<&Slab::compare>(options.end, on_overset.callback());
+  const Outcome a = co_await on_background, b = co_await on_overset;
+  tess::print(fmt::format(
+      "{} cubes on an edge, {} slabs per mesh, {} steps: {:.6f} s, {:.3f} ms a step\n"
+      "from the solution: background {:.3e}, overset {:.3e}; taken {} and {}; hash {:016x}\n",
+      options.n, n_slabs, n_steps, seconds, 1e3 * seconds / n_steps, a.error, b.error, a.n_taken,
+      b.n_taken, a.hash + b.hash));
+}
+
+}  // namespace
+}  // namespace coupled
+
+int main(int argc, char** argv) {
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) {
+    coupled::Options options;
+    apps::CommandLine line(
+        "A field that diffuses on a background mesh and on one that moves through it.");
+    line.option("--cubes", options.n, "cubes on an edge of each mesh").between(12, 512);
+    line.option("--slabs", options.n_slabs, "pieces per mesh (default: two per PE)")
+        .between(1, 512);
+    line.option("--time", options.end, "time at the end").positive();
+    if (!line.parse(argc, argv)) return 0;
+    if (options.n_slabs > options.n + 1)
+      tess::fail(tess::ErrorCode::bad_argument, "--slabs: ", options.n_slabs, " pieces of ",
+                 options.n + 1, " planes: give at most one per plane");
+    return tess::run(setup, [&] { return coupled::compute(options); });
+  });
+}
