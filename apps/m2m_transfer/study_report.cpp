@@ -3,6 +3,7 @@
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -70,9 +71,7 @@ plot::Chart chart_of(const Study& study, Against against) {
   }
   if (against == Against::edge) {
     for (const TransferReport& r : study.reports) chart.x_ticks.push_back(r.source_edge);
-    std::sort(chart.x_ticks.begin(), chart.x_ticks.end());
-    chart.x_ticks.erase(std::unique(chart.x_ticks.begin(), chart.x_ticks.end()),
-                        chart.x_ticks.end());
+    sort_unique(chart.x_ticks);
     if (plot::Series line = second_order(chart); !line.points.empty())
       chart.series.push_back(std::move(line));
   }

@@ -2,6 +2,7 @@
 
 #include "collide/shapes/orientation.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/sort_unique.hpp"
 
 #include <tuple>
 
@@ -97,8 +98,7 @@ std::vector<PenetratingPoint> penetrating_points(std::span<const Triangle> trian
   points.reserve(3 * which.size());
   for (const std::uint32_t t : which)
     points.insert(points.end(), triangles[t].corners.begin(), triangles[t].corners.end());
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  sort_unique(points);
   std::vector<PenetratingPoint> out;
   for (const Point& p : points)
     if (const std::optional<Penetration> found = model.penetration(p)) out.push_back({p, *found});

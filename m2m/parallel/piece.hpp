@@ -11,7 +11,7 @@
 //   outside    its nearest vertex       ← NearestQuery  if the policy says so
 //                                       NearestAnswer →
 //   choose     keeps what was chosen    ← Choice        decides
-//   give       interpolates             GivenValues →          writes a round that is complete
+//   give       interpolates             GivenValues →   writes a round that is complete
 #pragma once
 
 #include "m2m/parallel/source_side.hpp"
@@ -101,9 +101,13 @@ class Piece {
   template <auto Take>
   void m2m_take(GivenValues rows) {
     const CouplingId id = rows.coupling;
-    couplings.target(id).add(std::move(rows));
-    while (couplings.target(id).take_next(channel<Take>(), detail::values_of<Take>(self(), id)))
+    const std::uint64_t from = rows.channel;
+    TargetSide& to = couplings.target(id);
+    to.add(std::move(rows));
+    while (to.has_next(from)) {
+      to.take_next(from, detail::values_of<Take>(self(), id));
       notify(id);
+    }
   }
 
   void m2m_submit_source(const CouplingSetup& setup) {

@@ -3,6 +3,7 @@
 #include "m2m/reconstruct/gradients.hpp"
 #include "m2m/reconstruct/second_order.hpp"
 #include "m2m/search/best_donors.hpp"
+#include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -53,12 +54,6 @@ void SourceSide::choose(Choice choice) {
   if (!donors.empty()) donors_[choice.from] = std::move(donors);
 }
 
-std::size_t SourceSide::n_donors() const {
-  std::size_t n = 0;
-  for (const auto& [target, donors] : donors_) n += donors.size();
-  return n;
-}
-
 void SourceSide::prepare(const MeshView& mesh) {
   cover_ = {};
   nearest_.reset();
@@ -67,9 +62,7 @@ void SourceSide::prepare(const MeshView& mesh) {
     for (const Donor& donor : donors)
       gradient_vertices_.insert(gradient_vertices_.end(), donor.vertices.begin(),
                                 donor.vertices.end());
-  std::sort(gradient_vertices_.begin(), gradient_vertices_.end());
-  gradient_vertices_.erase(std::unique(gradient_vertices_.begin(), gradient_vertices_.end()),
-                           gradient_vertices_.end());
+  sort_unique(gradient_vertices_);
   gradient_rows_ = gradient_rows(mesh, mesh.point_ids, gradient_vertices_);
 }
 

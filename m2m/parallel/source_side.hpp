@@ -43,7 +43,6 @@ class SourceSide {
                                round,
                                interpolate(mesh, donors, values, slopes, n_components)});
   }
-  [[nodiscard]] std::size_t n_donors() const;
 
   template <class Ar>
   void serialize(Ar& ar) {

@@ -1,19 +1,11 @@
 #include "m2m/parallel/target_side.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
 
 namespace tess::m2m {
-namespace {
-
-void sort_unique(std::vector<std::uint32_t>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-}  // namespace
-
 std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
   validate(mesh);
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
@@ -156,10 +148,15 @@ void TargetSide::add(GivenValues rows) {
   channel.rounds[rows.round].push_back(std::move(rows));
 }
 
-bool TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
-  Channel& channel = channels_[channel_id];
+bool TargetSide::has_next(std::uint64_t channel_id) const {
+  const Channel& channel = channels_.at(channel_id);
   const auto at = channel.rounds.find(channel.next);
-  if (at == channel.rounds.end() || at->second.size() < rows_.size()) return false;
+  return at != channel.rounds.end() && at->second.size() >= rows_.size();
+}
+
+void TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
+  Channel& channel = channels_.at(channel_id);
+  const auto at = channel.rounds.find(channel.next);
   for (const GivenValues& message : at->second) {
     const std::vector<std::int32_t>& rows = rows_.at(message.from);
     const std::size_t n_components = message.values.size() / rows.size();
@@ -173,7 +170,6 @@ bool TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
   set_outside(values);
   channel.rounds.erase(at);
   ++channel.next;
-  return true;
 }
 
 void TargetSide::set_outside(std::span<double> values) const {

@@ -45,9 +45,10 @@ class TargetSide {
   [[nodiscard]] std::size_t n_sources() const { return rows_.size(); }
 
   void add(GivenValues rows);
-  /// If the next application of a channel has arrived as a whole, writes it to `values`
-  /// (n_owned × n_components, row-major), and returns true.
-  [[nodiscard]] bool take_next(std::uint64_t channel, std::span<double> values);
+  /// True if the next round of a channel has arrived as a whole.
+  [[nodiscard]] bool has_next(std::uint64_t channel) const;
+  /// Writes it to `values`: n_owned × n_components, row-major.
+  void take_next(std::uint64_t channel, std::span<double> values);
   /// The value of points outside, if the policy gives one.
   void set_outside(std::span<double> values) const;
 

@@ -1,11 +1,12 @@
 #include "m2m/partition/split.hpp"
 
+#include "m2m/tets_of_vertices.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <numeric>
 
 namespace tess::m2m {
 namespace {
@@ -27,41 +28,12 @@ void list_ghosts(std::vector<MeshPart>& parts, std::span<const std::int32_t> own
   }
 }
 
-/// The tetrahedra that use each of the first n vertices.
-class TetsAround {
- public:
-  TetsAround(const TetMesh& mesh, std::size_t n) : first_(n + 1) {
-    if (n == 0) return;
-    for (const Tet& tet : mesh.tets)
-      for (const VertexId v : tet) ++first_[static_cast<std::size_t>(v)];
-    std::exclusive_scan(first_.begin(), first_.end(), first_.begin(), std::size_t{0});
-    tets_.resize(first_.back());
-    std::vector<std::size_t> next = first_;
-    for (std::size_t t = 0; t < mesh.n_tets(); ++t)
-      for (const VertexId v : mesh.tets[t])
-        tets_[next[static_cast<std::size_t>(v)]++] = static_cast<GlobalId>(t);
-  }
-  [[nodiscard]] std::span<const GlobalId> operator[](GlobalId vertex) const {
-    const auto v = static_cast<std::size_t>(vertex);
-    return std::span(tets_).subspan(first_[v], first_[v + 1] - first_[v]);
-  }
-
- private:
-  std::vector<std::size_t> first_;
-  std::vector<GlobalId> tets_;
-};
-
-void sort_unique(std::vector<GlobalId>& ids) {
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
-
 /// Adds the tetrahedra that share a vertex with the part, and their vertices.
-void add_layer(const TetMesh& mesh, const TetsAround& around, MeshPart& part) {
+void add_layer(const TetMesh& mesh, const TetsOfVertices& around, MeshPart& part) {
   std::vector<GlobalId> halo(part.tet_ids.begin() + part.n_own_tets, part.tet_ids.end());
   part.tet_ids.resize(static_cast<std::size_t>(part.n_own_tets));
   for (const GlobalId v : part.point_ids)
-    for (const GlobalId t : around[v]) halo.push_back(t);
+    for (const std::int32_t t : around[static_cast<VertexId>(v)]) halo.push_back(t);
   sort_unique(halo);
   std::vector<GlobalId> others;
   std::set_difference(halo.begin(), halo.end(), part.tet_ids.begin(), part.tet_ids.end(),
@@ -96,7 +68,7 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
     owner[v] = static_cast<std::int32_t>(v * static_cast<std::size_t>(n_parts) / n);
     result[static_cast<std::size_t>(owner[v])].point_ids.push_back(static_cast<GlobalId>(v));
   }
-  const TetsAround around(mesh, halo_layers == 0 ? 0 : n);
+  const TetsOfVertices around(halo_layers == 0 ? MeshView{} : MeshView{mesh.points, mesh.tets});
   std::vector<VertexId> local(n, -1);
   for (std::int32_t p = 0; p < n_parts; ++p) {
     MeshPart& part = result[static_cast<std::size_t>(p)];

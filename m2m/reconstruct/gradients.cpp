@@ -1,8 +1,9 @@
 #include "m2m/reconstruct/gradients.hpp"
 
-#include "m2m/reconstruct/adjacency.hpp"
+#include "m2m/reconstruct/gather.hpp"
 #include "m2m/reconstruct/gradient_fit.hpp"
 #include "m2m/reconstruct/second_order.hpp"
+#include "m2m/tets_of_vertices.hpp"
 
 #include <algorithm>
 #include <numeric>

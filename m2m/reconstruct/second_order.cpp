@@ -1,7 +1,7 @@
 #include "m2m/reconstruct/second_order.hpp"
 
 #include "m2m/interpolate/locate.hpp"
-#include "m2m/reconstruct/adjacency.hpp"
+#include "m2m/reconstruct/gather.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>

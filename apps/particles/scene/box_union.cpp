@@ -1,6 +1,7 @@
 #include "apps/particles/scene/box_union.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +22,7 @@ Surface union_of(const std::vector<Bounds>& boxes) {
     std::vector<double>& at = planes[static_cast<std::size_t>(axis)];
     for (const Bounds& box : boxes)
       at.insert(at.end(), {component(box.low, axis), component(box.high, axis)});
-    std::ranges::sort(at);
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    tess::sort_unique(at);
     n_cells *= static_cast<double>(at.size());
   }
   if (n_cells > most_cells)

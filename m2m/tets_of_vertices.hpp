@@ -1,4 +1,4 @@
-// The tetrahedra around each vertex of a part of a mesh.
+// The tetrahedra around each vertex of a mesh, or of a part of one.
 #pragma once
 
 #include "m2m/mesh_view.hpp"
@@ -21,26 +21,6 @@ class TetsOfVertices {
  private:
   std::vector<std::uint64_t> begin_;
   std::vector<std::int32_t> tets_;
-};
-
-/// Collects ids without repeats, in the order in which they come.
-class Gather {
- public:
-  explicit Gather(std::size_t n_ids) : seen_(n_ids, 0) {}
-  /// Starts a new collection.
-  void clear() {
-    for (const std::int32_t id : found) seen_[static_cast<std::size_t>(id)] = 0;
-    found.clear();
-  }
-  void add(std::int32_t id) {
-    std::uint8_t& seen = seen_[static_cast<std::size_t>(id)];
-    if (seen == 0) found.push_back(id);
-    seen = 1;
-  }
-  std::vector<std::int32_t> found;
-
- private:
-  std::vector<std::uint8_t> seen_;
 };
 
 }  // namespace tess::m2m
