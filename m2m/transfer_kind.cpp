@@ -4,12 +4,31 @@
 
 namespace tess::m2m {
 
+const char* name_of(TransferKind kind) noexcept {
+  switch (kind) {
+    case TransferKind::linear:
+      return "linear";
+    case TransferKind::second_order:
+      return "second-order";
+    case TransferKind::limited:
+      return "limited";
+    case TransferKind::conservative:
+      return "conservative";
+    case TransferKind::conservative_bounded:
+      return "conservative-bounded";
+    case TransferKind::conservative_lumped:
+      return "conservative-lumped";
+  }
+  return "";
+}
+
 TransferKind parse_transfer_kind(const std::string& text) {
-  if (text == "linear") return TransferKind::linear;
-  if (text == "second-order") return TransferKind::second_order;
-  if (text == "limited") return TransferKind::limited;
-  fail(ErrorCode::bad_argument, "kind '", text,
-       "' is unknown; choose linear, second-order or limited");
+  std::string names;
+  for (const TransferKind kind : all_transfer_kinds) {
+    if (text == name_of(kind)) return kind;
+    names += (names.empty() ? "" : ", ") + std::string(name_of(kind));
+  }
+  fail(ErrorCode::bad_argument, "kind '", text, "' is unknown; choose one of ", names);
 }
 
 }  // namespace tess::m2m

@@ -56,8 +56,9 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   DistributedMesh source, target;
   co_await epoch([&] {
     source = scatter(problem.source, problem.source_fields, report.chares, problem.partition,
-                     halo_layers(problem.kind));
-    target = scatter(problem.target, problem.target_fields, report.chares, problem.partition);
+                     source_halo_layers(problem.kind));
+    target = scatter(problem.target, problem.target_fields, report.chares, problem.partition,
+                     target_halo_layers(problem.kind));
   });
   report.seconds.setup = seconds_since(start);
   TransferOptions options;

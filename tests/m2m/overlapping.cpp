@@ -3,6 +3,7 @@
 #include "tests/m2m/cell_grid.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tess::test {
 namespace {
@@ -38,6 +39,33 @@ std::vector<TetPair> overlapping_pairs(MeshView source, MeshView target) {
     for (const std::int32_t s : found) pairs.push_back({s, static_cast<std::int32_t>(t)});
   }
   return pairs;
+}
+
+Overlaps overlaps_of(const TetMesh& source, const TetMesh& target) {
+  std::vector<GlobalId> ids(source.n_tets());
+  std::iota(ids.begin(), ids.end(), 0);
+  const MeshView from{source.points, source.tets, {}, ids, 0};
+  const Cover cover = cover_tets(source.points, source.tets);
+  TargetTets targets;
+  for (const Tet& tet : target.tets) targets.tets.push_back(corners_of(target.points, tet));
+  // 50 tetrahedra a box, each near all boxes of the source.
+  for (std::size_t first = 0; first < target.n_tets(); first += 50) {
+    targets.first.push_back(static_cast<std::uint32_t>(std::min(first + 50, target.n_tets())));
+    for (std::uint32_t box = 0; box < cover.boxes.size(); ++box) targets.near.push_back(box);
+    targets.first_near.push_back(static_cast<std::uint32_t>(targets.near.size()));
+  }
+  return find_overlaps(from, cover, targets);
+}
+
+std::vector<double> loads_of(const Overlaps& overlaps, const TetMesh& source, const TetMesh& target,
+                             const SourceField& field) {
+  const std::size_t n = 4 * field.n_components;
+  std::vector<double> loads(n * target.n_tets(), 0);
+  for (std::size_t t = 0; t < overlaps.targets.size(); ++t)
+    for (std::uint32_t k = overlaps.first[t]; k < overlaps.first[t + 1]; ++k)
+      add_load(view(source), overlaps.sources[k], overlaps.integrals[k], field,
+               std::span(loads).subspan(n * overlaps.targets[t], n));
+  return loads;
 }
 
 std::vector<PointInTet> place_points(MeshView source, std::span<const Point> points) {

@@ -1,0 +1,56 @@
+// What a piece knows of a conservative coupling that it gives values to: the overlaps of its
+// tetrahedra with those of target pieces.
+#pragma once
+
+#include "m2m/parallel/overlap_messages.hpp"
+
+#include <map>
+
+namespace tess::m2m {
+
+class OverlapSource {
+ public:
+  CouplingSetup setup;
+
+  /// Forgets the last search, and returns the boxes of the cover.
+  [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
+  [[nodiscard]] OverlapAnswer answer(const MeshView& mesh, const OverlapQuery& query);
+  /// Ends the search with a piece; returns the loads of the constant 1.
+  [[nodiscard]] GivenValues share(const MeshView& mesh, SharedTets shared);
+
+  /// Calls send(target piece, loads) for every target piece that overlaps this one. `values`: a row
+  /// per point, tetrahedron or corner, as the coupling's source_values say.
+  template <class Send>
+  void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
+            const Send& send) {
+    cover_ = {};
+    const SourceField field = field_of(mesh, values);
+    const std::uint32_t round = rounds_[channel]++;
+    for (const auto& [target, given] : given_)
+      send(target, GivenValues{setup.id, {}, channel, round, loads(mesh, given, field, true)});
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(setup, cover_, given_, rounds_);
+  }
+
+ private:
+  struct Given {
+    Overlaps overlaps{};
+    std::vector<std::uint8_t> shared{};
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(overlaps, shared);
+    }
+  };
+  [[nodiscard]] SourceField field_of(const MeshView& mesh, std::span<const double> values) const;
+  [[nodiscard]] std::vector<double> loads(const MeshView& mesh, const Given& given,
+                                          const SourceField& field, bool with_ranges) const;
+
+  Cover cover_;
+  std::map<collide::OwnerId, Given> given_;  // per target piece
+  std::map<std::uint64_t, std::uint32_t> rounds_;
+};
+
+}  // namespace tess::m2m
