@@ -218,14 +218,16 @@ Task Coupling<S, T>::find_donors() {
 /// Each step needs all messages of the one before.
 template <class S, class T>
 Task Coupling<S, T>::find_overlaps() {
-  co_await epoch([&] {
-    target_.template broadcast<&Piece<T>::template m2m_ask_overlaps<S>>(setup_.id);
-    if (has_directory())
+  if (has_directory()) {
+    co_await epoch([&] {
       setup_.directory.template broadcast<&PointDirectory::resolve>(Callback<SharedPoints>(
           detail::shared_points_kind<T>, to_bytes(std::tuple(target_.id(), setup_.id))));
-  });
+    });
+  }
   co_await epoch(
-      [&] { target_.template broadcast<&Piece<T>::template m2m_share_tets<S>>(setup_.id); });
+      [&] { target_.template broadcast<&Piece<T>::template m2m_ask_overlaps<S>>(setup_.id); });
+  co_await epoch(
+      [&] { target_.template broadcast<&Piece<T>::template m2m_share_rows<S>>(setup_.id); });
   co_await epoch([&] { target_.template broadcast<&Piece<T>::m2m_finish_search>(setup_.id); });
 }
 

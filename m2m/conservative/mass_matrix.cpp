@@ -22,10 +22,10 @@ std::vector<std::int32_t> tets_at_owned(const MeshView& mesh) {
 }
 
 MassMatrix::MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbers,
-                       std::span<const double> covered)
+                       std::span<const std::array<double, 4>> covered)
     : n_points_(mesh.points.size()) {
-  TESS_CHECK(covered.size() == 4 * numbers.size(), "expected four loads for each of ",
-             numbers.size(), " tetrahedra, got ", covered.size());
+  TESS_CHECK(covered.size() == numbers.size(), "expected four loads for each of ", numbers.size(),
+             " tetrahedra, got ", covered.size());
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
   rest_.assign(n_owned, 0);
   lumped_.assign(n_owned, 0);
@@ -36,10 +36,7 @@ MassMatrix::MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbe
     const Tet& tet = mesh.tets[static_cast<std::size_t>(numbers[k])];
     const auto corners = corners_of(mesh.points, tet);
     const double volume = std::abs(orientation(corners[0], corners[1], corners[2], corners[3])) / 6;
-    Weights c{};
-    double total = 0;
-    for (std::size_t a = 0; a < 4; ++a) total += c[a] = std::max(covered[4 * k + a], 0.0);
-    if (!(total > no_coverage * volume)) c = {};
+    const std::array<double, 4>& c = covered[k];
     const double e = *std::min_element(c.begin(), c.end()) / 5;
     tets_.push_back(tet);
     off_diagonal_.push_back(e);
@@ -55,25 +52,8 @@ MassMatrix::MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbe
   for (std::size_t v = 0; v < n_owned; ++v) {
     const double diagonal = inverse_[v] + rest_[v];
     inverse_[v] = diagonal > 0 ? 1 / diagonal : 0;
-    if (!(diagonal > 0)) lumped_[v] = 0;
     if (whole[v] > 0) fractions_[v] = std::min(lumped_[v] / whole[v], 1.0);
   }
-}
-
-std::vector<double> MassMatrix::assemble(std::span<const double> loads,
-                                         std::size_t n_components) const {
-  TESS_CHECK(loads.size() == 4 * n_components * tets_.size(), "expected ", 4 * n_components,
-             " loads for each of ", tets_.size(), " tetrahedra, got ", loads.size());
-  std::vector<double> sums(n_owned() * n_components, 0);
-  const double* load = loads.data();
-  for (const Tet& tet : tets_)
-    for (const VertexId corner : tet) {
-      const auto v = static_cast<std::size_t>(corner);
-      if (v < n_owned() && lumped_[v] > 0)
-        for (std::size_t c = 0; c < n_components; ++c) sums[v * n_components + c] += load[c];
-      load += n_components;
-    }
-  return sums;
 }
 
 void MassMatrix::multiply(std::span<const double> x, std::size_t n_components,

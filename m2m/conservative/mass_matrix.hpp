@@ -16,14 +16,12 @@
 
 #include "m2m/mesh_view.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace tess::m2m {
-
-/// A tetrahedron that is covered to a smaller fraction of its volume counts as not covered.
-inline constexpr double no_coverage = 1e-12;
 
 /// The tetrahedra of a part that touch a point it owns, in ascending order of ids: the order of all
 /// sums, so that they do not depend on the partition.
@@ -32,9 +30,9 @@ inline constexpr double no_coverage = 1e-12;
 class MassMatrix {
  public:
   MassMatrix() = default;
-  /// `numbers`: tets_at_owned(). `covered`: the loads of the constant 1, four per number.
+  /// `numbers`: tets_at_owned(). `covered`: the loads of the constant 1 per number and corner.
   MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbers,
-             std::span<const double> covered);
+             std::span<const std::array<double, 4>> covered);
 
   [[nodiscard]] std::size_t n_points() const noexcept { return n_points_; }
   [[nodiscard]] std::size_t n_owned() const noexcept { return lumped_.size(); }
@@ -45,9 +43,6 @@ class MassMatrix {
   /// Per point owned: 1 / M_ii, zero if the point is not covered.
   [[nodiscard]] std::span<const double> inverse_diagonal() const noexcept { return inverse_; }
 
-  /// Adds up the loads of tetrahedra, 4 × n_components per number, at the points owned.
-  [[nodiscard]] std::vector<double> assemble(std::span<const double> loads,
-                                             std::size_t n_components) const;
   /// y = M x at the points owned; x is given at all points.
   void multiply(std::span<const double> x, std::size_t n_components, std::span<double> y) const;
 
@@ -57,8 +52,6 @@ class MassMatrix {
     for (std::size_t t = 0; t < tets_.size(); ++t)
       if (off_diagonal_[t] > 0) visit(tets_[t], off_diagonal_[t]);
   }
-  /// All that touch a point owned, in the order of the loads.
-  [[nodiscard]] std::span<const Tet> tets() const noexcept { return tets_; }
 
   template <class Ar>
   void serialize(Ar& ar) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tess::m2m {
@@ -17,23 +16,13 @@ constexpr double middle = 1.5, half_width = 1;  // of the interval of eigenvalue
 }  // namespace
 
 Projection::Projection(const MassMatrix& mass, std::size_t n_components, Form form,
-                       std::span<const double> loads, std::span<const ValueRange> bounds)
-    : n_(n_components), form_(form), load_(mass.assemble(loads, n_components)) {
+                       std::vector<double> loads, std::vector<ValueRange> bounds)
+    : n_(n_components), form_(form), load_(std::move(loads)), bounds_(std::move(bounds)) {
+  TESS_CHECK(load_.size() == mass.n_owned() * n_, "expected ", mass.n_owned(), " loads of ", n_,
+             " components, got ", load_.size(), " numbers");
+  TESS_CHECK(bounds_.size() == (form == Form::bounded ? load_.size() : 0), "expected ",
+             form == Form::bounded ? load_.size() : 0, " bounds, got ", bounds_.size());
   x_.assign(mass.n_points() * n_, 0);
-  if (form_ != Form::bounded) return;
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  bounds_.assign(load_.size(), {inf, -inf});
-  for (std::size_t t = 0; t < mass.tets().size(); ++t) {
-    for (const VertexId corner : mass.tets()[t]) {
-      const auto v = static_cast<std::size_t>(corner);
-      if (v >= mass.n_owned()) continue;
-      for (std::size_t c = 0; c < n_; ++c) {
-        ValueRange& mine = bounds_[v * n_ + c];
-        const ValueRange& range = bounds[t * n_ + c];
-        mine = {std::min(mine.low, range.low), std::max(mine.high, range.high)};
-      }
-    }
-  }
 }
 
 std::span<double> Projection::shared() noexcept {

@@ -1,7 +1,7 @@
 // Conservative L2 (Galerkin) projection onto linear elements: the target field whose integral
 // against every basis function equals that of the source field,
 //
-//     M u = load,  load_i = integral of u_source psi_i       (overlaps.hpp, mass_matrix.hpp)
+//     M u = load,  load_i = integral of u_source psi_i       (overlap_rows.hpp, mass_matrix.hpp)
 //
 // so the integral of the field is conserved. Three forms:
 //
@@ -41,10 +41,10 @@ class Projection {
   enum class Form : std::uint8_t { lumped, consistent, bounded };
 
   Projection() = default;
-  /// `loads`: per tetrahedron of the mass matrix, 4 × n_components. `bounds`: per tetrahedron and
-  /// component, the source values that overlap it; only for Form::bounded.
-  Projection(const MassMatrix& mass, std::size_t n_components, Form form,
-             std::span<const double> loads, std::span<const ValueRange> bounds = {});
+  /// `loads`: n_owned × n_components. `bounds`, in the same shape: of the source values that
+  /// contribute; only for Form::bounded.
+  Projection(const MassMatrix& mass, std::size_t n_components, Form form, std::vector<double> loads,
+             std::vector<ValueRange> bounds = {});
 
   /// True if the ghosts' rows of shared() are needed; false at the end.
   [[nodiscard]] bool step(const MassMatrix& mass);

@@ -1,9 +1,10 @@
 // The messages of conservative couplings, between pieces whose tetrahedra overlap.
 #pragma once
 
-#include "m2m/conservative/overlaps.hpp"
+#include "m2m/conservative/overlap_rows.hpp"
 #include "m2m/parallel/messages.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,27 +16,36 @@ struct OverlapQuery {
   collide::OwnerId from{};
   TargetTets tets;
 };
-/// The reply: per tetrahedron that overlaps, the ids of the source tetrahedra, ascending.
+/// The reply: which tetrahedra overlap, how much of them, and which unknowns have a row.
 struct OverlapAnswer {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::vector<std::uint32_t> tets;   ///< positions in the query
-  std::vector<std::uint32_t> first;  ///< per entry of tets, and the end: its first id
-  std::vector<GlobalId> ids;
+  std::vector<std::uint32_t> tets;  ///< positions in the query
+  std::vector<std::array<double, 4>> covered;
+  std::vector<std::uint32_t> rows;  ///< positions among the query's unknowns
   std::uint64_t n_tested = 0;
 };
-/// The end of a search: the entries of an answer that other source pieces overlap, too. Their loads
-/// are sent overlap by overlap; so the target adds all of a tetrahedron in the order of ids,
-/// wherever the source is cut. The loads of the others are added by the source, in the same order.
-struct SharedTets {
+/// From a target piece: the rows of an answer that other source pieces have a part of, too. The
+/// target adds the parts and applies these rows itself, to values of the source's unknowns.
+struct SharedRows {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::vector<std::uint8_t> shared;  ///< per entry: 0 or 1
+  std::vector<std::uint8_t> shared;  ///< per row of the answer: 0 or 1
+};
+/// The reply: the source piece's part of the shared rows.
+struct PartialRows {
+  CouplingId coupling{};
+  collide::OwnerId from{};
+  std::vector<GlobalId> ids;            ///< of all unknowns in them, ascending
+  std::vector<std::uint32_t> first{0};  ///< per row, and the end: its first column
+  std::vector<std::uint32_t> columns;   ///< positions in ids, ascending in a row
+  std::vector<double> weights;
 };
 
-/// Loads for a target piece are GivenValues: a block for each entry of the answer, or for each
-/// overlap of a shared one; in a block 4 × n_components loads, or n_components for cells, and if the
-/// kind is bounded n_components ranges.
+// In an application a source piece sends GivenValues: the loads of the rows that are not shared; if the
+// kind is bounded, as many pairs (low, high); then the values of PartialRows::ids. All have
+// n_components columns.
+
 /// Values of points that the receiver holds as ghosts, within a projection.
 struct GhostValues {
   CouplingId coupling{};

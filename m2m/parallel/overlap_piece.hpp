@@ -6,11 +6,11 @@
 //   submit     boxes of its cover       → collider ←    boxes of its cover; reports its points
 //   hits                                                collects the source pieces near
 //   ask                                 ← OverlapQuery  sends its tetrahedra there
-//   answer     cuts tetrahedra          OverlapAnswer → keeps the ids of those that overlap
-//   share                               ← SharedTets    which loads have to be sent singly
-//   cover      loads of the constant 1  GivenValues →
+//   answer     rows of weights          OverlapAnswer → adds up what is covered
+//   share                               ← SharedRows    names the rows of several source pieces
+//   part       gives these away         PartialRows →   adds them up
 //   finish                                              masses; tells the pieces beside it
-//   give       loads                    GivenValues →   adds them up, starts a projection
+//   give       loads                    GivenValues →   starts a projection
 //   solve                                               GhostValues to and from pieces beside it
 #pragma once
 
@@ -68,31 +68,29 @@ class OverlapPiece {
     detail::piece_of<T>(from.setup.target, query.from)
         .template send<&OverlapPiece<T>::m2m_receive_overlaps>(std::move(answer));
   }
-  void m2m_receive_overlaps(OverlapAnswer answer) {
-    const CouplingId id = answer.coupling;
-    couplings.overlap_target(id).add(std::move(answer));
+  void m2m_receive_overlaps(const OverlapAnswer& answer) {
+    couplings.overlap_target(answer.coupling).add(answer);
   }
   template <class S>
-  void m2m_share_tets(CouplingId id) {
+  void m2m_share_rows(CouplingId id) {
     OverlapTarget& to = couplings.overlap_target(id);
-    for (auto& [source, shared] : to.shared()) {
+    for (auto& [source, shared] : to.shared_rows()) {
       shared.from = me();
       detail::piece_of<S>(to.setup.source, source)
-          .template send<&OverlapPiece<S>::template m2m_cover<C>>(std::move(shared));
+          .template send<&OverlapPiece<S>::template m2m_part<C>>(std::move(shared));
     }
   }
   template <class T>
-  void m2m_cover(SharedTets shared) {
+  void m2m_part(const SharedRows& shared) {
     OverlapSource& from = couplings.overlap_source(shared.coupling);
-    const collide::OwnerId target = shared.from;
-    GivenValues ones = from.share(self().mesh_view(), std::move(shared));
-    ones.from = me();
-    detail::piece_of<T>(from.setup.target, target)
-        .template send<&OverlapPiece<T>::m2m_receive_cover>(std::move(ones));
+    PartialRows partial = from.share(self().mesh_view(), shared);
+    partial.from = me();
+    detail::piece_of<T>(from.setup.target, shared.from)
+        .template send<&OverlapPiece<T>::m2m_receive_rows>(std::move(partial));
   }
-  void m2m_receive_cover(GivenValues ones) {
-    const CouplingId id = ones.coupling;
-    couplings.overlap_target(id).add_covered(std::move(ones));
+  void m2m_receive_rows(PartialRows partial) {
+    const CouplingId id = partial.coupling;
+    couplings.overlap_target(id).add(std::move(partial));
   }
   void m2m_finish_search(CouplingId id) {
     OverlapTarget& to = couplings.overlap_target(id);

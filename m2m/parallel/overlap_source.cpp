@@ -2,7 +2,7 @@
 
 #include "runtime/core/check.hpp"
 
-#include <limits>
+#include <algorithm>
 #include <utility>
 
 namespace tess::m2m {
@@ -16,63 +16,77 @@ std::vector<Aabb> OverlapSource::start_search(const MeshView& mesh) {
 }
 
 OverlapAnswer OverlapSource::answer(const MeshView& mesh, const OverlapQuery& query) {
-  Overlaps found = find_overlaps(mesh, cover_, query.tets);
-  OverlapAnswer answer{setup.id, {}, found.targets, found.first, {}, found.n_tested};
-  for (const std::int32_t tet : found.sources)
-    answer.ids.push_back(mesh.tet_ids[static_cast<std::size_t>(tet)]);
-  if (!found.targets.empty()) given_[query.from].overlaps = std::move(found);
+  OverlapRows found = overlap_rows(mesh, setup.source_values, cover_, query.tets);
+  OverlapAnswer answer{setup.id,      {}, std::move(found.tets), std::move(found.covered), {},
+                       found.n_tested};
+  Rows<double> rows;
+  for (std::size_t row = 0; row < found.rows.n_rows(); ++row) {
+    if (found.rows.columns_of(row).empty()) continue;
+    answer.rows.push_back(static_cast<std::uint32_t>(row));
+    rows.begin.push_back(found.rows.begin[row + 1]);
+  }
+  rows.columns = std::move(found.rows.columns);
+  rows.weights = std::move(found.rows.weights);
+  if (!answer.rows.empty()) given_[query.from].rows = std::move(rows);
   return answer;
 }
 
-GivenValues OverlapSource::share(const MeshView& mesh, SharedTets shared) {
+PartialRows OverlapSource::share(const MeshView& mesh, const SharedRows& shared) {
   Given& given = given_.at(shared.from);
-  given.shared = std::move(shared.shared);
-  const std::vector<double> ones(mesh.tets.size(), 1.0);
-  return {setup.id, {}, 0, 0, loads(mesh, given, {ones, 1, Centring::cells}, false)};
+  const Rows<double> all = std::exchange(given.rows, {});
+  PartialRows partial{setup.id, {}, {}, {0}, {}, {}};
+  const auto id_of = [&](VertexId u) { return id_of_unknown(mesh, setup.source_values, u); };
+  for (std::size_t row = 0; row < all.n_rows(); ++row) {
+    const auto columns = all.columns_of(row);
+    const auto weights = all.weights_of(row);
+    if (shared.shared[row] != 0) {
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        given.sent.push_back(columns[k]);
+        partial.weights.push_back(weights[k]);
+      }
+      partial.first.push_back(static_cast<std::uint32_t>(partial.weights.size()));
+    } else {
+      for (std::size_t k = 0; k < columns.size(); ++k) given.rows.add(columns[k], weights[k]);
+      given.rows.end_row();
+    }
+  }
+  const std::vector<VertexId> unknowns = given.sent;
+  std::sort(given.sent.begin(), given.sent.end(),
+            [&](VertexId a, VertexId b) { return id_of(a) < id_of(b); });
+  given.sent.erase(std::unique(given.sent.begin(), given.sent.end()), given.sent.end());
+  for (const VertexId u : given.sent) partial.ids.push_back(id_of(u));
+  for (const VertexId u : unknowns)
+    partial.columns.push_back(static_cast<std::uint32_t>(
+        std::lower_bound(partial.ids.begin(), partial.ids.end(), id_of(u)) - partial.ids.begin()));
+  return partial;
 }
 
-SourceField OverlapSource::field_of(const MeshView& mesh, std::span<const double> values) const {
+std::size_t OverlapSource::components_of(const MeshView& mesh,
+                                         std::span<const double> values) const {
   const Centring centring = setup.source_values;
-  const std::size_t n_rows = centring == Centring::nodes   ? mesh.points.size()
-                             : centring == Centring::cells ? mesh.tets.size()
-                                                           : 4 * mesh.tets.size();
-  if (n_rows == 0) return {values, 1, centring};
+  const std::size_t n_rows = n_unknowns(mesh, centring);
+  if (n_rows == 0) return 1;
   TESS_CHECK(values.size() % n_rows == 0, "a piece with ", n_rows, " ",
              centring == Centring::nodes   ? "points"
              : centring == Centring::cells ? "tetrahedra"
                                            : "corners of tetrahedra",
              " gives ", values.size(), " values: give as many rows, ghosts included");
-  return {values, values.size() / n_rows, centring};
+  return values.size() / n_rows;
 }
 
-std::vector<double> OverlapSource::loads(const MeshView& mesh, const Given& given,
-                                         const SourceField& field, bool with_ranges) const {
-  const std::size_t n = field.n_components;
-  const bool to_cells = setup.target_values == Centring::cells;
-  const bool ranges = with_ranges && setup.kind == TransferKind::conservative_bounded;
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  std::vector<double> out, block(4 * n, 0);
-  std::vector<ValueRange> range(n, {inf, -inf});
-  const auto end_block = [&] {
-    if (to_cells) {
-      for (std::size_t c = 0; c < n; ++c)
-        out.push_back((block[c] + block[n + c]) + (block[2 * n + c] + block[3 * n + c]));
-    } else {
-      out.insert(out.end(), block.begin(), block.end());
-    }
-    block.assign(4 * n, 0);
-    if (!ranges) return;
-    for (const ValueRange& r : range) out.insert(out.end(), {r.low, r.high});
-    range.assign(n, {inf, -inf});
-  };
-  const Overlaps& all = given.overlaps;
-  for (std::size_t t = 0; t < all.targets.size(); ++t) {
-    for (std::uint32_t k = all.first[t]; k < all.first[t + 1]; ++k) {
-      add_load(mesh, all.sources[k], all.integrals[k], field, block);
-      if (ranges) add_range(mesh, all.sources[k], field, range);
-      if (given.shared[t] != 0) end_block();
-    }
-    if (given.shared[t] == 0) end_block();
+std::vector<double> OverlapSource::loads(const Given& given, std::span<const double> values,
+                                         std::size_t n_components) const {
+  const std::size_t n_loads = given.rows.n_rows() * n_components;
+  std::vector<double> out(n_loads);
+  m2m::apply(given.rows, values, n_components, out);
+  if (setup.kind == TransferKind::conservative_bounded) {
+    std::vector<ValueRange> ranges(n_loads);
+    value_ranges(given.rows, values, n_components, ranges);
+    for (const ValueRange& range : ranges) out.insert(out.end(), {range.low, range.high});
+  }
+  for (const VertexId u : given.sent) {
+    const auto row = values.subspan(static_cast<std::size_t>(u) * n_components, n_components);
+    out.insert(out.end(), row.begin(), row.end());
   }
   return out;
 }

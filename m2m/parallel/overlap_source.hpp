@@ -1,5 +1,5 @@
-// What a piece knows of a conservative coupling that it gives values to: the overlaps of its
-// tetrahedra with those of target pieces.
+// What a piece knows of a conservative coupling that it gives values to: the rows by which it computes
+// the loads of target pieces.
 #pragma once
 
 #include "m2m/parallel/overlap_messages.hpp"
@@ -15,8 +15,8 @@ class OverlapSource {
   /// Forgets the last search, and returns the boxes of the cover.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
   [[nodiscard]] OverlapAnswer answer(const MeshView& mesh, const OverlapQuery& query);
-  /// Ends the search with a piece; returns the loads of the constant 1.
-  [[nodiscard]] GivenValues share(const MeshView& mesh, SharedTets shared);
+  /// Ends the search with a piece: the rows that are not shared stay here.
+  [[nodiscard]] PartialRows share(const MeshView& mesh, const SharedRows& shared);
 
   /// Calls send(target piece, loads) for every target piece that overlaps this one. `values`: a row
   /// per point, tetrahedron or corner, as the coupling's source_values say.
@@ -24,10 +24,10 @@ class OverlapSource {
   void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
             const Send& send) {
     cover_ = {};
-    const SourceField field = field_of(mesh, values);
+    const std::size_t n_components = components_of(mesh, values);
     const std::uint32_t round = rounds_[channel]++;
     for (const auto& [target, given] : given_)
-      send(target, GivenValues{setup.id, {}, channel, round, loads(mesh, given, field, true)});
+      send(target, GivenValues{setup.id, {}, channel, round, loads(given, values, n_components)});
   }
 
   template <class Ar>
@@ -37,16 +37,17 @@ class OverlapSource {
 
  private:
   struct Given {
-    Overlaps overlaps{};
-    std::vector<std::uint8_t> shared{};
+    Rows<double> rows{};           // after the search: those that are not shared
+    std::vector<VertexId> sent{};  // unknowns whose values are sent, too
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(overlaps, shared);
+      ar(rows, sent);
     }
   };
-  [[nodiscard]] SourceField field_of(const MeshView& mesh, std::span<const double> values) const;
-  [[nodiscard]] std::vector<double> loads(const MeshView& mesh, const Given& given,
-                                          const SourceField& field, bool with_ranges) const;
+  [[nodiscard]] std::size_t components_of(const MeshView& mesh,
+                                          std::span<const double> values) const;
+  [[nodiscard]] std::vector<double> loads(const Given& given, std::span<const double> values,
+                                          std::size_t n_components) const;
 
   Cover cover_;
   std::map<collide::OwnerId, Given> given_;  // per target piece

@@ -1,7 +1,6 @@
 #include "m2m/parallel/overlap_target.hpp"
 
 #include "m2m/interpolate/orientation.hpp"
-#include "m2m/tets_of_vertices.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/sort_unique.hpp"
 
@@ -9,22 +8,40 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace tess::m2m {
 
+namespace {
+
+/// What is covered to a smaller fraction of its volume counts as not covered.
+constexpr double no_coverage = 1e-12;
+
+double volume_of(const MeshView& mesh, const Tet& tet) {
+  const auto c = corners_of(mesh.points, tet);
+  return std::abs(orientation(c[0], c[1], c[2], c[3])) / 6;
+}
+
+}  // namespace
+
 std::vector<Aabb> OverlapTarget::start_search(const MeshView& mesh) {
   validate(mesh);
-  asked_.clear();
-  neighbours_.clear();
-  channels_.clear();
-  covered_ = {};
-  tally_ = {};
+  const CouplingSetup kept = setup;
+  *this = {};
+  setup = kept;
   if (to_cells()) {
     numbers_.resize(mesh.own_tets().size());
     std::iota(numbers_.begin(), numbers_.end(), 0);
+    for (const Tet& tet : mesh.own_tets()) volumes_.push_back(volume_of(mesh, tet));
   } else {
     numbers_ = tets_at_owned(mesh);
+    volumes_.assign(mesh.points.size(), 0);
+    for (const std::int32_t number : numbers_) {
+      const Tet& tet = mesh.tets[static_cast<std::size_t>(number)];
+      for (const VertexId v : tet) volumes_[static_cast<std::size_t>(v)] += volume_of(mesh, tet);
+    }
   }
+  covered_.assign(numbers_.size(), {});
   std::vector<Tet> tets;
   for (const std::int32_t t : numbers_) tets.push_back(mesh.tets[static_cast<std::size_t>(t)]);
   cover_ = cover_tets(mesh.points, tets);
@@ -36,7 +53,8 @@ std::vector<PointReport> OverlapTarget::point_reports(const MeshView& mesh,
   std::vector<PointReport> reports(mesh.points.size());
   for (std::size_t v = 0; v < reports.size(); ++v) {
     const bool is_owned = static_cast<std::int64_t>(v) < mesh.n_owned;
-    reports[v] = {mesh.point_ids[v], me, static_cast<std::int32_t>(v), 0, is_owned ? 0 : -1};
+    reports[v] = {mesh.point_ids[v], me,         static_cast<std::int32_t>(v), 0,
+                  is_owned ? 0 : -1, volumes_[v]};
   }
   const std::size_t n_own = mesh.own_tets().size();
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -55,8 +73,31 @@ void OverlapTarget::add(const collide::Hits& hits) {
                              static_cast<std::uint32_t>(pair.theirs));
 }
 
+void OverlapTarget::add(const SharedPoints& shared) {
+  for (const SharedPoint& point : shared.points) {
+    Neighbour& neighbour = neighbours_[point.other];
+    (point.is_owner ? neighbour.owned : neighbour.ghosts).emplace_back(point.id, point.point);
+    if (!point.is_owner) volumes_[static_cast<std::size_t>(point.point)] = point.volume;
+  }
+}
+
+std::array<std::uint32_t, 4> OverlapTarget::places_of(const MeshView& mesh,
+                                                      std::uint32_t tet) const {
+  std::array<std::uint32_t, 4> places;
+  if (to_cells()) {
+    places.fill(tet);
+  } else {
+    const Tet& corners = mesh.tets[static_cast<std::size_t>(numbers_[tet])];
+    for (std::size_t c = 0; c < 4; ++c) places[c] = static_cast<std::uint32_t>(corners[c]);
+  }
+  return places;
+}
+
 OverlapTarget::Addressed<OverlapQuery> OverlapTarget::queries(const MeshView& mesh) {
+  const std::size_t n_places =
+      to_cells() ? numbers_.size() : static_cast<std::size_t>(mesh.n_owned);
   Addressed<OverlapQuery> out;
+  std::vector<std::int32_t> unknown_of(volumes_.size(), -1);
   for (auto& [source, asked] : asked_) {
     sort_unique(asked.boxes);
     OverlapQuery query{setup.id, {}, {}};
@@ -64,9 +105,9 @@ OverlapTarget::Addressed<OverlapQuery> OverlapTarget::queries(const MeshView& me
     for (auto pair = asked.boxes.begin(); pair != asked.boxes.end();) {
       const std::uint32_t box = pair->first;
       for (const std::uint32_t member : cover_.members_of(box)) {
-        const auto tet = static_cast<std::size_t>(numbers_[member]);
         asked.tets.push_back(member);
-        to.tets.push_back(corners_of(mesh.points, mesh.tets[tet]));
+        to.tets.push_back(
+            corners_of(mesh.points, mesh.tets[static_cast<std::size_t>(numbers_[member])]));
       }
       to.first.push_back(static_cast<std::uint32_t>(to.tets.size()));
       for (; pair != asked.boxes.end() && pair->first == box; ++pair)
@@ -74,123 +115,127 @@ OverlapTarget::Addressed<OverlapQuery> OverlapTarget::queries(const MeshView& me
       to.first_near.push_back(static_cast<std::uint32_t>(to.near.size()));
     }
     asked.boxes = {};
+    // Places first, then ghosts.
+    std::vector<std::uint32_t> numbered;
+    for (const bool ghosts : {false, true}) {
+      for (const std::uint32_t tet : asked.tets)
+        for (const std::uint32_t place : places_of(mesh, tet)) {
+          if ((place >= n_places) != ghosts || unknown_of[place] >= 0) continue;
+          unknown_of[place] = static_cast<std::int32_t>(numbered.size());
+          numbered.push_back(place);
+        }
+      if (!ghosts) asked.places = numbered;
+    }
+    to.n_rows = static_cast<std::uint32_t>(asked.places.size());
+    for (const std::uint32_t place : numbered) to.quanta.push_back(quantum_of(volumes_[place]));
+    for (const std::uint32_t tet : asked.tets) {
+      std::array<std::uint32_t, 4> unknowns = places_of(mesh, tet);
+      for (std::uint32_t& u : unknowns) u = static_cast<std::uint32_t>(unknown_of[u]);
+      to.unknowns.push_back(unknowns);
+    }
+    for (const std::uint32_t place : numbered) unknown_of[place] = -1;
     out.emplace_back(source, std::move(query));
   }
   cover_ = {};
   return out;
 }
 
-void OverlapTarget::add(OverlapAnswer answer) {
+void OverlapTarget::add(const OverlapAnswer& answer) {
   tally_.n_candidates += answer.n_tested;
   Asked& asked = asked_.at(answer.from);
-  asked.answer = std::move(answer);
+  for (std::size_t k = 0; k < answer.tets.size(); ++k)
+    for (std::size_t a = 0; a < 4; ++a)
+      covered_[asked.tets[answer.tets[k]]][a] += answer.covered[k][a];  // exact in any order
+  for (const std::uint32_t row : answer.rows) asked.rows.push_back(asked.places[row]);
+  asked.tets = {};
+  asked.places = {};
 }
 
-void OverlapTarget::add(const SharedPoints& shared) {
-  for (const SharedPoint& point : shared.points) {
-    Neighbour& neighbour = neighbours_[point.other];
-    (point.is_owner ? neighbour.owned : neighbour.ghosts).emplace_back(point.id, point.point);
-  }
-}
-
-OverlapTarget::Addressed<SharedTets> OverlapTarget::shared() {
-  sources_.clear();
-  std::erase_if(asked_, [](const auto& entry) { return entry.second.answer.tets.empty(); });
-  std::vector<std::uint32_t> n_sources(numbers_.size(), 0);
-  for (const auto& [source, asked] : asked_)
-    for (const std::uint32_t tet : asked.answer.tets) ++n_sources[asked.tets[tet]];
-
-  struct Placed {
-    std::uint32_t number;
-    GlobalId source_id;
-    Block block;
-  };
-  std::vector<Placed> placed;
-  Addressed<SharedTets> out;
-  for (const auto& [source, asked] : asked_) {
-    const OverlapAnswer& answer = asked.answer;
-    SharedTets message{setup.id, {}, {}};
-    std::uint32_t position = 0;
-    const auto slot = static_cast<std::uint32_t>(sources_.size());
-    for (std::size_t k = 0; k < answer.tets.size(); ++k) {
-      const std::uint32_t number = asked.tets[answer.tets[k]];
-      const bool is_shared = n_sources[number] > 1;
+OverlapTarget::Addressed<SharedRows> OverlapTarget::shared_rows() {
+  std::vector<std::uint32_t> n_sources(volumes_.size(), 0);
+  for (const auto& [piece, asked] : asked_)
+    for (const std::uint32_t place : asked.rows) ++n_sources[place];
+  Addressed<SharedRows> out;
+  for (const auto& [piece, asked] : asked_) {
+    if (asked.rows.empty()) continue;
+    SharedRows message{setup.id, {}, {}};
+    Source source{.piece = piece};
+    for (const std::uint32_t place : asked.rows) {
+      const bool is_shared = n_sources[place] > 1;
       message.shared.push_back(is_shared ? 1 : 0);
-      const std::uint32_t end = is_shared ? answer.first[k + 1] : answer.first[k] + 1;
-      for (std::uint32_t i = answer.first[k]; i < end; ++i)
-        placed.push_back({number, answer.ids[i], {slot, position++}});
+      if (!is_shared) source.places.push_back(place);
     }
-    sources_.push_back(source);
-    out.emplace_back(source, std::move(message));
+    sources_.push_back(std::move(source));
+    out.emplace_back(piece, std::move(message));
   }
-  asked_.clear();
-  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-    return a.number != b.number ? a.number < b.number : a.source_id < b.source_id;
-  });
-  first_block_.assign(numbers_.size() + 1, 0);
-  blocks_.clear();
-  for (const Placed& p : placed) {
-    ++first_block_[p.number + 1];
-    blocks_.push_back(p.block);
-  }
-  for (std::size_t k = 0; k < numbers_.size(); ++k) first_block_[k + 1] += first_block_[k];
   return out;
 }
 
-OverlapTarget::Summed OverlapTarget::sum_up(const std::vector<GivenValues>& messages,
-                                            bool with_ranges) const {
-  Summed out;
-  std::vector<const double*> by_source(sources_.size(), nullptr);
-  std::vector<std::uint32_t> n_blocks(sources_.size(), 0);
-  for (const Block& block : blocks_) ++n_blocks[block.source];
-  const std::size_t corners = to_cells() ? 1 : 4;
-  const bool ranges = with_ranges && setup.kind == TransferKind::conservative_bounded;
-  std::size_t n_components = 0;
-  for (const GivenValues& message : messages) {
-    const auto at = std::lower_bound(sources_.begin(), sources_.end(), message.from);
-    const auto slot = static_cast<std::size_t>(at - sources_.begin());
-    by_source[slot] = message.values.data();
-    const std::size_t per_block = message.values.size() / n_blocks[slot];
-    const std::size_t n = per_block / (corners + (ranges ? 2 : 0));
-    TESS_CHECK(n_components == 0 || n == n_components, "source pieces give ", n_components, " and ",
-               n, " components in one round: give equally many");
-    n_components = n;
-  }
-  const std::size_t n_loads = corners * n_components;
-  const std::size_t stride = n_loads + (ranges ? 2 * n_components : 0);
-  out.loads.assign(numbers_.size() * n_loads, 0);
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  if (ranges) out.ranges.assign(numbers_.size() * n_components, {inf, -inf});
-  for (std::size_t k = 0; k < numbers_.size(); ++k)
-    for (std::uint32_t b = first_block_[k]; b < first_block_[k + 1]; ++b) {
-      const double* from = by_source[blocks_[b].source] + blocks_[b].position * stride;
-      for (std::size_t i = 0; i < n_loads; ++i) out.loads[k * n_loads + i] += *from++;
-      if (!ranges) continue;
-      for (std::size_t c = 0; c < n_components; ++c, from += 2) {
-        ValueRange& range = out.ranges[k * n_components + c];
-        range = {std::min(range.low, from[0]), std::max(range.high, from[1])};
-      }
+void OverlapTarget::join_partial_rows() {
+  struct Entry {
+    std::uint32_t place;
+    GlobalId id;
+    VertexId value;  // among those of all sources
+    double weight;
+  };
+  std::sort(partial_.begin(), partial_.end(),
+            [](const PartialRows& a, const PartialRows& b) { return a.from < b.from; });
+  std::vector<std::uint32_t> n_sources(volumes_.size(), 0);
+  for (const auto& [piece, asked] : asked_)
+    for (const std::uint32_t place : asked.rows) ++n_sources[place];
+  std::vector<Entry> entries;
+  std::uint32_t n_values = 0;
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    const PartialRows& rows = partial_[s];
+    sources_[s].first_value = n_values;
+    sources_[s].n_values = static_cast<std::uint32_t>(rows.ids.size());
+    std::size_t row = 0;
+    for (const std::uint32_t place : asked_.at(rows.from).rows) {
+      if (n_sources[place] < 2) continue;
+      for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k)
+        entries.push_back({place, rows.ids[rows.columns[k]],
+                           static_cast<VertexId>(n_values + rows.columns[k]), rows.weights[k]});
+      ++row;
     }
-  return out;
+    n_values += sources_[s].n_values;
+  }
+  partial_ = {};
+  asked_.clear();
+  // By id, as in the rows of one piece; of several copies of an unknown, the first piece's is used.
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.place, a.id, a.value) < std::tie(b.place, b.id, b.value);
+  });
+  for (auto entry = entries.begin(); entry != entries.end();) {
+    const std::uint32_t place = entry->place;
+    while (entry != entries.end() && entry->place == place) {
+      const Entry& first = *entry;
+      double weight = 0;
+      for (; entry != entries.end() && entry->place == place && entry->id == first.id; ++entry)
+        weight += entry->weight;
+      shared_rows_.add(first.value, weight);
+    }
+    shared_rows_.end_row();
+    shared_places_.push_back(place);
+  }
+}
+
+std::vector<double> OverlapTarget::covered_fractions(const MeshView& mesh) {
+  if (!to_cells()) {
+    mass_ = MassMatrix(mesh, numbers_, covered_);
+    covered_ = {};
+    return {mass_.covered_fractions().begin(), mass_.covered_fractions().end()};
+  }
+  std::vector<double> fractions;
+  for (std::size_t t = 0; t < numbers_.size(); ++t) {
+    const std::array<double, 4>& c = covered_[t];
+    fractions.push_back(volumes_[t] > 0 ? ((c[0] + c[1]) + (c[2] + c[3])) / volumes_[t] : 0);
+  }
+  return fractions;
 }
 
 std::vector<collide::OwnerId> OverlapTarget::finish_search(const MeshView& mesh) {
-  std::vector<double> covered(numbers_.size() * (to_cells() ? 1 : 4), 0);
-  if (n_sources() > 0) covered = sum_up(covered_.take(), false).loads;
-  std::vector<double> fractions;
-  if (to_cells()) {
-    for (std::size_t t = 0; t < numbers_.size(); ++t) {
-      const auto c = corners_of(mesh.points, mesh.tets[t]);
-      const double volume = std::abs(orientation(c[0], c[1], c[2], c[3])) / 6;
-      fractions.push_back(volume > 0 ? covered[t] / volume : 0);
-    }
-    volumes_ = std::move(covered);
-  } else {
-    mass_ = MassMatrix(mesh, numbers_, covered);
-    fractions.assign(mass_.covered_fractions().begin(), mass_.covered_fractions().end());
-  }
-  status_.clear();
-  for (const double fraction : fractions) {
+  join_partial_rows();
+  for (const double fraction : covered_fractions(mesh)) {
     status_.push_back(!(fraction > no_coverage)     ? Status::outside
                       : fraction >= 1 - no_coverage ? Status::inside
                                                     : Status::snapped);
@@ -224,23 +269,73 @@ std::size_t OverlapTarget::n_ghost_messages() const {
   return n;
 }
 
+std::size_t OverlapTarget::components_of(const std::vector<GivenValues>& messages) const {
+  const std::size_t per_load = setup.kind == TransferKind::conservative_bounded ? 3 : 1;
+  std::size_t n_components = 0;
+  for (const GivenValues& message : messages)
+    for (const Source& source : sources_) {
+      if (source.piece != message.from) continue;
+      const std::size_t n =
+          message.values.size() / (per_load * source.places.size() + source.n_values);
+      TESS_CHECK(n_components == 0 || n == n_components, "source pieces give ", n_components,
+                 " and ", n, " components in one round: give equally many");
+      n_components = n;
+    }
+  return n_components;
+}
+
+OverlapTarget::Loads OverlapTarget::add_up(const std::vector<GivenValues>& messages) const {
+  const std::size_t n = components_of(messages);
+  const std::size_t n_places = status_.size();
+  const bool bounded = setup.kind == TransferKind::conservative_bounded;
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Loads out;
+  out.values.assign(n_places * n, 0);
+  if (bounded) out.ranges.assign(n_places * n, {inf, -inf});
+  const auto n_values = sources_.back().first_value + sources_.back().n_values;
+  std::vector<double> values(n_values * n);
+  for (const GivenValues& message : messages) {
+    const auto source = std::find_if(sources_.begin(), sources_.end(),
+                                     [&](const Source& s) { return s.piece == message.from; });
+    const double* from = message.values.data();
+    for (const std::uint32_t place : source->places)
+      for (std::size_t c = 0; c < n; ++c) out.values[place * n + c] = *from++;
+    if (bounded)
+      for (const std::uint32_t place : source->places)
+        for (std::size_t c = 0; c < n; ++c, from += 2)
+          out.ranges[place * n + c] = {from[0], from[1]};
+    std::copy_n(from, source->n_values * n, values.data() + source->first_value * n);
+  }
+  std::vector<double> sums(shared_places_.size() * n);
+  m2m::apply(shared_rows_, values, n, sums);
+  std::vector<ValueRange> ranges(bounded ? sums.size() : 0);
+  if (bounded) value_ranges(shared_rows_, values, n, ranges);
+  for (std::size_t k = 0; k < shared_places_.size(); ++k)
+    for (std::size_t c = 0; c < n; ++c) {
+      out.values[shared_places_[k] * n + c] = sums[k * n + c];
+      if (bounded) out.ranges[shared_places_[k] * n + c] = ranges[k * n + c];
+    }
+  return out;
+}
+
 void OverlapTarget::start_round(Channel& channel) {
-  Summed sums = sum_up(channel.loads.take(), true);
+  Loads loads = add_up(channel.loads.take());
+  const std::size_t n = status_.empty() ? 1 : loads.values.size() / status_.size();
   if (to_cells()) {
-    const std::size_t n = volumes_.empty() ? 1 : sums.loads.size() / volumes_.size();
-    for (std::size_t t = 0; t < volumes_.size(); ++t)
+    for (std::size_t t = 0; t < covered_.size(); ++t) {
+      const std::array<double, 4>& covered = covered_[t];
+      const double volume = (covered[0] + covered[1]) + (covered[2] + covered[3]);
       for (std::size_t c = 0; c < n; ++c)
-        sums.loads[t * n + c] =
-            status_[t] == Status::outside ? 0 : sums.loads[t * n + c] / volumes_[t];
-    channel.result = std::move(sums.loads);
+        if (volume > 0) loads.values[t * n + c] /= volume;
+    }
+    channel.result = std::move(loads.values);
     return;
   }
   using Form = Projection::Form;
   const Form form = setup.kind == TransferKind::conservative          ? Form::consistent
                     : setup.kind == TransferKind::conservative_lumped ? Form::lumped
                                                                       : Form::bounded;
-  const std::size_t n = sums.loads.size() / (4 * numbers_.size());
-  channel.projection.emplace(mass_, n, form, sums.loads, sums.ranges);
+  channel.projection.emplace(mass_, n, form, std::move(loads.values), std::move(loads.ranges));
 }
 
 void OverlapTarget::take_ghosts(Channel& channel) {

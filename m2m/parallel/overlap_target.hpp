@@ -1,5 +1,6 @@
 // What a piece knows of a conservative coupling that gives it values: which source pieces send loads
-// and in which order they are added, and the projections under way.
+// or values for its rows, and the projections under way. A place is what gets a value: a point that the
+// piece owns, or a cell.
 #pragma once
 
 #include "m2m/conservative/projection.hpp"
@@ -27,12 +28,12 @@ class OverlapTarget {
                                                        collide::OwnerId me) const;
   void add(const collide::Hits& hits);
   [[nodiscard]] Addressed<OverlapQuery> queries(const MeshView& mesh);
-  void add(OverlapAnswer answer);
+  void add(const OverlapAnswer& answer);
+  /// Before queries().
   void add(const SharedPoints& shared);
-  /// After all answers: fixes the order in which loads are added.
-  [[nodiscard]] Addressed<SharedTets> shared();
-  /// Loads of the constant 1.
-  void add_covered(GivenValues loads) { covered_.add(0, std::move(loads)); }
+  /// After all answers.
+  [[nodiscard]] Addressed<SharedRows> shared_rows();
+  void add(PartialRows partial) { partial_.push_back(std::move(partial)); }
   /// After all of these: masses and statuses. Returns the pieces that must know that this one takes
   /// part in projections.
   [[nodiscard]] std::vector<collide::OwnerId> finish_search(const MeshView& mesh);
@@ -56,25 +57,32 @@ class OverlapTarget {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, numbers_, cover_, asked_, sources_, first_block_, blocks_, covered_, mass_, volumes_,
-       neighbours_, tally_, status_, channels_);
+    ar(setup, numbers_, volumes_, cover_, asked_, partial_, covered_, sources_, shared_places_,
+       shared_rows_, mass_, neighbours_, tally_, status_, channels_);
   }
 
  private:
-  /// The tetrahedra that were sent to a source piece, and its answer.
+  /// The tetrahedra and places that were sent to a source piece.
   struct Asked {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> boxes{};  // (mine, theirs), from the hits
     std::vector<std::uint32_t> tets{};                             // as positions in numbers_
-    OverlapAnswer answer{};
+    std::vector<std::uint32_t> places{};                           // that may get a row
+    std::vector<std::uint32_t> rows{};                             // that have one, from the answer
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(boxes, tets, answer);
+      ar(boxes, tets, places, rows);
     }
   };
-  /// A block of loads: in the message of a source piece, as a position in sources_.
-  struct Block {
-    std::uint32_t source = 0;
-    std::uint32_t position = 0;
+  /// What a source piece sends in an application.
+  struct Source {
+    collide::OwnerId piece{};
+    std::vector<std::uint32_t> places{};  // whose loads it sends, in its order
+    std::uint32_t first_value = 0;        // of its unknowns, among those of all sources
+    std::uint32_t n_values = 0;
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(piece, places, first_value, n_values);
+    }
   };
   /// A piece that shares points with this one.
   struct Neighbour {
@@ -98,27 +106,32 @@ class OverlapTarget {
       ar(loads, ghosts, projection, n_steps, waits, result);
     }
   };
-  /// Loads per number, and ranges where the kind is bounded.
-  struct Summed {
-    std::vector<double> loads;
-    std::vector<ValueRange> ranges;
+  struct Loads {
+    std::vector<double> values{};      // per place × component
+    std::vector<ValueRange> ranges{};  // the same, if the kind is bounded
   };
 
   [[nodiscard]] bool to_cells() const { return setup.target_values == Centring::cells; }
-  [[nodiscard]] Summed sum_up(const std::vector<GivenValues>& messages, bool with_ranges) const;
+  [[nodiscard]] std::array<std::uint32_t, 4> places_of(const MeshView& mesh,
+                                                       std::uint32_t tet) const;
+  void join_partial_rows();
+  [[nodiscard]] std::vector<double> covered_fractions(const MeshView& mesh);
+  [[nodiscard]] std::size_t components_of(const std::vector<GivenValues>& messages) const;
+  [[nodiscard]] Loads add_up(const std::vector<GivenValues>& messages) const;
   void start_round(Channel& channel);
   void take_ghosts(Channel& channel);
   [[nodiscard]] std::size_t n_ghost_messages() const;
 
-  std::vector<std::int32_t> numbers_;  // of the tetrahedra that get loads, by id
+  std::vector<std::int32_t> numbers_;  // of the tetrahedra that give a place loads, by id
+  std::vector<double> volumes_;        // around each point, ghosts included; or of each cell
   Cover cover_;
   std::map<collide::OwnerId, Asked> asked_;
-  std::vector<collide::OwnerId> sources_;   // that overlap this piece
-  std::vector<std::uint32_t> first_block_;  // per number, and the end
-  std::vector<Block> blocks_;
-  Rounds<GivenValues> covered_;
-  MassMatrix mass_;              // of points
-  std::vector<double> volumes_;  // covered ones, of cells
+  std::vector<PartialRows> partial_;
+  std::vector<std::array<double, 4>> covered_;  // per number: loads of the constant 1
+  std::vector<Source> sources_;                 // by piece
+  std::vector<std::uint32_t> shared_places_;    // whose loads are computed here
+  Rows<double> shared_rows_;                    // for each; columns: values of all sources
+  MassMatrix mass_;                             // of points
   std::map<collide::OwnerId, Neighbour> neighbours_;
   Tally tally_;
   std::vector<Status> status_;

@@ -15,7 +15,10 @@ void PointDirectory::add(std::vector<PointReport> reports) {
 }
 
 void PointDirectory::resolve(const Callback<SharedPoints>& target) {
-  std::vector<PointReport> all = std::exchange(reports_, {});
+  for (SharedPoints& shared : compare(std::exchange(reports_, {}))) target(std::move(shared));
+}
+
+std::vector<SharedPoints> compare(std::vector<PointReport> all) {
   // Owners first.
   std::sort(all.begin(), all.end(), [](const PointReport& a, const PointReport& b) {
     return std::tuple(a.id, a.n_tets < 0, a.piece) < std::tuple(b.id, b.n_tets < 0, b.piece);
@@ -37,8 +40,10 @@ void PointDirectory::resolve(const Callback<SharedPoints>& target) {
         fail(ErrorCode::bad_mesh, "point ", owner.id,
              " of the target is owned by two pieces: give the points of separate meshes different "
              "ids, and let one piece own each");
-      lists[owner.piece].points.push_back({report.piece, owner.id, owner.point, true});
-      lists[report.piece].points.push_back({owner.piece, owner.id, report.point, false});
+      lists[owner.piece].points.push_back(
+          {report.piece, owner.id, owner.point, true, owner.volume});
+      lists[report.piece].points.push_back(
+          {owner.piece, owner.id, report.point, false, owner.volume});
     }
     if (n_tets != owner.n_tets)
       fail(ErrorCode::bad_mesh, "the piece that owns point ", owner.id, " of the target shows ",
@@ -47,10 +52,12 @@ void PointDirectory::resolve(const Callback<SharedPoints>& target) {
            "(MeshView::n_own_tets)");
     first = end;
   }
+  std::vector<SharedPoints> out;
   for (auto& [piece, shared] : lists) {
     shared.piece = piece;
-    target(std::move(shared));
+    out.push_back(std::move(shared));
   }
+  return out;
 }
 
 }  // namespace tess::m2m

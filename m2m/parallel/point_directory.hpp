@@ -19,6 +19,7 @@ struct PointReport {
   std::int32_t point = 0;       ///< local
   std::int32_t n_own_tets = 0;  ///< around it: of the piece's own tetrahedra
   std::int32_t n_tets = -1;     ///< around it, halo included; -1: the point is a ghost
+  double volume = 0;            ///< of these, if the point is owned
 };
 
 /// Tells a piece of a point that it shares with another piece.
@@ -27,18 +28,22 @@ struct SharedPoint {
   GlobalId id = 0;
   std::int32_t point = 0;  ///< local
   bool is_owner = false;   ///< this piece owns it, and the other holds a ghost
+  double volume = 0;       ///< of the tetrahedra around it
 };
 struct SharedPoints {
   collide::OwnerId piece{};  ///< the receiver
   std::vector<SharedPoint> points;
 };
 
+/// What each piece has to know, from all reports of some points. Throws Error (bad_mesh) if a ghost
+/// has no owner, a point has two, or the piece that owns it lacks a tetrahedron around it.
+[[nodiscard]] std::vector<SharedPoints> compare(std::vector<PointReport> reports);
+
 class PointDirectory : public Group<PointDirectory> {
  public:
   /// Entry method: reports for this PE, at most one per piece and point.
   void add(std::vector<PointReport> reports);
-  /// Entry method: calls target for every piece that shares points. Throws Error (bad_mesh) if a
-  /// ghost has no owner, a point has two, or the piece that owns it lacks a tetrahedron around it.
+  /// Entry method: compares the reports and calls target for every piece that shares points.
   void resolve(const Callback<SharedPoints>& target);
 
  private:

@@ -12,9 +12,9 @@
 #include <numeric>
 
 using namespace tess::m2m;
-using tess::test::loads_of;
-using tess::test::overlaps_of;
+using tess::test::covered_by;
 using tess::test::place_points;
+using tess::test::rows_between;
 using tess::test::view;
 using Form = Projection::Form;
 using tess::test::ball;
@@ -35,23 +35,6 @@ double integral(const TetMesh& mesh, const Values& values) {
   return static_cast<double>(sum);
 }
 
-/// Loads and ranges per tetrahedron of the target, for a field at the nodes of the source.
-struct Given {
-  Values loads;
-  std::vector<ValueRange> ranges;
-};
-Given given_by(const TetMesh& source, const TetMesh& target, const Overlaps& overlaps,
-               const Values& values, std::size_t n_components) {
-  const SourceField field{values, n_components, Centring::nodes};
-  Given out{loads_of(overlaps, source, target, field), {}};
-  out.ranges.assign(target.n_tets() * n_components, {INFINITY, -INFINITY});
-  for (std::size_t t = 0; t < overlaps.targets.size(); ++t)
-    for (std::uint32_t k = overlaps.first[t]; k < overlaps.first[t + 1]; ++k)
-      add_range(view(source), overlaps.sources[k], field,
-                std::span(out.ranges).subspan(n_components * overlaps.targets[t], n_components));
-  return out;
-}
-
 std::vector<GlobalId> positions(std::size_t n) {
   std::vector<GlobalId> ids(n);
   std::iota(ids.begin(), ids.end(), 0);
@@ -62,18 +45,19 @@ std::vector<GlobalId> positions(std::size_t n) {
 class Conservative {
  public:
   Conservative(const TetMesh& source, const TetMesh& target)
-      : source_(source), target_(target), overlaps_(overlaps_of(source, target)) {
+      : rows_(rows_between(source, Centring::nodes, target, Centring::nodes)) {
     const std::vector<GlobalId> ids = positions(target.n_tets());
     const MeshView mesh{
         target.points, target.tets, {}, ids, static_cast<std::int64_t>(target.n_points())};
-    const Values ones(source.n_tets(), 1);
-    mass_ = MassMatrix(mesh, tets_at_owned(mesh),
-                       loads_of(overlaps_, source, target, {ones, 1, Centring::cells}));
+    mass_ = MassMatrix(mesh, tets_at_owned(mesh), covered_by(rows_, target));
   }
 
   Values operator()(const Values& values, Form form, std::size_t n_components = 1) const {
-    const Given given = given_by(source_, target_, overlaps_, values, n_components);
-    Projection solver(mass_, n_components, form, given.loads, given.ranges);
+    Values loads(mass_.n_owned() * n_components);
+    apply(rows_.rows, values, n_components, loads);
+    std::vector<ValueRange> bounds(form == Form::bounded ? loads.size() : 0);
+    if (form == Form::bounded) value_ranges(rows_.rows, values, n_components, bounds);
+    Projection solver(mass_, n_components, form, loads, bounds);
     while (solver.step(mass_)) {
     }
     return {solver.values().begin(), solver.values().end()};
@@ -81,9 +65,7 @@ class Conservative {
   [[nodiscard]] const MassMatrix& mass() const { return mass_; }
 
  private:
-  const TetMesh& source_;
-  const TetMesh& target_;
-  Overlaps overlaps_;
+  OverlapRows rows_;
   MassMatrix mass_;
 };
 
@@ -245,10 +227,12 @@ TEST_CASE("a NaN stays a NaN and does not stop the other components", "[m2m][con
 TEST_CASE("a projection in parts, whose ghosts get the values of owners, has the bits of one part",
           "[m2m][conservative]") {
   const TetMesh a = kuhn_mesh({5, 0.2}), b = kuhn_mesh({6, 0.2});
-  const Overlaps overlaps = overlaps_of(a, b);
-  const Given given = given_by(a, b, overlaps, sampled(a.points, ball), 1);
-  const Values ones(a.n_tets(), 1);
-  const Values covered = loads_of(overlaps, a, b, {ones, 1, Centring::cells});
+  const OverlapRows rows = rows_between(a, Centring::nodes, b, Centring::nodes);
+  const auto covered = covered_by(rows, b);
+  Values loads(b.n_points());
+  apply(rows.rows, sampled(a.points, ball), 1, loads);
+  std::vector<ValueRange> bounds(b.n_points());
+  value_ranges(rows.rows, sampled(a.points, ball), 1, bounds);
   const Conservative whole(a, b);
   for (const std::int32_t n_parts : {2, 7}) {
     const auto parts = split(b, partition(b, n_parts, PartitionMethod::rcb), n_parts, 1);
@@ -257,21 +241,20 @@ TEST_CASE("a projection in parts, whose ghosts get the values of owners, has the
       std::vector<Projection> solvers;
       for (const MeshPart& part : parts) {
         const MeshView mesh{part.points, part.tets, part.point_ids, part.tet_ids, part.n_owned};
-        Values my_loads, my_covered;
-        std::vector<ValueRange> my_ranges;
         const std::vector<std::int32_t> numbers = tets_at_owned(mesh);
-        for (const std::int32_t number : numbers) {
-          const auto t =
-              static_cast<std::ptrdiff_t>(part.tet_ids[static_cast<std::size_t>(number)]);
-          const auto add = [t](Values& to, const Values& from) {
-            to.insert(to.end(), from.begin() + 4 * t, from.begin() + 4 * t + 4);
-          };
-          add(my_loads, given.loads);
-          add(my_covered, covered);
-          my_ranges.push_back(given.ranges[static_cast<std::size_t>(t)]);
+        std::vector<std::array<double, 4>> my_covered;
+        for (const std::int32_t number : numbers)
+          my_covered.push_back(
+              covered[static_cast<std::size_t>(part.tet_ids[static_cast<std::size_t>(number)])]);
+        Values my_loads;
+        std::vector<ValueRange> my_bounds;
+        for (std::size_t v = 0; v < static_cast<std::size_t>(part.n_owned); ++v) {
+          const auto id = static_cast<std::size_t>(part.point_ids[v]);
+          my_loads.push_back(loads[id]);
+          if (form == Form::bounded) my_bounds.push_back(bounds[id]);
         }
         masses.emplace_back(mesh, numbers, my_covered);
-        solvers.emplace_back(masses.back(), 1, form, my_loads, my_ranges);
+        solvers.emplace_back(masses.back(), 1, form, my_loads, my_bounds);
       }
       for (;;) {
         std::size_t n_open = 0;
