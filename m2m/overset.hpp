@@ -1,0 +1,35 @@
+// Overset meshes: holes are cut where other meshes have bodies, and values are exchanged around them.
+// Meshes overlap; each is an array of the application's own chares (coupling.hpp). For each mesh:
+//
+//     wall      Wall: the surface of the body in it                 overset_boundary(), or a file
+//     hole      its points inside or on the walls of other meshes   exact, local to a piece
+//     fringe    points near holes and on its outer boundary         local, with a halo of as many layers
+//     donors    a coupling finds them for each pair of meshes       Coupling::search()
+//     flags     the same coupling takes the flags of the donors     Coupling::apply()
+//     settle    a fringe point takes the best donor without a hole; without any it is an orphan
+//
+// Sample: tests/samples/overset.cpp
+//
+//     void cut(const tess::m2m::Wall& wall) { blanking_.cut(mesh_.view(), {&wall, 1}, on_outer_); }
+//     std::span<const double> flags() const { return blanking_.flags(); }
+//     std::span<double> offered() { return blanking_.offered(); }
+//     void settle(CouplingId from, std::int32_t mesh_number) {
+//       blanking_.settle(mesh_.view(), status(from), mesh_number);
+//     }
+//     // …
+//     co_await tess::epoch([&] { background.broadcast<&Grid::cut>(wall); });
+//     co_await to_background.search();
+//     co_await to_background.apply<&Grid::flags, &Grid::offered>();
+//     co_await tess::epoch([&] { background.broadcast<&Grid::settle>(to_background.id(), 2); });
+//
+// After that apply() takes fields; a piece uses them where iblank() is negative. A body that contains
+// no point of another mesh cuts no hole. If a mesh moves: cut, search and settle again.
+//
+// Roles, donors and qualities depend only on the meshes and the walls: not on the number of PEs or
+// pieces, or the order of messages.
+#pragma once
+
+#include "m2m/overset/blanking.hpp"
+#include "m2m/overset/boundary.hpp"
+#include "m2m/overset/roles.hpp"
+#include "m2m/overset/wall.hpp"
