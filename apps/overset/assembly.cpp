@@ -158,6 +158,8 @@ tess::Task assemble(const Problem& problem, Assembly& out) {
   co_await tess::epoch([&] {
     to_overset.destroy();
     to_background.destroy();
+  });
+  co_await tess::epoch([&] {
     background.destroy();
     overset.destroy();
   });

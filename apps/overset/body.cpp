@@ -137,6 +137,7 @@ Body parse_body(std::string_view name) {
     if (name.substr(0, colon) == word) body.shape = shape;
   const char* const end = name.data() + name.size();
   const auto [at, error] = std::from_chars(name.data() + colon + 1, end, body.n);
+  if (body.shape == Body::Shape::torus) body.radius = 0.32;
   if (error != std::errc() || at != end || body.n < 2 || body.n > 200)
     tess::fail(tess::ErrorCode::bad_argument, name, ": give a number from 2 to 200, as in ball:12");
   return body;
