@@ -33,6 +33,8 @@ int side(const Point& p, const WallTriangle& t, std::size_t i, std::size_t k) {
 
 int crossing(const Point& p, const WallTriangle& triangle) {
   const auto& [a, b, c] = triangle.corners;
+  for (const std::size_t k : {1U, 2U})
+    if (std::min({a[k], b[k], c[k]}) > p[k] || std::max({a[k], b[k], c[k]}) < p[k]) return 0;
   if (std::max({a[0], b[0], c[0]}) < p[0]) return 0;
   const int s = side(p, triangle, 0, 1);
   if (side(p, triangle, 1, 2) != s || side(p, triangle, 2, 0) != s) return 0;
