@@ -16,8 +16,7 @@ constexpr std::array<std::int8_t, 256> make_digits() {
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (std::size_t i = 0; i < alphabet.size(); ++i)
     digits[static_cast<unsigned char>(alphabet[i])] = static_cast<std::int8_t>(i);
-  for (const char blank : {' ', '\n', '\r', '\t'})
-    digits[static_cast<unsigned char>(blank)] = -1;
+  for (const char blank : {' ', '\n', '\r', '\t'}) digits[static_cast<unsigned char>(blank)] = -1;
   digits[static_cast<unsigned char>('=')] = -2;
   return digits;
 }
