@@ -53,7 +53,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     for (int i = 1; i <= n; ++i) {
       std::array<char, 512> name{};
       check(ex_get_variable_name(id_, type_of(place), i, name.data()), "ex_get_variable_name");
-      names.emplace_back(name.data());
+      names.push_back(clean_name(name.data()));
     }
     for (int i = 0; i < n; ++i) {
       if (const auto stem = vector_at(names, i)) {

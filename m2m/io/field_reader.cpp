@@ -30,6 +30,13 @@ std::vector<double> values_of_tets(const TetMesh& mesh, std::vector<double> valu
   return out;
 }
 
+std::string clean_name(std::string_view name) {
+  std::string clean(name);
+  std::replace_if(
+      clean.begin(), clean.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  return clean;
+}
+
 void check_n_points(const TetMesh& mesh, std::int64_t n_vertices, const std::string& path) {
   if (static_cast<std::int64_t>(mesh.n_points()) != n_vertices) other_mesh(mesh, path);
 }

@@ -50,6 +50,9 @@ class FieldReader {
 [[nodiscard]] std::vector<double> values_of_tets(const TetMesh& mesh, std::vector<double> values,
                                                  std::size_t n_components, const std::string& path);
 
+/// The name with a question mark for each control character, so that errors have one line.
+[[nodiscard]] std::string clean_name(std::string_view name);
+
 /// Throws Error (bad_mesh) unless the mesh has as many vertices as the file.
 void check_n_points(const TetMesh& mesh, std::int64_t n_vertices, const std::string& path);
 

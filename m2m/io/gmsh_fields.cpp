@@ -74,7 +74,7 @@ class GmshFields : public FieldReader {
     const auto n_names = file.number_as_text<std::uint32_t>();
     for (std::uint32_t i = 0; i < n_names; ++i) {
       const std::string_view text = file.quoted();
-      if (i == 0) name = text;
+      if (i == 0) name = clean_name(text);
     }
     double time = 0;
     const auto n_times = file.number_as_text<std::uint32_t>();

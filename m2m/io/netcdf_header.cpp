@@ -61,6 +61,8 @@ class HeaderReader {
     const std::uint64_t length = count();
     need(length);
     std::string text(bytes_.substr(at_, length));
+    for (const char c : text)
+      if (static_cast<unsigned char>(c) < ' ') damaged("a name with a control character");
     skip(length);
     return text;
   }

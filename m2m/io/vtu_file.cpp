@@ -1,5 +1,6 @@
 #include "m2m/io/vtu_file.hpp"
 
+#include "m2m/io/field_reader.hpp"
 #include "m2m/io/xml_scanner.hpp"
 
 #include <algorithm>
@@ -112,7 +113,7 @@ VtuFile::VtuFile(const std::string& path, std::string_view bytes) : path_(path) 
                                            : &piece.cell_data;
     } else if (tag->name == "DataArray" && section != nullptr) {
       if (opens) {
-        section->push_back({tag->attribute("Name").value_or(""),
+        section->push_back({clean_name(tag->attribute("Name").value_or("")),
                             tag->attribute("type").value_or(""),
                             tag->attribute("format").value_or("ascii"),
                             size_of(*tag, "NumberOfComponents", 1), size_of(*tag, "offset", 0)});
