@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/explain.hpp"
-#include "apps/m2m_transfer/file_fields.hpp"
 #include "apps/m2m_transfer/measure.hpp"
 #include "apps/m2m_transfer/picture.hpp"
 #include "apps/m2m_transfer/study.hpp"
@@ -76,41 +76,12 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
   if (!options.json.empty()) plot::write_file(options.json, json(study));
 }
 
-FileFieldsRequest file_fields(const DriverOptions& options) {
-  const Request& r = options.request;
-  return {r.source,
-          r.target,
-          r.fields,
-          options.step,
-          options.weights,
-          options.from_weights,
-          options.out,
-          options.policies.front(),
-          r.kind,
-          r.partition,
-          r.n_chares != 0 ? r.n_chares : r.per_pe * machine().n_pes(),
-          r.voxel};
-}
-
-Task move_fields(const DriverOptions& options, apps::Progress& progress) {
-  if (options.study || !options.picture.empty())
-    fail(ErrorCode::bad_argument,
-         "--study and --picture compare with formulas; leave them out for fields and weights of "
-         "files");
-  plot::require_writable("--json", options.json);
-  FileFieldsReport report;
-  co_await move_file_fields(file_fields(options), progress, &report);
-  if (!options.json.empty()) plot::write_file(options.json, json(report));
-  progress.clear();
-  print(table(report));
-}
-
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
   return tess::run(setup, [&]() -> Task {
-    if (is_for_files(file_fields(options))) return move_fields(options, progress);
+    if (moves_file_fields(options)) return move_file_fields(options, progress);
     return options.study ? run_study(options, progress) : transfer_once(options, progress);
   });
 }

@@ -48,7 +48,7 @@ ExodusFile::ExodusFile(const std::string& path, std::string_view bytes)
           1000)) {
   std::optional<Silence> silence;
   if (bytes.starts_with("CDF")) {
-    (void)read_netcdf_header(path, bytes);
+    check_netcdf_header(path, bytes);
   } else {
     silence.emplace();
   }

@@ -21,6 +21,8 @@ class GmshScanner {
   void set_binary(bool binary) { binary_ = binary; }
   [[nodiscard]] bool binary() const { return binary_; }
   [[nodiscard]] bool at_end() const { return at_ >= bytes_.size(); }
+  /// The position, in bytes.
+  [[nodiscard]] std::size_t at() const { return at_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
 
   template <class... Parts>
@@ -56,7 +58,6 @@ class GmshScanner {
     return bytes_.substr(begin, end - begin);
   }
 
-  [[nodiscard]] std::size_t at() const { return at_; }
   void move_to(std::size_t at) { at_ = at; }
 
   /// A number as text, in either mode.

@@ -28,6 +28,9 @@ struct NetcdfHeader {
 };
 
 /// Throws Error (bad_file) if the file is truncated or its header is inconsistent.
-NetcdfHeader read_netcdf_header(const std::string& path, std::string_view bytes);
+[[nodiscard]] NetcdfHeader read_netcdf_header(const std::string& path, std::string_view bytes);
+inline void check_netcdf_header(const std::string& path, std::string_view bytes) {
+  (void)read_netcdf_header(path, bytes);
+}
 
 }  // namespace tess::m2m
