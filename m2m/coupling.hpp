@@ -80,6 +80,8 @@ class Coupling {
 
   /// Valid after the first search.
   [[nodiscard]] CouplingId id() const { return setup_.id; }
+  /// For what is built on couplings, such as coupling_weights.hpp. Valid after the first search.
+  [[nodiscard]] const CouplingSetup& setup() const { return setup_; }
 
   /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no
   /// application of this coupling is under way. `summary` may be null.

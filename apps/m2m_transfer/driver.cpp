@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/explain.hpp"
 #include "apps/m2m_transfer/measure.hpp"
 #include "apps/m2m_transfer/picture.hpp"
@@ -80,6 +81,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
   return tess::run(setup, [&]() -> Task {
+    if (moves_file_fields(options)) return move_file_fields(options, progress);
     return options.study ? run_study(options, progress) : transfer_once(options, progress);
   });
 }

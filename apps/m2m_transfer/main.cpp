@@ -16,8 +16,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
       "SOURCE", request.source,
       "mesh: an ExodusII or gmsh (2.2, 4.1) file, or kuhn:N, a generated box of 6 N^3 tetrahedra");
   line.option("TARGET", request.target, "mesh of the same kinds");
-  line.option("--field", request.fields,
-              "gaussian, linear, sin, or an expression in x, y, z; repeat for several");
+  line.option(
+      "--field,--fields", request.fields,
+      "gaussian, linear, sin, an expression in x, y, z, or a field of the source file; repeat "
+      "for several");
   line.option("--chares", request.n_chares,
               "chares per mesh (default: --per-pe times the number of PEs)")
       .between(1, 1 << 20);
@@ -40,6 +42,13 @@ int run(tess::Setup& setup, int argc, char** argv) {
       .between(1, 1000000);
   line.option("--out", options.out,
               "write the target mesh with the fields and the status to this ExodusII file");
+  line.option("--step", options.step,
+              "step of the fields that the source file has: a number from 0 on, or all (default: "
+              "the last); --out then holds all steps");
+  line.option("--weights", options.weights,
+              "write the weights of the transfer to this file (NetCDF, ESMF's layout)");
+  line.option("--from-weights", options.from_weights,
+              "transfer with the weights of this file, without a search");
   line.option("--picture", options.picture,
               "draw the first field and its error in a cut through the target, as SVG");
   line.option("--json", options.json, "write the report to this JSON file");

@@ -15,6 +15,7 @@
 #pragma once
 
 #include "m2m/parallel/overlap_piece.hpp"
+#include "m2m/parallel/row_book.hpp"
 #include "runtime/runtime.hpp"
 
 #include <span>
@@ -80,6 +81,28 @@ class Piece : public OverlapPiece<C> {
       to.take_next(from, detail::values_of<Take>(self(), id));
       notify(id);
     }
+  }
+
+  /// Gives the weights of the donors to the pieces of the coupling's target (coupling_weights.hpp).
+  template <class T>
+  void m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
+    const MeshView mesh = self().mesh_view();
+    SourceSide& from = couplings.source(id);
+    from.give_rows(mesh, [&](collide::OwnerId target, const Rows<double>& rows) {
+      GivenRows given{id, me(), book, {}};
+      for (std::size_t i = 0; i < rows.n_rows(); ++i)
+        given.rows.sizes.push_back(rows.columns_of(i).size());
+      for (const VertexId column : rows.columns)
+        given.rows.columns.push_back(mesh.point_ids[static_cast<std::size_t>(column)]);
+      given.rows.weights = rows.weights;
+      at<T>(from.setup.target, target).template send<&Piece<T>::m2m_take_rows>(std::move(given));
+    });
+  }
+  void m2m_take_rows(GivenRows given) {
+    const MeshView mesh = self().mesh_view();
+    for (const std::int32_t row : couplings.target(given.coupling).rows_from(given.from))
+      given.rows.targets.push_back(mesh.point_ids[static_cast<std::size_t>(row)]);
+    given.book.local().add(given.rows);
   }
 
   void m2m_submit_source(const CouplingSetup& setup) {
