@@ -1,5 +1,6 @@
 #include "m2m/conservative/projection.hpp"
 
+#include "m2m/interpolate/locate.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>

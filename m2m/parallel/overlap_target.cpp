@@ -1,5 +1,6 @@
 #include "m2m/parallel/overlap_target.hpp"
 
+#include "m2m/interpolate/locate.hpp"
 #include "m2m/interpolate/orientation.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/sort_unique.hpp"
