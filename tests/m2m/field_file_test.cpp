@@ -246,8 +246,11 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
         for (std::size_t t = 0; t < mesh.n_tets(); ++t)
           part.rows.push_back({static_cast<int>(t + 2), {static_cast<double>(t) / 3}});
         std::string bytes = as_gmsh(mesh, legacy, binary, static_cast<std::uint64_t>(gap));
-        bytes += text_of({"NodeData", "temp", 1.5, 10, rows_of(late, gap)}, binary);
-        bytes += text_of({"NodeData", "temp", 0.25, 0, rows_of(early, gap)}, binary);
+        const std::string first =
+            text_of({"NodeData", "temp", 0.25, 0, rows_of(early, gap)}, binary);
+        const std::string second =
+            text_of({"NodeData", "temp", 1.5, 10, rows_of(late, gap)}, binary);
+        bytes += legacy ? first + second : second + first;
         bytes += text_of({"NodeData", "a flow", 0.25, 0, rows_of(flow, gap)}, binary);
         bytes += text_of(part, binary);
         const std::string path = scratch.write("fields.msh", bytes);
