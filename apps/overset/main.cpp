@@ -3,6 +3,7 @@
 #include "apps/command_line.hpp"
 #include "apps/overset/body.hpp"
 #include "apps/overset/report.hpp"
+#include "apps/overset/wall_study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/runtime.hpp"
 
@@ -20,6 +21,11 @@ struct Options {
   bool explain = false;
 };
 
+/// "ball" of "ball:12".
+std::string shape_of(const Options& options) {
+  return options.request.overset.substr(0, options.request.overset.find(':'));
+}
+
 tess::Task run_once(Options options) {
   Problem problem = read_problem(options.request);
   problem.field = options.problem.field;
@@ -35,9 +41,9 @@ tess::Task run_once(Options options) {
 }
 
 /// Both meshes refined together: the background of n cubes, the mesh around the body of n / 2 edges.
-tess::Task run_study(Options options) {
+tess::Task run_refined(Options options) {
   std::vector<StudyRow> rows;
-  const std::string body = options.request.overset.substr(0, options.request.overset.find(':'));
+  const std::string body = shape_of(options);
   for (const std::int32_t n : {16, 24, 32, 48, 64}) {
     options.request.background = fmt::format("kuhn:{}", n);
     options.request.overset = fmt::format("{}:{}", body, n / 2);
@@ -60,6 +66,11 @@ tess::Task run_study(Options options) {
     rows.push_back(row);
   }
   tess::print(study_table(rows, options.plot));
+}
+
+tess::Task time_wall(Options options) {
+  tess::print(wall_study(shape_of(options)));
+  co_return;
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {
@@ -89,8 +100,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "write pictures before and after, and ExodusII files, to this folder");
   line.flag("--explain", options.explain, "print what this run does, step by step");
   line.option("--study", options.study,
-              "h: refine both meshes; error at the fringe against run time")
-      .one_of({"h"});
+              "h: refine both meshes; error at the fringe against run time. wall: time of the "
+              "inside test against the size of the wall")
+      .one_of({"h", "wall"});
   if (!line.parse(argc, argv)) return 0;
   const double least = options.problem.options.least_quality;
   if (!(least >= 0 && least <= 1))
@@ -99,8 +111,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
   if (!options.study.empty() && !names_body(options.request.overset))
     tess::fail(tess::ErrorCode::bad_argument, "--study: ", options.request.overset,
                " cannot be refined; give OVERSET as ball:N, box:N, star:N or torus:N");
-  return tess::run(setup,
-                   [&] { return options.study.empty() ? run_once(options) : run_study(options); });
+  return tess::run(setup, [&] {
+    if (options.study.empty()) return run_once(options);
+    return options.study == "h" ? run_refined(options) : time_wall(options);
+  });
 }
 
 }  // namespace

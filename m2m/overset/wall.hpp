@@ -37,8 +37,8 @@ class Wall {
   Wall(std::span<const Point> points, std::span<const std::array<VertexId, 3>> triangles);
 
   /// Exact if differences of coordinates are 0 or at least 1e-80 of the largest coordinate. Takes
-  /// about 0.4 µs within the box() of a wall of 2e3 triangles, 0.9 µs with 1e5, a few ns outside: a
-  /// fifth of the time of a sum of solid angles with dipoles (Barill et al. 2018).
+  /// 0.3 to 1.2 µs within the box() of a wall of 2e2 to 1e5 triangles, a few ns outside: a fifth of
+  /// the time of a sum of solid angles with dipoles (Barill et al. 2018).
   [[nodiscard]] Containment locate(const Point& p) const;
 
   /// The winding number of a point that is not on the wall.
