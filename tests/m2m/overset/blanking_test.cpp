@@ -92,9 +92,11 @@ TEST_CASE("a fringe point takes the donor of the best quality, whatever the orde
     Status status;
     double hole, field;
   };
-  std::vector<Offer> offers{{1, Status::outside, 0, 1},  {2, Status::inside, 0.1, 0.9},
-                            {3, Status::inside, 0, 0.5}, {4, Status::inside, 0, 1},
-                            {5, Status::boundary, 0, 1}, {6, Status::snapped, -1e-12, 1}};
+  std::vector<Offer> offers{{1, Status::outside, 0, 1},
+                            {2, Status::snapped, -1e-12, 1},
+                            {3, Status::inside, 0, 0.5},
+                            {4, Status::inside, 0, 1},
+                            {5, Status::boundary, 0, 1}};
   std::vector<std::size_t> order(offers.size());
   std::iota(order.begin(), order.end(), 0);
   do {
