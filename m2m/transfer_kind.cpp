@@ -4,12 +4,27 @@
 
 namespace tess::m2m {
 
+const char* name_of(TransferKind kind) noexcept {
+  switch (kind) {
+    case TransferKind::linear:
+      return "linear";
+    case TransferKind::second_order:
+      return "second-order";
+    case TransferKind::limited:
+      return "limited";
+  }
+  return "unknown";
+}
+
 TransferKind parse_transfer_kind(const std::string& text) {
-  if (text == "linear") return TransferKind::linear;
-  if (text == "second-order") return TransferKind::second_order;
-  if (text == "limited") return TransferKind::limited;
-  fail(ErrorCode::bad_argument, "kind '", text,
-       "' is unknown; choose linear, second-order or limited");
+  std::string names;
+  for (const TransferKind kind : all_transfer_kinds) {
+    if (text == name_of(kind)) return kind;
+    const bool last = kind == all_transfer_kinds.back();
+    names += names.empty() ? "" : last ? " or " : ", ";
+    names += name_of(kind);
+  }
+  fail(ErrorCode::bad_argument, "kind '", text, "' is unknown; choose ", names);
 }
 
 }  // namespace tess::m2m

@@ -1,6 +1,7 @@
 // The kinds of transfer to points: how a value follows from the values at the source vertices.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -12,7 +13,14 @@ enum class TransferKind : std::uint8_t {
   limited,       ///< the same, kept within the values at the corners of the tetrahedron
 };
 
-/// "linear", "second-order" or "limited". Throws Error (bad_argument) for any other text.
+/// In the order of the enumeration. A new kind is also added here.
+inline constexpr std::array all_transfer_kinds{TransferKind::linear, TransferKind::second_order,
+                                               TransferKind::limited};
+
+/// "linear", "second-order" or "limited".
+[[nodiscard]] const char* name_of(TransferKind kind) noexcept;
+
+/// The kind of this name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
 
 /// The layers of tetrahedra around a part that a kind needs, so that the result does not depend on

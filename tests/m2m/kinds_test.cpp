@@ -69,10 +69,18 @@ KindResult result_of(const KindCase& c, std::uint64_t seed) {
 
 }  // namespace
 
+TEST_CASE("a kind is found by its name, and an unknown name lists all of them", "[m2m][kinds]") {
+  for (const TransferKind kind : all_transfer_kinds)
+    CHECK(parse_transfer_kind(name_of(kind)) == kind);
+  CHECK_THAT(test::message_of([] { (void)parse_transfer_kind("cubic"); }),
+             Catch::Contains("'cubic'") && Catch::Contains("linear, second-order") &&
+                 Catch::Contains(name_of(all_transfer_kinds.back())));
+}
+
 TEST_CASE("each kind gives the same bits for any number of parts and any schedule",
           "[m2m][kinds]") {
-  for (const TransferKind kind :
-       {TransferKind::linear, TransferKind::second_order, TransferKind::limited}) {
+  for (const TransferKind kind : all_transfer_kinds) {
+    INFO(name_of(kind));
     const KindResult one = result_of({kind}, 1);
     for (std::uint64_t seed = 2; seed <= 10; ++seed) {
       INFO("seed " << seed);
