@@ -1,13 +1,15 @@
 #include "apps/m2m_transfer/driver.hpp"
 
-#include "apps/m2m_transfer/explain.hpp"
-#include "apps/m2m_transfer/measure.hpp"
-#include "apps/m2m_transfer/picture.hpp"
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/output/explain.hpp"
+#include "apps/m2m_transfer/output/picture.hpp"
+#include "apps/m2m_transfer/output/table.hpp"
+#include "apps/m2m_transfer/run/measure.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/write_exodus.hpp"
 
 #include <cstdio>
+#include <filesystem>
 
 namespace m2m_transfer {
 namespace {
@@ -16,8 +18,22 @@ Problem read(const Request& request, apps::Progress& progress) {
   progress.phase("reading");
   const Time start = now();
   Problem problem = load(request, machine());
-  problem.report.seconds.read = tess::seconds(now() - start);
+  for (TransferReport& report : problem.reports) report.seconds.read = tess::seconds(now() - start);
   return problem;
+}
+
+/// "result.exo"; with several written meshes "result.B.exo", "result.C.exo", ….
+void write_meshes(const std::string& path, const Problem& problem) {
+  std::size_t n_written = 0;
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m)
+    n_written += is_written(m, problem.pairs) ? 1U : 0U;
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
+    if (!is_written(m, problem.pairs)) continue;
+    std::filesystem::path own(path);
+    if (n_written > 1)
+      own.replace_extension(std::string{'.', letter_of(m)} + own.extension().string());
+    write_exodus(own.string(), problem.meshes[m].mesh, problem.meshes[m].fields);
+  }
 }
 
 Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
@@ -40,11 +56,13 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   const auto gauge = create_group<Gauge>();
   co_await measure(problem, gauge, progress);
   progress.phase("writing");
-  if (!options.json.empty()) plot::write_file(options.json, json({problem.report}));
+  if (!options.json.empty()) plot::write_file(options.json, json(problem.reports));
   if (!options.picture.empty()) plot::write_file(options.picture, picture(problem));
-  if (!options.out.empty()) write_exodus(options.out, problem.target, problem.target_fields);
+  if (!options.out.empty()) write_meshes(options.out, problem);
   progress.clear();
-  print(table(problem.report));
+  std::string text;
+  for (const TransferReport& report : problem.reports) text += table(report);
+  print(text + legend());
 }
 
 Task run_study(const DriverOptions& options, apps::Progress& progress) {
@@ -66,7 +84,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
       print(explain(problem, Output::report));
     }
     co_await measure(problem, gauge, progress);
-    reports.push_back(problem.report);
+    reports.push_back(problem.reports.front());
   }
   progress.clear();
   const Study study{std::move(reports), options.repeat.value_or(3)};

@@ -2,7 +2,7 @@
 // writes the output. Errors of the input are found before any message is sent.
 #pragma once
 
-#include "apps/m2m_transfer/problem.hpp"
+#include "apps/m2m_transfer/input/problem.hpp"
 #include "runtime/runtime.hpp"
 
 #include <optional>

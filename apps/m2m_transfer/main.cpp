@@ -16,8 +16,13 @@ int run(tess::Setup& setup, int argc, char** argv) {
       "SOURCE", request.source,
       "mesh: an ExodusII or gmsh (2.2, 4.1) file, or kuhn:N, a generated box of 6 N^3 tetrahedra");
   line.option("TARGET", request.target, "mesh of the same kinds");
-  line.option("--field", request.fields,
-              "gaussian, linear, sin, or an expression in x, y, z; repeat for several");
+  line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
+  line.option("--pairs", request.pairs,
+              "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file: "
+              "--pairs A:B,B:C. Pairs run in the order given where they share a mesh that is "
+              "written, otherwise at once");
+  line.option("--field,--fields", request.fields,
+              "gaussian, linear, sin, or an expression in x, y, z; several as --fields sin,x*y");
   line.option("--chares", request.n_chares,
               "chares per mesh (default: --per-pe times the number of PEs)")
       .between(1, 1 << 20);
@@ -36,10 +41,16 @@ int run(tess::Setup& setup, int argc, char** argv) {
           "number of transfers; the times are those of the fastest (default: 1, with --study 3)")
       .between(1, 1000000);
   line.option("--steps", request.steps,
-              "applications of each transfer's donors; the time of the fastest counts")
+              "applications of all pairs, with the donors of one search; the time of the fastest "
+              "counts")
       .between(1, 1000000);
+  line.option("--move", request.moves,
+              "move a mesh before every step but the first, and search again: --move "
+              "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
+              "point, or 'B:translate(0.1,0,0)'; repeat for several");
   line.option("--out", options.out,
-              "write the target mesh with the fields and the status to this ExodusII file");
+              "write the target mesh with the fields and the status to this ExodusII file; with "
+              "several targets to FILE.B.exo, FILE.C.exo");
   line.option("--picture", options.picture,
               "draw the first field and its error in a cut through the target, as SVG");
   line.option("--json", options.json, "write the report to this JSON file");

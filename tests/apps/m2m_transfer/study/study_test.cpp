@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 
 #include "apps/m2m_transfer/driver.hpp"
 #include "m2m/kuhn.hpp"

@@ -1,5 +1,6 @@
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 
+#include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 
@@ -10,17 +11,6 @@
 
 namespace m2m_transfer {
 namespace {
-
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
 
 /// The targets of a ladder without TARGET: for each source the next finer mesh, whose vertices lie
 /// anywhere in the tetrahedra of the source.

@@ -8,7 +8,7 @@
 //     A B                    A -> B and B -> A
 #pragma once
 
-#include "apps/m2m_transfer/problem.hpp"
+#include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/report.hpp"
 #include "apps/plot/chart.hpp"
 

@@ -1,4 +1,5 @@
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/output/table.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/chart.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
