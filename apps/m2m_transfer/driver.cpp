@@ -1,8 +1,10 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
 #include "apps/m2m_transfer/output/picture.hpp"
 #include "apps/m2m_transfer/output/table.hpp"
+#include "apps/m2m_transfer/run/drift.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
@@ -36,18 +38,48 @@ void write_meshes(const std::string& path, const Problem& problem) {
   }
 }
 
-Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
+/// The request of a run without a study.
+Request single_request(const DriverOptions& options) {
   if (options.policies.size() > 1)
     fail(ErrorCode::bad_argument, "--policy is given more than once; give it once, or add --study");
-  plot::require_writable("--json", options.json);
-  plot::require_writable("--out", options.out);
-  plot::require_writable("--picture", options.picture);
   if (options.request.target.empty())
     fail(ErrorCode::bad_argument,
          "TARGET is missing; give a source and a target mesh (--help lists the arguments)");
   Request request = options.request;
   request.policy = options.policies.front();
   request.repeat = options.repeat.value_or(1);
+  return request;
+}
+
+std::vector<TransferKind> kinds_of(const DriverOptions& options) {
+  if (options.kind_is_given) return {parse_transfer_kind(options.request.kind)};
+  return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
+}
+
+Task drift_table(const DriverOptions& options, apps::Progress& progress) {
+  const Request request = single_request(options);
+  if (!options.out.empty() || !options.picture.empty() || !request.moves.empty() ||
+      !request.pairs.empty() || !request.more.empty())
+    fail(ErrorCode::bad_argument,
+         "--round-trips goes between two meshes that stand still; leave out --out, --picture, "
+         "--move and --pairs");
+  const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
+  const std::vector<TransferKind> kinds = kinds_of(options);
+  plot::require_writable("--json", options.json);
+  plot::make_folder("--plot", options.plot);
+  Drift drift;
+  co_await measure_drift(request, kinds, trips, progress, drift);
+  progress.clear();
+  print(table(drift));
+  if (!options.plot.empty()) print(write(drift, options.plot));
+  if (!options.json.empty()) plot::write_file(options.json, json(drift));
+}
+
+Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
+  const Request request = single_request(options);
+  plot::require_writable("--json", options.json);
+  plot::require_writable("--out", options.out);
+  plot::require_writable("--picture", options.picture);
   Problem problem = read(request, progress);
   if (options.explain) {
     progress.clear();
@@ -71,7 +103,8 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
          "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
   std::vector<Request> requests = plan_study(options.request, options.policies);
-  prepare_folder(*options.study);
+  const std::string folder = options.plot.empty() ? "study" : options.plot;
+  plot::make_folder("--plot", folder);
   const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (Request& request : requests) {
@@ -89,7 +122,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
   progress.clear();
   const Study study{std::move(reports), options.repeat.value_or(3)};
   print(table(study));
-  print(write(study, *options.study));
+  print(write(study, folder));
   if (!options.json.empty()) plot::write_file(options.json, json(study));
 }
 
@@ -98,6 +131,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
   return tess::run(setup, [&]() -> Task {
+    if (!options.round_trips.empty()) return drift_table(options, progress);
     return options.study ? run_study(options, progress) : transfer_once(options, progress);
   });
 }

@@ -1,4 +1,4 @@
-// Runs one transfer, or a study of several, as the command line asks for. PE 0 reads the input and
+// Runs one graph of transfers, a study, or a drift table, as the command line asks for. PE 0 reads the input and
 // writes the output. Errors of the input are found before any message is sent.
 #pragma once
 
@@ -17,7 +17,10 @@ struct DriverOptions {
   std::optional<std::int32_t> repeat;  ///< default: 1, in a study 3
   std::string out, json, picture;
   bool explain = false;
-  std::optional<std::string> study;  ///< the folder for the files of the study
+  std::optional<std::string> study;  ///< "h", "kind" or "steps"
+  std::string plot;                  ///< the folder for files of studies and drift; empty: default
+  std::string round_trips;           ///< "1,2,5"; empty: no drift table
+  bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
 };
 
 /// Returns the exit code.

@@ -2,9 +2,18 @@
 // the result and the time of each phase.
 #include "apps/command_line.hpp"
 #include "apps/m2m_transfer/driver.hpp"
+#include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
 
 namespace {
+
+/// "linear, second-order, …"
+std::string kind_names() {
+  std::string out;
+  for (const tess::m2m::TransferKind kind : tess::m2m::all_transfer_kinds)
+    out += (out.empty() ? "" : ", ") + std::string(name_of(kind));
+  return out;
+}
 
 int run(tess::Setup& setup, int argc, char** argv) {
   m2m_transfer::DriverOptions options;
@@ -29,9 +38,13 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
   line.option("--policy", options.policies,
               "value of vertices outside the source: keep, value:V or nearest");
-  line.option("--kind", request.kind,
-              "linear, second-order (recovered gradients) or limited (the same, bounded by the "
-              "vertices around)");
+  const apps::Option kind =
+      line.option("--kind", request.kind, "how values follow from the source: " + kind_names());
+  line.option("--round-trips", options.round_trips,
+              "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
+              "trips: --round-trips 1,2,5,10,20,50,100; for all kinds, or the --kind given");
+  line.option("--plot", options.plot,
+              "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
   line.option("--partition", request.partition,
               "method that cuts the meshes into chares: rcb or hsfc");
   line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")
@@ -59,16 +72,19 @@ int run(tess::Setup& setup, int argc, char** argv) {
   const apps::Option studies =
       line.option(
               "--study", study,
-              "measure error against run time over several transfers, and write the files to this "
-              "folder (default: study); SOURCE and TARGET can be ladders of meshes such as "
-              "kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A ladder without "
-              "TARGET can stand in place of the folder")
+              "h: error against run time over several meshes (default); kind: the same for every "
+              "kind; steps: the time that kept donors save. SOURCE and TARGET can be ladders such "
+              "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot) "
+              "or a ladder without TARGET can stand in place of h")
           .takes(0, 1);
   if (!line.parse(argc, argv)) return 0;
+  options.kind_is_given = kind.is_given();
   if (studies.is_given()) {
+    const bool named = study == "h" || study == "kind" || study == "steps";
     const bool ladder = study.starts_with("kuhn:") && request.source.empty();
     if (ladder) request.source = study;
-    options.study = ladder || study.empty() ? "study" : study;
+    if (!named && !ladder && options.plot.empty()) options.plot = study;
+    options.study = named ? study : "h";
   }
   if (request.source.empty())
     tess::fail(tess::ErrorCode::bad_argument,

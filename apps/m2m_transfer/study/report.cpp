@@ -3,11 +3,9 @@
 #include "apps/plot/chart.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
-#include "runtime/core/error.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <fmt/format.h>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -165,14 +163,6 @@ std::string csv(const Study& study) {
                      r.seconds.apply, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
                      r.processes, r.result_hash);
   return out;
-}
-
-void prepare_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder, error))
-    fail(ErrorCode::environment, "--study ", folder, ": the folder cannot be created (",
-         error.message(), "); give the meshes before --study");
 }
 
 std::string write(const Study& study, const std::string& folder) {

@@ -52,8 +52,6 @@ struct Trend {
 /// One line per pair of meshes and field.
 [[nodiscard]] std::string csv(const Study& study);
 
-/// Creates the folder if it does not exist. Throws Error (environment) with its name.
-void prepare_folder(const std::string& folder);
 /// Writes study.csv, study.json, error_time.svg and error_edge.svg (with their data as CSV) into
 /// the folder. Returns a line that lists them.
 [[nodiscard]] std::string write(const Study& study, const std::string& folder);
