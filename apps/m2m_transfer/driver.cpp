@@ -6,10 +6,13 @@
 #include "apps/m2m_transfer/output/table.hpp"
 #include "apps/m2m_transfer/run/drift.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
+#include "apps/m2m_transfer/study/checks.hpp"
+#include "apps/m2m_transfer/study/steps.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/write_exodus.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -97,12 +100,17 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   print(text + legend());
 }
 
-Task run_study(const DriverOptions& options, apps::Progress& progress) {
+Task run_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
   if (!options.out.empty() || !options.picture.empty())
     fail(ErrorCode::bad_argument,
          "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
-  std::vector<Request> requests = plan_study(options.request, options.policies);
+  std::vector<std::string> kinds{options.request.kind};
+  if (*options.study == "kind") {
+    kinds.clear();
+    for (const TransferKind kind : kinds_of(options)) kinds.emplace_back(name_of(kind));
+  }
+  std::vector<Request> requests = plan_study(options.request, options.policies, kinds);
   const std::string folder = options.plot.empty() ? "study" : options.plot;
   plot::make_folder("--plot", folder);
   const auto gauge = create_group<Gauge>();
@@ -122,18 +130,45 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
   progress.clear();
   const Study study{std::move(reports), options.repeat.value_or(3)};
   print(table(study));
+  if (*options.study == "kind") {
+    const std::vector<Check> rows = checks(study);
+    print(table(rows));
+    failed = !all_ok(rows);
+  }
   print(write(study, folder));
   if (!options.json.empty()) plot::write_file(options.json, json(study));
+}
+
+Task run_steps_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
+  plot::require_writable("--json", options.json);
+  Request request = options.request;
+  request.policy = options.policies.front();
+  const std::vector<Request> requests = plan_study(request, {request.policy}, {request.kind});
+  const std::string folder = options.plot.empty() ? "study" : options.plot;
+  plot::make_folder("--plot", folder);
+  std::vector<StepsRow> rows;
+  for (const Request& one : requests) {
+    Problem problem = read(one, progress);
+    co_await measure_steps(problem, options.repeat.value_or(3), progress, rows);
+  }
+  progress.clear();
+  print(table(rows));
+  failed = !std::ranges::all_of(rows, &StepsRow::ok);
+  print(write(rows, folder));
+  if (!options.json.empty()) plot::write_file(options.json, json(rows));
 }
 
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  return tess::run(setup, [&]() -> Task {
+  bool failed = false;
+  const int code = tess::run(setup, [&]() -> Task {
     if (!options.round_trips.empty()) return drift_table(options, progress);
-    return options.study ? run_study(options, progress) : transfer_once(options, progress);
+    if (options.study == "steps") return run_steps_study(options, progress, failed);
+    return options.study ? run_study(options, progress, failed) : transfer_once(options, progress);
   });
+  return code == 0 && failed ? 1 : code;
 }
 
 }  // namespace m2m_transfer
