@@ -20,6 +20,7 @@ struct DriverOptions {
   std::optional<std::string> study;  ///< "h", "kind" or "steps"
   std::string plot;                  ///< the folder for files of studies and drift; empty: default
   std::string round_trips;           ///< "1,2,5"; empty: no drift table
+  bool stability = false;            ///< the table of extreme cases; also of the meshes given
   bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
 };
 
