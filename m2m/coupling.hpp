@@ -29,14 +29,20 @@
 // without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a
 // target piece's received() is called when all of its rows are there.
 //
-// Kinds other than linear need gradients: the pieces show a halo of two layers of tetrahedra
-// (MeshView::n_own_tets, halo_layers()), so that the result does not depend on how the mesh is cut.
+// Kinds with gradients need a halo of two layers of tetrahedra around each source piece, conservative
+// kinds one around each target piece (MeshView::n_own_tets, transfer_kind.hpp), so that the result
+// does not depend on how the mesh is cut.
+//
+// Conservative kinds also take and give values in cells (CouplingOptions::source_values): cells get
+// the mean of the source over what it covers of them. Their status is `inside` if the source covers
+// the cell, or all cells around the point, `snapped` if it covers them in part, and else `outside`.
 //
 // The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
 // voxels, or the order of messages.
 #pragma once
 
 #include "m2m/parallel/piece.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -50,6 +56,9 @@ struct CouplingOptions {
   Point voxel_size{0, 0, 0};      ///< zero: chosen
   OutsidePolicy policy = Keep{};  ///< for target points outside the source
   TransferKind kind = TransferKind::linear;
+  /// What the values belong to. Kinds that are not conservative: nodes. Targets: nodes or cells.
+  Centring source_values = Centring::nodes;
+  Centring target_values = Centring::nodes;
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
   std::function<void(const char*)> on_phase{};
 };
@@ -71,6 +80,8 @@ class Coupling {
 
   /// Valid after the first search.
   [[nodiscard]] CouplingId id() const { return setup_.id; }
+  /// For what is built on couplings, such as coupling_weights.hpp. Valid after the first search.
+  [[nodiscard]] const CouplingSetup& setup() const { return setup_; }
 
   /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no
   /// application of this coupling is under way. `summary` may be null.
@@ -78,8 +89,10 @@ class Coupling {
 
   /// Gives the field that Give shows to the memory that Take shows, for example
   /// apply<&Fluid::temperature, &Solid::heat>(). When the task is done, all target pieces have it.
-  ///   Give: std::span<const double> S::f() const, n_points × n_components, ghosts included
-  ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs
+  ///   Give: std::span<const double> S::f() const, n_points × n_components, ghosts included; if
+  ///     source_values are cells, a row per tetrahedron, or four if they are corners
+  ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs;
+  ///     if target_values are cells, a row per own tetrahedron
   /// Each may take the CouplingId.
   template <auto Give, auto Take>
   Task apply();
@@ -87,14 +100,26 @@ class Coupling {
   /// Frees what the pieces and PEs hold of this coupling. The enclosing epoch includes this.
   void destroy() {
     if (setup_.id == CouplingId{}) return;
-    source_.template broadcast<&Piece<S>::m2m_release_source>(setup_.id);
-    target_.template broadcast<&Piece<T>::m2m_release_target>(setup_.id);
+    source_.template broadcast<&Piece<S>::m2m_release>(setup_.id);
+    target_.template broadcast<&Piece<T>::m2m_release>(setup_.id);
     setup_.collider.destroy();
     setup_.ledger.destroy();
+    if (has_directory()) setup_.directory.destroy();
     setup_ = {};
   }
 
  private:
+  [[nodiscard]] bool is_conservative() const { return m2m::is_conservative(options_.kind); }
+  /// The pieces of the target exchange values of ghosts.
+  [[nodiscard]] bool has_directory() const {
+    return is_conservative() && options_.target_values == Centring::nodes;
+  }
+  /// Throws Error (bad_argument) if options contradict each other.
+  void check_options() const;
+  Task set_up();
+  Task collide_covers();
+  Task find_donors();
+  Task find_overlaps();
   void enter(const char* phase) const {
     if (options_.on_phase) options_.on_phase(phase);
   }
@@ -109,21 +134,65 @@ template <class S, class T>
 Task Coupling<S, T>::search(SearchSummary* summary) {
   enter("broad");
   const Time start = now();
-  if (setup_.id == CouplingId{}) {
-    setup_.source = source_.id();
-    setup_.target = target_.id();
-    setup_.policy = options_.policy;
-    setup_.kind = options_.kind;
-    co_await epoch([&] {
-      setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
-      setup_.ledger = create_group<Ledger>();
-      // Each coupling has its own collider.
-      setup_.id = CouplingId{setup_.collider.voxels.id().value};
-    });
+  if (setup_.id == CouplingId{}) co_await set_up();
+  co_await collide_covers();
+  const Time broad = now();
+  enter("narrow");
+  if (is_conservative())
+    co_await find_overlaps();
+  else
+    co_await find_donors();
+  Future<LedgerPage> page;
+  setup_.ledger.template broadcast<&Ledger::close_page>(page.callback());
+  const LedgerPage found = co_await page;
+  if (summary != nullptr) *summary = {seconds(broad - start), seconds(now() - broad), found.tally};
+}
+
+template <class S, class T>
+void Coupling<S, T>::check_options() const {
+  if (is_conservative()) {
+    if (std::holds_alternative<Nearest>(options_.policy))
+      fail(ErrorCode::bad_argument,
+           "a conservative kind has no nearest vertex for what the source does not cover: choose "
+           "policy keep or value");
+    if (options_.target_values == Centring::corners)
+      fail(ErrorCode::bad_argument,
+           "target values at corners are not offered: choose nodes or cells");
+  } else if (options_.source_values != Centring::nodes ||
+             options_.target_values != Centring::nodes) {
+    fail(ErrorCode::bad_argument, "kind ", name_of(options_.kind),
+         " interpolates between nodes: choose a conservative kind for values in cells");
   }
+}
+
+template <class S, class T>
+Task Coupling<S, T>::set_up() {
+  check_options();
+  setup_.source = source_.id();
+  setup_.target = target_.id();
+  setup_.policy = options_.policy;
+  setup_.kind = options_.kind;
+  setup_.source_values = options_.source_values;
+  setup_.target_values = options_.target_values;
   co_await epoch([&] {
-    source_.template broadcast<&Piece<S>::m2m_submit_source>(setup_);
-    target_.template broadcast<&Piece<T>::m2m_submit_target>(setup_);
+    setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
+    setup_.ledger = create_group<Ledger>();
+    if (has_directory()) setup_.directory = create_group<PointDirectory>();
+    // Each coupling has its own collider.
+    setup_.id = CouplingId{setup_.collider.voxels.id().value};
+  });
+}
+
+template <class S, class T>
+Task Coupling<S, T>::collide_covers() {
+  co_await epoch([&] {
+    if (is_conservative()) {
+      source_.template broadcast<&Piece<S>::m2m_submit_overlap_source>(setup_);
+      target_.template broadcast<&Piece<T>::m2m_submit_overlap_target>(setup_);
+    } else {
+      source_.template broadcast<&Piece<S>::m2m_submit_source>(setup_);
+      target_.template broadcast<&Piece<T>::m2m_submit_target>(setup_);
+    }
   });
   // Named, because g++ 12 destroys an aggregate twice if it is written in a co_await expression.
   const collide::Report to_target{
@@ -131,6 +200,10 @@ Task Coupling<S, T>::search(SearchSummary* summary) {
                               to_bytes(std::tuple(target_.id(), setup_.id))),
       detail::target_model};
   co_await collide::run_collision(setup_.collider, to_target);
+}
+
+template <class S, class T>
+Task Coupling<S, T>::find_donors() {
   std::vector<SourcePiece> sources;
   if (std::holds_alternative<Nearest>(options_.policy)) {
     Future<LedgerPage> page;
@@ -140,14 +213,24 @@ Task Coupling<S, T>::search(SearchSummary* summary) {
     std::sort(sources.begin(), sources.end(),
               [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
   }
-  const Time broad = now();
-  enter("narrow");
   co_await epoch(
       [&] { target_.template broadcast<&Piece<T>::template m2m_ask<S>>(setup_.id, sources); });
-  Future<LedgerPage> page;
-  setup_.ledger.template broadcast<&Ledger::close_page>(page.callback());
-  const LedgerPage found = co_await page;
-  if (summary != nullptr) *summary = {seconds(broad - start), seconds(now() - broad), found.tally};
+}
+
+/// Each step needs all messages of the one before.
+template <class S, class T>
+Task Coupling<S, T>::find_overlaps() {
+  if (has_directory()) {
+    co_await epoch([&] {
+      setup_.directory.template broadcast<&PointDirectory::resolve>(Callback<SharedPoints>(
+          detail::shared_points_kind<T>, to_bytes(std::tuple(target_.id(), setup_.id))));
+    });
+  }
+  co_await epoch(
+      [&] { target_.template broadcast<&Piece<T>::template m2m_ask_overlaps<S>>(setup_.id); });
+  co_await epoch(
+      [&] { target_.template broadcast<&Piece<T>::template m2m_share_rows<S>>(setup_.id); });
+  co_await epoch([&] { target_.template broadcast<&Piece<T>::m2m_finish_search>(setup_.id); });
 }
 
 template <class S, class T>

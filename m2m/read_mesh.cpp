@@ -2,9 +2,10 @@
 
 #include "m2m/io/exodus_reader.hpp"
 #include "m2m/io/file_bytes.hpp"
+#include "m2m/io/file_format.hpp"
 #include "m2m/io/gmsh_reader.hpp"
+#include "m2m/io/vtu_reader.hpp"
 #include "m2m/kuhn.hpp"
-#include "runtime/core/error.hpp"
 
 #include <string_view>
 
@@ -17,14 +18,16 @@ TetMesh read_mesh(const std::string& name) {
   } else {
     const FileBytes file(name);
     const std::string_view bytes = file.view();
-    if (bytes.starts_with("CDF") || bytes.starts_with("\x89HDF")) {
-      mesh = read_exodus(name, bytes);
-    } else if (bytes.starts_with("$")) {
-      mesh = read_gmsh(name, bytes);
-    } else {
-      fail(ErrorCode::bad_file, name,
-           ": is neither an ExodusII file (NetCDF) nor a gmsh file (starts with $MeshFormat); "
-           "convert it to one of these formats");
+    switch (file_format(name, bytes)) {
+      case FileFormat::exodus:
+        mesh = read_exodus(name, bytes);
+        break;
+      case FileFormat::gmsh:
+        mesh = read_gmsh(name, bytes);
+        break;
+      case FileFormat::vtu:
+        mesh = read_vtu(name, bytes);
+        break;
     }
   }
   validate(mesh);

@@ -10,9 +10,16 @@ Transfer::Transfer(const DistributedMesh& source, const DistributedMesh& target,
   TESS_CHECK(source.n_components == target.n_components, "the source has ", source.n_components,
              " components per vertex, the target ", target.n_components,
              "; scatter both meshes with the same number of components");
-  TESS_CHECK(source.n_parts == 1 || source.halo_layers >= halo_layers(options.kind),
-             "this kind of transfer needs gradients: scatter the source with ",
-             halo_layers(options.kind), " halo layers instead of ", source.halo_layers);
+  const auto check_halo = [&](const DistributedMesh& mesh, const char* side, std::int32_t layers) {
+    TESS_CHECK(mesh.n_parts == 1 || mesh.halo_layers >= layers, "kind ", name_of(options.kind),
+               " needs ", layers, " halo layers: scatter the ", side, " with these instead of ",
+               mesh.halo_layers);
+  };
+  check_halo(source, "source", source_halo_layers(options.kind));
+  check_halo(target, "target", target_halo_layers(options.kind));
+  TESS_CHECK(options.source_values == Centring::nodes && options.target_values == Centring::nodes,
+             "a DistributedMesh has values at nodes; values in cells are for own chares "
+             "(coupling.hpp)");
 }
 
 Task Transfer::apply() {

@@ -64,6 +64,7 @@ class Transfer {
   Task apply();
   /// Frees what the Workers hold of it. The enclosing epoch includes this.
   void destroy() { coupling_.destroy(); }
+  [[nodiscard]] const Coupling<Worker, Worker>& coupling() const { return coupling_; }
 
  private:
   Coupling<Worker, Worker> coupling_;

@@ -12,19 +12,23 @@ const char* name_of(TransferKind kind) noexcept {
       return "second-order";
     case TransferKind::limited:
       return "limited";
+    case TransferKind::conservative:
+      return "conservative";
+    case TransferKind::conservative_bounded:
+      return "conservative-bounded";
+    case TransferKind::conservative_lumped:
+      return "conservative-lumped";
   }
-  return "unknown";
+  return "";
 }
 
 TransferKind parse_transfer_kind(const std::string& text) {
   std::string names;
   for (const TransferKind kind : all_transfer_kinds) {
     if (text == name_of(kind)) return kind;
-    const bool last = kind == all_transfer_kinds.back();
-    names += names.empty() ? "" : last ? " or " : ", ";
-    names += name_of(kind);
+    names += (names.empty() ? "" : ", ") + std::string(name_of(kind));
   }
-  fail(ErrorCode::bad_argument, "kind '", text, "' is unknown; choose ", names);
+  fail(ErrorCode::bad_argument, "kind '", text, "' is unknown; choose one of ", names);
 }
 
 }  // namespace tess::m2m

@@ -1,4 +1,4 @@
-// The kinds of transfer to points: how a value follows from the values at the source vertices.
+// The kinds of transfer: how target values follow from source values.
 #pragma once
 
 #include <array>
@@ -11,22 +11,44 @@ enum class TransferKind : std::uint8_t {
   linear,        ///< in the tetrahedron that holds the point: second order, bounded by its corners
   second_order,  ///< with recovered gradients: third order where the field is smooth, not bounded
   limited,       ///< the same, kept within the values at the corners of the tetrahedron
+  conservative,  ///< L2 projection: keeps the integral; second order, not bounded
+  conservative_bounded,  ///< the same, kept within the source values that overlap
+  conservative_lumped,   ///< with lumped masses: keeps integral and bounds, but smooths
+};
+inline constexpr std::array all_transfer_kinds{
+    TransferKind::linear,
+    TransferKind::second_order,
+    TransferKind::limited,
+    TransferKind::conservative,
+    TransferKind::conservative_bounded,
+    TransferKind::conservative_lumped,
 };
 
-/// In the order of the enumeration. A new kind is also added here.
-inline constexpr std::array all_transfer_kinds{TransferKind::linear, TransferKind::second_order,
-                                               TransferKind::limited};
-
-/// "linear", "second-order" or "limited".
+/// "linear", "second-order", "limited", "conservative", "conservative-bounded" or
+/// "conservative-lumped".
 [[nodiscard]] const char* name_of(TransferKind kind) noexcept;
-
-/// The kind of this name. Throws Error (bad_argument) for any other text.
+/// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
 
+/// Conservative kinds integrate over the intersections of tetrahedra; the others interpolate.
+[[nodiscard]] constexpr bool is_conservative(TransferKind kind) noexcept {
+  return kind >= TransferKind::conservative;
+}
+
+/// What the values of a field belong to.
+enum class Centring : std::uint8_t {
+  nodes,    ///< a value per point; linear in each tetrahedron
+  cells,    ///< a value per tetrahedron
+  corners,  ///< four values per tetrahedron, 4 t + corner: linear with jumps between tetrahedra
+};
+
 /// The layers of tetrahedra around a part that a kind needs, so that the result does not depend on
-/// the partition.
-[[nodiscard]] constexpr std::int32_t halo_layers(TransferKind kind) noexcept {
-  return kind == TransferKind::linear ? 0 : 2;
+/// the partition: in the source, for gradients; in the target, for masses and loads.
+[[nodiscard]] constexpr std::int32_t source_halo_layers(TransferKind kind) noexcept {
+  return kind == TransferKind::second_order || kind == TransferKind::limited ? 2 : 0;
+}
+[[nodiscard]] constexpr std::int32_t target_halo_layers(TransferKind kind) noexcept {
+  return is_conservative(kind) ? 1 : 0;
 }
 
 }  // namespace tess::m2m

@@ -33,7 +33,7 @@ void validate_groups(const TetMesh& mesh) {
   }
 }
 
-std::array<Point, 4> corners_of(const TetMesh& mesh, std::size_t tet) {
+std::array<Point, 4> corners_at(const TetMesh& mesh, std::size_t tet) {
   std::array<Point, 4> corners;
   for (std::size_t k = 0; k < 4; ++k)
     corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[tet][k])];
@@ -121,7 +121,7 @@ MeshCensus validate(const TetMesh& mesh) {
       }
       used[static_cast<std::size_t>(v)] = 1;
     }
-    collapse.add(corners_of(mesh, t));
+    collapse.add(corners_at(mesh, t));
     const double volume = signed_volume(mesh, t);
     census.n_flat += volume == 0;
     census.n_inverted += volume < 0;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace tess::m2m {
@@ -21,14 +22,16 @@ constexpr std::size_t longest_name = 255;  // the limit of ParaView and of the l
 /// A variable of ExodusII: one component of a field.
 struct Variable {
   std::string name;
-  const Field* field;
+  std::size_t field;  ///< its position in the list
   std::size_t component;
+  friend bool operator==(const Variable&, const Variable&) = default;
 };
 
 std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_rows,
                                 const std::string& path) {
   std::vector<Variable> result;
-  for (const Field& field : fields) {
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const Field& field = fields[f];
     TESS_CHECK(field.values.size() == n_rows * field.n_components, "field ", field.name,
                ": expected ", n_rows, " × ", field.n_components, " values, got ",
                field.values.size());
@@ -43,7 +46,7 @@ std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_row
         fail(ErrorCode::bad_value, path, ": field name '", name, "' has ", name.size(),
              " characters; choose a name of 1 to ", longest_name);
       }
-      result.push_back({std::move(name), &field, c});
+      result.push_back({std::move(name), f, c});
     }
   }
   return result;
@@ -189,14 +192,15 @@ struct Slab {
   std::size_t first, n;
 };
 
-void put_variables(const PartFile& file, const std::vector<Variable>& all, const Slab& rows) {
+void put_variables(const PartFile& file, const std::vector<Variable>& all,
+                   std::span<const Field> fields, int step, const Slab& rows) {
   if (rows.n == 0) return;
   std::vector<double> column(rows.n);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Field& field = *all[i].field;
+    const Field& field = fields[all[i].field];
     for (std::size_t row = 0; row < rows.n; ++row)
       column[row] = field.values[(rows.first + row) * field.n_components + all[i].component];
-    file.check(ex_put_var(file.id(), 1, rows.type, static_cast<int>(i + 1), rows.id,
+    file.check(ex_put_var(file.id(), step, rows.type, static_cast<int>(i + 1), rows.id,
                           static_cast<std::int64_t>(rows.n), column.data()),
                "ex_put_var");
   }
@@ -215,40 +219,90 @@ void check_groups(const TetMesh& mesh, const std::vector<Block>& blocks, const s
   for (const NodeSet& set : mesh.node_sets) check("node set", set.id, set.name);
 }
 
-std::size_t longest_name_of(const TetMesh& mesh, const std::vector<Block>& blocks) {
+std::size_t longest_name_of(const TetMesh& mesh, const std::vector<Block>& blocks,
+                            const std::vector<Variable>& nodal,
+                            const std::vector<Variable>& element) {
   std::size_t longest = 32;
   for (const Block& block : blocks) longest = std::max(longest, block.name.size());
   for (const SideSet& set : mesh.side_sets) longest = std::max(longest, set.name.size());
   for (const NodeSet& set : mesh.node_sets) longest = std::max(longest, set.name.size());
+  for (const auto* list : {&nodal, &element})
+    for (const Variable& variable : *list) longest = std::max(longest, variable.name.size());
   return longest;
+}
+
+std::string names_of(const std::vector<Variable>& variables) {
+  std::string out;
+  for (const Variable& variable : variables) {
+    if (!out.empty()) out += ", ";
+    out += variable.name;
+  }
+  return out.empty() ? "none" : out;
 }
 
 }  // namespace
 
-void write_exodus(const std::string& path, const TetMesh& mesh,
-                  std::span<const Field> vertex_fields, std::span<const Field> tet_fields) {
-  const std::vector<Variable> nodal = variables(vertex_fields, mesh.n_points(), path);
-  const std::vector<Variable> element = variables(tet_fields, mesh.n_tets(), path);
-  const std::vector<Block> blocks = blocks_of(mesh);
+struct ExodusSteps::Writing {
+  const std::string& path;
+  const TetMesh& mesh;
+  std::vector<Block> blocks;
+  PartFile file;
+  int n_steps = 0;
+  double last_time = -std::numeric_limits<double>::infinity();
+  std::vector<Variable> nodal{}, element{};
+};
+
+ExodusSteps::ExodusSteps(const std::string& path, const TetMesh& mesh) {
+  std::vector<Block> blocks = blocks_of(mesh);
   check_groups(mesh, blocks, path);
-  std::size_t longest = longest_name_of(mesh, blocks);
-  for (const auto* list : {&nodal, &element}) {
-    for (const Variable& variable : *list) longest = std::max(longest, variable.name.size());
+  writing_.reset(new Writing{path, mesh, std::move(blocks), PartFile(path)});
+}
+ExodusSteps::~ExodusSteps() = default;
+
+void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
+                      std::span<const Field> tet_fields) {
+  Writing& to = *writing_;
+  std::vector<Variable> nodal = variables(vertex_fields, to.mesh.n_points(), to.path);
+  std::vector<Variable> element = variables(tet_fields, to.mesh.n_tets(), to.path);
+  if (!(time > to.last_time))
+    fail(ErrorCode::bad_value, to.path, ": step ", to.n_steps, " has time ", time,
+         ", which is not after ", to.last_time, "; add steps in the order of time");
+  if (to.n_steps == 0) {
+    ex_set_max_name_length(to.file.id(),
+                           static_cast<int>(longest_name_of(to.mesh, to.blocks, nodal, element)));
+    put_mesh(to.file, to.mesh, to.blocks);
+    name_variables(to.file, EX_NODAL, nodal);
+    name_variables(to.file, EX_ELEM_BLOCK, element);
+    to.nodal = std::move(nodal);
+    to.element = std::move(element);
+  } else if (nodal != to.nodal || element != to.element) {
+    fail(ErrorCode::bad_value, to.path, ": step ", to.n_steps, " has the variables ",
+         names_of(nodal), " and ", names_of(element), ", but step 0 had ", names_of(to.nodal),
+         " and ", names_of(to.element), "; give all steps the same fields in the same order");
   }
-  PartFile file(path);
-  ex_set_max_name_length(file.id(), static_cast<int>(longest));
-  put_mesh(file, mesh, blocks);
-  name_variables(file, EX_NODAL, nodal);
-  name_variables(file, EX_ELEM_BLOCK, element);
-  const double time = 0;
-  file.check(ex_put_time(file.id(), 1, &time), "ex_put_time");
-  put_variables(file, nodal, {EX_NODAL, 1, 0, mesh.n_points()});
+  const int step = ++to.n_steps;  // counted from 1 in the file
+  to.last_time = time;
+  to.file.check(ex_put_time(to.file.id(), step, &time), "ex_put_time");
+  put_variables(to.file, to.nodal, vertex_fields, step, {EX_NODAL, 1, 0, to.mesh.n_points()});
   std::size_t first = 0;
-  for (const Block& block : blocks) {
-    put_variables(file, element, {EX_ELEM_BLOCK, block.id, first, block.n_tets});
+  for (const Block& block : to.blocks) {
+    put_variables(to.file, to.element, tet_fields, step,
+                  {EX_ELEM_BLOCK, block.id, first, block.n_tets});
     first += block.n_tets;
   }
-  file.finish();
+}
+
+void ExodusSteps::finish() {
+  Writing& to = *writing_;
+  if (to.n_steps == 0) put_mesh(to.file, to.mesh, to.blocks);
+  to.file.finish();
+}
+
+void write_exodus(const std::string& path, const TetMesh& mesh,
+                  std::span<const Field> vertex_fields, std::span<const Field> tet_fields) {
+  ExodusSteps out(path, mesh);
+  out.add(0, vertex_fields, tet_fields);
+  out.finish();
 }
 
 }  // namespace tess::m2m

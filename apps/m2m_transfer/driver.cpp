@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
 #include "apps/m2m_transfer/output/picture.hpp"
@@ -193,6 +194,13 @@ int drive(Setup& setup, const DriverOptions& options) {
   bool failed = false;
   const int code = tess::run(setup, [&]() -> Task {
     if (!options.round_trips.empty()) return drift_table(options, progress);
+    if (moves_file_fields(options)) {
+      if (!options.request.pairs.empty() || !options.request.moves.empty())
+        fail(
+            ErrorCode::bad_argument,
+            "--pairs and --move transfer formulas; leave them out for fields and weights of files");
+      return move_file_fields(options, progress);
+    }
     if (options.study == "steps") return run_steps_study(options, progress, failed);
     return options.study ? run_study(options, progress, failed) : transfer_once(options, progress);
   });

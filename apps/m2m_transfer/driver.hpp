@@ -16,6 +16,7 @@ struct DriverOptions {
   std::vector<std::string> policies{"keep"};
   std::optional<std::int32_t> repeat;  ///< default: 1, in a study 3
   std::string out, json, picture;
+  std::string step, weights, from_weights;  ///< file_fields.hpp
   bool explain = false;
   std::optional<std::string> study;  ///< "h", "kind" or "steps"
   std::string plot;                  ///< the folder for files of studies and drift; empty: default

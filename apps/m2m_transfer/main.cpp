@@ -30,8 +30,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file: "
               "--pairs A:B,B:C. Pairs run in the order given where they share a mesh that is "
               "written, otherwise at once");
-  line.option("--field,--fields", request.fields,
-              "gaussian, linear, sin, or an expression in x, y, z; several as --fields sin,x*y");
+  line.option(
+      "--field,--fields", request.fields,
+      "gaussian, linear, sin, an expression in x, y, z, or a field of the source file; several "
+      "as --fields sin,x*y");
   line.option("--chares", request.n_chares,
               "chares per mesh (default: --per-pe times the number of PEs)")
       .between(1, 1 << 20);
@@ -64,6 +66,13 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--out", options.out,
               "write the target mesh with the fields and the status to this ExodusII file; with "
               "several targets to FILE.B.exo, FILE.C.exo");
+  line.option("--step", options.step,
+              "step of the fields that the source file has: a number from 0 on, or all (default: "
+              "the last); --out then holds all steps");
+  line.option("--weights", options.weights,
+              "write the weights of the transfer to this file (NetCDF, ESMF's layout)");
+  line.option("--from-weights", options.from_weights,
+              "transfer with the weights of this file, without a search");
   line.option("--picture", options.picture,
               "draw the first field and its error in a cut through the target, as SVG");
   line.option("--json", options.json, "write the report to this JSON file");

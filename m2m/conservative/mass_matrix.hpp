@@ -1,59 +1,69 @@
-// The consistent mass matrix of linear elements on one part of a mesh, element by element:
+// The mass matrix of linear elements on the covered region C of a part of the target mesh, element by
+// element. For a tetrahedron T inside C it is the consistent one,
 //
-//     M_ij = sum over tetrahedra T of integral over T of psi_i psi_j,
-//     integral over T of psi_i psi_j = |T| (1 + delta_ij) / 20 .
+//     M_ab = integral over T of psi_a psi_b = |T| (1 + delta_ab) / 20 .
 //
-// A tetrahedron that the source covers in part contributes the integral over its covered region,
-// and one that is not covered contributes nothing. Where less than half is covered, only the row sums
-// of that integral are used: values at the corners would otherwise extrapolate from a sliver. This
-// keeps constants and integrals, and no vertex gets a value far outside those of the source. Every
-// tetrahedron is in one part; the caller adds the contributions of parts over the copies of a vertex.
+// For one that the source covers in part, only the integrals c_a of psi_a over C ∩ T are known: the
+// loads of the constant 1. They become the row sums of
+//
+//     M_ab = e (1 + delta_ab) + delta_ab (c_a - 5 e),   e = min c_a / 5 <= |T| / 20,
+//
+// the consistent matrix scaled, and the rest on the diagonal. So constants and integrals are kept, a
+// sliver gives no vertex a value far from those of the source, and the eigenvalues relative to the
+// diagonal lie in [1/2, 5/2] for every mesh and every coverage (Wathen 1987): projection.hpp needs no
+// other property.
 #pragma once
 
-#include "m2m/conservative/loads.hpp"
+#include "m2m/mesh_view.hpp"
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace tess::m2m {
 
+/// The tetrahedra of a part that touch a point it owns, in ascending order of ids: the order of all
+/// sums, so that they do not depend on the partition.
+[[nodiscard]] std::vector<std::int32_t> tets_at_owned(const MeshView& mesh);
+
 class MassMatrix {
  public:
-  /// Refers to the tetrahedra of `mesh`, which must outlive it. `coverage`: per tetrahedron, added
-  /// over all source parts; empty if the source covers the mesh. `mesh.tets`: those of this part.
-  explicit MassMatrix(MeshView mesh, std::span<const CellCoverage> coverage = {});
+  MassMatrix() = default;
+  /// `numbers`: tets_at_owned(). `covered`: the loads of the constant 1 per number and corner.
+  MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbers,
+             std::span<const std::array<double, 4>> covered);
 
   [[nodiscard]] std::size_t n_points() const noexcept { return n_points_; }
+  [[nodiscard]] std::size_t n_owned() const noexcept { return lumped_.size(); }
+  /// Per point owned: the row sum of M, zero if the point is not covered.
+  [[nodiscard]] std::span<const double> lumped() const noexcept { return lumped_; }
+  /// Per point owned: the row sum of M relative to that of a mesh that is covered.
+  [[nodiscard]] std::span<const double> covered_fractions() const noexcept { return fractions_; }
+  /// Per point owned: 1 / M_ii, zero if the point is not covered.
+  [[nodiscard]] std::span<const double> inverse_diagonal() const noexcept { return inverse_; }
 
-  /// y += M x, of this part. Both: n_points × n_components, row-major.
-  void multiply_add(std::span<const double> x, std::size_t n_components, std::span<double> y) const;
-  /// Adds the diagonal of M to `diagonal`, and its row sums (the lumped masses) to `lumped`.
-  void add_diagonals(std::span<double> diagonal, std::span<double> lumped) const;
+  /// y = M x at the points owned; x is given at all points.
+  void multiply(std::span<const double> x, std::size_t n_components, std::span<double> y) const;
 
-  /// Calls visit(tet, element) for every tetrahedron that has a covered volume; `element` is its
-  /// Matrix4.
+  /// Calls visit(corners, e) for every tetrahedron that is covered.
   template <class Visit>
-  void for_each_element(Visit&& visit) const {
+  void for_each_element(const Visit& visit) const {
     for (std::size_t t = 0; t < tets_.size(); ++t)
-      if (partial_[t] != none) visit(tets_[t], element(t));
+      if (off_diagonal_[t] > 0) visit(tets_[t], off_diagonal_[t]);
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_points_, tets_, off_diagonal_, rest_, lumped_, fractions_, inverse_);
   }
 
  private:
-  static constexpr std::int32_t whole = -1;
-  static constexpr std::int32_t none = -2;
-  [[nodiscard]] Matrix4 element(std::size_t tet) const;
-
-  std::span<const Tet> tets_;
-  std::size_t n_points_;
-  std::vector<double> twentieths_;     // |T| / 20, per tetrahedron
-  std::vector<std::int32_t> partial_;  // per tetrahedron: whole, none, or a position in cut_
-  std::vector<Symmetric4> cut_;
+  std::size_t n_points_ = 0;
+  std::vector<Tet> tets_;
+  std::vector<double> off_diagonal_;  // e, per tetrahedron
+  std::vector<double> rest_;          // per point owned: the sum of c_a - 5 e
+  std::vector<double> lumped_, fractions_, inverse_;
 };
-
-/// The covered fraction of each vertex: the integral of its basis function over the covered region,
-/// relative to the integral over the whole mesh. Both are added over the copies by the caller:
-/// `covered` from add_diagonals() with coverage, `whole` from add_diagonals() without.
-[[nodiscard]] std::vector<double> covered_fractions(std::span<const double> covered,
-                                                    std::span<const double> whole);
 
 }  // namespace tess::m2m

@@ -1,19 +1,15 @@
 #include "m2m/io/exodus_reader.hpp"
 
 #include "m2m/io/exodus_elements.hpp"
-#include "m2m/io/netcdf_header.hpp"
+#include "m2m/io/exodus_file.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
-#include <cstdio>
 #include <exodusII.h>
-#include <fcntl.h>
 #include <limits>
 #include <optional>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -22,51 +18,11 @@ namespace {
 
 constexpr const char* supported_volumes = "TET4, TET10, HEX8, WEDGE6 and PYRAMID5";
 
-/// Discards standard error while the object lives. libexodusII prints a message if it cannot open a
-/// NetCDF-4 file, and has no option against it. The whole process is affected, so an object lives
-/// only during one call.
-class Silence {
+class ExodusReader : private ExodusFile {
  public:
-  Silence() : kept_(::dup(STDERR_FILENO)) {
-    std::fflush(stderr);
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (nowhere < 0) return;
-    ::dup2(nowhere, STDERR_FILENO);
-    ::close(nowhere);
-  }
-  ~Silence() {
-    std::fflush(stderr);
-    if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
-    ::close(kept_);
-  }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  using ExodusFile::ExodusFile;
 
- private:
-  int kept_;
-};
-
-class ExodusReader {
- public:
-  ExodusReader(const std::string& path, bool classic) : path_(path) {
-    std::optional<Silence> silence;
-    if (!classic) silence.emplace();
-    ex_opts(0);  // the library prints no messages of its own
-    int compute_bytes = sizeof(double);
-    int stored_bytes = 0;
-    float version = 0;
-    id_ = ex_open(path.c_str(), EX_READ, &compute_bytes, &stored_bytes, &version);
-    if (id_ < 0) damaged("ex_open", id_);
-    ex_set_int64_status(id_, EX_ALL_INT64_API);
-  }
-  ~ExodusReader() {
-    if (id_ >= 0) ex_close(id_);
-  }
-  ExodusReader(const ExodusReader&) = delete;
-  ExodusReader& operator=(const ExodusReader&) = delete;
-
-  TetMesh read(std::size_t file_bytes) {
+  TetMesh read() {
     TetMesh mesh;
     mesh.name = path_;
     const std::int64_t n_axes = inquire(EX_INQ_DIM);
@@ -74,14 +30,8 @@ class ExodusReader {
       fail(ErrorCode::bad_mesh, path_, ": has ", n_axes,
            " dimensions; give a mesh in 3 dimensions");
     }
-    // Compressed NetCDF-4 holds more than its size shows, but never 1 000 times more.
-    const auto most =
-        static_cast<std::int64_t>(std::min<std::size_t>(file_bytes, SIZE_MAX / 2000) * 1000);
-    const std::int64_t n = inquire(EX_INQ_NODES);
-    const std::int64_t n_blocks = inquire(EX_INQ_ELEM_BLK);
-    if (n < 0 || n > most || n_blocks < 0 || n_blocks > most) {
-      damaged("number of nodes or blocks", -1);
-    }
+    const std::int64_t n = count(EX_INQ_NODES, "number of nodes");
+    const std::int64_t n_blocks = count(EX_INQ_ELEM_BLK, "number of blocks");
     if (n > std::numeric_limits<VertexId>::max()) {
       fail(ErrorCode::bad_mesh, path_, ": has ", n,
            " vertices; at most 2147483647 fit in one mesh, split it");
@@ -90,50 +40,13 @@ class ExodusReader {
     set_name_length();
     ElementSplitter elements(mesh);
     for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks))
-      read_block(mesh, elements, block, most);
+      read_block(mesh, elements, block);
     elements.finish();
-    read_sets(mesh, elements, most);
+    read_sets(mesh, elements);
     return mesh;
   }
 
  private:
-  /// Without this call the library cuts names to 32 characters.
-  void set_name_length() {
-    constexpr std::int64_t longest = 255;
-    const std::int64_t used = ex_inquire_int(id_, EX_INQ_DB_MAX_USED_NAME_LENGTH);
-    ex_set_max_name_length(id_, static_cast<int>(std::clamp<std::int64_t>(used, 32, longest)));
-  }
-
-  /// The numbers of the blocks or sets in file order. Throws if a number occurs twice.
-  [[nodiscard]] std::vector<std::int64_t> ids_of(ex_entity_type type, std::int64_t n) const {
-    std::vector<std::int64_t> ids(static_cast<std::size_t>(n));
-    if (n > 0) check(ex_get_ids(id_, type, ids.data()), "ex_get_ids");
-    std::vector<std::int64_t> sorted = ids;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-      damaged("two blocks or sets with the same number", -1);
-    return ids;
-  }
-
-  [[nodiscard]] std::string name_of(ex_entity_type type, std::int64_t id) const {
-    std::array<char, 512> name{};
-    if (ex_get_name(id_, type, id, name.data()) < 0) return {};  // an old file without names
-    return name.data();
-  }
-
-  [[noreturn]] void damaged(const char* call, int code) const {
-    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (", call, " failed with code ",
-         code, "); write the mesh again");
-  }
-  void check(int code, const char* call) const {
-    if (code < 0) damaged(call, code);
-  }
-  std::int64_t inquire(int what) const {
-    const std::int64_t answer = ex_inquire_int(id_, what);
-    if (answer < 0) damaged("ex_inquire", static_cast<int>(answer));
-    return answer;
-  }
-
   void read_points(TetMesh& mesh, std::int64_t n) const {
     std::array<std::vector<double>, 3> axes;
     for (auto& axis : axes) axis.resize(static_cast<std::size_t>(n));
@@ -144,35 +57,26 @@ class ExodusReader {
       mesh.points[i] = {axes[0][i], axes[1][i], axes[2][i]};
   }
 
-  void read_block(TetMesh& mesh, ElementSplitter& elements, std::int64_t id, std::int64_t most) {
-    ex_block block{};
-    block.id = id;
-    block.type = EX_ELEM_BLOCK;
-    check(ex_get_block_param(id_, &block), "ex_get_block_param");
-    block.topology[MAX_STR_LENGTH] = '\0';
-    if (block.num_entry == 0) return;
-    if (block.num_entry < 0 || block.num_entry > most - n_elements_)
+  void read_block(TetMesh& mesh, ElementSplitter& elements, std::int64_t id) {
+    const ElementBlock block = block_of(id);
+    if (block.n_elements == 0) return;
+    if (block.n_elements < 0 || block.n_elements > most() - n_elements_)
       damaged("number of elements", -1);
-    n_elements_ += block.num_entry;
-    std::string type = block.topology;
-    for (char& c : type) {
-      c = std::isprint(static_cast<unsigned char>(c)) != 0
-              ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
-              : '?';
-    }
-    const auto element = exodus_volume(type, block.num_nodes_per_entry);
+    n_elements_ += block.n_elements;
+    const auto element = exodus_volume(block.type, block.n_vertices_each);
     if (!element) {
-      if (exodus_has_no_volume(type)) return skip(mesh, type, block.num_entry);
-      fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", type, " with ",
-           block.num_nodes_per_entry, " vertices; ", supported_volumes,
+      if (exodus_has_no_volume(block.type)) return skip(mesh, block.type, block.n_elements);
+      fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", block.type,
+           " with ", block.n_vertices_each, " vertices; ", supported_volumes,
            " are supported: mesh it with one of these");
     }
-    element_runs_.push_back({n_elements_, elements.n_elements() - (n_elements_ - block.num_entry)});
+    element_runs_.push_back(
+        {n_elements_, elements.n_elements() - (n_elements_ - block.n_elements)});
     const std::size_t n_tets_before = mesh.n_tets();
-    const auto n = static_cast<std::size_t>(block.num_entry);
+    const auto n = static_cast<std::size_t>(block.n_elements);
     const std::size_t n_each = n_vertices(*element);
     std::vector<std::int64_t> vertices(n_each * n);
-    check(ex_get_n_conn(id_, EX_ELEM_BLOCK, id, 1, block.num_entry, vertices.data(), nullptr,
+    check(ex_get_n_conn(id_, EX_ELEM_BLOCK, id, 1, block.n_elements, vertices.data(), nullptr,
                         nullptr),
           "ex_get_conn");
     const auto n_points = static_cast<std::int64_t>(mesh.n_points());
@@ -211,21 +115,20 @@ class ExodusReader {
     return run->shift ? element - 1 + *run->shift : -1;
   }
 
-  void read_sets(TetMesh& mesh, const ElementSplitter& elements, std::int64_t most) const {
-    const std::int64_t n_side_sets = inquire(EX_INQ_SIDE_SETS);
-    const std::int64_t n_node_sets = inquire(EX_INQ_NODE_SETS);
-    if (n_side_sets > most || n_node_sets > most) damaged("number of sets", -1);
+  void read_sets(TetMesh& mesh, const ElementSplitter& elements) const {
+    const std::int64_t n_side_sets = count(EX_INQ_SIDE_SETS, "number of side sets");
+    const std::int64_t n_node_sets = count(EX_INQ_NODE_SETS, "number of node sets");
     for (const std::int64_t id : ids_of(EX_SIDE_SET, n_side_sets))
-      read_side_set(mesh, elements, id, most);
-    for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id, most);
+      read_side_set(mesh, elements, id);
+    for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id);
   }
 
   /// The number of entries and of distribution factors of a set.
-  [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type, std::int64_t id,
-                                                            std::int64_t most) const {
+  [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type,
+                                                            std::int64_t id) const {
     std::int64_t n = 0, n_factors = 0;
     check(ex_get_set_param(id_, type, id, &n, &n_factors), "ex_get_set_param");
-    if (n < 0 || n > most || n_factors < 0 || n_factors > most) damaged("size of a set", -1);
+    if (n < 0 || n > most() || n_factors < 0 || n_factors > most()) damaged("size of a set", -1);
     return {static_cast<std::size_t>(n), static_cast<std::size_t>(n_factors)};
   }
 
@@ -239,9 +142,8 @@ class ExodusReader {
   /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of their
   /// tetrahedra. The factors of such a set are left out too, because the file does not say which
   /// factor belongs to which side.
-  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id,
-                     std::int64_t most) const {
-    const auto [n, n_factors] = size_of(EX_SIDE_SET, id, most);
+  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id) const {
+    const auto [n, n_factors] = size_of(EX_SIDE_SET, id);
     std::vector<std::int64_t> elements(n), sides(n);
     if (n > 0) check(ex_get_set(id_, EX_SIDE_SET, id, elements.data(), sides.data()), "ex_get_set");
     SideSet set{id, name_of(EX_SIDE_SET, id)};
@@ -260,8 +162,8 @@ class ExodusReader {
     mesh.side_sets.push_back(std::move(set));
   }
 
-  void read_node_set(TetMesh& mesh, std::int64_t id, std::int64_t most) const {
-    const auto [n, n_factors] = size_of(EX_NODE_SET, id, most);
+  void read_node_set(TetMesh& mesh, std::int64_t id) const {
+    const auto [n, n_factors] = size_of(EX_NODE_SET, id);
     std::vector<std::int64_t> vertices(n);
     if (n > 0) check(ex_get_set(id_, EX_NODE_SET, id, vertices.data(), nullptr), "ex_get_set");
     NodeSet set{id, name_of(EX_NODE_SET, id), {}, factors_of(EX_NODE_SET, id, n_factors)};
@@ -281,8 +183,6 @@ class ExodusReader {
     std::optional<GlobalId> shift;  // from element - 1 to volume_of(); none if skipped
   };
 
-  const std::string& path_;
-  int id_ = -1;
   std::int64_t n_elements_ = 0;    // read so far, including skipped ones
   std::vector<Run> element_runs_;  // in file order
 };
@@ -290,9 +190,7 @@ class ExodusReader {
 }  // namespace
 
 TetMesh read_exodus(const std::string& path, std::string_view bytes) {
-  const bool classic = bytes.starts_with("CDF");
-  if (classic) check_netcdf_header(path, bytes);
-  return ExodusReader(path, classic).read(bytes.size());
+  return ExodusReader(path, bytes).read();
 }
 
 }  // namespace tess::m2m

@@ -1,6 +1,7 @@
 #include "m2m/io/gmsh_reader.hpp"
 
 #include "m2m/io/gmsh_elements.hpp"
+#include "m2m/io/gmsh_format.hpp"
 #include "m2m/io/gmsh_scanner.hpp"
 
 #include <algorithm>
@@ -14,50 +15,10 @@
 namespace tess::m2m {
 namespace {
 
-/// Maps node tags, which may have gaps of any size, to positions in the list of points.
-class TagMap {
- public:
-  void build(const std::vector<std::uint64_t>& tags, const GmshScanner& file) {
-    const std::uint64_t last = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
-    dense_ = last / 4 <= tags.size() + 1024;
-    if (dense_) {
-      place_.assign(static_cast<std::size_t>(last) + 1, -1);
-      for (std::size_t i = 0; i < tags.size(); ++i) {
-        VertexId& place = place_[tags[i]];
-        if (place >= 0) twice(tags[i], file);
-        place = static_cast<VertexId>(i);
-      }
-      return;
-    }
-    sorted_.reserve(tags.size());
-    for (std::size_t i = 0; i < tags.size(); ++i)
-      sorted_.emplace_back(tags[i], static_cast<VertexId>(i));
-    std::sort(sorted_.begin(), sorted_.end());
-    for (std::size_t i = 1; i < sorted_.size(); ++i) {
-      if (sorted_[i].first == sorted_[i - 1].first) twice(sorted_[i].first, file);
-    }
-  }
-
-  /// The position, or -1 if no node has the tag.
-  [[nodiscard]] VertexId find(std::uint64_t tag) const {
-    if (dense_) return tag < place_.size() ? place_[tag] : -1;
-    const auto found = std::lower_bound(sorted_.begin(), sorted_.end(),
-                                        std::pair<std::uint64_t, VertexId>(tag, -1));
-    return found != sorted_.end() && found->first == tag ? found->second : -1;
-  }
-
- private:
-  static void twice(std::uint64_t tag, const GmshScanner& file) {
-    file.refuse("node tag ", tag, " occurs twice; write the mesh again");
-  }
-  bool dense_ = true;
-  std::vector<VertexId> place_;
-  std::vector<std::pair<std::uint64_t, VertexId>> sorted_;
-};
-
 class GmshReader {
  public:
-  GmshReader(const std::string& path, std::string_view bytes) : file_(path, bytes) {
+  GmshReader(const std::string& path, std::string_view bytes, GmshTags* tags)
+      : file_(path, bytes), tags_out_(tags) {
     mesh_.name = path;
   }
 
@@ -67,14 +28,17 @@ class GmshReader {
     for (file_.skip_blanks(); !file_.at_end(); file_.skip_blanks()) {
       const std::string section(file_.word());
       if (section == "$MeshFormat") {
-        format();
+        const GmshFormat format = read_gmsh_format(file_);
+        legacy_ = format.legacy;
+        binary_ = format.binary;
+        have_format_ = true;
       } else if (section == "$Nodes" && !have_nodes) {
         need_format();
         file_.set_binary(binary_);
         legacy_ ? nodes_22() : nodes_41();
         file_.set_binary(false);
         file_.close("$EndNodes");
-        tags_.build(node_tags_, file_);
+        tags_.build(node_tags_, file_, "node");
         have_nodes = true;
       } else if (section == "$Elements" && !have_elements) {
         need_format();
@@ -97,39 +61,16 @@ class GmshReader {
       if (n > 0) mesh_.skipped.push_back({std::string(type.name), n});
     }
     elements_.finish();
+    if (tags_out_ != nullptr) {
+      tags_out_->nodes = std::move(node_tags_);
+      tags_out_->volumes = std::move(volume_tags_);
+    }
     return std::move(mesh_);
   }
 
  private:
   void need_format() const {
     if (!have_format_) file_.damaged("$MeshFormat is missing");
-  }
-
-  void format() {
-    const auto version = file_.number_as_text<double>();
-    const int kind = file_.number_as_text<int>();
-    const int word_bytes = file_.number_as_text<int>();
-    if (version != 2.2 && version != 4.1) {
-      file_.refuse("is MSH ", version,
-                   "; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
-    }
-    if (kind != 0 && kind != 1) file_.damaged("file type ", kind);
-    if (word_bytes != 8)
-      file_.refuse("has numbers of ", word_bytes,
-                   " bytes; only 8 are supported: save it again with gmsh");
-    legacy_ = version == 2.2;
-    binary_ = kind == 1;
-    if (binary_) {
-      file_.end_of_line();
-      file_.set_binary(true);
-      const int one = file_.number<int>();
-      file_.set_binary(false);
-      if (one == 0x01000000)
-        file_.refuse("has another byte order than this machine; save it as ASCII");
-      if (one != 1) file_.damaged("the byte-order mark is ", one);
-    }
-    file_.close("$EndMeshFormat");
-    have_format_ = true;
   }
 
   void start_nodes(std::size_t n) {
@@ -203,7 +144,7 @@ class GmshReader {
   }
 
   template <class Tag>
-  void vertices(const GmshElement& type) {
+  void element(const GmshElement& type, Tag label) {
     const auto volume = gmsh_volume(type.number);
     if (!volume) {
       ++n_skipped_[static_cast<std::size_t>(type.number)];
@@ -220,6 +161,7 @@ class GmshReader {
       }
     }
     if (*volume == ElementType::tet10) std::swap(ids[8], ids[9]);
+    if (tags_out_ != nullptr) volume_tags_.push_back(static_cast<std::uint64_t>(label));
     elements_.add(*volume, corners);
   }
 
@@ -227,6 +169,7 @@ class GmshReader {
     const std::size_t n = count_22("elements", 8);
     for (std::size_t i = 0; i < n;) {
       std::size_t group = 1;
+      int tag = 0;
       int number = 0;
       int n_labels = 0;
       if (binary_) {
@@ -235,15 +178,16 @@ class GmshReader {
         n_labels = file_.number<int>();
         if (group == 0 || group > n - i) file_.damaged("a block of ", group, " elements");
       } else {
-        file_.skip<int>(1);  // tag
+        tag = file_.number<int>();
         number = file_.number<int>();
         n_labels = file_.number<int>();
       }
       const GmshElement& type = element_type(number);
       if (n_labels < 0) file_.damaged(n_labels, " labels");
       for (std::size_t k = 0; k < group; ++k) {
-        file_.skip<int>(static_cast<std::size_t>(n_labels) + (binary_ ? 1U : 0U));
-        vertices<int>(type);
+        if (binary_) tag = file_.number<int>();
+        file_.skip<int>(static_cast<std::size_t>(n_labels));
+        element<int>(type, tag);
       }
       i += group;
     }
@@ -261,8 +205,8 @@ class GmshReader {
       const auto m = file_.count<std::uint64_t>("elements in a block", 16);
       if (gmsh_volume(type.number)) mesh_.tets.reserve(mesh_.n_tets() + m);
       for (std::size_t i = 0; i < m; ++i) {
-        file_.skip<std::uint64_t>(1);  // tag
-        vertices<std::uint64_t>(type);
+        const auto tag = file_.number<std::uint64_t>();
+        element<std::uint64_t>(type, tag);
       }
       found += m;
     }
@@ -276,7 +220,9 @@ class GmshReader {
   TetMesh mesh_;
   ElementSplitter elements_{mesh_};
   std::vector<std::uint64_t> node_tags_;
-  TagMap tags_;
+  GmshTagMap tags_;
+  GmshTags* tags_out_;
+  std::vector<std::uint64_t> volume_tags_;      // if they are asked for
   std::array<std::uint64_t, 128> n_skipped_{};  // per type number
   bool have_format_ = false;
   bool legacy_ = false;
@@ -285,8 +231,8 @@ class GmshReader {
 
 }  // namespace
 
-TetMesh read_gmsh(const std::string& path, std::string_view bytes) {
-  return GmshReader(path, bytes).read();
+TetMesh read_gmsh(const std::string& path, std::string_view bytes, GmshTags* tags) {
+  return GmshReader(path, bytes, tags).read();
 }
 
 }  // namespace tess::m2m

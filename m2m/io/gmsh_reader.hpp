@@ -1,9 +1,9 @@
 // Reads the tetrahedra of a gmsh file, MSH 2.2 or 4.1, ASCII or binary. Points, lines and surfaces
-// are skipped and counted. Volume elements other than the 4-vertex tetrahedron are refused by name.
-// Every count is checked against the remaining bytes before memory is allocated, so a damaged file
+// are skipped and counted. Every count is checked against the remaining bytes before memory is allocated, so a damaged file
 // gives one line of error.
 #pragma once
 
+#include "m2m/io/gmsh_format.hpp"
 #include "m2m/mesh.hpp"
 
 #include <string>
@@ -13,7 +13,8 @@ namespace tess::m2m {
 
 /// `bytes`: the content of the file at `path`. Throws Error (bad_file) if the file is damaged,
 /// (bad_mesh) if it has volume elements of another type. Node tags may have gaps of any size;
-/// vertices keep the order of the file.
-[[nodiscard]] TetMesh read_gmsh(const std::string& path, std::string_view bytes);
+/// vertices keep the order of the file. `tags`: if not null, gets the tags.
+[[nodiscard]] TetMesh read_gmsh(const std::string& path, std::string_view bytes,
+                                GmshTags* tags = nullptr);
 
 }  // namespace tess::m2m

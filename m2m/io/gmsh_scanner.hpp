@@ -1,6 +1,6 @@
 // Reads the bytes of one MSH file in order: section names, and numbers as text or binary, as the
 // mode of the file requires. Every read is checked against the end of the file. A failure is one
-// line of error with the byte position. Only gmsh_reader.cpp uses it.
+// line of error with the byte position.
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -21,6 +21,8 @@ class GmshScanner {
   void set_binary(bool binary) { binary_ = binary; }
   [[nodiscard]] bool binary() const { return binary_; }
   [[nodiscard]] bool at_end() const { return at_ >= bytes_.size(); }
+  /// The position, in bytes.
+  [[nodiscard]] std::size_t at() const { return at_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
 
   template <class... Parts>
@@ -44,6 +46,19 @@ class GmshScanner {
     while (at_ < bytes_.size() && !is_blank(bytes_[at_])) ++at_;
     return bytes_.substr(begin, at_ - begin);
   }
+
+  /// The text between two quotation marks on one line, or the next word.
+  std::string_view quoted() {
+    skip_blanks();
+    if (at_ >= bytes_.size() || bytes_[at_] != '"') return word();
+    const std::size_t begin = at_ + 1;
+    const std::size_t end = bytes_.find_first_of("\"\n", begin);
+    if (end == std::string_view::npos || bytes_[end] != '"') damaged("a name has no end");
+    at_ = end + 1;
+    return bytes_.substr(begin, end - begin);
+  }
+
+  void move_to(std::size_t at) { at_ = at; }
 
   /// A number as text, in either mode.
   template <class T>

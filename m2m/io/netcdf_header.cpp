@@ -2,23 +2,22 @@
 
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <array>
-#include <cstdint>
-#include <vector>
+#include <utility>
 
 namespace tess::m2m {
 namespace {
 
-struct Dimension {
-  std::string name;
-  std::uint64_t length;  ///< 0: the record dimension
-};
+constexpr std::uint64_t padded(std::uint64_t n) {
+  return n + (4 - n % 4) % 4;
+}
 
-class Header {
+class HeaderReader {
  public:
-  Header(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  HeaderReader(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
 
-  void check() {
+  NetcdfHeader read() {
     version_ = at_ + 4 <= bytes_.size() ? static_cast<unsigned char>(bytes_[3]) : 0;
     if (version_ != 1 && version_ != 2 && version_ != 5)
       damaged("unknown NetCDF version ", version_);
@@ -29,6 +28,8 @@ class Header {
     dimensions();
     attributes(true);
     variables();
+    records_inside();
+    return {n_records_, std::move(dimensions_), std::move(variables_)};
   }
 
  private:
@@ -60,6 +61,8 @@ class Header {
     const std::uint64_t length = count();
     need(length);
     std::string text(bytes_.substr(at_, length));
+    for (const char c : text)
+      if (static_cast<unsigned char>(c) < ' ') damaged("a name with a control character");
     skip(length);
     return text;
   }
@@ -67,9 +70,8 @@ class Header {
   /// Skips n bytes and their padding to a multiple of four.
   void skip(std::uint64_t n) {
     need(n);
-    const std::uint64_t padded = n + (4 - n % 4) % 4;
-    need(padded);
-    at_ += padded;
+    need(padded(n));
+    at_ += padded(n);
   }
 
   /// Reads the tag and the length of a list. An absent list is two zeros.
@@ -132,11 +134,44 @@ class Header {
         shape.push_back(id);
       }
       attributes(false);
-      const std::uint64_t size = size_of_type(word());
+      const std::uint64_t type = word();
+      const std::uint64_t size = size_of_type(type);
       count();  // the declared size saturates in large files; the shape gives the size
       const std::uint64_t begin = integer(version_ == 1 ? 4 : 8);
       inside(called, shape, size, begin);
       expected_shape(called, shape);
+      variables_.push_back({called, std::move(shape), type, begin});
+    }
+  }
+
+  /// The bytes of a variable, or of one record of it.
+  [[nodiscard]] std::uint64_t bytes_of(const NetcdfVariable& variable) const {
+    std::uint64_t n_bytes = size_of_type(variable.type);
+    for (const std::size_t d : variable.shape)
+      if (dimensions_[d].length != 0) n_bytes *= dimensions_[d].length;
+    return n_bytes;
+  }
+
+  /// Records hold a part of every record variable. The library reads zeros for records beyond the
+  /// end of the file.
+  void records_inside() const {
+    std::uint64_t n_variables = 0, record_bytes = 0;
+    const auto is_record = [this](const NetcdfVariable& variable) {
+      return !variable.shape.empty() && dimensions_[variable.shape[0]].length == 0;
+    };
+    if (n_records_ < 2) return;
+    for (const NetcdfVariable& variable : variables_) {
+      if (!is_record(variable)) continue;
+      ++n_variables;
+      record_bytes += padded(bytes_of(variable));  // each is at most the size of the file
+    }
+    for (const NetcdfVariable& variable : variables_) {
+      if (!is_record(variable)) continue;
+      const std::uint64_t n_bytes = bytes_of(variable);
+      const std::uint64_t step = n_variables == 1 ? n_bytes : record_bytes;
+      const std::uint64_t left = bytes_.size() - variable.begin - n_bytes;
+      if (n_records_ - 1 > left / std::max<std::uint64_t>(step, 1))
+        damaged("variable ", variable.name, " has ", n_records_, " records, which exceed the file");
     }
   }
 
@@ -170,12 +205,26 @@ class Header {
     } else if (all.starts_with("connect")) {
       const std::string block(all.substr(7));
       wanted = {"num_el_in_blk" + block, "num_nod_per_el" + block};
+    } else if (all == "time_whole") {
+      wanted = {"time_step"};
+    } else if (all == "vals_nod_var") {
+      wanted = {"time_step", "num_nod_var", "num_nodes"};
+    } else if (all.starts_with("vals_nod_var")) {
+      wanted = {"time_step", "num_nodes"};
+    } else if (all.starts_with("vals_elem_var") && all.find("eb") != std::string_view::npos) {
+      wanted = {"time_step", "num_el_in_blk" + std::string(all.substr(all.find("eb") + 2))};
+    } else if (all == "elem_var_tab") {
+      wanted = {"num_el_blk", "num_elem_var"};
+    } else if (all == "name_nod_var") {
+      wanted = {"num_nod_var", "*"};
+    } else if (all == "name_elem_var") {
+      wanted = {"num_elem_var", "*"};
     } else {
       return;
     }
     bool right = wanted.size() == shape.size();
     for (std::size_t d = 0; right && d < shape.size(); ++d)
-      right = dimensions_[shape[d]].name == wanted[d];
+      right = wanted[d] == "*" || dimensions_[shape[d]].name == wanted[d];
     if (!right) damaged("variable ", called, " has other dimensions than ExodusII defines");
   }
 
@@ -184,13 +233,14 @@ class Header {
   std::size_t at_ = 0;
   unsigned version_ = 0;
   std::uint64_t n_records_ = 0;
-  std::vector<Dimension> dimensions_;
+  std::vector<NetcdfDimension> dimensions_;
+  std::vector<NetcdfVariable> variables_;
 };
 
 }  // namespace
 
-void check_netcdf_header(const std::string& path, std::string_view bytes) {
-  Header(path, bytes).check();
+NetcdfHeader read_netcdf_header(const std::string& path, std::string_view bytes) {
+  return HeaderReader(path, bytes).read();
 }
 
 }  // namespace tess::m2m

@@ -1,4 +1,5 @@
-#include "m2m/parallel/piece.hpp"
+#include "m2m/parallel/couplings.hpp"
+
 #include "runtime/core/check.hpp"
 
 namespace tess::m2m {
@@ -19,6 +20,13 @@ const TargetSide& Couplings::target(CouplingId id) const {
              "this piece is no target of the coupling: await search() first, and serialise "
              "`couplings` if pieces migrate");
   return at->second;
+}
+
+void Couplings::release(CouplingId id) {
+  sources.erase(id);
+  targets.erase(id);
+  overlap_sources.erase(id);
+  overlap_targets.erase(id);
 }
 
 }  // namespace tess::m2m

@@ -5,6 +5,7 @@
 #include "collide/collider.hpp"
 #include "m2m/interpolate/donor.hpp"
 #include "m2m/parallel/ledger.hpp"
+#include "m2m/parallel/point_directory.hpp"
 #include "m2m/policy.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
@@ -25,6 +26,8 @@ struct CouplingSetup {
   CollectionId source{}, target{};
   OutsidePolicy policy{};
   TransferKind kind{};
+  Centring source_values{}, target_values{};
+  GroupProxy<PointDirectory> directory;  ///< only where target pieces exchange values of ghosts
 };
 
 /// From a target piece to a source piece: which of your tetrahedra hold these points?

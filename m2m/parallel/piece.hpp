@@ -14,63 +14,33 @@
 //   give       interpolates             GivenValues →   writes a round that is complete
 #pragma once
 
-#include "m2m/parallel/source_side.hpp"
-#include "m2m/parallel/target_side.hpp"
-#include "runtime/core/hash.hpp"
+#include "m2m/parallel/overlap_piece.hpp"
+#include "m2m/parallel/row_book.hpp"
 #include "runtime/runtime.hpp"
 
-#include <map>
 #include <span>
-#include <string_view>
-#include <type_traits>
 #include <vector>
 
 namespace tess::m2m {
-
-namespace detail {
-
-/// The two sides of a collision, as models.
-inline constexpr collide::ModelId source_model{1};
-inline constexpr collide::ModelId target_model{2};
-
-/// Calls a chare's accessor to its values, which may take the coupling.
-template <auto F, class C>
-auto values_of(C& chare, CouplingId coupling) {
-  if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
-    return (chare.*F)(coupling);
-  } else {
-    return (chare.*F)();
-  }
-}
-
-}  // namespace detail
-
-/// The couplings that a piece is part of. It migrates with the piece.
-struct Couplings {
-  std::map<CouplingId, SourceSide> sources;
-  std::map<CouplingId, TargetSide> targets;
-
-  [[nodiscard]] SourceSide& source(CouplingId id);
-  [[nodiscard]] TargetSide& target(CouplingId id);
-  [[nodiscard]] const TargetSide& target(CouplingId id) const;
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(sources, targets);
-  }
-};
 
 /// A second base class of a chare that holds a piece of a mesh. The chare has a member function
 /// `MeshView mesh_view() const`; if it migrates, it serialises `couplings`. If it has a member
 /// function `received(CouplingId)`, that is called after new values were written.
 template <class C>
-class Piece {
+class Piece : public OverlapPiece<C> {
  public:
-  Couplings couplings;
+  using OverlapPiece<C>::couplings;
 
   /// Where the points of this piece lie in the source of a coupling: per point owned.
   [[nodiscard]] std::span<const Status> status(CouplingId id) const {
-    return couplings.target(id).status();
+    return couplings.is_conservative_target(id) ? couplings.overlap_target(id).status()
+                                                : couplings.target(id).status();
+  }
+
+  /// The policy of a coupling whose target this piece belongs to.
+  [[nodiscard]] const OutsidePolicy& policy(CouplingId id) const {
+    return couplings.is_conservative_target(id) ? couplings.overlap_target(id).setup.policy
+                                                : couplings.target(id).setup.policy;
   }
 
   /// Gives the values that Give returns to the pieces of the coupling's target, which are of class
@@ -78,21 +48,24 @@ class Piece {
   /// k-th round; a target piece gets a round when it is complete. Give may be const.
   template <class T, auto Give, auto Take>
   void m2m_give(CouplingId id) {
+    if (couplings.is_conservative_source(id)) return this->template give_loads<T, Give, Take>(id);
     SourceSide& from = couplings.source(id);
     const std::span<const double> values = detail::values_of<Give>(self(), id);
     const MeshView mesh = self().mesh_view();
     TESS_CHECK(mesh.points.empty() || values.size() % mesh.points.size() == 0, "a piece of ",
                mesh.points.size(), " points gives ", values.size(),
                " values: give points × components");
-    from.give(mesh, values, channel<Take>(), [&](collide::OwnerId target, GivenValues given) {
-      given.from = me();
-      at<T>(from.setup.target, target)
-          .template send<&Piece<T>::template m2m_take<Take>>(std::move(given));
-    });
+    from.give(mesh, values, detail::channel_of<Take>(),
+              [&](collide::OwnerId target, GivenValues given) {
+                given.from = me();
+                at<T>(from.setup.target, target)
+                    .template send<&Piece<T>::template m2m_take<Take>>(std::move(given));
+              });
   }
   /// A piece without sources has nothing to wait for.
   template <auto Take>
   void m2m_take_if_alone(CouplingId id) {
+    if (couplings.is_conservative_target(id)) return this->template take_if_alone<Take>(id);
     const TargetSide& to = couplings.target(id);
     if (to.n_sources() != 0) return;
     to.set_outside(detail::values_of<Take>(self(), id));
@@ -110,6 +83,28 @@ class Piece {
     }
   }
 
+  /// Gives the weights of the donors to the pieces of the coupling's target (coupling_weights.hpp).
+  template <class T>
+  void m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
+    const MeshView mesh = self().mesh_view();
+    SourceSide& from = couplings.source(id);
+    from.give_rows(mesh, [&](collide::OwnerId target, const Rows<double>& rows) {
+      GivenRows given{id, me(), book, {}};
+      for (std::size_t i = 0; i < rows.n_rows(); ++i)
+        given.rows.sizes.push_back(rows.columns_of(i).size());
+      for (const VertexId column : rows.columns)
+        given.rows.columns.push_back(mesh.point_ids[static_cast<std::size_t>(column)]);
+      given.rows.weights = rows.weights;
+      at<T>(from.setup.target, target).template send<&Piece<T>::m2m_take_rows>(std::move(given));
+    });
+  }
+  void m2m_take_rows(GivenRows given) {
+    const MeshView mesh = self().mesh_view();
+    for (const std::int32_t row : couplings.target(given.coupling).rows_from(given.from))
+      given.rows.targets.push_back(mesh.point_ids[static_cast<std::size_t>(row)]);
+    given.book.local().add(given.rows);
+  }
+
   void m2m_submit_source(const CouplingSetup& setup) {
     SourceSide& from = couplings.sources[setup.id];
     from.setup = setup;
@@ -123,7 +118,12 @@ class Piece {
     to.setup = setup;
     setup.collider.submit({me(), detail::target_model, to.start_search(self().mesh_view())});
   }
-  void m2m_hits(CouplingId id, const collide::Hits& hits) { couplings.target(id).add(hits); }
+  void m2m_hits(CouplingId id, const collide::Hits& hits) {
+    if (couplings.is_conservative_target(id))
+      couplings.overlap_target(id).add(hits);
+    else
+      couplings.target(id).add(hits);
+  }
 
   template <class S>
   void m2m_ask(CouplingId id, const std::vector<SourcePiece>& sources) {
@@ -166,26 +166,18 @@ class Piece {
   }
   void m2m_choose(Choice choice) { couplings.source(choice.coupling).choose(std::move(choice)); }
 
-  void m2m_release_source(CouplingId id) { couplings.sources.erase(id); }
-  void m2m_release_target(CouplingId id) { couplings.targets.erase(id); }
+  void m2m_release(CouplingId id) { couplings.release(id); }
 
  private:
   friend C;
   Piece() = default;
 
-  [[nodiscard]] C& self() { return static_cast<C&>(*this); }
-  [[nodiscard]] collide::OwnerId me() { return collide::owner_of(self().index()); }
+  using OverlapPiece<C>::self;
+  using OverlapPiece<C>::me;
+  using OverlapPiece<C>::notify;
   template <class Other>
   [[nodiscard]] static auto at(CollectionId array, collide::OwnerId piece) {
-    return ArrayProxy<Other>(array)[collide::index_of<typename Other::Index>(piece)];
-  }
-  template <auto Take>
-  [[nodiscard]] static std::uint64_t channel() {
-    const std::string_view key = naming::name_of<Take>().key;
-    return hash_bytes(key.data(), key.size());
-  }
-  void notify(CouplingId id) {
-    if constexpr (requires(C& chare) { chare.received(id); }) self().received(id);
+    return detail::piece_of<Other>(array, piece);
   }
   /// Goes on with a search once all answers are there.
   template <class S>
@@ -211,8 +203,7 @@ template <class T>
 void call_target(const Callback<collide::Hits>& callback, collide::Hits&& hits) {
   const auto [target, coupling] =
       from_bytes<std::tuple<CollectionId, CouplingId>>(callback.where());
-  const auto owner = collide::index_of<typename T::Index>(hits.owner);
-  ArrayProxy<T>(target)[owner].template send<&Piece<T>::m2m_hits>(coupling, std::move(hits));
+  piece_of<T>(target, hits.owner).template send<&Piece<T>::m2m_hits>(coupling, std::move(hits));
 }
 template <class T>
 inline const Callback<collide::Hits>::Kind target_kind{naming::name_of<&call_target<T>>(),

@@ -26,7 +26,8 @@ struct DistributedMesh {
 
 /// Partitions the mesh by tetrahedra, creates the Workers, spread evenly over all PEs, and sends
 /// each its part with the rows of the fields. The mesh is in place when the enclosing epoch is
-/// done. A source of a kind other than linear needs its halo_layers() (transfer_kind.hpp).
+/// done. Some kinds need halo layers around sources or targets
+/// (transfer_kind.hpp).
 [[nodiscard]] DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields,
                                       std::int32_t n_parts, PartitionMethod method,
                                       std::int32_t halo_layers = 0);

@@ -44,6 +44,14 @@ class SourceSide {
                                interpolate(mesh, donors, values, slopes, n_components)});
   }
 
+  /// Calls send(target piece, rows) for every target piece that gets values from this one. The rows
+  /// are over the points of the piece, in the order of the values of give().
+  template <class Send>
+  void give_rows(const MeshView& mesh, const Send& send) {
+    prepare(mesh);
+    for (const auto& [target, donors] : donors_) send(target, rows_of(mesh, donors));
+  }
+
   template <class Ar>
   void serialize(Ar& ar) {
     ar(setup, cover_, drafts_, donors_, rounds_, gradient_vertices_, gradient_rows_);
@@ -59,6 +67,8 @@ class SourceSide {
                                                 std::span<const double> values,
                                                 std::span<const Point> gradients,
                                                 std::size_t n_components) const;
+
+  [[nodiscard]] Rows<double> rows_of(const MeshView& mesh, std::span<const Donor> donors) const;
 
   Cover cover_;
   std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered

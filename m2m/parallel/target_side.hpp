@@ -44,6 +44,11 @@ class TargetSide {
   [[nodiscard]] std::span<const Status> status() const { return status_; }
   [[nodiscard]] std::size_t n_sources() const { return rows_.size(); }
 
+  /// The points that a source piece gives values to, in its order.
+  [[nodiscard]] std::span<const std::int32_t> rows_from(collide::OwnerId source) const {
+    return rows_.at(source);
+  }
+
   void add(GivenValues rows);
   /// True if the next round of a channel has arrived as a whole.
   [[nodiscard]] bool has_next(std::uint64_t channel) const;

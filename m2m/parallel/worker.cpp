@@ -44,7 +44,7 @@ std::span<double> Worker::pending(CouplingId coupling) {
 
 void Worker::received(CouplingId coupling) {
   Pending& pending = pending_of(coupling);
-  const bool keeps = std::holds_alternative<Keep>(couplings.target(coupling).setup.policy);
+  const bool keeps = std::holds_alternative<Keep>(policy(coupling));
   const std::span<const Status> status = this->status(coupling);
   for (std::size_t v = 0; v < status.size(); ++v)
     pending.is_new[v] = status[v] != Status::outside || !keeps ? 1 : 0;

@@ -137,13 +137,7 @@ PairMoments pair_moments(const Corners& source, const Corners& target) {
     for (double& x : row) x /= total;
   }
   const Matrix4 mixed = product(moments.products, cutting);  // [carried][cutting]
-  if (pair->target_carried) {
-    result.mixed = transposed(mixed);
-    result.target = moments.products;
-  } else {
-    result.mixed = mixed;
-    result.target = product(transposed(cutting), mixed);
-  }
+  result.mixed = pair->target_carried ? transposed(mixed) : mixed;
   return result;
 }
 

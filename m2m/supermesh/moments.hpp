@@ -19,7 +19,6 @@ using Matrix4 = std::array<std::array<double, 4>, 4>;
 struct PairMoments {
   double volume = 0;  ///< of K; 0 if the tetrahedra only touch
   Matrix4 mixed{};    ///< mixed[a][b]: integral over K of source weight a times target weight b
-  Matrix4 target{};   ///< the same of target weights a and b; symmetric
 };
 
 /// The volume of the intersection. A tetrahedron without volume intersects nothing.

@@ -65,6 +65,17 @@ refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps
 refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch/empty.exo"
 refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability
 
+overset=("$bin/overset" --json "$scratch/result.json")
+refuses "kuhn:3 has no cavity" "${overset[@]}" kuhn:4 kuhn:3
+refuses "ball:1: give a number" "${overset[@]}" kuhn:4 ball:1
+refuses "no side set body" "${overset[@]}" kuhn:4 ball:4 --wall body
+refuses "missing.obj" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/missing.obj"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/sheet.obj"
+refuses "the wall is open" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/sheet.obj"
+refuses "least-quality" "${overset[@]}" --least-quality 2
+refuses "layers" "${overset[@]}" --layers 0
+refuses "cannot be refined" "${overset[@]}" kuhn:4 kuhn:4 --study h
+
 # A study leaves nothing in its folder.
 refuses "missing/result.json: cannot be written: its folder" "$bin/m2m_transfer" kuhn:2 kuhn:3 --json "$scratch/missing/result.json"
 refuses "--picture $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --picture "$scratch"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# examples.sh BIN: hello, ring, stencil and coupled on threads, under mpirun and on the simulated machine, with their answers.
+# examples.sh BIN: hello, ring, stencil, coupled and overset on threads, under mpirun and on the simulated machine, with their answers.
 source "$(dirname "$0")/../support/checks.sh"
 bin=$1
 
@@ -68,5 +68,30 @@ overset_error() { "$bin/coupled" --cubes "$1" --pes 2 | grep -o 'overset [0-9.e+
 coarse=$(overset_error 12) fine=$(overset_error 18)
 python3 -c "import sys; sys.exit(0 if 1.9 < $coarse / $fine < 2.7 else 1)"
 check "coupled is not second order: $coarse and $fine from the solution" $?
+
+# overset: the same bits for every cut and machine, no orphans, second order, and the files.
+overset=("$bin/overset" kuhn:16 ball:8)
+answers '^  background +4552 +145 +216 +0 ' "${overset[@]}" --pes 1 --chares 1
+want=$(hash_of)
+same "${overset[@]}" --pes 2 --chares 7
+same "${mpirun[@]}" -n 2 "${overset[@]}" --chares 3
+same "${overset[@]}" --sim pes=5,cost=100ns,seed=3 --chares 6
+answers 'orphan: background point [0-9]+ at .*: outside' "$bin/overset" kuhn:10 ball:6 --layers 2 --pes 1 \
+  --plot "$scratch/overset" --json "$scratch/overset.json"
+python3 - "$scratch" <<'END'
+import json, sys
+report = json.load(open(sys.argv[1] + "/overset.json"))
+background, overset = report["meshes"]
+assert background["orphans"] == len(background["orphan_list"]) > 0
+assert sum(background[k] for k in ("field", "hole", "fringe", "orphans")) == 11**3
+before, after = (open(f"{sys.argv[1]}/overset/{name}.svg").read() for name in ("before", "after"))
+assert after.count("fill=\"#e00000\"") >= 1 and before.count("#e00000") == 0
+END
+check "the report of overset is not what was printed" $?
+cat "$scratch/overset/background.exo" >/dev/null && "$bin/m2m_transfer" "$scratch/overset/background.exo" kuhn:2 >"$scratch/out" 2>&1
+check "background.exo of overset cannot be read" $?
+timeout 100 "$bin/overset" --study h --pes 2 >"$scratch/out" 2>&1 && tail -1 "$scratch/out" |
+  python3 -c "import sys; order = float(sys.stdin.read().split()[-1]); sys.exit(0 if 1.8 < order < 2.2 else 1)"
+check "overset is not second order" $?
 
 finish

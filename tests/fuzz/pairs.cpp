@@ -3,7 +3,7 @@
 //
 //     cmake/setup.sh --fuzz
 //     cmake --preset clang -B build/fuzz -DTESS_FUZZ=ON -DTESS_SANITIZE=address,undefined,fuzzer-no-link
-//     cmake --build build/fuzz --target fuzz_pairs fuzz_surface
+//     cmake --build build/fuzz --target fuzz_pairs fuzz_surface fuzz_mesh
 //     mkdir -p build/corpus/pairs && build/fuzz/bin/fuzz_pairs -max_total_time=600 build/corpus/pairs
 #include "collide/pairs.hpp"
 

@@ -2,16 +2,18 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
+#include "tests/m2m/damage.hpp"
+#include "tests/m2m/gmsh_text.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <array>
-#include <cstdio>
 #include <exodusII.h>
-#include <random>
 
 using namespace tess::m2m;
+using tess::test::as_gmsh;
+using tess::test::damage_everywhere;
 using tess::test::message_of;
 using tess::test::Scratch;
 using tess::test::shared_data;
@@ -19,114 +21,7 @@ using tess::test::slurp;
 
 namespace {
 
-template <class T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-/// The mesh in the format that gmsh writes. Node tags differ by `gap`.
-std::string as_gmsh(const TetMesh& mesh, bool legacy, bool binary, std::uint64_t gap) {
-  std::string out =
-      std::string("$MeshFormat\n") + (legacy ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n");
-  if (binary) put(out, 1);
-  if (binary) out += "\n";
-  out += "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"box\"\n$EndPhysicalNames\n$Nodes\n";
-  const auto number = [&](auto value, const char* end = " ") {
-    if (binary) return put(out, value);
-    if constexpr (std::is_floating_point_v<decltype(value)>) {
-      std::array<char, 40> text;
-      std::snprintf(text.data(), text.size(), "%.17g", value);
-      out += text.data();
-    } else {
-      out += std::to_string(value);
-    }
-    out += end;
-  };
-  const auto n = mesh.n_points();
-  const auto tag = [&](VertexId v) { return static_cast<std::uint64_t>(v) * gap + 3; };
-  const auto point = [&](const Point& p) {
-    number(p[0]);
-    number(p[1]);
-    number(p[2], "\n");
-  };
-  if (legacy) {
-    out += std::to_string(n) + "\n";
-    for (std::size_t v = 0; v < n; ++v) {
-      number(static_cast<int>(tag(static_cast<VertexId>(v))));
-      point(mesh.points[v]);
-    }
-  } else {
-    for (const std::uint64_t x :
-         {std::uint64_t{1}, n, std::uint64_t{3}, tag(static_cast<VertexId>(n))})
-      number(x);
-    number(3);
-    number(1);
-    number(0);
-    number(std::uint64_t{n}, "\n");
-    for (std::size_t v = 0; v < n; ++v) number(tag(static_cast<VertexId>(v)), "\n");
-    for (const Point& p : mesh.points) point(p);
-  }
-  out += "\n$EndNodes\n$Elements\n";
-  const auto m = mesh.n_tets();
-  if (legacy) {
-    out += std::to_string(m + 1) + "\n";
-    if (binary) {
-      for (const int x : {15, 1, 2}) put(out, x);
-      for (const int x : {1, 1, 1, static_cast<int>(tag(0))}) put(out, x);
-      for (const int x : {4, static_cast<int>(m), 2}) put(out, x);
-    } else {
-      out += "1 15 2 1 1 " + std::to_string(tag(0)) + "\n";
-    }
-    for (std::size_t t = 0; t < m; ++t) {
-      number(static_cast<int>(t + 2));
-      if (!binary) number(4);
-      if (!binary) number(2);
-      number(1);
-      number(1);
-      for (const VertexId v : mesh.tets[t]) number(static_cast<int>(tag(v)));
-    }
-  } else {
-    for (const std::uint64_t x : {std::uint64_t{2}, m + 1, std::uint64_t{1}, m + 1}) number(x);
-    for (const int x : {0, 1, 15}) number(x);
-    for (const std::uint64_t x : {std::uint64_t{1}, std::uint64_t{1}, tag(0)}) number(x);
-    for (const int x : {3, 1, 4}) number(x);
-    number(std::uint64_t{m}, "\n");
-    for (std::size_t t = 0; t < m; ++t) {
-      number(std::uint64_t{t + 2});
-      for (const VertexId v : mesh.tets[t]) number(tag(v));
-    }
-  }
-  return out + "\n$EndElements\n";
-}
-
-/// Reads damaged bytes. Correct results are a mesh that passes validate(), or an Error of one line.
-void read_damaged(const Scratch& scratch, const std::string& name, const std::string& bytes) {
-  const std::string path = scratch.write(name, bytes);
-  const std::string message = message_of([&] { (void)read_mesh(path); });
-  if (message.find('\n') != std::string::npos) FAIL("more than one line: " << message);
-  if (!message.empty() && message.find(path) == std::string::npos)
-    FAIL("the file is not named: " << message);
-}
-
-void damage_everywhere(const std::string& name, const std::string& bytes, std::size_t n_cuts,
-                       std::size_t n_flips) {
-  const Scratch scratch;
-  for (std::size_t i = 0; i < n_cuts; ++i) {
-    const std::string cut = bytes.substr(0, bytes.size() * i / n_cuts);
-    const std::string path = scratch.write(name, cut);
-    CAPTURE(name, cut.size());
-    CHECK_FALSE(message_of([&] { (void)read_mesh(path); }).empty());
-  }
-  std::mt19937_64 random(7);
-  for (std::size_t i = 0; i < n_flips; ++i) {
-    std::string flipped = bytes;
-    // Half of the damage goes to the first bytes, which hold counts.
-    const std::size_t range = i % 2 == 0 ? std::min<std::size_t>(bytes.size(), 3000) : bytes.size();
-    for (std::size_t k = 0; k <= i % 3; ++k)
-      flipped[random() % range] ^= static_cast<char>(1U << random() % 8);
-    read_damaged(scratch, name, flipped);
-  }
-}
+const tess::test::ReadFile as_mesh = [](const std::string& path) { (void)read_mesh(path); };
 
 /// A mesh with blocks and sets of all kinds.
 TetMesh grouped_mesh() {
@@ -367,7 +262,7 @@ TEST_CASE("hexahedra, wedges and pyramids of ExodusII are split, and side sets f
         std::vector<std::array<VertexId, 3>>{{4, 5, 6}, {4, 6, 7}});
   CHECK(triangles(mesh.side_sets.at(1)) == triangles(mesh.side_sets.at(0)));
   const std::string bytes = slurp(path);
-  damage_everywhere("cut.exo", bytes, 100, 500);
+  damage_everywhere("cut.exo", bytes, 100, 500, as_mesh);
 }
 
 TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices swapped",
@@ -410,7 +305,7 @@ TEST_CASE("gmsh files with missing or flipped bits give one line of error", "[m2
   const TetMesh mesh = kuhn_mesh({2});
   for (const bool legacy : {false, true}) {
     for (const bool binary : {false, true})
-      damage_everywhere("cut.msh", as_gmsh(mesh, legacy, binary, 3), 200, 400);
+      damage_everywhere("cut.msh", as_gmsh(mesh, legacy, binary, 3), 200, 400, as_mesh);
   }
 }
 
@@ -419,13 +314,13 @@ TEST_CASE("ExodusII files with missing or flipped bits give one line of error", 
   const TetMesh mesh = grouped_mesh();
   const std::string path = scratch.path("whole.exo");
   write_exodus(path, mesh, std::array{sample(mesh, "f", make_formula("sin", bounds(mesh)))});
-  damage_everywhere("cut.exo", slurp(path), 200, 1500);
+  damage_everywhere("cut.exo", slurp(path), 200, 1500, as_mesh);
 }
 
 TEST_CASE(
     "an ExodusII file of another program with missing or flipped bits gives one line of error",
     "[m2m][io][.][shared_data]") {
-  damage_everywhere("real.exo", slurp(shared_data("mfem/simple-cube-tet4.e")), 100, 1500);
+  damage_everywhere("real.exo", slurp(shared_data("mfem/simple-cube-tet4.e")), 100, 1500, as_mesh);
 }
 
 TEST_CASE("a NetCDF-4 file is read, and a truncated one is refused", "[m2m][io]") {

@@ -3,6 +3,7 @@
 #include "tests/m2m/cell_grid.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tess::test {
 namespace {
@@ -38,6 +39,40 @@ std::vector<TetPair> overlapping_pairs(MeshView source, MeshView target) {
     for (const std::int32_t s : found) pairs.push_back({s, static_cast<std::int32_t>(t)});
   }
   return pairs;
+}
+
+OverlapRows rows_between(const TetMesh& source, Centring from, const TetMesh& target, Centring to) {
+  std::vector<GlobalId> tet_ids(source.n_tets()), point_ids(source.n_points());
+  std::iota(tet_ids.begin(), tet_ids.end(), 0);
+  std::iota(point_ids.begin(), point_ids.end(), 0);
+  const Cover cover = cover_tets(source.points, source.tets);
+  TargetTets targets;
+  std::vector<double> volumes(to == Centring::nodes ? target.n_points() : target.n_tets(), 0);
+  for (std::size_t t = 0; t < target.n_tets(); ++t) {
+    targets.tets.push_back(corners_of(target.points, target.tets[t]));
+    std::array<std::uint32_t, 4> unknowns;
+    for (std::size_t c = 0; c < 4; ++c) {
+      unknowns[c] = to == Centring::nodes ? static_cast<std::uint32_t>(target.tets[t][c])
+                                          : static_cast<std::uint32_t>(t);
+      volumes[unknowns[c]] += signed_volume(target, t);
+    }
+    targets.unknowns.push_back(unknowns);
+  }
+  for (const double volume : volumes) targets.quanta.push_back(quantum_of(volume));
+  targets.n_rows = static_cast<std::uint32_t>(volumes.size());
+  // 50 tetrahedra a box, each near all boxes of the source.
+  for (std::size_t first = 0; first < target.n_tets(); first += 50) {
+    targets.first.push_back(static_cast<std::uint32_t>(std::min(first + 50, target.n_tets())));
+    for (std::uint32_t box = 0; box < cover.boxes.size(); ++box) targets.near.push_back(box);
+    targets.first_near.push_back(static_cast<std::uint32_t>(targets.near.size()));
+  }
+  return overlap_rows({source.points, source.tets, point_ids, tet_ids, 0}, from, cover, targets);
+}
+
+std::vector<std::array<double, 4>> covered_by(const OverlapRows& rows, const TetMesh& target) {
+  std::vector<std::array<double, 4>> covered(target.n_tets());
+  for (std::size_t k = 0; k < rows.tets.size(); ++k) covered[rows.tets[k]] = rows.covered[k];
+  return covered;
 }
 
 std::vector<PointInTet> place_points(MeshView source, std::span<const Point> points) {

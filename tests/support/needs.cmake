@@ -2,6 +2,7 @@
 #   shared_data   the folder of real meshes beside the project (or TESS_DATA)
 #   meshes        meshes that the entry make_meshes generates with gmsh, in the build folder
 #   gnuplot       the program
+#   vtk           VTK for Python (Debian: python3-vtk9)
 set(TESS_MESHES "${CMAKE_BINARY_DIR}/meshes")
 set(TESS_NEED_DIR "${CMAKE_CURRENT_LIST_DIR}")
 

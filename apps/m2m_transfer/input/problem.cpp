@@ -110,8 +110,13 @@ Problem load(const Request& request, const Machine& machine) {
   return problem;
 }
 
-std::int32_t halo_for(TransferKind kind) {
-  return halo_layers(kind);
+std::int32_t halo_for(TransferKind kind, std::size_t mesh, const std::vector<Pair>& pairs) {
+  std::int32_t layers = 0;
+  for (const Pair& pair : pairs) {
+    if (pair.source == mesh) layers = std::max(layers, source_halo_layers(kind));
+    if (pair.target == mesh) layers = std::max(layers, target_halo_layers(kind));
+  }
+  return layers;
 }
 
 }  // namespace m2m_transfer

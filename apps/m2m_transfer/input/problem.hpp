@@ -68,7 +68,8 @@ struct Problem {
 /// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
 [[nodiscard]] Problem load(const Request& request, const Machine& machine);
 
-/// The layers of tetrahedra that parts need around them for a kind, as source and as target.
-[[nodiscard]] std::int32_t halo_for(TransferKind kind);
+/// The layers of tetrahedra that a mesh needs around its parts, as source and as target of pairs.
+[[nodiscard]] std::int32_t halo_for(TransferKind kind, std::size_t mesh,
+                                    const std::vector<Pair>& pairs);
 
 }  // namespace m2m_transfer

@@ -5,12 +5,9 @@ namespace m2m_transfer {
 Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
            std::vector<DistributedMesh>& meshes) {
   co_await epoch([&] {
-    for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
-      bool gives = false;
-      for (const Pair& pair : problem.pairs) gives = gives || pair.source == m;
+    for (std::size_t m = 0; m < problem.meshes.size(); ++m)
       meshes.push_back(scatter(problem.meshes[m].mesh, problem.meshes[m].fields, n_parts,
-                               problem.partition, gives ? halo_for(kind) : 0));
-    }
+                               problem.partition, halo_for(kind, m, problem.pairs)));
   });
 }
 

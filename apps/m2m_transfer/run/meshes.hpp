@@ -16,7 +16,7 @@ struct Gathered {
   std::vector<std::vector<double>> values;  ///< per field
 };
 
-/// Distributes the meshes; a source gets the halo that its kind needs.
+/// Distributes the meshes; each gets the halo that the kind needs.
 Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
            std::vector<DistributedMesh>& meshes);
 

@@ -1,0 +1,46 @@
+#include "apps/m2m_transfer/drive_files.hpp"
+
+#include "apps/m2m_transfer/file_fields.hpp"
+#include "apps/plot/write_file.hpp"
+#include "runtime/core/error.hpp"
+
+namespace m2m_transfer {
+namespace {
+
+FileFieldsRequest request_of(const DriverOptions& options) {
+  const Request& r = options.request;
+  return {r.source,
+          r.target,
+          r.fields,
+          options.step,
+          options.weights,
+          options.from_weights,
+          options.out,
+          options.policies.front(),
+          r.kind,
+          r.partition,
+          r.n_chares != 0 ? r.n_chares : r.per_pe * machine().n_pes(),
+          r.voxel};
+}
+
+}  // namespace
+
+bool moves_file_fields(const DriverOptions& options) {
+  return is_for_files(request_of(options));
+}
+
+Task move_file_fields(const DriverOptions& options, apps::Progress& progress) {
+  if (options.study || !options.picture.empty())
+    fail(ErrorCode::bad_argument,
+         "--study and --picture compare with formulas; leave them out for fields and weights of "
+         "files");
+  plot::require_writable("--json", options.json);
+  const FileFieldsRequest request = request_of(options);
+  FileFieldsReport report;
+  co_await move_file_fields(request, progress, &report);
+  if (!options.json.empty()) plot::write_file(options.json, json(report));
+  progress.clear();
+  print(table(report));
+}
+
+}  // namespace m2m_transfer

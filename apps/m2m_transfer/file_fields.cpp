@@ -1,0 +1,369 @@
+#include "apps/m2m_transfer/file_fields.hpp"
+
+#include "apps/plot/write_file.hpp"
+#include "m2m/coupling_weights.hpp"
+#include "m2m/field_file.hpp"
+#include "m2m/read_mesh.hpp"
+#include "m2m/transfer.hpp"
+#include "m2m/weights_file.hpp"
+#include "m2m/write_exodus.hpp"
+#include "m2m/write_vtu.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace m2m_transfer {
+namespace {
+
+/// Values per vertex in one batch; a batch has at least one step.
+constexpr std::size_t batch_components = 64;
+
+/// Commas within brackets belong to a formula.
+std::vector<std::string> split_names(const std::vector<std::string>& lists) {
+  std::vector<std::string> names;
+  for (const std::string& list : lists) {
+    std::size_t depth = 0, begin = 0;
+    for (std::size_t i = 0; i <= list.size(); ++i) {
+      const char c = i < list.size() ? list[i] : ',';
+      if (c == '(') ++depth;
+      if (c == ')' && depth > 0) --depth;
+      if (c != ',' || (depth > 0 && i < list.size())) continue;
+      names.push_back(list.substr(begin, i - begin));
+      begin = i + 1;
+    }
+  }
+  return names;
+}
+
+bool has_vertex_field(const FieldFile& file, const std::string& name) {
+  return std::ranges::any_of(file.fields(), [&](const FileField& field) {
+    return field.place == FieldPlace::vertices && field.name == name;
+  });
+}
+
+bool is_formula(const std::string& name) {
+  try {
+    (void)make_formula(name, {{0, 0, 0}, {1, 1, 1}});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool is_vtu(const std::string& path) {
+  return path.ends_with(".vtu");
+}
+
+/// The fields of the source, read or sampled one step at a time.
+class SourceFields {
+ public:
+  SourceFields(const FileFieldsRequest& request, const TetMesh& mesh)
+      : mesh_(mesh), names_(split_names(request.fields)) {
+    if (!request.source.starts_with("kuhn:")) file_.emplace(request.source);
+    bool from_file = false;
+    for (const std::string& name : names_) {
+      const bool is_there = file_ && has_vertex_field(*file_, name);
+      from_file = from_file || is_there;
+      formulas_.push_back(is_there ? std::nullopt : formula_of(name));
+    }
+    if (from_file)
+      choose_steps(request.step);
+    else if (!request.step.empty())
+      fail(ErrorCode::bad_argument, "--step ", request.step, " chooses a step of a field of ",
+           request.source, ", but --fields names none; name one");
+    else
+      steps_ = {0};
+  }
+
+  [[nodiscard]] const std::vector<std::size_t>& steps() const { return steps_; }
+  [[nodiscard]] double time_of(std::size_t step) const {
+    return file_ && step < file_->n_steps() ? file_->times()[step] : 0;
+  }
+  [[nodiscard]] std::vector<Field> at(std::size_t step) const {
+    std::vector<Field> fields;
+    for (std::size_t f = 0; f < names_.size(); ++f)
+      fields.push_back(formulas_[f] ? sample(mesh_, names_[f], *formulas_[f])
+                                    : file_->vertex_field(mesh_, names_[f], step));
+    return fields;
+  }
+
+ private:
+  /// A name that is neither is refused with what the file has.
+  [[nodiscard]] std::optional<Formula> formula_of(const std::string& name) const {
+    if (!is_formula(name) && file_ && !file_->fields().empty())
+      (void)file_->vertex_field(mesh_, name, 0);
+    return make_formula(name, bounds(mesh_));
+  }
+  void choose_steps(const std::string& text) {
+    const std::size_t n = file_->n_steps();
+    if (text == "all") {
+      for (std::size_t step = 0; step < n; ++step) steps_.push_back(step);
+      if (n > 0) return;
+    }
+    std::size_t step = n == 0 ? 0 : n - 1;
+    const char* const end = text.data() + text.size();
+    if (!text.empty() && text != "all" &&
+        (std::from_chars(text.data(), end, step).ptr != end || text.starts_with('-')))
+      fail(ErrorCode::bad_argument, "--step ", text,
+           " is no step; give a number from 0 on, or all");
+    steps_ = {step};
+  }
+
+  const TetMesh& mesh_;
+  std::vector<std::string> names_;
+  std::optional<FieldFile> file_;
+  std::vector<std::optional<Formula>> formulas_;  // none: from the file
+  std::vector<std::size_t> steps_;
+};
+
+/// The steps of a batch with their fields, as one list.
+struct Batch {
+  std::vector<std::size_t> steps{};
+  std::vector<Field> fields{};  // those of the first step, then those of the second, …
+  std::size_t n_each = 0;       // fields per step
+};
+
+/// The target vertices: what they have before the transfer, and what they get.
+std::vector<Field> start_values(const std::vector<Field>& fields, std::size_t n_points) {
+  std::vector<Field> out;
+  for (const Field& field : fields)
+    out.push_back(
+        {field.name, field.n_components, std::vector<double>(n_points * field.n_components, 0.0)});
+  return out;
+}
+
+/// Writes a step after the other.
+class ResultFile {
+ public:
+  ResultFile(const std::string& path, const TetMesh& mesh) : path_(path), mesh_(mesh) {
+    if (!path.empty() && !is_vtu(path)) steps_.emplace(path, mesh);
+  }
+  void add(double time, std::span<const Field> fields) {
+    if (steps_)
+      steps_->add(time, fields);
+    else if (!path_.empty())
+      write_vtu(path_, mesh_, fields, {}, time);
+  }
+  void finish() {
+    if (steps_) steps_->finish();
+  }
+
+ private:
+  const std::string& path_;
+  const TetMesh& mesh_;
+  std::optional<ExodusSteps> steps_;
+};
+
+struct Run {
+  const FileFieldsRequest& request;
+  TetMesh source, target;
+  TransferOptions options{};
+  WeightMatrix matrix{};
+  std::vector<Status> status{};  // after a search
+};
+
+/// A search and one application of all fields.
+Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
+                    FileFieldsReport& report) {
+  const TransferKind kind = run.options.kind;
+  const PartitionMethod method = parse_partition_method(run.request.partition);
+  DistributedMesh source, target;
+  co_await epoch([&] {
+    source =
+        scatter(run.source, batch.fields, run.request.n_chares, method, source_halo_layers(kind));
+    target = scatter(run.target, values, run.request.n_chares, method, target_halo_layers(kind));
+  });
+  Transfer transfer(source, target, run.options);
+  SearchSummary found;
+  co_await transfer.search(&found);
+  if (!report.searched) {
+    report.counts = found.tally.counts;
+    if (!run.request.weights.empty())
+      co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
+                               static_cast<std::int64_t>(run.target.n_points()), &run.matrix);
+  }
+  report.searched = true;
+  co_await transfer.apply();
+  Future<Outcome> outcome;
+  target.workers.broadcast<&Worker::gather>(outcome.callback());
+  const Outcome all = co_await outcome;
+  run.status.resize(run.target.n_points());
+  const double* row = all.values.data();
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const auto vertex = static_cast<std::size_t>(all.points[i]);
+    run.status[vertex] = all.status[i];
+    for (Field& field : values) {
+      std::copy_n(row, field.n_components, field.values.data() + vertex * field.n_components);
+      row += field.n_components;
+    }
+  }
+  co_await epoch([&] {
+    transfer.destroy();
+    source.destroy();
+    target.destroy();
+  });
+}
+
+/// The same by weights, on this PE.
+void apply_batch(const Run& run, const Batch& batch, std::vector<Field>& values) {
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    if (const auto* given = std::get_if<UseValue>(&run.options.policy))
+      std::ranges::fill(values[f].values, given->value);
+    apply(run.matrix, batch.fields[f].values, values[f].n_components, values[f].values);
+  }
+}
+
+void read_matrix(Run& run, FileFieldsReport& report) {
+  const std::string& path = run.request.from_weights;
+  run.matrix = read_weights(path);
+  check_fits(run.matrix, path, run.source, run.target);
+  const Rows<double>& rows = run.matrix.rows;
+  report.n_weights = rows.weights.size();
+  for (std::size_t row = 0; row < rows.n_rows(); ++row)
+    report.n_without += rows.columns_of(row).empty() ? 1U : 0U;
+  if (report.n_without > 0 && std::holds_alternative<Nearest>(run.options.policy))
+    fail(ErrorCode::bad_argument, path, ": ", report.n_without,
+         " target vertices have no weights, and --policy nearest needs a search; write the weights "
+         "with that policy, or choose keep or value:V");
+}
+
+void check_options(const FileFieldsRequest& request) {
+  if (request.target.empty())
+    fail(ErrorCode::bad_argument,
+         "TARGET is missing; give a source and a target mesh (--help lists the arguments)");
+  if (!request.weights.empty() && !request.from_weights.empty())
+    fail(ErrorCode::bad_argument,
+         "--weights writes weights and --from-weights reads them; give one");
+  if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind));
+  plot::require_writable("--weights", request.weights);
+  plot::require_writable("--out", request.out);
+}
+
+}  // namespace
+
+bool is_for_files(const FileFieldsRequest& request) {
+  if (!request.step.empty() || !request.weights.empty() || !request.from_weights.empty())
+    return true;
+  if (request.source.starts_with("kuhn:")) return false;
+  try {
+    const FieldFile file(request.source);
+    for (const std::string& name : split_names(request.fields))
+      if (has_vertex_field(file, name) || (!file.fields().empty() && !is_formula(name)))
+        return true;
+  } catch (const Error&) {  // the run reads the file again, and reports what is wrong
+  }
+  return false;
+}
+
+Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress,
+                      FileFieldsReport* report) {
+  check_options(request);
+  progress.phase("reading");
+  Run run{request, read_mesh(request.source), read_mesh(request.target)};
+  run.options.policy = parse_policy(request.policy);
+  run.options.kind = parse_transfer_kind(request.kind);
+  run.options.voxel_size = {request.voxel, request.voxel, request.voxel};
+  run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
+  report->source = request.source;
+  report->target = request.target;
+  const SourceFields fields(request, run.source);
+  if (is_vtu(request.out) && fields.steps().size() > 1)
+    fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
+         fields.steps().size(), "; give a file that ends in .exo, or one --step");
+  if (!request.from_weights.empty()) read_matrix(run, *report);
+  ResultFile out(request.out, run.target);
+  std::size_t next = 0;
+  while (next < fields.steps().size()) {
+    Batch batch;
+    std::size_t n_components = 0;
+    do {
+      const std::size_t step = fields.steps()[next++];
+      std::vector<Field> more = fields.at(step);
+      batch.n_each = more.size();
+      batch.steps.push_back(step);
+      std::size_t each = 0;
+      for (Field& field : more) {
+        each += field.n_components;
+        batch.fields.push_back(std::move(field));
+      }
+      n_components += each;
+      if (n_components + each > batch_components) break;
+    } while (next < fields.steps().size());
+    if (report->fields.empty())
+      for (std::size_t f = 0; f < batch.n_each; ++f) {
+        const Field& field = batch.fields[f];
+        report->fields.push_back(
+            field.n_components == 1
+                ? field.name
+                : fmt::format("{} ({} components)", field.name, field.n_components));
+      }
+    std::vector<Field> values = start_values(batch.fields, run.target.n_points());
+    if (request.from_weights.empty()) {
+      co_await transfer_batch(run, batch, values, *report);
+    } else {
+      progress.phase("apply");
+      apply_batch(run, batch, values);
+    }
+    progress.phase("writing");
+    for (std::size_t k = 0; k < batch.steps.size(); ++k) {
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(k * batch.n_each);
+      std::vector<Field> result(first, first + static_cast<std::ptrdiff_t>(batch.n_each));
+      std::uint64_t hash = result_hash({});
+      for (const Field& field : result) hash = result_hash(field.values, hash);
+      const double time = fields.time_of(batch.steps[k]);
+      report->steps.push_back({batch.steps[k], time, hash});
+      if (!run.status.empty()) {
+        std::vector<double> status;
+        for (const Status s : run.status) status.push_back(static_cast<double>(s));
+        result.push_back({"status", 1, std::move(status)});
+      }
+      out.add(time, result);
+    }
+  }
+  out.finish();
+  if (!request.weights.empty()) {
+    write_weights(request.weights, run.matrix);
+    report->n_weights = run.matrix.rows.weights.size();
+  }
+}
+
+std::string table(const FileFieldsReport& r) {
+  std::string names;
+  for (const std::string& name : r.fields) names += (names.empty() ? "" : ", ") + name;
+  std::string out = fmt::format("{} -> {}\n  {:<12} {}\n", r.source, r.target, "fields", names);
+  if (r.searched)
+    out += fmt::format("  {:<12} {} inside, {} boundary, {} snapped, {} outside\n", "found",
+                       r.counts[0], r.counts[1], r.counts[2], r.counts[3]);
+  if (r.n_weights > 0)
+    out +=
+        fmt::format("  {:<12} {} {}\n", "weights", r.n_weights,
+                    r.searched ? "written" : fmt::format("read, {} vertices without", r.n_without));
+  for (const MovedStep& step : r.steps)
+    out += fmt::format("  {:<12} {:016x}\n", fmt::format("step {} at {:.6g}", step.step, step.time),
+                       step.result_hash);
+  return out;
+}
+
+std::string json(const FileFieldsReport& r) {
+  nlohmann::ordered_json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
+  if (r.searched)
+    whole.update({{"inside", r.counts[0]},
+                  {"boundary", r.counts[1]},
+                  {"snapped", r.counts[2]},
+                  {"outside", r.counts[3]}});
+  else
+    whole["without_weights"] = r.n_without;
+  if (r.n_weights > 0) whole["weights"] = r.n_weights;
+  whole["steps"] = nlohmann::ordered_json::array();
+  for (const MovedStep& step : r.steps)
+    whole["steps"].push_back({{"step", step.step},
+                              {"time", step.time},
+                              {"result_hash", fmt::format("{:016x}", step.result_hash)}});
+  return whole.dump(2) + "\n";
+}
+
+}  // namespace m2m_transfer

@@ -1,0 +1,59 @@
+// Moves the fields of the source file, step by step, and reads or writes the weights of the transfer.
+// There is no truth to compare with: the report says what was found, and the hash of each step. Only
+// PE 0 reads and writes files. It holds a batch of steps at a time; each batch is one application.
+#pragma once
+
+#include "apps/m2m_transfer/names.hpp"
+#include "apps/progress.hpp"
+#include "m2m/field.hpp"
+#include "runtime/runtime.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace m2m_transfer {
+
+/// The options, as on the command line.
+struct FileFieldsRequest {
+  std::string source{}, target{};
+  std::vector<std::string> fields{};  ///< of the source file, or formulas; each may list several
+  std::string step{};                 ///< a number, "all", or empty: the last one
+  std::string weights{};              ///< file to write them to
+  std::string from_weights{};         ///< file to read them from, in place of a search
+  std::string out{};                  ///< ExodusII with all steps, or .vtu with one
+  std::string policy = "keep", kind = "linear", partition = "rcb";
+  std::int32_t n_chares = 8;  ///< per mesh
+  double voxel = 0;           ///< edge; 0: chosen
+};
+
+struct MovedStep {
+  std::size_t step = 0;
+  double time = 0;
+  std::uint64_t result_hash = 0;  ///< over the fields in order
+};
+struct FileFieldsReport {
+  std::string source, target;
+  std::vector<std::string> fields;        ///< with their components
+  bool searched = false;                  ///< otherwise the weights were read
+  std::array<std::uint64_t, 4> counts{};  ///< per Status, after a search
+  std::uint64_t n_without = 0;            ///< target vertices without weights, if they were read
+  std::uint64_t n_weights = 0;            ///< read or written
+  std::vector<MovedStep> steps;
+};
+
+/// True if the request needs this and not a comparison with formulas: it names a step, a file of
+/// weights, or a field that the source file has, or neither a formula nor a field of a file that has
+/// fields.
+[[nodiscard]] bool is_for_files(const FileFieldsRequest& request);
+
+/// Throws Error with the option, file, field or step that is wrong, before any message is sent.
+Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress,
+                      FileFieldsReport* report);
+
+[[nodiscard]] std::string table(const FileFieldsReport& report);
+[[nodiscard]] std::string json(const FileFieldsReport& report);
+
+}  // namespace m2m_transfer

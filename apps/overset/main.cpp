@@ -1,0 +1,112 @@
+// A mesh around a body overlaps a background mesh: cuts the hole, finds the donors of the fringes, and
+// moves a field between the two.
+#include "apps/command_line.hpp"
+#include "apps/overset/body.hpp"
+#include "apps/overset/report.hpp"
+#include "apps/plot/write_file.hpp"
+#include "runtime/runtime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace overset {
+namespace {
+
+struct Options {
+  Request request;
+  Problem problem;  // without the meshes
+  std::string json, plot, study;
+  bool explain = false;
+};
+
+tess::Task run_once(Options options) {
+  Problem problem = read_problem(options.request);
+  problem.field = options.problem.field;
+  problem.options = options.problem.options;
+  problem.n_parts = options.problem.n_parts > 0 ? options.problem.n_parts : 2 * tess::n_pes();
+  if (options.explain) tess::print(explanation(problem));
+  Assembly assembly;
+  co_await assemble(problem, assembly);
+  tess::print(table(options.request, problem, assembly));
+  if (!options.json.empty())
+    plot::write_file(options.json, json(options.request, problem, assembly));
+  if (!options.plot.empty()) tess::print(write(problem, assembly, options.plot));
+}
+
+/// Both meshes refined together: the background of n cubes, the mesh around the body of n / 2 edges.
+tess::Task run_study(Options options) {
+  std::vector<StudyRow> rows;
+  const std::string body = options.request.overset.substr(0, options.request.overset.find(':'));
+  for (const std::int32_t n : {16, 24, 32, 48, 64}) {
+    options.request.background = fmt::format("kuhn:{}", n);
+    options.request.overset = fmt::format("{}:{}", body, n / 2);
+    Problem problem = read_problem(options.request);
+    problem.field = options.problem.field;
+    problem.options = options.problem.options;
+    problem.n_parts = options.problem.n_parts > 0 ? options.problem.n_parts : 2 * tess::n_pes();
+    Assembly assembly;
+    co_await assemble(problem, assembly);
+    StudyRow row{
+        .n = n, .h = 1.0 / n, .seconds = assembly.cut + assembly.search + assembly.exchange};
+    double squares = 0;
+    for (const Assembled& mesh : assembly.meshes) {
+      row.linf = std::max(row.linf, mesh.linf);
+      squares += mesh.rms * mesh.rms * static_cast<double>(mesh.report.n_fringe);
+      row.n_fringe += mesh.report.n_fringe;
+      row.n_orphans += mesh.report.n_orphans;
+    }
+    row.rms = std::sqrt(squares / static_cast<double>(row.n_fringe));
+    rows.push_back(row);
+  }
+  tess::print(study_table(rows, options.plot));
+}
+
+int run(tess::Setup& setup, int argc, char** argv) {
+  Options options;
+  options.problem.n_parts = 0;
+  apps::CommandLine line(
+      "Cuts the hole of a body into a background mesh and couples it with the mesh around the "
+      "body.",
+      "overset");
+  line.option("BACKGROUND", options.request.background,
+              "mesh: an ExodusII or gmsh file, or kuhn:N, the unit cube of 6 N^3 tetrahedra");
+  line.option("OVERSET", options.request.overset,
+              "mesh around a body: a file, or ball:N, box:N, star:N, torus:N");
+  line.option("--wall", options.request.wall,
+              "the wall: a side set of OVERSET, or an OBJ, PLY or STL file (default: the cavities "
+              "of OVERSET)");
+  line.option("--field", options.problem.field,
+              "gaussian, linear, sin, or an expression in x, y, z");
+  line.option("--layers", options.problem.options.fringe_layers, "layers of fringe points")
+      .between(1, 8);
+  line.option("--least-quality", options.problem.options.least_quality,
+              "donors below it are refused: 0 to 1, 1 for donors of computed values only");
+  line.option("--chares", options.problem.n_parts, "pieces per mesh (default: two per PE)")
+      .between(1, 1 << 16);
+  line.option("--json", options.json, "write the report and the orphans to this file");
+  line.option("--plot", options.plot,
+              "write pictures before and after, and ExodusII files, to this folder");
+  line.flag("--explain", options.explain, "print what this run does, step by step");
+  line.option("--study", options.study,
+              "h: refine both meshes; error at the fringe against run time")
+      .one_of({"h"});
+  if (!line.parse(argc, argv)) return 0;
+  const double least = options.problem.options.least_quality;
+  if (!(least >= 0 && least <= 1))
+    tess::fail(tess::ErrorCode::bad_argument, "--least-quality: ", least, " is not from 0 to 1");
+  plot::require_writable("--json", options.json);
+  if (!options.study.empty() && !names_body(options.request.overset))
+    tess::fail(tess::ErrorCode::bad_argument, "--study: ", options.request.overset,
+               " cannot be refined; give OVERSET as ball:N, box:N, star:N or torus:N");
+  return tess::run(setup,
+                   [&] { return options.study.empty() ? run_once(options) : run_study(options); });
+}
+
+}  // namespace
+}  // namespace overset
+
+int main(int argc, char** argv) {
+  return tess::guarded(argc, argv,
+                       [&](tess::Setup& setup) { return overset::run(setup, argc, argv); });
+}

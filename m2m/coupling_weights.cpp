@@ -1,0 +1,51 @@
+#include "m2m/coupling_weights.hpp"
+
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace tess::m2m {
+
+void require_weights(TransferKind kind) {
+  if (kind == TransferKind::limited || is_conservative(kind))
+    fail(ErrorCode::bad_argument, "kind ", name_of(kind),
+         " has no weights: its values are limited, or solve a system; choose linear or "
+         "second-order");
+}
+
+WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources, std::int64_t n_targets) {
+  const auto check = [](const char* what, GlobalId id, std::int64_t n) {
+    if (id < 0 || id >= n)
+      fail(ErrorCode::bad_value, "weights need ", what, " vertices with ids from 0 to ", n - 1,
+           ", but one has the id ", id, "; number the vertices without gaps");
+  };
+  std::vector<std::uint64_t> begin{0};
+  for (const std::uint64_t size : rows.sizes) begin.push_back(begin.back() + size);
+  std::vector<std::size_t> order(rows.targets.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return rows.targets[a] < rows.targets[b]; });
+  WeightMatrix matrix;
+  matrix.n_columns = n_sources;
+  GlobalId next = 0;
+  for (const std::size_t i : order) {
+    const GlobalId target = rows.targets[i];
+    check("target", target, n_targets);
+    if (target < next)
+      fail(ErrorCode::bad_value, "two target vertices have the id ", target,
+           "; number the vertices of all pieces together");
+    for (; next < target; ++next) matrix.rows.end_row();
+    for (std::uint64_t k = begin[i]; k < begin[i + 1]; ++k) {
+      check("source", rows.columns[k], n_sources);
+      matrix.rows.add(static_cast<VertexId>(rows.columns[k]), rows.weights[k]);
+    }
+    matrix.rows.end_row();
+    ++next;
+  }
+  for (; next < n_targets; ++next) matrix.rows.end_row();
+  return matrix;
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,59 @@
+// The weights of a coupling as a sparse matrix, for files (weights_file.hpp) and other programs:
+//
+//     WeightMatrix weights;
+//     co_await collect_weights(coupling, n_source_vertices, n_target_vertices, &weights);
+//
+// The rows travel to one PE, whose memory holds the matrix: about 100 bytes per target vertex. A
+// transfer itself never needs that.
+#pragma once
+
+#include "m2m/coupling.hpp"
+#include "m2m/parallel/row_book.hpp"
+#include "m2m/transfer.hpp"
+#include "m2m/weights_file.hpp"
+
+#include <cstdint>
+
+namespace tess::m2m {
+
+/// The matrix of rows over global ids. Throws Error (bad_value) if an id is not in range or a target
+/// occurs twice.
+[[nodiscard]] WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources,
+                                     std::int64_t n_targets);
+
+/// Throws Error (bad_argument) unless values of this kind are a matrix times the source values.
+void require_weights(TransferKind kind);
+
+/// Collects the donors of the last search. Points are named by MeshView::point_ids, which must be 0
+/// to n_sources - 1 and 0 to n_targets - 1. For linear couplings apply() of the matrix gives the
+/// bits of the coupling; for second_order the same up to rounding; `limited` has no weights and is
+/// refused. Targets outside the source have no weights, except those with the nearest vertex
+/// (Nearest): one weight of 1.
+template <class S, class T>
+Task collect_weights(Coupling<S, T> coupling, std::int64_t n_sources, std::int64_t n_targets,
+                     WeightMatrix* out) {
+  const CouplingSetup setup = coupling.setup();
+  TESS_CHECK(
+      setup.id != CouplingId{},
+      "weights of a coupling are collected before its first search: co_await search() first");
+  require_weights(setup.kind);
+  GroupProxy<RowBook> book;
+  co_await epoch([&] { book = create_group<RowBook>(); });
+  co_await epoch([&] {
+    ArrayProxy<S>(setup.source)
+        .template broadcast<&Piece<S>::template m2m_give_rows<T>>(setup.id, book);
+  });
+  Future<GlobalRows> page;
+  book.broadcast<&RowBook::close_page>(page.callback());
+  const GlobalRows rows = co_await page;
+  co_await epoch([&] { book.destroy(); });
+  *out = matrix_of(rows, n_sources, n_targets);
+}
+
+/// The same for a transfer between meshes that the library holds.
+inline Task collect_weights(const Transfer& transfer, std::int64_t n_sources,
+                            std::int64_t n_targets, WeightMatrix* out) {
+  return collect_weights(transfer.coupling(), n_sources, n_targets, out);
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,55 @@
+// An ExodusII file that is open for reading, and checks of what the library returns. Readers of
+// meshes and of fields build on it. The library is not reentrant: one thread at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <exodusII.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tess::m2m {
+
+class ExodusFile {
+ public:
+  /// Opens the file at `path`, whose content is `bytes`. `path` must outlive the object. Throws
+  /// Error (bad_file) if the file is damaged.
+  ExodusFile(const std::string& path, std::string_view bytes);
+  ~ExodusFile();
+  ExodusFile(const ExodusFile&) = delete;
+  ExodusFile& operator=(const ExodusFile&) = delete;
+
+ protected:
+  [[noreturn]] void damaged(const char* call, int code) const;
+  void check(int code, const char* call) const {
+    if (code < 0) damaged(call, code);
+  }
+  [[nodiscard]] std::int64_t inquire(int what) const;
+  /// A count that an honest file of this size can have; otherwise the file is damaged.
+  [[nodiscard]] std::int64_t count(int what, const char* name) const;
+  /// No count in the file exceeds this. Compressed NetCDF-4 holds more than its size shows, but
+  /// never 1 000 times more.
+  [[nodiscard]] std::int64_t most() const noexcept { return most_; }
+  /// Without this call the library cuts names to 32 characters.
+  void set_name_length() const;
+  /// The numbers of the blocks or sets in file order. Throws if a number occurs twice.
+  [[nodiscard]] std::vector<std::int64_t> ids_of(ex_entity_type type, std::int64_t n) const;
+  [[nodiscard]] std::string name_of(ex_entity_type type, std::int64_t id) const;
+  /// Number, type and sizes of a block of elements. The type is in upper case.
+  struct ElementBlock {
+    std::int64_t id = 0;
+    std::string type;
+    std::int64_t n_elements = 0;
+    std::int64_t n_vertices_each = 0;
+  };
+  [[nodiscard]] ElementBlock block_of(std::int64_t id) const;
+
+  const std::string& path_;
+  int id_ = -1;
+
+ private:
+  std::int64_t most_ = 0;
+};
+
+}  // namespace tess::m2m

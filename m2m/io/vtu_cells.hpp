@@ -1,0 +1,90 @@
+// The cell types of VTK (vtkCellType.h), for the reader of VTU files.
+#pragma once
+
+#include "m2m/elements/split_element.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace tess::m2m {
+
+struct VtuCell {
+  int number;
+  std::string_view name;
+  int dimension;
+};
+
+inline constexpr VtuCell vtu_cells[] = {
+    {0, "empty", 0},
+    {1, "vertex", 0},
+    {2, "poly vertex", 0},
+    {3, "line", 1},
+    {4, "poly line", 1},
+    {5, "triangle", 2},
+    {6, "triangle strip", 2},
+    {7, "polygon", 2},
+    {8, "pixel", 2},
+    {9, "quad", 2},
+    {10, "tetra", 3},
+    {11, "voxel", 3},
+    {12, "hexahedron", 3},
+    {13, "wedge", 3},
+    {14, "pyramid", 3},
+    {15, "pentagonal prism", 3},
+    {16, "hexagonal prism", 3},
+    {21, "quadratic edge", 1},
+    {22, "quadratic triangle", 2},
+    {23, "quadratic quad", 2},
+    {24, "quadratic tetra", 3},
+    {25, "quadratic hexahedron", 3},
+    {26, "quadratic wedge", 3},
+    {27, "quadratic pyramid", 3},
+    {28, "biquadratic quad", 2},
+    {29, "triquadratic hexahedron", 3},
+    {30, "quadratic linear quad", 2},
+    {31, "quadratic linear wedge", 3},
+    {32, "biquadratic quadratic wedge", 3},
+    {33, "biquadratic quadratic hexahedron", 3},
+    {34, "biquadratic triangle", 2},
+    {35, "cubic line", 1},
+    {36, "quadratic polygon", 2},
+    {37, "triquadratic pyramid", 3},
+    {42, "polyhedron", 3},
+    {68, "Lagrange curve", 1},
+    {69, "Lagrange triangle", 2},
+    {70, "Lagrange quadrilateral", 2},
+    {71, "Lagrange tetrahedron", 3},
+    {72, "Lagrange hexahedron", 3},
+    {73, "Lagrange wedge", 3},
+    {74, "Lagrange pyramid", 3},
+};
+
+/// The type with this number, or null if there is none.
+constexpr const VtuCell* vtu_cell(std::int64_t number) {
+  for (const VtuCell& cell : vtu_cells)
+    if (cell.number == number) return &cell;
+  return nullptr;
+}
+
+/// The volume element of a type, if it is supported. A voxel is a hexahedron in another order.
+constexpr std::optional<ElementType> vtu_volume(std::int64_t number) {
+  switch (number) {
+    case 10:
+      return ElementType::tet4;
+    case 11:
+    case 12:
+      return ElementType::hex8;
+    case 13:
+      return ElementType::wedge6;
+    case 14:
+      return ElementType::pyramid5;
+    case 24:
+      return ElementType::tet10;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace tess::m2m

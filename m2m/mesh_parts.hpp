@@ -1,0 +1,24 @@
+// Cuts a mesh into parts for an application's own chares (coupling.hpp).
+#pragma once
+
+#include "m2m/mesh_view.hpp"
+#include "m2m/partition/split.hpp"
+#include "m2m/partition_method.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace tess::m2m {
+
+/// One part per chare, with so many layers of tetrahedra of other parts around its own. Depends only
+/// on the mesh and the arguments. Throws Error (bad_argument, environment) if the mesh cannot be cut.
+[[nodiscard]] std::vector<MeshPart> mesh_parts(const TetMesh& mesh, std::int32_t n_parts,
+                                               PartitionMethod method,
+                                               std::int32_t halo_layers = 0);
+
+/// A part as couplings see it, valid as long as the part.
+[[nodiscard]] inline MeshView view_of(const MeshPart& part) {
+  return {part.points, part.tets, part.point_ids, part.tet_ids, part.n_owned, part.n_own_tets};
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,130 @@
+#include "m2m/overset/boundary.hpp"
+
+#include "m2m/interpolate/orientation.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tess::m2m {
+namespace {
+
+/// The corners of the face opposite to each corner, outward from a tetrahedron that is not inverted.
+constexpr std::array<std::array<std::size_t, 3>, 4> faces_of_tet{
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+/// Side 1 of ExodusII is opposite to corner 2, and so on (m2m/mesh.hpp).
+constexpr std::array<std::size_t, 4> corner_of_side{2, 0, 1, 3};
+
+struct Face {
+  std::array<VertexId, 3> key{};  // sorted
+  std::array<VertexId, 3> corners{};
+};
+
+Point at(const TetMesh& mesh, VertexId v) {
+  return mesh.points[static_cast<std::size_t>(v)];
+}
+
+Face face_of(const TetMesh& mesh, const Tet& tet, std::size_t opposite) {
+  Face face;
+  for (std::size_t i = 0; i < 3; ++i) face.corners[i] = tet[faces_of_tet[opposite][i]];
+  // The normal points away from the opposite corner.
+  if (orientation(at(mesh, tet[opposite]), at(mesh, face.corners[0]), at(mesh, face.corners[1]),
+                  at(mesh, face.corners[2])) < 0)
+    std::swap(face.corners[1], face.corners[2]);
+  face.key = face.corners;
+  std::sort(face.key.begin(), face.key.end());
+  return face;
+}
+
+std::vector<Face> boundary_faces(const TetMesh& mesh) {
+  std::vector<Face> all;
+  all.reserve(4 * mesh.tets.size());
+  for (const Tet& tet : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i) all.push_back(face_of(mesh, tet, i));
+  std::sort(all.begin(), all.end(), [](const Face& a, const Face& b) { return a.key < b.key; });
+  std::vector<Face> single;
+  for (std::size_t i = 0; i < all.size();) {
+    std::size_t end = i + 1;
+    while (end < all.size() && all[end].key == all[i].key) ++end;
+    if (end == i + 1) single.push_back(all[i]);
+    i = end;
+  }
+  return single;
+}
+
+/// Vertices that are connected by faces have the same root.
+class Connected {
+ public:
+  explicit Connected(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  [[nodiscard]] std::size_t root(VertexId vertex) {
+    auto v = static_cast<std::size_t>(vertex);
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(VertexId a, VertexId b) { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+/// Per face: whether its connected part encloses a cavity, that is a negative volume.
+std::vector<bool> are_inner(const TetMesh& mesh, const std::vector<Face>& faces) {
+  Connected parts(mesh.points.size());
+  for (const Face& face : faces) {
+    parts.join(face.corners[0], face.corners[1]);
+    parts.join(face.corners[0], face.corners[2]);
+  }
+  std::vector<double> volume(mesh.points.size());  // by root
+  for (const Face& face : faces) {
+    const std::size_t root = parts.root(face.corners[0]);
+    volume[root] += orientation(mesh.points[root], at(mesh, face.corners[0]),
+                                at(mesh, face.corners[1]), at(mesh, face.corners[2]));
+  }
+  std::vector<bool> inner;
+  for (const Face& face : faces) inner.push_back(volume[parts.root(face.corners[0])] < 0);
+  return inner;
+}
+
+/// The keys of the faces of a side set, sorted.
+std::vector<std::array<VertexId, 3>> keys_of(const TetMesh& mesh, const std::string& name) {
+  for (const SideSet& set : mesh.side_sets) {
+    if (set.name != name) continue;
+    std::vector<std::array<VertexId, 3>> keys;
+    for (const Side& side : set.entries)
+      keys.push_back(face_of(mesh, mesh.tets[static_cast<std::size_t>(side.tet)],
+                             corner_of_side[static_cast<std::size_t>(side.side - 1)])
+                         .key);
+    std::sort(keys.begin(), keys.end());
+    return keys;
+  }
+  std::string known;
+  for (const SideSet& set : mesh.side_sets) known += (known.empty() ? "" : ", ") + set.name;
+  fail(ErrorCode::bad_argument, mesh.name, " has no side set ", name, "; it has ",
+       known.empty() ? "none" : known);
+}
+
+}  // namespace
+
+OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall) {
+  const std::vector<Face> faces = boundary_faces(mesh);
+  OversetBoundary out;
+  out.on_outer.assign(mesh.points.size(), 0);
+  const auto sort_in = [&](const Face& face, bool is_wall) {
+    if (is_wall) {
+      out.wall.push_back(face.corners);
+    } else {
+      for (const VertexId v : face.corners) out.on_outer[static_cast<std::size_t>(v)] = 1;
+    }
+  };
+  if (wall.empty()) {
+    const std::vector<bool> inner = are_inner(mesh, faces);
+    for (std::size_t i = 0; i < faces.size(); ++i) sort_in(faces[i], inner[i]);
+  } else {
+    const auto keys = keys_of(mesh, wall);
+    for (const Face& face : faces)
+      sort_in(face, std::binary_search(keys.begin(), keys.end(), face.key));
+  }
+  return out;
+}
+
+}  // namespace tess::m2m
