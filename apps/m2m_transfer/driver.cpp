@@ -1,14 +1,23 @@
 #include "apps/m2m_transfer/driver.hpp"
 
 #include "apps/m2m_transfer/drive_files.hpp"
-#include "apps/m2m_transfer/explain.hpp"
-#include "apps/m2m_transfer/measure.hpp"
-#include "apps/m2m_transfer/picture.hpp"
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/output/drift.hpp"
+#include "apps/m2m_transfer/output/explain.hpp"
+#include "apps/m2m_transfer/output/picture.hpp"
+#include "apps/m2m_transfer/output/table.hpp"
+#include "apps/m2m_transfer/run/drift.hpp"
+#include "apps/m2m_transfer/run/measure.hpp"
+#include "apps/m2m_transfer/stability/rows.hpp"
+#include "apps/m2m_transfer/study/checks.hpp"
+#include "apps/m2m_transfer/study/steps.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
+#include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 namespace m2m_transfer {
 namespace {
@@ -17,22 +26,66 @@ Problem read(const Request& request, apps::Progress& progress) {
   progress.phase("reading");
   const Time start = now();
   Problem problem = load(request, machine());
-  problem.report.seconds.read = tess::seconds(now() - start);
+  for (TransferReport& report : problem.reports) report.seconds.read = tess::seconds(now() - start);
   return problem;
 }
 
-Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
+/// "result.exo"; with several written meshes "result.B.exo", "result.C.exo", ….
+void write_meshes(const std::string& path, const Problem& problem) {
+  std::size_t n_written = 0;
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m)
+    n_written += is_written(m, problem.pairs) ? 1U : 0U;
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
+    if (!is_written(m, problem.pairs)) continue;
+    std::filesystem::path own(path);
+    if (n_written > 1)
+      own.replace_extension(std::string{'.', letter_of(m)} + own.extension().string());
+    write_exodus(own.string(), problem.meshes[m].mesh, problem.meshes[m].fields);
+  }
+}
+
+/// The request of a run without a study.
+Request single_request(const DriverOptions& options) {
   if (options.policies.size() > 1)
     fail(ErrorCode::bad_argument, "--policy is given more than once; give it once, or add --study");
-  plot::require_writable("--json", options.json);
-  plot::require_writable("--out", options.out);
-  plot::require_writable("--picture", options.picture);
   if (options.request.target.empty())
     fail(ErrorCode::bad_argument,
          "TARGET is missing; give a source and a target mesh (--help lists the arguments)");
   Request request = options.request;
   request.policy = options.policies.front();
   request.repeat = options.repeat.value_or(1);
+  return request;
+}
+
+std::vector<TransferKind> kinds_of(const DriverOptions& options) {
+  if (options.kind_is_given) return {parse_transfer_kind(options.request.kind)};
+  return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
+}
+
+Task drift_table(const DriverOptions& options, apps::Progress& progress) {
+  const Request request = single_request(options);
+  if (!options.out.empty() || !options.picture.empty() || !request.moves.empty() ||
+      !request.pairs.empty() || !request.more.empty())
+    fail(ErrorCode::bad_argument,
+         "--round-trips goes between two meshes that stand still; leave out --out, --picture, "
+         "--move and --pairs");
+  const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
+  const std::vector<TransferKind> kinds = kinds_of(options);
+  plot::require_writable("--json", options.json);
+  plot::make_folder("--plot", options.plot);
+  Drift drift;
+  co_await measure_drift(request, kinds, trips, progress, drift);
+  progress.clear();
+  print(table(drift));
+  if (!options.plot.empty()) print(write(drift, options.plot));
+  if (!options.json.empty()) plot::write_file(options.json, json(drift));
+}
+
+Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
+  const Request request = single_request(options);
+  plot::require_writable("--json", options.json);
+  plot::require_writable("--out", options.out);
+  plot::require_writable("--picture", options.picture);
   Problem problem = read(request, progress);
   if (options.explain) {
     progress.clear();
@@ -41,20 +94,28 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   const auto gauge = create_group<Gauge>();
   co_await measure(problem, gauge, progress);
   progress.phase("writing");
-  if (!options.json.empty()) plot::write_file(options.json, json({problem.report}));
+  if (!options.json.empty()) plot::write_file(options.json, json(problem.reports));
   if (!options.picture.empty()) plot::write_file(options.picture, picture(problem));
-  if (!options.out.empty()) write_exodus(options.out, problem.target, problem.target_fields);
+  if (!options.out.empty()) write_meshes(options.out, problem);
   progress.clear();
-  print(table(problem.report));
+  std::string text;
+  for (const TransferReport& report : problem.reports) text += table(report);
+  print(text + legend());
 }
 
-Task run_study(const DriverOptions& options, apps::Progress& progress) {
+Task run_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
   if (!options.out.empty() || !options.picture.empty())
     fail(ErrorCode::bad_argument,
          "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
-  std::vector<Request> requests = plan_study(options.request, options.policies);
-  prepare_folder(*options.study);
+  std::vector<std::string> kinds{options.request.kind};
+  if (*options.study == "kind") {
+    kinds.clear();
+    for (const TransferKind kind : kinds_of(options)) kinds.emplace_back(name_of(kind));
+  }
+  std::vector<Request> requests = plan_study(options.request, options.policies, kinds);
+  const std::string folder = options.plot.empty() ? "study" : options.plot;
+  plot::make_folder("--plot", folder);
   const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (Request& request : requests) {
@@ -67,23 +128,83 @@ Task run_study(const DriverOptions& options, apps::Progress& progress) {
       print(explain(problem, Output::report));
     }
     co_await measure(problem, gauge, progress);
-    reports.push_back(problem.report);
+    reports.push_back(problem.reports.front());
   }
   progress.clear();
   const Study study{std::move(reports), options.repeat.value_or(3)};
   print(table(study));
-  print(write(study, *options.study));
+  if (*options.study == "kind") {
+    const std::vector<Check> rows = checks(study);
+    print(table(rows));
+    failed = !all_ok(rows);
+  }
+  print(write(study, folder));
   if (!options.json.empty()) plot::write_file(options.json, json(study));
+}
+
+Task run_steps_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
+  plot::require_writable("--json", options.json);
+  Request request = options.request;
+  request.policy = options.policies.front();
+  const std::vector<Request> requests = plan_study(request, {request.policy}, {request.kind});
+  const std::string folder = options.plot.empty() ? "study" : options.plot;
+  plot::make_folder("--plot", folder);
+  std::vector<StepsRow> rows;
+  for (const Request& one : requests) {
+    Problem problem = read(one, progress);
+    co_await measure_steps(problem, options.repeat.value_or(3), progress, rows);
+  }
+  progress.clear();
+  print(table(rows));
+  failed = !std::ranges::all_of(rows, &StepsRow::ok);
+  print(write(rows, folder));
+  if (!options.json.empty()) plot::write_file(options.json, json(rows));
+}
+
+/// The table of extreme cases. Returns the exit code.
+int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& progress) {
+  constexpr std::size_t n_points = 40000;
+  plot::require_writable("--json", options.json);
+  std::vector<stability::Case> cases = stability::generated_cases(n_points);
+  std::vector<TetMesh> meshes;
+  for (const std::string& name : {options.request.source, options.request.target}) {
+    if (name.empty()) continue;
+    meshes.push_back(read_mesh(name));
+    (void)validate(meshes.back());
+    for (stability::Case& one : stability::cases_of(meshes.back(), n_points))
+      cases.push_back(std::move(one));
+  }
+  if (meshes.size() == 2) {
+    cases.push_back(stability::case_between(meshes[0], meshes[1]));
+    cases.push_back(stability::case_between(meshes[1], meshes[0]));
+  }
+  const std::vector<stability::Row> rows = stability::run_cases(setup, cases, progress);
+  progress.clear();
+  if (setup.machine->process().value != 0) return 0;
+  tess::print_text(stability::table(rows));
+  if (!options.json.empty()) plot::write_file(options.json, stability::json(rows));
+  return std::ranges::all_of(rows, &stability::Row::ok) ? 0 : 1;
 }
 
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  return tess::run(setup, [&]() -> Task {
-    if (moves_file_fields(options)) return move_file_fields(options, progress);
-    return options.study ? run_study(options, progress) : transfer_once(options, progress);
+  if (options.stability) return run_stability(setup, options, progress);
+  bool failed = false;
+  const int code = tess::run(setup, [&]() -> Task {
+    if (!options.round_trips.empty()) return drift_table(options, progress);
+    if (moves_file_fields(options)) {
+      if (!options.request.pairs.empty() || !options.request.moves.empty())
+        fail(
+            ErrorCode::bad_argument,
+            "--pairs and --move transfer formulas; leave them out for fields and weights of files");
+      return move_file_fields(options, progress);
+    }
+    if (options.study == "steps") return run_steps_study(options, progress, failed);
+    return options.study ? run_study(options, progress, failed) : transfer_once(options, progress);
   });
+  return code == 0 && failed ? 1 : code;
 }
 
 }  // namespace m2m_transfer

@@ -1,8 +1,8 @@
-// Runs one transfer, or a study of several, as the command line asks for. PE 0 reads the input and
+// Runs one graph of transfers, a study, or a drift table, as the command line asks for. PE 0 reads the input and
 // writes the output. Errors of the input are found before any message is sent.
 #pragma once
 
-#include "apps/m2m_transfer/problem.hpp"
+#include "apps/m2m_transfer/input/problem.hpp"
 #include "runtime/runtime.hpp"
 
 #include <optional>
@@ -18,7 +18,11 @@ struct DriverOptions {
   std::string out, json, picture;
   std::string step, weights, from_weights;  ///< file_fields.hpp
   bool explain = false;
-  std::optional<std::string> study;  ///< the folder for the files of the study
+  std::optional<std::string> study;  ///< "h", "kind" or "steps"
+  std::string plot;                  ///< the folder for files of studies and drift; empty: default
+  std::string round_trips;           ///< "1,2,5"; empty: no drift table
+  bool stability = false;            ///< the table of extreme cases; also of the meshes given
+  bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
 };
 
 /// Returns the exit code.

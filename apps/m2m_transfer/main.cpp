@@ -2,9 +2,18 @@
 // the result and the time of each phase.
 #include "apps/command_line.hpp"
 #include "apps/m2m_transfer/driver.hpp"
+#include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
 
 namespace {
+
+/// "linear, second-order, …"
+std::string kind_names() {
+  std::string out;
+  for (const tess::m2m::TransferKind kind : tess::m2m::all_transfer_kinds)
+    out += (out.empty() ? "" : ", ") + std::string(name_of(kind));
+  return out;
+}
 
 int run(tess::Setup& setup, int argc, char** argv) {
   m2m_transfer::DriverOptions options;
@@ -16,19 +25,28 @@ int run(tess::Setup& setup, int argc, char** argv) {
       "SOURCE", request.source,
       "mesh: an ExodusII or gmsh (2.2, 4.1) file, or kuhn:N, a generated box of 6 N^3 tetrahedra");
   line.option("TARGET", request.target, "mesh of the same kinds");
+  line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
+  line.option("--pairs", request.pairs,
+              "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file: "
+              "--pairs A:B,B:C. Pairs run in the order given where they share a mesh that is "
+              "written, otherwise at once");
   line.option(
       "--field,--fields", request.fields,
-      "gaussian, linear, sin, an expression in x, y, z, or a field of the source file; repeat "
-      "for several");
+      "gaussian, linear, sin, an expression in x, y, z, or a field of the source file; several "
+      "as --fields sin,x*y");
   line.option("--chares", request.n_chares,
               "chares per mesh (default: --per-pe times the number of PEs)")
       .between(1, 1 << 20);
   line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
   line.option("--policy", options.policies,
               "value of vertices outside the source: keep, value:V or nearest");
-  line.option("--kind", request.kind,
-              "linear, second-order (recovered gradients) or limited (the same, bounded by the "
-              "vertices around)");
+  const apps::Option kind =
+      line.option("--kind", request.kind, "how values follow from the source: " + kind_names());
+  line.option("--round-trips", options.round_trips,
+              "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
+              "trips: --round-trips 1,2,5,10,20,50,100; for all kinds, or the --kind given");
+  line.option("--plot", options.plot,
+              "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
   line.option("--partition", request.partition,
               "method that cuts the meshes into chares: rcb or hsfc");
   line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")
@@ -38,10 +56,16 @@ int run(tess::Setup& setup, int argc, char** argv) {
           "number of transfers; the times are those of the fastest (default: 1, with --study 3)")
       .between(1, 1000000);
   line.option("--steps", request.steps,
-              "applications of each transfer's donors; the time of the fastest counts")
+              "applications of all pairs, with the donors of one search; the time of the fastest "
+              "counts")
       .between(1, 1000000);
+  line.option("--move", request.moves,
+              "move a mesh before every step but the first, and search again: --move "
+              "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
+              "point, or 'B:translate(0.1,0,0)'; repeat for several");
   line.option("--out", options.out,
-              "write the target mesh with the fields and the status to this ExodusII file");
+              "write the target mesh with the fields and the status to this ExodusII file; with "
+              "several targets to FILE.B.exo, FILE.C.exo");
   line.option("--step", options.step,
               "step of the fields that the source file has: a number from 0 on, or all (default: "
               "the last); --out then holds all steps");
@@ -53,22 +77,29 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "draw the first field and its error in a cut through the target, as SVG");
   line.option("--json", options.json, "write the report to this JSON file");
   line.flag("--explain", options.explain, "print what this transfer uses and what it leaves out");
+  line.flag("--stability", options.stability,
+            "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
+            "points lost, error, bits; exit code 1 if a row fails: m2m_transfer --stability "
+            "part.exo");
   std::string study;
   const apps::Option studies =
       line.option(
               "--study", study,
-              "measure error against run time over several transfers, and write the files to this "
-              "folder (default: study); SOURCE and TARGET can be ladders of meshes such as "
-              "kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A ladder without "
-              "TARGET can stand in place of the folder")
+              "h: error against run time over several meshes (default); kind: the same for every "
+              "kind; steps: the time that kept donors save. SOURCE and TARGET can be ladders such "
+              "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot) "
+              "or a ladder without TARGET can stand in place of h")
           .takes(0, 1);
   if (!line.parse(argc, argv)) return 0;
+  options.kind_is_given = kind.is_given();
   if (studies.is_given()) {
+    const bool named = study == "h" || study == "kind" || study == "steps";
     const bool ladder = study.starts_with("kuhn:") && request.source.empty();
     if (ladder) request.source = study;
-    options.study = ladder || study.empty() ? "study" : study;
+    if (!named && !ladder && options.plot.empty()) options.plot = study;
+    options.study = named ? study : "h";
   }
-  if (request.source.empty())
+  if (request.source.empty() && !options.stability)
     tess::fail(tess::ErrorCode::bad_argument,
                "SOURCE is missing; give a source and a target mesh (--help lists the arguments)");
   return m2m_transfer::drive(setup, options);

@@ -1,29 +1,41 @@
-// The report of a transfer, as a table and as JSON.
+// What is measured of a transfer.
 #pragma once
 
-#include "apps/m2m_transfer/footprint.hpp"
+#include "apps/m2m_transfer/names.hpp"
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace m2m_transfer {
 
-/// Wall-clock seconds of the phases. `read`: on PE 0; `setup`: partition and distribution; `broad` and
-/// `narrow`: the search; `apply`: one application of the donors found.
+/// The cost of a transfer besides time.
+struct Footprint {
+  std::uint64_t peak_memory_bytes = 0;           ///< sum of the peaks of all processes
+  std::uint64_t greatest_peak_memory_bytes = 0;  ///< the largest of these peaks
+  std::uint64_t bytes_sent = 0;                  ///< between processes since the start, by all PEs
+};
+
+/// Wall-clock seconds of the phases. `read`: on PE 0; `setup`: partition and distribution; `broad`
+/// and `narrow`: the search; `again`: the fastest search after a motion, 0 without one; `apply`:
+/// one application of the donors found.
 struct PhaseSeconds {
-  double read = 0, setup = 0, broad = 0, narrow = 0, apply = 0;
+  double read = 0, setup = 0, broad = 0, narrow = 0, again = 0, apply = 0;
   [[nodiscard]] double transfer() const { return broad + narrow + apply; }
 };
 
 /// The error of one field.
 struct FieldError {
   std::string name;
-  ErrorNorms norms;  ///< over all vertices of the target
-  ErrorNorms found;  ///< over the vertices that are not outside
+  ErrorNorms norms;               ///< over all vertices of the target
+  ErrorNorms found;               ///< over the vertices that are not outside
+  double source_integral = 0;     ///< of the linear interpolant over the source
+  double target_integral = 0;     ///< over the target
+  std::optional<double> bound{};  ///< of the Linf error of linear interpolation, if it is known
 };
 
 struct TransferReport {
@@ -33,18 +45,16 @@ struct TransferReport {
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
   double source_edge = 0;                 ///< of a cube with the volume of six average tetrahedra
-  std::array<std::uint64_t, 4> counts{};  ///< per Status
+  double longest_edge = 0;                ///< of the source
+  std::array<std::uint64_t, 4> counts{};  ///< per Status, from the last search
+  std::int32_t searches = 1;
   std::vector<FieldError> fields;
   Point worst_at{};  ///< the vertex with the largest error of the first field
   std::uint64_t n_candidates = 0;
   double voxel = 0;
   PhaseSeconds seconds;
-  Footprint footprint;  ///< bytes_sent: by setup and one transfer
+  Footprint footprint;  ///< bytes_sent: by setup and the first transfers of all pairs
   std::uint64_t result_hash = 0;
 };
-
-[[nodiscard]] std::string table(const TransferReport& report);
-/// {"definitions": {…}, "pairs": [{…}]}
-[[nodiscard]] std::string json(const std::vector<TransferReport>& reports);
 
 }  // namespace m2m_transfer

@@ -19,6 +19,10 @@ void Worker::load(PartLoad load) {
   status_.assign(static_cast<std::size_t>(part_.n_owned), Status::outside);
 }
 
+void Worker::move(const RigidMotion& motion) {
+  move_points(part_.points, motion);
+}
+
 MeshView Worker::mesh_view() const {
   return {part_.points,  part_.tets,    part_.point_ids,
           part_.tet_ids, part_.n_owned, part_.n_own_tets};

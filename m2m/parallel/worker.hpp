@@ -8,6 +8,7 @@
 
 #include "m2m/parallel/piece.hpp"
 #include "m2m/partition/split.hpp"
+#include "m2m/rigid_motion.hpp"
 
 #include <cstdint>
 #include <map>
@@ -45,6 +46,8 @@ struct JoinOutcomes {
 class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
  public:
   void load(PartLoad load);
+  /// Moves the points, ghosts included. Couplings of the mesh search again after it.
+  void move(const RigidMotion& motion);
 
   [[nodiscard]] MeshView mesh_view() const;
   [[nodiscard]] std::span<const double> values() const { return values_; }

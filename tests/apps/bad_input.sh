@@ -55,6 +55,15 @@ refuses --pes "$bin/hello" --pes 0
 refuses --nonsense "$bin/hello" --nonsense
 refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy nearest
 refuses SOURCE "${transfer[@]}"
+refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
+refuses "'A:D' is no pair" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3 --pairs A:B,A:D
+refuses "'sideways(1)' is no motion" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --move 'sideways(1)'
+refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --move 'translate(1,0,0)'
+refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
+refuses "--round-trips .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
+refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps
+refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch/empty.exo"
+refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability
 
 overset=("$bin/overset" --json "$scratch/result.json")
 refuses "kuhn:3 has no cavity" "${overset[@]}" kuhn:4 kuhn:3

@@ -8,7 +8,7 @@
 //     A B                    A -> B and B -> A
 #pragma once
 
-#include "apps/m2m_transfer/problem.hpp"
+#include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/report.hpp"
 #include "apps/plot/chart.hpp"
 
@@ -20,26 +20,28 @@
 namespace m2m_transfer {
 
 struct Study {
-  std::vector<TransferReport> reports;  ///< all with the same fields; sorted by policy
-  std::int32_t repeat = 1;              ///< transfers per report; the fastest counts
+  std::vector<TransferReport>
+      reports;              ///< all with the same fields; sorted by kind, then by policy
+  std::int32_t repeat = 1;  ///< transfers per report; the fastest counts
 };
 
 /// The meshes of a ladder: "kuhn:8,16@0.2" and "a.msh,b.msh" have two. Throws Error (bad_argument)
 /// if the ladder has a mistake.
 [[nodiscard]] std::vector<std::string> expand(const std::string& name);
 
-/// The transfers of a study: every pair of meshes under every policy. Throws Error if the ladders
+/// The transfers of a study: every pair of meshes of every kind under every policy. Throws Error if the ladders
 /// have different lengths, a policy is unknown, or a file does not exist.
 [[nodiscard]] std::vector<Request> plan_study(const Request& request,
-                                              const std::vector<std::string>& policies);
+                                              const std::vector<std::string>& policies,
+                                              const std::vector<std::string>& kinds);
 
 /// The exponent p of the best fit y = c x^p (least squares of the logarithms), over the points that
 /// are finite and positive. Empty if these have fewer than two different x.
 [[nodiscard]] std::optional<double> fitted_power(const std::vector<plot::Point>& points);
 
-/// The convergence of the error of one field under one policy.
+/// The convergence of the error of one field of one kind under one policy.
 struct Trend {
-  std::string field, policy;
+  std::string field, kind, policy;
   bool exact = false;  ///< all relative errors are below 1e-12: rounding, not fitted
   std::optional<double> l2_of_edge, linf_of_edge;        ///< orders of convergence
   std::optional<double> l2_of_seconds, linf_of_seconds;  ///< error against run time
@@ -52,8 +54,6 @@ struct Trend {
 /// One line per pair of meshes and field.
 [[nodiscard]] std::string csv(const Study& study);
 
-/// Creates the folder if it does not exist. Throws Error (environment) with its name.
-void prepare_folder(const std::string& folder);
 /// Writes study.csv, study.json, error_time.svg and error_edge.svg (with their data as CSV) into
 /// the folder. Returns a line that lists them.
 [[nodiscard]] std::string write(const Study& study, const std::string& folder);

@@ -1,7 +1,7 @@
 // The text of --explain: what a transfer uses, and what it leaves out.
 #pragma once
 
-#include "apps/m2m_transfer/problem.hpp"
+#include "apps/m2m_transfer/input/problem.hpp"
 
 #include <string>
 

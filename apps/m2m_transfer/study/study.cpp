@@ -1,5 +1,6 @@
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 
+#include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 
@@ -10,17 +11,6 @@
 
 namespace m2m_transfer {
 namespace {
-
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
 
 /// The targets of a ladder without TARGET: for each source the next finer mesh, whose vertices lie
 /// anywhere in the tetrahedra of the source.
@@ -60,7 +50,8 @@ std::vector<std::string> expand(const std::string& name) {
   return meshes;
 }
 
-std::vector<Request> plan_study(const Request& request, const std::vector<std::string>& policies) {
+std::vector<Request> plan_study(const Request& request, const std::vector<std::string>& policies,
+                                const std::vector<std::string>& kinds) {
   std::vector<std::string> sources = expand(request.source);
   std::vector<std::string> targets =
       request.target.empty() ? next_finer(sources) : expand(request.target);
@@ -75,18 +66,22 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
     fail(ErrorCode::bad_argument, "--study: ", sources.size(), " source meshes and ",
          targets.size(), " target meshes; give the same number of both, or one of them");
   std::vector<Request> requests;
-  for (const std::string& policy : policies) {
-    (void)parse_policy(policy);
-    for (std::size_t i = 0; i < n; ++i) {
-      must_exist(sources[i]);
-      must_exist(targets[i]);
-      Request one = request;
-      one.source = sources[i];
-      one.target = targets[i];
-      one.policy = policy;
-      requests.push_back(std::move(one));
-    }
+  for (std::size_t i = 0; i < n; ++i) {
+    must_exist(sources[i]);
+    must_exist(targets[i]);
   }
+  for (const std::string& kind : kinds)
+    for (const std::string& policy : policies) {
+      (void)parse_policy(policy);
+      for (std::size_t i = 0; i < n; ++i) {
+        Request one = request;
+        one.source = sources[i];
+        one.target = targets[i];
+        one.policy = policy;
+        one.kind = kind;
+        requests.push_back(std::move(one));
+      }
+    }
   return requests;
 }
 
@@ -113,7 +108,7 @@ std::vector<Trend> trends(const Study& study) {
   std::vector<Trend> all;
   for (auto first = study.reports.begin(); first != study.reports.end();) {
     const auto last = std::find_if(first, study.reports.end(), [&](const TransferReport& r) {
-      return r.policy != first->policy;
+      return r.policy != first->policy || r.kind != first->kind;
     });
     for (std::size_t f = 0; f < first->fields.size(); ++f) {
       std::vector<plot::Point> l2_edge, linf_edge, l2_seconds, linf_seconds;
@@ -126,7 +121,7 @@ std::vector<Trend> trends(const Study& study) {
         l2_seconds.push_back({r->seconds.transfer(), norms.l2});
         linf_seconds.push_back({r->seconds.transfer(), norms.linf});
       }
-      Trend trend{first->fields[f].name, first->policy, exact, {}, {}, {}, {}};
+      Trend trend{first->fields[f].name, first->kind, first->policy, exact, {}, {}, {}, {}};
       if (!exact) {
         trend.l2_of_edge = fitted_power(l2_edge);
         trend.linf_of_edge = fitted_power(linf_edge);

@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/picture.hpp"
+#include "apps/m2m_transfer/output/picture.hpp"
 
 #include "apps/plot/quoting.hpp"
 
@@ -142,8 +142,9 @@ void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
 }  // namespace
 
 std::string picture(const Problem& problem) {
-  const Field& field = problem.target_fields.front();
-  const Field& truth = problem.truth.front();
+  const RunMesh& target = problem.target_of(problem.pairs.back());
+  const Field& field = target.fields.front();
+  const Field truth = sample(target.mesh, field.name, problem.formulas.front());
   std::vector<double> error(field.values.size());
   for (std::size_t v = 0; v < error.size(); ++v)
     error[v] = std::abs(field.values[v] - truth.values[v]);
@@ -153,8 +154,8 @@ std::string picture(const Problem& problem) {
       "fill=\"white\"/>\n",
       2 * panel + 3 * margin, panel + 2 * margin + 20);
   out += "<g stroke-linejoin=\"round\">\n";
-  draw(out, problem.target, field.values, field.name, margin);
-  draw(out, problem.target, error, "|error| of " + field.name, 2 * margin + panel);
+  draw(out, target.mesh, field.values, field.name, margin);
+  draw(out, target.mesh, error, "|error| of " + field.name, 2 * margin + panel);
   out += "</g>\n</svg>\n";
   return out;
 }

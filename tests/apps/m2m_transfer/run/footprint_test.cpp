@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/footprint.hpp"
+#include "apps/m2m_transfer/run/footprint.hpp"
 
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"

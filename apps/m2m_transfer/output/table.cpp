@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/report.hpp"
+#include "apps/m2m_transfer/output/table.hpp"
 
 #include <array>
 #include <fmt/core.h>
@@ -29,6 +29,8 @@ constexpr std::array definitions{
     Definition{"l2_relative", "l2 / sqrt(sum m truth^2)"},
     Definition{"rms", "sqrt(mean e^2)"},
     Definition{"linf", "max |e|"},
+    Definition{"integral",
+               "of the field by the row sums of the mass matrix, over the source and the target"},
     Definition{
         "all",
         "sums, mean and maximum over all vertices; vertices outside have the values of the policy"},
@@ -59,6 +61,8 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair["seconds"] = {{"read", r.seconds.read},   {"setup", r.seconds.setup},
                      {"broad", r.seconds.broad}, {"narrow", r.seconds.narrow},
                      {"apply", r.seconds.apply}, {"transfer", r.seconds.transfer()}};
+  if (r.searches > 1) pair["seconds"]["search_again"] = r.seconds.again;
+  pair["searches"] = r.searches;
   pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
   pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
   pair["bytes_sent"] = r.footprint.bytes_sent;
@@ -76,6 +80,7 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   for (const FieldError& field : r.fields) {
     nlohmann::ordered_json of_field{{"name", field.name}};
     of_field.update(norms_of(field.norms));
+    of_field["integral"] = {{"source", field.source_integral}, {"target", field.target_integral}};
     of_field["found"] = found_of(field.found);
     pair["fields"].push_back(std::move(of_field));
   }
@@ -118,6 +123,9 @@ std::string table(const TransferReport& r) {
   errors(n_found == r.targets ? fmt::format("error, {} all found", r.targets)
                               : fmt::format("error, all {}", r.targets),
          [](const FieldError& f) { return f.norms; });
+  for (const FieldError& field : r.fields)
+    line("integral", fmt::format("{}: {:.9g} of the source, {:.9g} of the target", field.name,
+                                 field.source_integral, field.target_integral));
   line("worst at",
        fmt::format("({:.4g}, {:.4g}, {:.4g})", r.worst_at[0], r.worst_at[1], r.worst_at[2]));
   out += fmt::format("  {:<12} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "seconds", "setup", "broad",
@@ -125,6 +133,9 @@ std::string table(const TransferReport& r) {
   out += fmt::format("  {:<12} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f} {:>11.4f}\n", "",
                      r.seconds.setup, r.seconds.broad, r.seconds.narrow, r.seconds.apply,
                      r.seconds.transfer());
+  if (r.searches > 1)
+    line("moved", fmt::format("{} times; the fastest search again took {:.4f} s", r.searches - 1,
+                              r.seconds.again));
   line("memory",
        fmt::format("{:.1f} MB peak over {} {}, {:.1f} MB the greatest; {:.3f} MB sent between them",
                    megabytes(r.footprint.peak_memory_bytes), r.processes,
@@ -132,13 +143,15 @@ std::string table(const TransferReport& r) {
                    megabytes(r.footprint.greatest_peak_memory_bytes),
                    megabytes(r.footprint.bytes_sent)));
   line("result", fmt::format("{:016x}", r.result_hash));
-  out +=
-      "  with e = value - truth and m = a quarter of the volume of a vertex's tetrahedra:\n"
-      "  L2 = sqrt(sum m e^2), relative = L2 / sqrt(sum m truth^2), RMS = sqrt(mean e^2),\n"
-      "  Linf = max |e|; over the vertices found (inside, boundary, snapped), and over all "
-      "vertices\n"
-      "  (those outside have the values of the policy)\n";
   return out;
+}
+
+std::string legend() {
+  return "  with e = value - truth and m = a quarter of the volume of a vertex's tetrahedra:\n"
+         "  L2 = sqrt(sum m e^2), relative = L2 / sqrt(sum m truth^2), RMS = sqrt(mean e^2),\n"
+         "  Linf = max |e|; over the vertices found (inside, boundary, snapped), and over all "
+         "vertices\n"
+         "  (those outside have the values of the policy)\n";
 }
 
 std::string json(const std::vector<TransferReport>& reports) {

@@ -1,12 +1,12 @@
-#include "apps/m2m_transfer/study.hpp"
+#include "apps/m2m_transfer/output/table.hpp"
+#include "apps/m2m_transfer/study/checks.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/chart.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
-#include "runtime/core/error.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <fmt/format.h>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -22,6 +22,15 @@ std::string power(const std::optional<double>& exponent) {
 
 bool several_policies(const Study& study) {
   return study.reports.front().policy != study.reports.back().policy;
+}
+bool several_kinds(const Study& study) {
+  return study.reports.front().kind != study.reports.back().kind;
+}
+
+/// ", KIND, POLICY", as far as the study has several.
+std::string variant(const Study& study, const std::string& kind, const std::string& policy) {
+  return (several_kinds(study) ? ", " + kind : std::string()) +
+         (several_policies(study) ? ", " + policy : std::string());
 }
 
 /// A line of slope 2 below all points of the chart, as a reference for second order.
@@ -57,11 +66,10 @@ plot::Chart chart_of(const Study& study, Against against) {
   for (const Trend& trend : trends(study)) {
     const std::size_t f = at++ % study.reports.front().fields.size();
     if (trend.exact) continue;  // rounding errors would dominate the axis
-    const std::string name =
-        trend.field + (several_policies(study) ? ", " + trend.policy : std::string());
+    const std::string name = trend.field + variant(study, trend.kind, trend.policy);
     plot::Series l2{name + ": L2"}, linf{name + ": Linf"};
     for (const TransferReport& r : study.reports) {
-      if (r.policy != trend.policy) continue;
+      if (r.policy != trend.policy || r.kind != trend.kind) continue;
       const double x = against == Against::seconds ? r.seconds.transfer() : r.source_edge;
       l2.points.push_back({x, r.fields[f].norms.l2});
       linf.points.push_back({x, r.fields[f].norms.linf});
@@ -88,12 +96,12 @@ std::string table(const Study& study) {
   std::size_t wide = 6;
   for (const TransferReport& r : study.reports)
     wide = std::max({wide, r.source.size(), r.target.size()});
-  const bool policies = several_policies(study);
+  const bool variants = several_policies(study) || several_kinds(study);
   Text to(out);
   fmt::format_to(to,
                  "  {:<{}} {:<{}} {:>9} {:>9} {:>9} {:>8}  {:<10} {:>11} {:>11} {:>11} {:>11}{}\n",
                  "source", wide, "target", wide, "edge", "setup", "transfer", "outside", "field",
-                 "L2", "Linf", "L2 found", "Linf found", policies ? "  policy" : "");
+                 "L2", "Linf", "L2 found", "Linf found", variants ? "  variant" : "");
   for (const TransferReport& r : study.reports) {
     for (const FieldError& field : r.fields) {
       const bool first = &field == &r.fields.front();
@@ -105,22 +113,22 @@ std::string table(const Study& study) {
         fmt::format_to(to, "{:{}}", "", 2 * wide + 42);
       fmt::format_to(to, "  {:<10} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}{}\n", field.name,
                      field.norms.l2, field.norms.linf, field.found.l2, field.found.linf,
-                     policies ? "  " + r.policy : std::string());
+                     variants ? "  " + variant(study, r.kind, r.policy).substr(2) : std::string());
     }
   }
   out +=
       "L2: sqrt(sum m e^2), m the lumped mass; Linf: max |e|; over all vertices of the target, and "
       "over those found\n";
   fmt::format_to(to,
-                 "fitted powers (over all): error ~ edge^p, error ~ seconds^q\n  {:<22} {:>8} "
+                 "fitted powers (over all): error ~ edge^p, error ~ seconds^q\n  {:<34} {:>8} "
                  "{:>8} {:>10} {:>10}\n",
                  "field", "p(L2)", "p(Linf)", "q(L2)", "q(Linf)");
   for (const Trend& t : trends(study)) {
-    const std::string name = t.field + (policies ? ", " + t.policy : std::string());
+    const std::string name = t.field + variant(study, t.kind, t.policy);
     if (t.exact)
-      fmt::format_to(to, "  {:<22} exact: relative L2 below 1e-12 everywhere\n", name);
+      fmt::format_to(to, "  {:<34} exact: relative L2 below 1e-12 everywhere\n", name);
     else
-      fmt::format_to(to, "  {:<22} {:>8} {:>8} {:>10} {:>10}\n", name, power(t.l2_of_edge),
+      fmt::format_to(to, "  {:<34} {:>8} {:>8} {:>10} {:>10}\n", name, power(t.l2_of_edge),
                      power(t.linf_of_edge), power(t.l2_of_seconds), power(t.linf_of_seconds));
   }
   return out;
@@ -135,43 +143,39 @@ std::string json(const Study& study) {
   };
   for (const Trend& t : trends(study))
     whole["trends"].push_back({{"field", t.field},
+                               {"kind", t.kind},
                                {"policy", t.policy},
                                {"exact", t.exact},
                                {"l2_of_edge", number(t.l2_of_edge)},
                                {"linf_of_edge", number(t.linf_of_edge)},
                                {"l2_of_seconds", number(t.l2_of_seconds)},
                                {"linf_of_seconds", number(t.linf_of_seconds)}});
+  for (const Check& check : checks(study))
+    whole["checks"].push_back(
+        {{"what", check.what}, {"value", check.value}, {"limit", check.limit}, {"ok", check.ok()}});
   return whole.dump(2) + "\n";
 }
 
 std::string csv(const Study& study) {
   std::string out =
-      "source,target,policy,field,edge,source_tets,targets,inside,boundary,snapped,outside,l2,"
+      "source,target,kind,policy,field,edge,source_tets,targets,inside,boundary,snapped,outside,l2,"
       "l2_relative,rms,linf,l2_found,l2_relative_found,rms_found,linf_found,candidates,setup,broad,"
       "narrow,apply,transfer,bytes_sent,pes,"
       "processes,result_hash\n";
   for (const TransferReport& r : study.reports)
     for (const FieldError& field : r.fields)
-      fmt::format_to(Text(out),
-                     "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}"
-                     ",{},{},{:016x}\n",
-                     plot::csv_field(r.source), plot::csv_field(r.target),
-                     plot::csv_field(r.policy), plot::csv_field(field.name), r.source_edge,
-                     r.source_tets, r.targets, r.counts[0], r.counts[1], r.counts[2], r.counts[3],
-                     field.norms.l2, field.norms.l2_relative, field.norms.rms, field.norms.linf,
-                     field.found.l2, field.found.l2_relative, field.found.rms, field.found.linf,
-                     r.n_candidates, r.seconds.setup, r.seconds.broad, r.seconds.narrow,
-                     r.seconds.apply, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
-                     r.processes, r.result_hash);
+      fmt::format_to(
+          Text(out),
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}"
+          ",{},{},{:016x}\n",
+          plot::csv_field(r.source), plot::csv_field(r.target), r.kind, plot::csv_field(r.policy),
+          plot::csv_field(field.name), r.source_edge, r.source_tets, r.targets, r.counts[0],
+          r.counts[1], r.counts[2], r.counts[3], field.norms.l2, field.norms.l2_relative,
+          field.norms.rms, field.norms.linf, field.found.l2, field.found.l2_relative,
+          field.found.rms, field.found.linf, r.n_candidates, r.seconds.setup, r.seconds.broad,
+          r.seconds.narrow, r.seconds.apply, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
+          r.processes, r.result_hash);
   return out;
-}
-
-void prepare_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder, error))
-    fail(ErrorCode::environment, "--study ", folder, ": the folder cannot be created (",
-         error.message(), "); give the meshes before --study");
 }
 
 std::string write(const Study& study, const std::string& folder) {

@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/footprint.hpp"
+#include "apps/m2m_transfer/run/footprint.hpp"
 
 #include <algorithm>
 #include <sys/resource.h>

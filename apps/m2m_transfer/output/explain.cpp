@@ -1,5 +1,6 @@
-#include "apps/m2m_transfer/explain.hpp"
+#include "apps/m2m_transfer/output/explain.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace m2m_transfer {
@@ -14,14 +15,46 @@ std::string mesh_line(const char* side, const TetMesh& mesh, const MeshCensus& c
   return line + '\n';
 }
 
+std::string pair_text(const Pair& pair) {
+  return {letter_of(pair.source), ':', letter_of(pair.target)};
+}
+
+/// "A:B A:C, then B:C"
+std::string levels_text(const Problem& problem) {
+  std::string out;
+  for (std::size_t level = 0, n = 1; n != 0; ++level) {
+    n = 0;
+    for (const Pair& pair : problem.pairs) {
+      if (pair.level != level) continue;
+      out += n++ != 0 ? " " : level != 0 ? ", then " : "";
+      out += pair_text(pair);
+    }
+  }
+  return out;
+}
+
+bool is_moving(const Problem& problem) {
+  return std::ranges::any_of(problem.meshes, [](const RunMesh& m) { return !m.motions.empty(); });
+}
+
 }  // namespace
 
 std::string explain(const Problem& problem, Output output) {
-  const TransferReport& r = problem.report;
+  const TransferReport& r = problem.reports.front();
+  const bool is_graph = problem.meshes.size() > 2;
   std::string out = "this transfer uses\n";
-  out += mesh_line("source", problem.source, problem.source_census);
-  out += mesh_line("target", problem.target, problem.target_census);
-  const std::size_t n_fields = problem.source_fields.size();
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
+    const RunMesh& mesh = problem.meshes[m];
+    const std::string letter(1, letter_of(m));
+    out += mesh_line(is_graph ? letter.c_str()
+                     : m == 0 ? "source"
+                              : "target",
+                     mesh.mesh, mesh.census);
+  }
+  if (problem.pairs.size() > 1)
+    out += fmt::format("  {} pairs; those of one level at once: {}\n", problem.pairs.size(),
+                       levels_text(problem));
+  const std::size_t n_fields = problem.field_names.size();
   out += fmt::format("  {} {} of one component{}\n", n_fields, n_fields == 1 ? "field" : "fields",
                      n_fields == 1 ? "" : ", located once for all fields");
   if (r.chares > 1)
@@ -40,7 +73,8 @@ std::string explain(const Problem& problem, Output output) {
   out += "it leaves out\n";
   out += "  voxels in empty space, and the search in voxels that only one of the meshes touches\n";
   out += "  pairs within a mesh, and tetrahedra whose cover has no vertex near\n";
-  out += "  the search in further steps (--steps): the donors are kept\n";
+  out += is_moving(problem) ? "  the search of pairs whose meshes do not move, in further steps\n"
+                            : "  the search in further steps (--steps): the donors are kept\n";
   if (r.chares == 1) out += "  partitioning: each mesh is one chare\n";
   if (r.processes == 1) out += "  serialisation: within a process messages are moved, not packed\n";
   if (!std::holds_alternative<Nearest>(problem.policy))
@@ -48,9 +82,11 @@ std::string explain(const Problem& problem, Output output) {
   if (problem.kind == TransferKind::linear)
     out += "  recovered gradients and halos (--kind second-order)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
-  if (!overlap(problem.source_census.bounds, problem.target_census.bounds,
-               tess::collide::Touching::counts))
-    out += "the bounding boxes of the meshes do not overlap: every vertex will be outside\n";
+  for (const Pair& pair : problem.pairs)
+    if (!overlap(problem.source_of(pair).census.bounds, problem.target_of(pair).census.bounds,
+                 tess::collide::Touching::counts))
+      out += fmt::format("the bounding boxes of {} do not overlap: every vertex will be outside\n",
+                         is_graph ? pair_text(pair) : "the meshes");
   return out;
 }
 

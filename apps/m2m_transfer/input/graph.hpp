@@ -1,0 +1,42 @@
+// The graph of a run: which mesh gives values to which, and in which order.
+//
+// A step applies all pairs. Pairs run in the order given if they share a mesh that one of them
+// writes. All others run at once: a step has levels, and a level has the pairs whose predecessors
+// are in earlier levels.
+//
+//     A:B,A:C,B:D      level 0: A:B and A:C;  level 1: B:D, which reads what A:B wrote
+#pragma once
+
+#include "apps/m2m_transfer/names.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace m2m_transfer {
+
+struct Pair {
+  std::size_t source = 0, target = 1;  ///< positions of the meshes
+  std::size_t level = 0;
+  friend bool operator==(const Pair&, const Pair&) = default;
+};
+
+/// The letter of a mesh by its position: A, B, C, ….
+[[nodiscard]] char letter_of(std::size_t mesh);
+
+/// The position of a mesh, given as a letter or as its name on the command line. Throws Error
+/// (bad_argument) with the option if no mesh, or more than one, has this name.
+[[nodiscard]] std::size_t find_mesh(const std::string& name, const std::vector<std::string>& meshes,
+                                    const char* option);
+
+/// The pairs of "A:B,B:C" or "coarse.exo:fine.exo"; of an empty text A:B. Throws Error
+/// (bad_argument) for a pair that has a mistake or stands twice.
+[[nodiscard]] std::vector<Pair> parse_pairs(const std::string& text,
+                                            const std::vector<std::string>& meshes);
+
+/// True if a pair writes the mesh.
+[[nodiscard]] bool is_written(std::size_t mesh, const std::vector<Pair>& pairs);
+/// True if the first pair that uses the mesh reads it: it needs values before the first step.
+[[nodiscard]] bool needs_values(std::size_t mesh, const std::vector<Pair>& pairs);
+
+}  // namespace m2m_transfer

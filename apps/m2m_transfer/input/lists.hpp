@@ -1,0 +1,31 @@
+// Lists on the command line.
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <vector>
+
+namespace m2m_transfer {
+
+/// "a,b" has two entries; commas within parentheses separate none: "max(x,y),z" has two.
+[[nodiscard]] inline std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && depth == 0)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+/// Reads a whole text as one number. False if it is none.
+template <class T>
+[[nodiscard]] bool read_number(const std::string& text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && !text.empty();
+}
+
+}  // namespace m2m_transfer

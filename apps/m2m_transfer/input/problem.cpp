@@ -1,0 +1,122 @@
+#include "apps/m2m_transfer/input/problem.hpp"
+
+#include "apps/m2m_transfer/input/formulas.hpp"
+#include "apps/m2m_transfer/input/lists.hpp"
+#include "m2m/read_mesh.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace m2m_transfer {
+namespace {
+
+/// Refuses voxels so small that a cell index of a mesh exceeds 32 bits.
+void check_voxel(double voxel, const Problem& problem) {
+  double farthest = 0;
+  for (const RunMesh& mesh : problem.meshes)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      farthest = std::max(
+          {farthest, std::abs(mesh.census.bounds.lo[axis]), std::abs(mesh.census.bounds.hi[axis])});
+  const double least = farthest * 0x1p-30;
+  if (voxel < least)
+    fail(ErrorCode::bad_argument, "--voxel ", voxel, " is too small for coordinates up to ",
+         farthest, "; it must be at least ", least);
+}
+
+void read_motions(const Request& request, const std::vector<std::string>& names, Problem& problem) {
+  if (!request.moves.empty() && request.repeat > 1)
+    fail(ErrorCode::bad_argument,
+         "--repeat repeats one search, and --move changes it; give --steps with --move");
+  for (const std::string& text : request.moves) {
+    StepMotion one = parse_motion(text, names, problem.pairs.front().target);
+    RunMesh& mesh = problem.meshes[one.mesh];
+    const auto& [low, high] = mesh.census.bounds;
+    if (one.about_middle)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        one.motion.centre[axis] = low[axis] + 0.5 * (high[axis] - low[axis]);
+    mesh.motions.push_back(one);
+  }
+}
+
+/// Also meshes that need no values are sampled, so that a formula that is not finite there is found
+/// before the run.
+void sample_fields(Problem& problem, std::size_t m) {
+  RunMesh& mesh = problem.meshes[m];
+  for (std::size_t f = 0; f < problem.formulas.size(); ++f) {
+    Field field = sample(mesh.mesh, problem.field_names[f], problem.formulas[f]);
+    if (!needs_values(m, problem.pairs)) std::ranges::fill(field.values, 0.0);
+    mesh.fields.push_back(std::move(field));
+  }
+}
+
+TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request,
+                         const Machine& machine) {
+  TransferReport report;
+  const RunMesh& source = problem.source_of(pair);
+  const RunMesh& target = problem.target_of(pair);
+  report.source = source.name;
+  report.target = target.name;
+  report.source_skipped = skipped_text(source.mesh);
+  report.target_skipped = skipped_text(target.mesh);
+  report.source_split = split_text(source.mesh);
+  report.target_split = split_text(target.mesh);
+  report.policy = request.policy;
+  report.kind = request.kind;
+  report.machine = machine.describe();
+  report.pes = machine.n_pes();
+  report.processes = machine.n_processes();
+  report.chares = request.n_chares != 0 ? request.n_chares : request.per_pe * machine.n_pes();
+  report.voxel = problem.voxel[0];
+  report.source_tets = source.mesh.n_tets();
+  report.source_edge = typical_edge(source.mesh);
+  report.longest_edge = longest_edge(source.mesh);
+  report.targets = target.mesh.n_points();
+  return report;
+}
+
+}  // namespace
+
+Problem load(const Request& request, const Machine& machine) {
+  Problem problem;
+  problem.policy = parse_policy(request.policy);
+  problem.partition = parse_partition_method(request.partition);
+  problem.kind = parse_transfer_kind(request.kind);
+  problem.repeat = request.repeat;
+  problem.steps = request.steps;
+  std::vector<std::string> names{request.source, request.target};
+  names.insert(names.end(), request.more.begin(), request.more.end());
+  problem.pairs = parse_pairs(request.pairs, names);
+  if (names.size() > 2 && request.pairs.empty())
+    fail(ErrorCode::bad_argument, names.size(),
+         " meshes are given, but no --pairs; give for example --pairs A:B,B:C");
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    RunMesh mesh{names[m], read_mesh(names[m]), {}, {}, {}};
+    mesh.census = validate(mesh.mesh);
+    problem.meshes.push_back(std::move(mesh));
+  }
+  const Aabb& domain = problem.source_of(problem.pairs.front()).census.bounds;
+  for (const std::string& option : request.fields)
+    for (const std::string& name : split_at_commas(option)) {
+      problem.field_names.push_back(name);
+      problem.formulas.push_back(make_formula(name, domain));
+    }
+  for (std::size_t m = 0; m < names.size(); ++m) sample_fields(problem, m);
+  read_motions(request, names, problem);
+  if (request.voxel > 0) check_voxel(request.voxel, problem);
+  problem.voxel = {request.voxel, request.voxel, request.voxel};
+  for (const Pair& pair : problem.pairs)
+    problem.reports.push_back(report_of(problem, pair, request, machine));
+  return problem;
+}
+
+std::int32_t halo_for(TransferKind kind, std::size_t mesh, const std::vector<Pair>& pairs) {
+  std::int32_t layers = 0;
+  for (const Pair& pair : pairs) {
+    if (pair.source == mesh) layers = std::max(layers, source_halo_layers(kind));
+    if (pair.target == mesh) layers = std::max(layers, target_halo_layers(kind));
+  }
+  return layers;
+}
+
+}  // namespace m2m_transfer

@@ -1,0 +1,75 @@
+// The input of a run, read and checked: meshes, the pairs that transfer, manufactured fields, the
+// policy, the number of chares and the voxel size. Only PE 0 reads files and holds a Problem.
+#pragma once
+
+#include "apps/m2m_transfer/input/graph.hpp"
+#include "apps/m2m_transfer/input/motion.hpp"
+#include "apps/m2m_transfer/report.hpp"
+#include "m2m/field.hpp"
+#include "m2m/mesh.hpp"
+#include "m2m/partition_method.hpp"
+#include "m2m/policy.hpp"
+#include "m2m/transfer_kind.hpp"
+#include "runtime/machine/machine.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace m2m_transfer {
+
+/// The options of a run, as on the command line.
+struct Request {
+  std::string source{}, target{};
+  std::vector<std::string> more{};  ///< further meshes
+  std::string pairs{};              ///< "A:B,B:C"; empty: source to target
+  std::vector<std::string> fields{"gaussian"};
+  std::string policy = "keep";
+  std::string partition = "rcb";
+  std::string kind = "linear";
+  std::int32_t n_chares = 0;  ///< per mesh; 0: per_pe times the number of PEs
+  std::int32_t per_pe = 8;
+  double voxel = 0;         ///< edge; 0: chosen by the collider
+  std::int32_t repeat = 1;  ///< number of transfers; the fastest counts
+  std::int32_t steps = 1;   ///< applications of each; the fastest counts
+  std::vector<std::string> moves{};
+};
+
+/// A mesh of a run. `fields`: before the run what the mesh starts with, after it the results, with
+/// an additional field "status" if a pair writes the mesh.
+struct RunMesh {
+  std::string name{};
+  TetMesh mesh{};
+  MeshCensus census{};
+  std::vector<Field> fields{};
+  std::vector<StepMotion> motions{};
+};
+
+struct Problem {
+  std::vector<RunMesh> meshes{};
+  std::vector<Pair> pairs{};
+  std::vector<std::string> field_names{};
+  std::vector<Formula> formulas{};  ///< per field
+  OutsidePolicy policy{};
+  PartitionMethod partition{};
+  TransferKind kind{};
+  Point voxel{};
+  std::int32_t repeat = 1, steps = 1;
+  std::vector<TransferReport>
+      reports{};  ///< per pair; load() fills in what is known before the run
+
+  [[nodiscard]] RunMesh& source_of(const Pair& pair) { return meshes[pair.source]; }
+  [[nodiscard]] RunMesh& target_of(const Pair& pair) { return meshes[pair.target]; }
+  [[nodiscard]] const RunMesh& source_of(const Pair& pair) const { return meshes[pair.source]; }
+  [[nodiscard]] const RunMesh& target_of(const Pair& pair) const { return meshes[pair.target]; }
+  [[nodiscard]] std::int32_t chares() const { return reports.front().chares; }
+};
+
+/// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
+[[nodiscard]] Problem load(const Request& request, const Machine& machine);
+
+/// The layers of tetrahedra that a mesh needs around its parts, as source and as target of pairs.
+[[nodiscard]] std::int32_t halo_for(TransferKind kind, std::size_t mesh,
+                                    const std::vector<Pair>& pairs);
+
+}  // namespace m2m_transfer

@@ -1,0 +1,35 @@
+#include "apps/m2m_transfer/run/meshes.hpp"
+
+namespace m2m_transfer {
+
+Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
+           std::vector<DistributedMesh>& meshes) {
+  co_await epoch([&] {
+    for (std::size_t m = 0; m < problem.meshes.size(); ++m)
+      meshes.push_back(scatter(problem.meshes[m].mesh, problem.meshes[m].fields, n_parts,
+                               problem.partition, halo_for(kind, m, problem.pairs)));
+  });
+}
+
+Task gather(const DistributedMesh& mesh, std::size_t n_vertices, Gathered& out) {
+  Future<Outcome> outcome;
+  mesh.workers.broadcast<&Worker::gather>(outcome.callback());
+  const Outcome all = co_await outcome;
+  const std::size_t n_fields = mesh.n_components;
+  out.status.assign(n_vertices, Status::outside);
+  out.values.assign(n_fields, std::vector<double>(n_vertices));
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const auto vertex = static_cast<std::size_t>(all.points[i]);
+    out.status[vertex] = all.status[i];
+    for (std::size_t f = 0; f < n_fields; ++f) out.values[f][vertex] = all.values[i * n_fields + f];
+  }
+}
+
+Task destroy(std::vector<DistributedMesh>& meshes) {
+  co_await epoch([&] {
+    for (const DistributedMesh& mesh : meshes) mesh.destroy();
+  });
+  meshes.clear();
+}
+
+}  // namespace m2m_transfer

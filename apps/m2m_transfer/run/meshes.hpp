@@ -1,0 +1,32 @@
+// The meshes of a run in the machine: handles to place, move and gather them.
+#pragma once
+
+#include "apps/m2m_transfer/input/problem.hpp"
+#include "apps/progress.hpp"
+#include "m2m/transfer.hpp"
+#include "runtime/runtime.hpp"
+
+#include <vector>
+
+namespace m2m_transfer {
+
+/// The vertices of a mesh in global order.
+struct Gathered {
+  std::vector<Status> status;
+  std::vector<std::vector<double>> values;  ///< per field
+};
+
+/// Distributes the meshes; each gets the halo that the kind needs.
+Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
+           std::vector<DistributedMesh>& meshes);
+
+/// Gathers a mesh of so many vertices on this PE. All fields have one component.
+Task gather(const DistributedMesh& mesh, std::size_t n_vertices, Gathered& out);
+
+Task destroy(std::vector<DistributedMesh>& meshes);
+
+[[nodiscard]] inline double seconds_since(Time start) {
+  return seconds(now() - start);
+}
+
+}  // namespace m2m_transfer

@@ -1,0 +1,139 @@
+#include "apps/m2m_transfer/run/steps.hpp"
+
+#include <algorithm>
+
+namespace m2m_transfer {
+namespace {
+
+Task search_one(Transfer& transfer, SearchSummary& summary) {
+  co_await transfer.search(&summary);
+}
+
+void keep_least(double& least, double value) {
+  least = least == 0 ? value : std::min(least, value);
+}
+
+}  // namespace
+
+GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps::Progress& progress)
+    : problem_(problem), meshes_(meshes), progress_(progress) {
+  TransferOptions options;
+  options.voxel_size = problem.voxel;
+  options.policy = problem.policy;
+  options.kind = problem.kind;
+  options.on_phase = [&progress](const char* name) { progress.phase(name); };
+  for (const Pair& pair : problem.pairs)
+    transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);
+  found_.resize(problem.pairs.size());
+  seconds_.resize(problem.pairs.size());
+  early_.resize(problem.pairs.size());
+  motions_.resize(meshes.size());
+  for (std::size_t m = 0; m < meshes.size(); ++m) origin_.push_back(m);
+}
+
+Task GraphRun::search() {
+  std::vector<Task> tasks;
+  tasks.reserve(transfers_.size());
+  for (std::size_t p = 0; p < transfers_.size(); ++p)
+    tasks.push_back(search_one(transfers_[p], found_[p]));
+  for (Task& task : tasks) co_await task;
+  for (std::size_t p = 0; p < transfers_.size(); ++p) {
+    seconds_[p].broad = found_[p].broad;
+    seconds_[p].narrow = found_[p].narrow;
+  }
+  ++searches_;
+}
+
+Task GraphRun::steps() {
+  for (std::int32_t step = 0; step < problem_.steps; ++step) {
+    if (problem_.steps > 1)
+      progress_.part(static_cast<std::uint32_t>(step + 1),
+                     static_cast<std::uint32_t>(problem_.steps));
+    if (step != 0) co_await move_meshes();
+    progress_.phase("apply");
+    co_await apply_levels(step + 1 == problem_.steps);
+  }
+}
+
+Task GraphRun::move_meshes() {
+  bool moved = false;
+  for (std::size_t m = 0; m < meshes_.size(); ++m)
+    for (StepMotion& step : problem_.meshes[m].motions) {
+      const RigidMotion motion = step.motion;
+      move_points(problem_.meshes[m].mesh.points, motion);
+      // One after the other: broadcasts of one epoch may overtake each other.
+      co_await epoch([&] { meshes_[m].workers.broadcast<&Worker::move>(motion); });
+      motions_[m].push_back(motion);
+      for (StepMotion& other : problem_.meshes[m].motions)  // the middle moves with the mesh
+        if (other.about_middle) move_points({&other.motion.centre, 1}, motion);
+      moved = true;
+    }
+  if (moved) co_await search_again();
+}
+
+Task GraphRun::search_again() {
+  std::vector<Task> tasks;
+  std::vector<std::size_t> pairs;
+  tasks.reserve(transfers_.size());
+  for (std::size_t p = 0; p < transfers_.size(); ++p) {
+    const Pair& pair = problem_.pairs[p];
+    if (problem_.source_of(pair).motions.empty() && problem_.target_of(pair).motions.empty())
+      continue;
+    tasks.push_back(search_one(transfers_[p], found_[p]));
+    pairs.push_back(p);
+  }
+  for (Task& task : tasks) co_await task;
+  for (const std::size_t p : pairs)
+    keep_least(seconds_[p].again, found_[p].broad + found_[p].narrow);
+  ++searches_;
+}
+
+Task GraphRun::apply_levels(bool last) {
+  std::size_t n_levels = 0;
+  for (const Pair& pair : problem_.pairs) n_levels = std::max(n_levels, pair.level + 1);
+  for (std::size_t level = 0; level < n_levels; ++level) {
+    std::vector<Task> tasks;
+    tasks.reserve(transfers_.size());
+    for (std::size_t p = 0; p < transfers_.size(); ++p)
+      if (problem_.pairs[p].level == level) tasks.push_back(apply(p));
+    for (Task& task : tasks) co_await task;
+    for (std::size_t p = 0; p < transfers_.size(); ++p) {
+      const Pair& pair = problem_.pairs[p];
+      if (pair.level != level) continue;
+      origin_[pair.target] = origin_[pair.source];
+      if (last && is_overwritten(p))
+        co_await gather(meshes_[pair.target], problem_.target_of(pair).mesh.n_points(), early_[p]);
+    }
+  }
+}
+
+Task GraphRun::apply(std::size_t pair) {
+  const Time begin = now();
+  co_await transfers_[pair].apply();
+  keep_least(seconds_[pair].apply, seconds_since(begin));
+}
+
+bool GraphRun::is_overwritten(std::size_t pair) const {
+  for (std::size_t later = pair + 1; later < problem_.pairs.size(); ++later)
+    if (problem_.pairs[later].target == problem_.pairs[pair].target) return true;
+  return false;
+}
+
+Task GraphRun::finish(const AtEnd& at_end) {
+  for (std::size_t p = 0; p < transfers_.size(); ++p) {
+    const Pair& pair = problem_.pairs[p];
+    Gathered& result = early_[p];
+    if (result.status.empty())
+      co_await gather(meshes_[pair.target], problem_.target_of(pair).mesh.n_points(), result);
+    at_end(p, result);
+    result = {};
+  }
+}
+
+Task GraphRun::destroy() {
+  co_await epoch([&] {
+    for (Transfer& transfer : transfers_) transfer.destroy();
+  });
+}
+
+}  // namespace m2m_transfer

@@ -1,0 +1,52 @@
+// Runs the cases of the stability report on several machines, and judges them.
+#pragma once
+
+#include "apps/m2m_transfer/stability/cases.hpp"
+#include "apps/progress.hpp"
+#include "m2m/status.hpp"
+#include "runtime/runtime.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace m2m_transfer::stability {
+
+struct Row {
+  std::string name, parameter;
+  double value = 0;
+  std::size_t n_points = 0;
+  std::size_t lost = 0;  ///< outside, or at a wrong donor, though the source holds the point
+  std::size_t snapped = 0, outside = 0;
+  double error = 0;  ///< largest |value - truth| over the points found
+  std::size_t n_runs = 0;
+  bool same_bits = true;  ///< values and statuses in all runs
+  std::string note{};     ///< why the mesh was refused
+  bool ok = true;
+};
+
+/// The result of one case in one run.
+struct Answer {
+  std::vector<Status> status;
+  std::vector<double> values;
+};
+
+/// Runs a case with so many parts per mesh.
+Task answer_of(const Case& c, std::int32_t n_parts, Answer& answer);
+
+/// The reason why a mesh of the case is refused; empty if it is valid.
+[[nodiscard]] std::string refusal(const Case& c);
+
+/// Judges the first answer, and compares the others with it. `before`: the answer of the case before,
+/// for cases with an order; may be null.
+[[nodiscard]] Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before);
+
+/// All cases on `setup` with 1, 6 and 16 parts, and if it has one process, on simulated machines of
+/// 6 and 16 PEs. Rows stay empty on processes other than the first.
+[[nodiscard]] std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases,
+                                         apps::Progress& progress);
+
+[[nodiscard]] std::string table(const std::vector<Row>& rows);
+[[nodiscard]] std::string json(const std::vector<Row>& rows);
+
+}  // namespace m2m_transfer::stability

@@ -1,0 +1,65 @@
+#include "apps/m2m_transfer/stability/rows.hpp"
+
+#include "m2m/kuhn.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace tess;
+using namespace m2m_transfer;
+using namespace m2m_transfer::stability;
+
+namespace {
+
+std::vector<Row> rows_of(const std::vector<Case>& cases) {
+  Setup setup{make_threads_machine(2), {}};
+  apps::Progress progress(nullptr);
+  return run_cases(setup, cases, progress);
+}
+
+}  // namespace
+
+TEST_CASE("no extreme mesh loses a point, and all machines give the same bits",
+          "[apps][stability]") {
+  for (const Row& row : rows_of(generated_cases(2000))) {
+    INFO(table({row}));
+    CHECK(row.ok);
+    CHECK(row.n_runs == (row.note.empty() ? 7 : 0));
+  }
+}
+
+TEST_CASE("the stability report of a user's mesh has rows for it", "[apps][stability]") {
+  const TetMesh mesh = kuhn_mesh({4, 0.2});
+  const std::vector<Row> rows = rows_of(cases_of(mesh, 400));
+  CHECK(rows.size() == 11);
+  for (const Row& row : rows) {
+    INFO(table({row}));
+    CHECK(row.ok);
+    CHECK(row.note.empty());
+    CHECK(row.name.starts_with("kuhn:4@0.2 "));
+  }
+}
+
+TEST_CASE("a row fails if a point is lost, an error is large, or bits differ",
+          "[apps][stability]") {
+  Case c = cases_of(kuhn_mesh({2}), 40).front();
+  const std::vector<Status> inside(c.target.n_points(), Status::boundary);
+  const std::vector<Answer> right(2, Answer{inside, c.values});
+  CHECK(judge(c, right, nullptr).ok);
+  std::vector<Answer> lost = right;
+  for (Answer& answer : lost) answer.status[3] = Status::outside;
+  CHECK(judge(c, lost, nullptr).lost == 1);
+  CHECK_FALSE(judge(c, lost, nullptr).ok);
+  std::vector<Answer> wrong = right;
+  for (Answer& answer : wrong) answer.values[3] += 1e-15;
+  CHECK_FALSE(judge(c, wrong, nullptr).ok);
+  std::vector<Answer> other = right;
+  other[1].status[0] = Status::inside;
+  CHECK_FALSE(judge(c, other, nullptr).same_bits);
+  c.truth.clear();  // the values name donors
+  CHECK(judge(c, right, nullptr).lost > 0);
+  // A mesh that is refused fails, unless that is expected.
+  c.source.points[0][0] = 1e200;
+  CHECK_FALSE(judge(c, {}, nullptr).ok);
+  c.may_be_refused = true;
+  CHECK(judge(c, {}, nullptr).ok);
+}

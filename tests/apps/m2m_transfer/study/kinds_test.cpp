@@ -1,0 +1,140 @@
+// Studies of kinds and of steps.
+#include "apps/m2m_transfer/driver.hpp"
+#include "apps/m2m_transfer/input/formulas.hpp"
+#include "apps/m2m_transfer/study/checks.hpp"
+#include "m2m/kuhn.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+using namespace tess;
+using namespace m2m_transfer;
+using tess::test::Scratch;
+using tess::test::slurp;
+
+namespace {
+
+/// The largest second derivative along many directions at many points, by differences.
+double by_differences(const std::string& name, const Aabb& domain) {
+  const Formula f = make_formula(name, domain);
+  constexpr double step = 1e-3;
+  constexpr int n = 12;
+  double most = 0;
+  for (int i = 0; i < n * n * n; ++i) {
+    Point p{};
+    const std::array<int, 3> at{i % n, i / n % n, i / n / n};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[axis] = domain.lo[axis] + (domain.hi[axis] - domain.lo[axis]) * at[axis] / (n - 1.0);
+    for (int d = 1; d < 27; ++d) {
+      const Point v{d % 3 - 1.0, d / 3 % 3 - 1.0, d / 9 - 1.0};
+      const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      if (length == 0) continue;
+      const double s = step / length;
+      const double second = f({p[0] + s * v[0], p[1] + s * v[1], p[2] + s * v[2]}) - 2 * f(p) +
+                            f({p[0] - s * v[0], p[1] - s * v[1], p[2] - s * v[2]});
+      most = std::max(most, std::abs(second) / (step * step));
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("the largest second derivatives of the fields are those by differences",
+          "[apps][study]") {
+  const Aabb domain{{-1, 0, 2}, {0.5, 1, 3.5}};
+  for (const char* name : {"sin", "gaussian"}) {
+    const double known = largest_second_derivative(name, domain).value();
+    const double found = by_differences(name, domain);
+    INFO(name << ": " << known << ", by differences " << found);
+    CHECK(found <= known * (1 + 1e-4));
+    CHECK(found >= known * 0.9);
+  }
+  CHECK(largest_second_derivative("linear", domain) == 0.0);
+  CHECK_FALSE(largest_second_derivative("x*y", domain));
+}
+
+TEST_CASE("the row sums of the mass matrix integrate linear fields exactly", "[apps][study]") {
+  const TetMesh mesh = kuhn_mesh({5, 0.2});
+  const Field field = sample(mesh, "linear", make_formula("linear", bounds(mesh)));
+  CHECK(integral(row_sums(mesh), field.values) == Approx(1 + 1 - 1.5 + 2.5).epsilon(1e-13));
+  CHECK(longest_edge(kuhn_mesh({4})) == Approx(std::sqrt(3) / 4));
+}
+
+TEST_CASE("a study of kinds has the order of each, and the linear bound holds", "[apps][study]") {
+  const Scratch scratch;
+  Setup setup{make_threads_machine(2), {}};
+  DriverOptions options;
+  options.request.source = "kuhn:12,24@0.1";
+  options.request.fields = {"sin,linear"};
+  options.request.n_chares = 2;
+  options.study = "kind";
+  options.plot = scratch.path("study");
+  options.repeat = 1;
+  REQUIRE(drive(setup, options) == 0);
+  const auto report = nlohmann::json::parse(slurp(options.plot + "/study.json"));
+  CHECK(report["pairs"].size() == 2 * all_transfer_kinds.size());
+  for (const auto& trend : report["trends"]) {
+    INFO(trend.dump());
+    if (trend["exact"].get<bool>() || trend["field"] != "sin") continue;
+    const double order = trend["l2_of_edge"].get<double>();
+    if (trend["kind"] == "linear") CHECK(order == Approx(2.0).margin(0.1));
+    if (trend["kind"] == "second-order") CHECK(order > 2.8);
+  }
+  int n_bounds = 0, n_orders = 0;
+  for (const auto& check : report["checks"]) {
+    CHECK(check["ok"].get<bool>());
+    const auto what = check["what"].get<std::string>();
+    n_bounds += what.find("max|D2f|") != std::string::npos ? 1 : 0;
+    n_orders += what.find("order") != std::string::npos ? 1 : 0;
+  }
+  CHECK(n_bounds == 4);
+  CHECK(n_orders == static_cast<int>(all_transfer_kinds.size()));
+}
+
+TEST_CASE("a study whose error exceeds the bound, or whose order is too low, fails",
+          "[apps][study]") {
+  TransferReport coarse;
+  coarse.source = "a";
+  coarse.kind = "linear";
+  coarse.source_edge = 0.2;
+  FieldError error;
+  error.name = "sin";
+  error.norms.l2 = error.norms.l2_relative = 0.1;
+  error.found.linf = 0.3;
+  error.found.n_vertices = 10;
+  error.bound = 0.31;
+  coarse.fields = {error};
+  TransferReport fine = coarse;
+  fine.source_edge = 0.1;
+  fine.fields[0].norms.l2 = 0.025;
+  Study study{{coarse, fine}, 1};
+  CHECK(checks(study).size() == 3);
+  CHECK(all_ok(checks(study)));
+  study.reports[1].fields[0].norms.l2 = 0.05;
+  CHECK_FALSE(all_ok(checks(study)));
+  CHECK_THAT(table(checks(study)), Catch::Contains("FAILED"));
+  study.reports[1].fields[0].norms.l2 = 0.025;
+  study.reports[0].fields[0].bound = 0.29;
+  CHECK_FALSE(all_ok(checks(study)));
+}
+
+TEST_CASE("a study of steps has the same bits with donors that are kept", "[apps][study]") {
+  const Scratch scratch;
+  Setup setup{make_threads_machine(2), {}};
+  DriverOptions options;
+  options.request.source = "kuhn:5";
+  options.request.target = "kuhn:6@0.2";
+  options.study = "steps";
+  options.plot = scratch.path("study");
+  options.repeat = 1;
+  REQUIRE(drive(setup, options) == 0);
+  const auto rows = nlohmann::json::parse(slurp(options.plot + "/steps.json"))["rows"];
+  REQUIRE(rows.size() == 14);  // there and back
+  for (const auto& row : rows) CHECK(row["same_bits"].get<bool>());
+  CHECK(rows[6]["seconds_per_step_kept"].get<double>() <
+        rows[6]["seconds_per_step_again"].get<double>());
+}
