@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/measure.hpp"
 
+#include "m2m/placement.hpp"
 #include "m2m/transfer.hpp"
 
 #include <algorithm>
@@ -54,12 +55,28 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   progress.phase("partition");
   const Time start = now();
   DistributedMesh source, target;
-  co_await epoch([&] {
-    source = scatter(problem.source, problem.source_fields, report.chares, problem.partition,
-                     source_halo_layers(problem.kind));
-    target = scatter(problem.target, problem.target_fields, report.chares, problem.partition,
-                     target_halo_layers(problem.kind));
-  });
+  if (problem.partition == PartitionMethod::curve) {
+    // All PEs read and cut together, and sample the fields where the points are.
+    PlaceOptions there{report.chares, source_halo_layers(problem.kind), {}};
+    PlaceOptions here{report.chares, target_halo_layers(problem.kind), {}};
+    for (const Field& field : problem.source_fields)
+      there.fields.push_back({field.name, problem.source_census.bounds});
+    here.fields.assign(problem.target_fields.size(), {"0", {}});
+    PlacedMesh placed_source, placed_target;
+    Task first = place(report.source, there, &placed_source);
+    Task second = place(report.target, here, &placed_target);
+    co_await first;
+    co_await second;
+    source = placed_source.mesh;
+    target = placed_target.mesh;
+  } else {
+    co_await epoch([&] {
+      source = scatter(problem.source, problem.source_fields, report.chares, problem.partition,
+                       source_halo_layers(problem.kind));
+      target = scatter(problem.target, problem.target_fields, report.chares, problem.partition,
+                       target_halo_layers(problem.kind));
+    });
+  }
   report.seconds.setup = seconds_since(start);
   TransferOptions options;
   options.voxel_size = problem.voxel;

@@ -5,7 +5,7 @@
 namespace tess::m2m {
 namespace {
 
-constexpr int first_levels = 4;
+constexpr int table_levels = 4;
 constexpr int further_levels = 2;
 
 /// The first position of a cell of `level`, at the last level.
@@ -25,7 +25,9 @@ CurveCut::CurveCut(std::uint64_t n_tets, std::int32_t n_parts)
 }
 
 int CurveCut::next_level() const {
-  return level_ == 0 ? first_levels : std::min(level_ + further_levels, hilbert_levels);
+  // So fine that one round is enough for a mesh of even density, if its parts are not too many.
+  if (level_ == 0) return n_parts_ <= 128 ? 4 : 5;
+  return std::min(level_ + further_levels, hilbert_levels);
 }
 
 /// How many tetrahedra should be before a cut.
@@ -95,23 +97,19 @@ std::vector<std::int32_t> CurveCut::parts(std::span<const std::uint64_t> cells) 
   const auto part_of = [this](std::uint64_t position) {
     return std::upper_bound(cuts_.begin(), cuts_.end(), position) - cuts_.begin();
   };
-  // Most cells of the first levels lie in one part.
-  std::vector<std::int32_t> part_of_cell;
-  const unsigned table_bits = 3U * first_levels;
-  if (n_parts_ > 1 && cells.size() > std::size_t{1} << table_bits) {
-    for (std::uint64_t cell = 0; cell < std::uint64_t{1} << table_bits; ++cell) {
-      const auto low = part_of(begin_of(cell, first_levels));
-      const auto high = part_of(begin_of(cell + 1, first_levels) - 1);
-      part_of_cell.push_back(low == high ? static_cast<std::int32_t>(low) : -1);
-    }
-  }
   std::vector<std::int32_t> parts(cells.size());
   if (n_parts_ == 1) return parts;
+  // Most cells of the first levels lie in one part: a table for these, -1 for the others.
+  std::vector<std::int32_t> part_of_cell(std::size_t{1} << 3 * table_levels);
+  auto cut = cuts_.begin();
+  for (std::uint64_t cell = 0; cell < part_of_cell.size(); ++cell) {
+    while (cut != cuts_.end() && *cut <= begin_of(cell, table_levels)) ++cut;
+    const bool whole = cut == cuts_.end() || *cut >= begin_of(cell + 1, table_levels);
+    part_of_cell[cell] = whole ? static_cast<std::int32_t>(cut - cuts_.begin()) : -1;
+  }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!part_of_cell.empty()) {
-      parts[i] = part_of_cell[hilbert_position(cells[i], first_levels)];
-      if (parts[i] >= 0) continue;
-    }
+    parts[i] = part_of_cell[hilbert_position(cells[i], table_levels)];
+    if (parts[i] >= 0) continue;
     parts[i] = static_cast<std::int32_t>(
         part_of(begin_of(hilbert_position(cells[i], cut_level_), cut_level_)));
   }

@@ -2,7 +2,7 @@
 // PEs can cut a mesh together, and the result does not depend on their number: the counts of all PEs
 // are added, and integers have no rounding.
 //
-//     round 0   counts of the 4096 cells of level 4
+//     round 0   counts of all cells of level 4, or 5 with many parts
 //     round 1   counts of the 64 cells in each cell where a cut should be and that holds too many
 //     …         until the cut can stand at the border of a cell
 //
