@@ -1,5 +1,6 @@
 #include "m2m/io/mesh_ranges.hpp"
 
+#include "m2m/io/exodus_ranges.hpp"
 #include "m2m/io/file_bytes.hpp"
 #include "m2m/io/gmsh_ranges.hpp"
 #include "m2m/kuhn.hpp"
@@ -26,7 +27,9 @@ class KuhnRanges final : public MeshRanges {
 std::unique_ptr<MeshRanges> open_ranges(const std::string& name, RangeCheck check) {
   if (name.starts_with("kuhn:")) return std::make_unique<KuhnRanges>(parse_kuhn(name));
   try {
-    if (FileBytes(name).view().starts_with("$")) return open_gmsh_ranges(name, check);
+    const FileBytes file(name);
+    if (file.view().starts_with("$")) return open_gmsh_ranges(name, check);
+    if (file.view().starts_with("CDF")) return open_exodus_ranges(name, file.view());
   } catch (const Error&) {
     return nullptr;  // read_mesh() gives the reason
   }

@@ -29,7 +29,7 @@ class MeshRanges {
 enum class RangeCheck { header, all };
 
 /// `name` as for read_mesh(). Null if the file cannot be read in ranges: then read_mesh() decides
-/// about it. These can be: kuhn:N; ExodusII files whose solids are TET4; binary gmsh files of
+/// about it. These can be: kuhn:N; ExodusII files (NetCDF-3) of TET4 only; binary gmsh files of
 /// version 4.1 whose solids are tet4 and whose node tags are consecutive.
 [[nodiscard]] std::unique_ptr<MeshRanges> open_ranges(const std::string& name,
                                                       RangeCheck check = RangeCheck::header);

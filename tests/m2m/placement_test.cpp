@@ -2,16 +2,19 @@
 // same bytes.
 #include "m2m/placement.hpp"
 
+#include "m2m/io/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/partition/curve_cut.hpp"
 #include "m2m/partition/id_set.hpp"
 #include "m2m/partition/partition.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/write_exodus.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
+#include "tests/support/shared_data.hpp"
 
 #include <algorithm>
 #include <array>
@@ -252,4 +255,76 @@ TEST_CASE("ranges of kuhn meshes are those of the whole mesh", "[m2m][placement]
     kuhn_tets(box, first, tets);
     CHECK(std::equal(tets.begin(), tets.end(), whole.tets.begin() + first));
   }
+}
+
+namespace {
+
+/// A binary file of version 4.1: a surface, then tetrahedra in two blocks, nodes in three.
+std::string gmsh_bytes(const TetMesh& mesh, std::uint64_t first_tag, bool swaps_tags) {
+  std::string out = "$MeshFormat\n4.1 1 8\n";
+  const auto put = [&](const auto&... values) {
+    (out.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  };
+  put(1);
+  out += "\n$EndMeshFormat\n$Nodes\n";
+  const std::uint64_t n = mesh.n_points();
+  put(std::uint64_t{3}, n, first_tag, first_tag + n - 1);
+  for (std::uint64_t block = 0; block < 3; ++block) {
+    const std::uint64_t begin = n * block / 3, end = n * (block + 1) / 3;
+    put(3, 1, 0, end - begin);
+    for (std::uint64_t i = begin; i < end; ++i)
+      put(first_tag + (swaps_tags && i + 2 >= n ? 2 * n - 3 - i : i));
+    for (std::uint64_t i = begin; i < end; ++i)
+      put(mesh.points[i][0], mesh.points[i][1], mesh.points[i][2]);
+  }
+  out += "\n$EndNodes\n$Elements\n";
+  const std::uint64_t n_tets = mesh.n_tets();
+  put(std::uint64_t{3}, n_tets + 1, std::uint64_t{1}, n_tets + 1);
+  put(2, 1, 2, std::uint64_t{1}, std::uint64_t{1}, first_tag, first_tag + 1, first_tag + 2);
+  for (std::uint64_t block = 0; block < 2; ++block) {
+    const std::uint64_t begin = n_tets * block / 2, end = n_tets * (block + 1) / 2;
+    put(3, 1, 4, end - begin);
+    for (std::uint64_t t = begin; t < end; ++t) {
+      put(t + 2);
+      for (const VertexId v : mesh.tets[t]) put(first_tag + static_cast<std::uint64_t>(v));
+    }
+  }
+  return out + "\n$EndElements\n";
+}
+
+void check_ranges_of_file(const std::string& path, std::uint64_t n_seeds) {
+  INFO(path);
+  const TetMesh mesh = read_mesh(path);
+  const auto ranges = open_ranges(path, RangeCheck::all);
+  REQUIRE(ranges != nullptr);
+  CHECK(ranges->skipped == skipped_text(mesh));
+  check_seeds({mesh, 1, 0, true}, n_seeds);
+  check_on(make_threads_machine(3), {}, {mesh, 7, 1, true});
+}
+
+}  // namespace
+
+TEST_CASE("all PEs read their ranges of a binary gmsh file and of an ExodusII file",
+          "[m2m][placement]") {
+  const test::Scratch scratch;
+  const TetMesh mesh = odd_mesh();
+  for (const std::uint64_t first_tag : {1U, 100U}) {
+    check_ranges_of_file(scratch.write("a.msh", gmsh_bytes(mesh, first_tag, false)), 6);
+  }
+  write_exodus(scratch.path("a.exo"), mesh, {});
+  check_ranges_of_file(scratch.path("a.exo"), 6);
+}
+
+TEST_CASE("a file that cannot be read in ranges is read by one PE, and sent", "[m2m][placement]") {
+  const test::Scratch scratch;
+  const std::string path = scratch.write("swapped.msh", gmsh_bytes(kuhn_mesh({3}), 1, true));
+  CHECK(open_ranges(path, RangeCheck::all) == nullptr);
+  check_seeds({read_mesh(path), 1, 0, true}, 6);
+}
+
+TEST_CASE("ranges of the real ExodusII and gmsh files are those of the whole meshes",
+          "[m2m][placement][.][shared_data]") {
+  check_ranges_of_file(test::shared_data("nalu/3d_tet4_taylor_green_0p4.exo"), 2);
+  check_ranges_of_file(test::shared_data("nalu/3d_tet4_pipe.exo"), 1);
+  check_ranges_of_file(test::shared_data("mfem/simple-cube-tet4.e"), 2);
 }
