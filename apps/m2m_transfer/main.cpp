@@ -30,7 +30,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "linear, second-order (recovered gradients) or limited (the same, bounded by the "
               "vertices around)");
   line.option("--partition", request.partition,
-              "method that cuts the meshes into chares: rcb or hsfc");
+              "method that cuts the meshes into chares: curve (by all PEs together), rcb or hsfc");
   line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")
       .positive();
   line.option(
