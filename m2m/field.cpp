@@ -39,16 +39,20 @@ Formula make_formula(const std::string& name, const Aabb& domain) {
   return [expression = Expression(name)](const Point& p) { return expression(p); };
 }
 
+std::string not_finite_text(const std::string& field, double value, GlobalId vertex,
+                            const std::string& mesh, const Point& at) {
+  return text("field ", field, " is ", value, " at vertex ", vertex, " of ", mesh, " (", at[0],
+              ", ", at[1], ", ", at[2], "); choose a formula that is finite on both meshes");
+}
+
 Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula) {
   Field field{name, 1, std::vector<double>(mesh.n_points())};
   for (std::size_t v = 0; v < mesh.n_points(); ++v) {
     field.values[v] = formula(mesh.points[v]);
-    if (!std::isfinite(field.values[v])) {
-      const Point& p = mesh.points[v];
-      fail(ErrorCode::bad_value, "field ", name, " is ", field.values[v], " at vertex ", v, " of ",
-           mesh.name, " (", p[0], ", ", p[1], ", ", p[2],
-           "); choose a formula that is finite on both meshes");
-    }
+    if (!std::isfinite(field.values[v]))
+      throw Error(ErrorCode::bad_value,
+                  not_finite_text(name, field.values[v], static_cast<GlobalId>(v), mesh.name,
+                                  mesh.points[v]));
   }
   return field;
 }

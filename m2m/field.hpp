@@ -31,9 +31,19 @@ using Formula = std::function<double(const Point&)>;
 /// Throws Error (bad_argument) with the position of the mistake in the expression.
 [[nodiscard]] Formula make_formula(const std::string& name, const Aabb& domain);
 
+/// A field that each part evaluates at its own points.
+struct FormulaField {
+  std::string name;  ///< for make_formula()
+  Aabb domain{};
+};
+
 /// Evaluates the formula at every vertex. Throws Error (bad_value) with the vertex if a value is
 /// not finite.
 [[nodiscard]] Field sample(const TetMesh& mesh, const std::string& name, const Formula& formula);
+
+/// The error of sample().
+[[nodiscard]] std::string not_finite_text(const std::string& field, double value, GlobalId vertex,
+                                          const std::string& mesh, const Point& at);
 
 /// Norms of the error e = value - truth of a scalar field, over some or all vertices. The mass m of
 /// a vertex is a quarter of the volume of its tetrahedra.

@@ -3,6 +3,7 @@
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
+#include <array>
 #include <charconv>
 #include <cstdlib>
 #include <fmt/core.h>
@@ -45,6 +46,46 @@ KuhnBox parse_kuhn(std::string_view name) {
   return box;
 }
 
+GlobalId n_points(KuhnBox box) {
+  const GlobalId row = box.n + 1;
+  return row * row * row;
+}
+GlobalId n_tets(KuhnBox box) {
+  const GlobalId n = box.n;
+  return 6 * n * n * n;
+}
+
+void kuhn_points(KuhnBox box, GlobalId first, std::span<Point> points) {
+  const GlobalId row = box.n + 1;
+  std::array<GlobalId, 3> at{first % row, first / row % row, first / row / row};
+  for (Point& p : points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool inner = at[axis] > 0 && at[axis] < box.n && box.jitter > 0;
+      const double shift =
+          inner ? box.jitter * noise(static_cast<std::uint64_t>(first), axis) : 0.0;
+      p[axis] = (static_cast<double>(at[axis]) + shift) / box.n;
+    }
+    ++first;
+    for (std::size_t axis = 0; ++at[axis] == row && axis < 2; ++axis) at[axis] = 0;
+  }
+}
+
+void kuhn_tets(KuhnBox box, GlobalId first, std::span<Tet> tets) {
+  const VertexId row = box.n + 1;
+  const VertexId plane = row * row;
+  const VertexId corner[8] = {0, 1, row, row + 1, plane, plane + 1, plane + row, plane + row + 1};
+  GlobalId cube = first / 6;
+  auto c = static_cast<std::size_t>(first % 6);
+  for (std::size_t t = 0; t < tets.size(); ++cube, c = 0) {
+    const auto i = static_cast<VertexId>(cube % box.n);
+    const auto j = static_cast<VertexId>(cube / box.n % box.n);
+    const auto k = static_cast<VertexId>(cube / box.n / box.n);
+    const VertexId origin = i + j * row + k * plane;
+    for (; c < 6 && t < tets.size(); ++c, ++t)
+      for (std::size_t v = 0; v < 4; ++v) tets[t][v] = origin + corner[corners_of_tets[c][v]];
+  }
+}
+
 TetMesh kuhn_mesh(KuhnBox box) {
   if (box.n < 1 || box.n > largest_n || !(box.jitter >= 0 && box.jitter <= largest_jitter)) {
     fail(ErrorCode::bad_argument, "kuhn box of n = ", box.n, " and jitter ", box.jitter,
@@ -53,37 +94,10 @@ TetMesh kuhn_mesh(KuhnBox box) {
   TetMesh mesh;
   mesh.name =
       box.jitter > 0 ? fmt::format("kuhn:{}@{}", box.n, box.jitter) : fmt::format("kuhn:{}", box.n);
-  const std::int32_t n = box.n;
-  const std::int32_t row = n + 1;
-  const std::int32_t plane = row * row;
-  mesh.points.reserve(static_cast<std::size_t>(plane) * static_cast<std::size_t>(row));
-  const auto coordinate = [&](std::int32_t i, std::uint64_t axis) {
-    const bool inner = i > 0 && i < n && box.jitter > 0;
-    const double shift = inner ? box.jitter * noise(mesh.points.size(), axis) : 0.0;
-    return (i + shift) / n;
-  };
-  for (std::int32_t k = 0; k <= n; ++k) {
-    for (std::int32_t j = 0; j <= n; ++j) {
-      for (std::int32_t i = 0; i <= n; ++i) {
-        mesh.points.push_back({coordinate(i, 0), coordinate(j, 1), coordinate(k, 2)});
-      }
-    }
-  }
-  const std::int32_t corner[8] = {0,     1,         row,         row + 1,
-                                  plane, plane + 1, plane + row, plane + row + 1};
-  const auto side = static_cast<std::size_t>(n);
-  mesh.tets.reserve(6 * side * side * side);
-  for (std::int32_t k = 0; k < n; ++k) {
-    for (std::int32_t j = 0; j < n; ++j) {
-      for (std::int32_t i = 0; i < n; ++i) {
-        const VertexId first = i + j * row + k * plane;
-        for (const auto& c : corners_of_tets) {
-          mesh.tets.push_back({first + corner[c[0]], first + corner[c[1]], first + corner[c[2]],
-                               first + corner[c[3]]});
-        }
-      }
-    }
-  }
+  mesh.points.resize(static_cast<std::size_t>(n_points(box)));
+  mesh.tets.resize(static_cast<std::size_t>(n_tets(box)));
+  kuhn_points(box, 0, mesh.points);
+  kuhn_tets(box, 0, mesh.tets);
   return mesh;
 }
 

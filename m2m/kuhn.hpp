@@ -6,6 +6,7 @@
 #include "m2m/mesh.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace tess::m2m {
@@ -21,5 +22,11 @@ struct KuhnBox {
 /// (n+1)³ vertices, x fastest, and 6 n³ tetrahedra. The jitter is a hash of the vertex id, so it is
 /// the same on every machine.
 [[nodiscard]] TetMesh kuhn_mesh(KuhnBox box);
+
+/// The same mesh in ranges of ids, for PEs that hold a part of it.
+[[nodiscard]] GlobalId n_points(KuhnBox box);
+[[nodiscard]] GlobalId n_tets(KuhnBox box);
+void kuhn_points(KuhnBox box, GlobalId first, std::span<Point> points);
+void kuhn_tets(KuhnBox box, GlobalId first, std::span<Tet> tets);
 
 }  // namespace tess::m2m

@@ -9,11 +9,15 @@ Aabb bounds(const TetMesh& mesh) {
 }
 
 double signed_volume(const TetMesh& mesh, std::size_t tet) {
-  const auto point = [&](std::size_t corner) {
-    return mesh.points[static_cast<std::size_t>(mesh.tets[tet][corner])];
-  };
-  const Point o = point(0);
-  std::array<Point, 3> e{point(1), point(2), point(3)};
+  std::array<Point, 4> corners;
+  for (std::size_t k = 0; k < 4; ++k)
+    corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[tet][k])];
+  return signed_volume(corners);
+}
+
+double signed_volume(const std::array<Point, 4>& corners) {
+  const Point o = corners[0];
+  std::array<Point, 3> e{corners[1], corners[2], corners[3]};
   for (Point& edge : e) {
     for (std::size_t axis = 0; axis < 3; ++axis) edge[axis] -= o[axis];
   }

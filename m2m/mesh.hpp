@@ -113,5 +113,14 @@ MeshCensus validate(const TetMesh& mesh);
 /// The volume with its sign, from edges relative to the first vertex. (Absolute coordinates would
 /// cancel far from the origin.)
 [[nodiscard]] double signed_volume(const TetMesh& mesh, std::size_t tet);
+[[nodiscard]] double signed_volume(const std::array<Point, 4>& corners);
+
+/// The mean of the corners.
+[[nodiscard]] inline Point mean_of_corners(const std::array<Point, 4>& corners) {
+  Point mean{};
+  for (const Point& p : corners)
+    for (std::size_t axis = 0; axis < 3; ++axis) mean[axis] += 0.25 * p[axis];
+  return mean;
+}
 
 }  // namespace tess::m2m

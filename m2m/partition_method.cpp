@@ -5,9 +5,11 @@
 namespace tess::m2m {
 
 PartitionMethod parse_partition_method(const std::string& name) {
+  if (name == "curve") return PartitionMethod::curve;
   if (name == "rcb") return PartitionMethod::rcb;
   if (name == "hsfc") return PartitionMethod::hsfc;
-  fail(ErrorCode::bad_argument, "partition method '", name, "' is unknown; choose rcb or hsfc");
+  fail(ErrorCode::bad_argument, "partition method '", name,
+       "' is unknown; choose curve, rcb or hsfc");
 }
 
 }  // namespace tess::m2m

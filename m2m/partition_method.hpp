@@ -1,4 +1,6 @@
-// The methods by which a mesh is cut into parts. The library Zoltan computes the partition.
+// The methods by which a mesh is cut into parts. All PEs compute `curve` together (place(),
+// placement.hpp), or one process for a mesh that it holds; the library Zoltan computes the others on
+// one process.
 #pragma once
 
 #include <string>
@@ -6,11 +8,12 @@
 namespace tess::m2m {
 
 enum class PartitionMethod {
-  rcb,  ///< recursive coordinate bisection
-  hsfc  ///< Hilbert space-filling curve
+  curve,  ///< equal pieces of a Hilbert curve, without Zoltan
+  rcb,    ///< recursive coordinate bisection
+  hsfc    ///< Hilbert space-filling curve of Zoltan
 };
 
-/// "rcb" or "hsfc". Throws Error (bad_argument) for any other name.
+/// "curve", "rcb" or "hsfc". Throws Error (bad_argument) for any other name.
 [[nodiscard]] PartitionMethod parse_partition_method(const std::string& name);
 
 }  // namespace tess::m2m

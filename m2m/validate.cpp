@@ -1,10 +1,10 @@
 // Checks a mesh before it is used.
+#include "m2m/mesh_findings.hpp"
 #include "m2m/mesh_view.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tess::m2m {
 namespace {
@@ -40,100 +40,24 @@ std::array<Point, 4> corners_at(const TetMesh& mesh, std::size_t tet) {
   return corners;
 }
 
-/// Counts tetrahedra that are too short for their coordinates, or for any computation.
-class Collapse {
- public:
-  void add(const std::array<Point, 4>& corners) {
-    double longest = 0, largest = 0;  // per axis
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      double low = corners[0][axis], high = low;
-      for (const Point& p : corners) {
-        low = std::min(low, p[axis]);
-        high = std::max(high, p[axis]);
-      }
-      longest = std::max(longest, high - low);
-      largest = std::max({largest, std::abs(low), std::abs(high)});
-    }
-    const bool rounded = longest < least_ulps * ulp * largest;
-    if (!rounded && !(longest < least_edge)) return;
-    if (n_++ == 0) first_ = {longest, largest, rounded};
-  }
-
-  /// Throws if more than a tenth of the tetrahedra are too short.
-  void refuse(const TetMesh& mesh) const {
-    if (n_ <= mesh.n_tets() / 10) return;
-    const auto refuse = [&](const auto&... reason) {
-      fail(ErrorCode::bad_mesh, mesh.name, ": ", n_, " of ", mesh.n_tets(),
-           " tetrahedra have collapsed: the first is ", first_.longest, " long", reason...);
-    };
-    if (first_.rounded)
-      refuse(" at coordinates of ", first_.largest, ", where neighbouring numbers differ by ",
-             first_.largest * ulp,
-             "; shift the mesh towards the origin before its coordinates are rounded");
-    refuse(", and lengths below ", least_edge,
-           " have no volume in floating point; rescale the mesh");
-  }
-
- private:
-  static constexpr double ulp = 0x1p-52;
-  static constexpr double least_ulps = 64;
-  static constexpr double least_edge = 1e-80;
-  struct First {
-    double longest = 0, largest = 0;
-    bool rounded = false;
-  };
-  std::size_t n_ = 0;
-  First first_;
-};
-
 }  // namespace
 
 MeshCensus validate(const TetMesh& mesh) {
-  const std::size_t n = mesh.n_points();
-  if (mesh.tets.empty()) {
-    const std::string others = skipped_text(mesh);
-    fail(ErrorCode::bad_mesh, mesh.name, ": has no tetrahedra",
-         others.empty() ? "" : " (but " + others + ")", "; give a volume mesh");
-  }
+  const auto n = static_cast<GlobalId>(mesh.n_points());
+  refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh));
   validate_groups(mesh);
-  if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
-    fail(ErrorCode::bad_mesh, mesh.name, ": has ", n,
-         " vertices; at most 2147483647 fit in one mesh, split it");
-  }
-  constexpr double largest = 1e100;  // volumes (cubes of lengths) stay in the range of double
-  for (std::size_t v = 0; v < n; ++v) {
-    const Point& p = mesh.points[v];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(p[axis]) || std::abs(p[axis]) > largest) {
-        fail(ErrorCode::bad_mesh, mesh.name, ": vertex ", v, " has ", "xyz"[axis], " = ", p[axis],
-             "; coordinates must be finite and at most 1e100: repair or rescale the mesh");
-      }
-    }
-  }
-  std::vector<char> used(n, 0);
-  MeshCensus census;
-  Collapse collapse;
+  MeshFindings findings;
+  findings.add_points(0, mesh.points);
+  findings.add_corners(0, mesh.tets, n);
+  findings.refuse_bad_ids(mesh.name, n);
+  std::vector<char> used(mesh.n_points(), 0);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    for (const VertexId v : mesh.tets[t]) {
-      if (v < 0 || static_cast<std::size_t>(v) >= n) {
-        fail(ErrorCode::bad_mesh, mesh.name, ": tetrahedron ", t, " names vertex ", v,
-             " (counted from 0) of ", n, " vertices; write the mesh again");
-      }
-      used[static_cast<std::size_t>(v)] = 1;
-    }
-    collapse.add(corners_at(mesh, t));
-    const double volume = signed_volume(mesh, t);
-    census.n_flat += volume == 0;
-    census.n_inverted += volume < 0;
+    for (const VertexId v : mesh.tets[t]) used[static_cast<std::size_t>(v)] = 1;
+    findings.add_shape(static_cast<GlobalId>(t), corners_at(mesh, t));
   }
-  collapse.refuse(mesh);
-  if (census.n_flat == mesh.n_tets())
-    fail(
-        ErrorCode::bad_mesh, mesh.name,
-        ": no tetrahedron has a volume; give a mesh in three dimensions, written with more digits");
-  census.n_unused = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
-  census.bounds = bounds(mesh);
-  return census;
+  findings.refuse_bad_shapes(mesh.name, mesh.n_tets());
+  return {findings.n_flat, findings.n_inverted,
+          static_cast<std::size_t>(std::count(used.begin(), used.end(), 0)), findings.bounds};
 }
 
 void validate(const MeshView& mesh) {

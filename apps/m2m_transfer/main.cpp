@@ -48,7 +48,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--plot", options.plot,
               "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
   line.option("--partition", request.partition,
-              "method that cuts the meshes into chares: rcb or hsfc");
+              "method that cuts the meshes into chares: curve (by all PEs together), rcb or hsfc");
   line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")
       .positive();
   line.option(

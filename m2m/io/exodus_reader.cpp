@@ -2,6 +2,7 @@
 
 #include "m2m/io/exodus_elements.hpp"
 #include "m2m/io/exodus_file.hpp"
+#include "m2m/io/exodus_turn.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -190,6 +191,7 @@ class ExodusReader : private ExodusFile {
 }  // namespace
 
 TetMesh read_exodus(const std::string& path, std::string_view bytes) {
+  const std::lock_guard in_turn(exodus_turn());
   return ExodusReader(path, bytes).read();
 }
 

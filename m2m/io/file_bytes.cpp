@@ -42,4 +42,10 @@ FileBytes::~FileBytes() {
   ::munmap(const_cast<char*>(begin_), size_);
 }
 
+void FileBytes::release(std::size_t begin, std::size_t n) const noexcept {
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t first = begin / page * page;
+  ::madvise(const_cast<char*>(begin_) + first, begin + n - first, MADV_DONTNEED);
+}
+
 }  // namespace tess::m2m

@@ -17,6 +17,8 @@ class FileBytes {
   FileBytes& operator=(const FileBytes&) = delete;
 
   [[nodiscard]] std::string_view view() const noexcept { return {begin_, size_}; }
+  /// The bytes are not needed in memory for now.
+  void release(std::size_t begin, std::size_t n) const noexcept;
 
  private:
   const char* begin_ = nullptr;

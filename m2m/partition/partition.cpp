@@ -1,5 +1,6 @@
 #include "m2m/partition/partition.hpp"
 
+#include "m2m/partition/curve_cut.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cstdint>
@@ -57,6 +58,20 @@ void need_mpi() {
 void check(int code, const char* call) {
   if (code != ZOLTAN_OK && code != ZOLTAN_WARN)
     fail(ErrorCode::environment, "Zoltan: ", call, " failed with code ", code);
+}
+
+std::vector<std::int32_t> parts_on_curve(const TetMesh& mesh, std::int32_t n_parts) {
+  const HilbertCube cube(bounds(mesh));
+  std::vector<std::uint64_t> cells(mesh.n_tets());
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    std::array<Point, 4> corners;
+    for (std::size_t k = 0; k < 4; ++k)
+      corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[t][k])];
+    cells[t] = cube.cell(mean_of_corners(corners));
+  }
+  CurveCut cut(mesh.n_tets(), n_parts);
+  while (!cut.is_done()) cut.refine(cut.counts(cells));
+  return cut.parts(cells);
 }
 
 std::vector<Point> centroids(const TetMesh& mesh) {
@@ -129,6 +144,7 @@ std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
   }
   std::vector<std::int32_t> parts(mesh.n_tets(), 0);
   if (n_parts == 1) return parts;
+  if (method == PartitionMethod::curve) return parts_on_curve(mesh, n_parts);
   std::vector<Point> centres = centroids(mesh);
   const std::lock_guard in_turn(zoltan_turn());
   need_mpi();

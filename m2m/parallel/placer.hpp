@@ -1,0 +1,222 @@
+// The member of a group that sets up a distributed mesh (m2m/placement.hpp). It keeps a range of the
+// points and of the tetrahedra, and builds the parts whose Workers are at home on its PE.
+#pragma once
+
+#include "m2m/field.hpp"
+#include "m2m/mesh_findings.hpp"
+#include "m2m/parallel/worker.hpp"
+#include "m2m/partition/curve_cut.hpp"
+#include "m2m/partition/id_set.hpp"
+#include "m2m/partition/split.hpp"
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tess::m2m {
+
+/// What all Placers know from the start.
+struct PlacerSetup {
+  std::string name;        ///< of the file; empty if the ranges are sent
+  std::string shown_name;  ///< of the mesh, in errors
+  GlobalId n_points = 0, n_tets = 0;
+  std::int32_t halo_layers = 0;
+  std::vector<FormulaField> fields;
+  ArrayProxy<Worker> workers;
+  std::int32_t n_parts = 1;
+};
+
+/// The error with the least key of all PEs, if there is one.
+struct FirstError {
+  std::int64_t key = -1;
+  std::int32_t code = 0;
+  std::string message{};
+  void keep_first(const FirstError& other) {
+    if (other.key >= 0 && (key < 0 || other.key < key)) *this = other;
+  }
+};
+
+/// Contributed after a step of checks.
+struct PlacerReport {
+  MeshFindings findings{};
+  FirstError error{};
+  std::uint64_t n_unused = 0;
+};
+struct JoinReports {
+  PlacerReport operator()(PlacerReport a, const PlacerReport& b) const {
+    a.findings.join(b.findings);
+    a.error.keep_first(b.error);
+    a.n_unused += b.n_unused;
+    return a;
+  }
+};
+
+/// A range of a mesh, from the PE that holds all of it.
+struct RangeLoad {
+  std::vector<Point> points;
+  std::vector<Tet> tets;
+};
+
+/// Which of your points are at these vertices? Answered in the same order.
+struct CornerQuery {
+  PeId from{};
+  std::vector<VertexId> ids;
+};
+struct CornerAnswer {
+  VertexId first = 0;
+  std::vector<Point> points;
+};
+
+/// Tetrahedra for the parts of one PE, part by part.
+struct TetBatch {
+  PeId from{}, to{};
+  std::vector<std::int32_t> parts{};
+  std::vector<std::int32_t> sizes{};  ///< tetrahedra per part
+  std::vector<std::int32_t> ids{};    ///< ascending in each part
+  std::vector<Tet> tets{};
+};
+
+/// The vertices of some parts of one PE, part by part.
+struct PointQuery {
+  PeId from{}, to{};
+  std::vector<std::int32_t> parts{};
+  std::vector<std::int32_t> sizes{};  ///< vertices per part
+  std::vector<VertexId> ids{};        ///< ascending in each part
+};
+/// In the order of a PointQuery.
+struct PointAnswer {
+  std::vector<std::int32_t> parts{};
+  std::vector<std::int32_t> sizes{};
+  std::vector<VertexId> firsts{};  ///< the first vertex of each part
+  std::vector<Point> points{};
+  std::vector<std::int32_t> owners{};
+  std::vector<std::int32_t> n_users{};  ///< per point, if there is a halo
+  std::vector<std::int32_t> users{};    ///< the parts whose tetrahedra use the points
+};
+/// Vertices that no tetrahedron uses, for the part that owns them.
+struct UnusedPoints {
+  std::int32_t part = 0;
+  std::vector<VertexId> ids;
+  std::vector<Point> points;
+};
+
+/// Which tetrahedra of your part are around these vertices?
+struct AroundQuery {
+  std::int32_t asker = 0;
+  std::int32_t part = 0;
+  std::vector<VertexId> vertices;
+};
+struct AroundAnswer {
+  std::int32_t asker = 0;
+  std::vector<std::int32_t> ids;
+  std::vector<Tet> tets;
+};
+
+/// Ghosts of one part in another one.
+struct GhostList {
+  std::int32_t owner = 0, user = 0;
+  std::vector<VertexId> ids;        ///< ascending
+  std::vector<std::int32_t> there;  ///< their positions in the user
+};
+
+class Placer : public Group<Placer> {
+ public:
+  explicit Placer(const PlacerSetup& setup);
+
+  void receive_range(RangeLoad load);
+  /// Reads the ranges unless they were received, and checks them.
+  void read(Callback<PlacerReport> target);
+  void ask_corners();
+  void answer_corners(const CornerQuery& query);
+  void receive_corners(const CornerAnswer& answer);
+  /// Checks the shapes of the tetrahedra, and finds their cells in a cube around the mesh.
+  void measure(const Aabb& bounds, Callback<PlacerReport> target);
+  void count(const CurveCut& cut, Callback<std::vector<std::uint32_t>> target);
+  void send_tets(const CurveCut& cut);
+  void receive_tets(TetBatch batch);
+
+  void ask_points();
+  void receive_point_query(PointQuery query);
+  /// Decides about the owners, and answers all queries.
+  void answer_points(Callback<PlacerReport> target);
+  void receive_points(const PointAnswer& answer);
+  void receive_unused(const UnusedPoints& unused);
+
+  void ask_around();
+  void answer_around(const AroundQuery& query);
+  void receive_around(const AroundAnswer& answer);
+  void ask_halo_points();
+  void answer_halo_points(const PointQuery& query);
+
+  void finish(Callback<PlacerReport> target);
+  void receive_ghosts(GhostList list);
+  void load_workers();
+
+ private:
+  /// A vertex of a part, as its keeper describes it.
+  struct PartPoint {
+    VertexId id = 0;
+    std::int32_t owner = 0;
+    Point at{};
+  };
+  /// A part under construction. The corners of its tetrahedra are ids in the whole mesh.
+  struct Part {
+    MeshPart mesh{};
+    std::vector<PartPoint> points{};  // known so far
+    std::vector<VertexId> asked{};    // in the queries under way, ascending
+    struct Seen {
+      std::int32_t part;
+      VertexId vertex;
+      auto operator<=>(const Seen&) const = default;
+    };
+    std::vector<Seen> others{};  // parts that use points found in the last layer
+    struct HaloTet {
+      std::int32_t id;
+      Tet corners;
+      auto operator<=>(const HaloTet&) const = default;
+    };
+    std::vector<HaloTet> halo{};
+    std::optional<IdSet> own_vertices{};  // for answer_around()
+    std::vector<std::uint32_t> begin{};   // per own vertex, in `around`
+    std::vector<std::int32_t> around{};   // positions of tetrahedra
+    std::vector<double> rows{};
+  };
+
+  [[nodiscard]] GlobalId first_of(GlobalId n, std::int32_t pe) const { return n * pe / n_pes_; }
+  [[nodiscard]] PeId home_of(std::int32_t part) const;
+  [[nodiscard]] Part& part(std::int32_t k) {
+    return parts_[static_cast<std::size_t>(k - first_part_)];
+  }
+  [[nodiscard]] std::array<Point, 4> corners_of(const Tet& tet) const;
+  /// Calls visit(keeper, ids of that keeper) for ascending ids.
+  template <class Visit>
+  void for_each_keeper(std::span<const VertexId> ids, const Visit& visit) const;
+  /// The points that the parts ask for, per keeper.
+  [[nodiscard]] std::vector<PointQuery> queries_of_parts() const;
+  [[nodiscard]] PointAnswer answer(const PointQuery& query) const;
+  static void index_tets(Part& part);
+  void build(std::int32_t k, FirstError& error);
+
+  PlacerSetup setup_;
+  std::int32_t n_pes_ = 1, me_ = 0;
+  GlobalId first_point_ = 0, first_tet_ = 0;
+  std::vector<Point> points_;  // kept here, from first_point_
+  std::vector<Tet> tets_;      // of the range, from first_tet_
+  std::optional<IdSet> far_;   // corners of the range that others keep
+  std::vector<Point> far_points_;
+  std::vector<std::uint64_t> cells_;  // per tetrahedron of the range
+  std::vector<TetBatch> batches_;
+  std::vector<PointQuery> queries_;
+  std::vector<std::int32_t> owners_;        // per point kept here
+  std::vector<std::uint32_t> users_begin_;  // per point kept here, in users_
+  std::vector<std::int32_t> users_;         // parts that use it
+  std::int32_t first_part_ = 0;
+  std::vector<Part> parts_;
+  std::vector<GhostList> ghosts_;
+};
+
+}  // namespace tess::m2m

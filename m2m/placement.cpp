@@ -1,0 +1,138 @@
+#include "m2m/placement.hpp"
+
+#include "m2m/io/mesh_ranges.hpp"
+#include "m2m/parallel/placer.hpp"
+#include "m2m/read_mesh.hpp"
+#include "runtime/core/error.hpp"
+
+#include <optional>
+#include <utility>
+
+namespace tess::m2m {
+namespace {
+
+/// Runs a step that ends with a report of all PEs.
+template <auto Step, class... Args>
+Task step(GroupProxy<Placer> placers, PlacerReport* report, Args... args) {
+  Future<PlacerReport> all;
+  co_await epoch([&] { placers.broadcast<Step>(std::move(args)..., all.callback()); });
+  *report = co_await all;
+}
+/// Runs a step without a report.
+template <auto Step>
+Task step(GroupProxy<Placer> placers) {
+  co_await epoch([&] { placers.broadcast<Step>(); });
+}
+
+void throw_first(const FirstError& error) {
+  if (error.key >= 0) throw Error(static_cast<ErrorCode>(error.code), error.message);
+}
+
+Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
+  PlacerReport report;
+  co_await step<&Placer::read>(placers, &report);
+  throw_first(report.error);
+  report.findings.refuse_bad_ids(setup.shown_name, setup.n_points);
+  const Aabb bounds = report.findings.bounds;
+  co_await step<&Placer::ask_corners>(placers);
+  co_await step<&Placer::measure>(placers, &report, bounds);
+  report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
+  census->n_flat = report.findings.n_flat;
+  census->n_inverted = report.findings.n_inverted;
+  census->bounds = bounds;
+
+  CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
+  while (!cut.is_done()) {
+    Future<std::vector<std::uint32_t>> counts;
+    placers.broadcast<&Placer::count>(cut, counts.callback());
+    const std::vector<std::uint32_t> all = co_await counts;
+    cut.refine(all);
+  }
+  co_await epoch([&] { placers.broadcast<&Placer::send_tets>(cut); });
+  co_await step<&Placer::ask_points>(placers);
+  co_await step<&Placer::answer_points>(placers, &report);
+  census->n_unused = report.n_unused;
+  for (std::int32_t layer = 0; layer < setup.halo_layers; ++layer) {
+    co_await step<&Placer::ask_around>(placers);
+    co_await step<&Placer::ask_halo_points>(placers);
+  }
+  co_await step<&Placer::finish>(placers, &report);
+  throw_first(report.error);
+  co_await step<&Placer::load_workers>(placers);
+}
+
+/// `whole`: the mesh if its ranges are sent, otherwise null.
+Task place_ranges(PlacerSetup setup, const TetMesh* whole, PlacedMesh* placed) {
+  setup.workers = create<Worker>(range(setup.n_parts));
+  const GroupProxy<Placer> placers = create_group<Placer>(setup);
+  std::exception_ptr error;
+  try {
+    if (whole != nullptr) {
+      co_await epoch([&] {
+        const std::int64_t n_pes = tess::n_pes();
+        const auto cut = [&](const auto& list, std::int32_t pe) {
+          const auto n = static_cast<std::int64_t>(list.size());
+          return std::vector(list.begin() + n * pe / n_pes, list.begin() + n * (pe + 1) / n_pes);
+        };
+        for (std::int32_t pe = 0; pe < n_pes; ++pe)
+          placers[PeId{pe}].send<&Placer::receive_range>(
+              RangeLoad{cut(whole->points, pe), cut(whole->tets, pe)});
+      });
+    }
+    co_await lead(placers, setup, &placed->census);
+  } catch (...) {
+    error = std::current_exception();
+  }
+  const auto clear = [&] {
+    placers.destroy();
+    if (error) setup.workers.destroy();
+  };
+  co_await epoch(clear);
+  if (error) std::rethrow_exception(error);
+  placed->mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers};
+  placed->n_points = setup.n_points;
+  placed->n_tets = setup.n_tets;
+  placed->read_in_ranges = whole == nullptr;
+}
+
+PlacerSetup setup_of(std::string shown_name, PlaceOptions options) {
+  if (options.n_parts < 1)
+    fail(ErrorCode::bad_argument, "cannot cut a mesh into ", options.n_parts,
+         " parts; choose at least 1");
+  for (const FormulaField& field : options.fields) (void)make_formula(field.name, field.domain);
+  PlacerSetup setup;
+  setup.shown_name = std::move(shown_name);
+  setup.n_parts = options.n_parts;
+  setup.halo_layers = options.halo_layers;
+  setup.fields = std::move(options.fields);
+  return setup;
+}
+
+}  // namespace
+
+Task place(const TetMesh* mesh, PlaceOptions options, PlacedMesh* placed) {
+  PlacerSetup setup = setup_of(mesh->name, std::move(options));
+  refuse_bad_counts(mesh->name, mesh->n_points(), mesh->n_tets(), skipped_text(*mesh));
+  setup.n_points = static_cast<GlobalId>(mesh->n_points());
+  setup.n_tets = static_cast<GlobalId>(mesh->n_tets());
+  co_await place_ranges(std::move(setup), mesh, placed);
+}
+
+Task place(std::string name, PlaceOptions options, PlacedMesh* placed) {
+  PlacerSetup setup = setup_of(name, options);
+  std::unique_ptr<MeshRanges> ranges = open_ranges(name, RangeCheck::all);
+  if (ranges == nullptr) {
+    const TetMesh mesh = read_mesh(name);
+    co_await place(&mesh, std::move(options), placed);
+    co_return;
+  }
+  setup.n_points = ranges->n_points;
+  setup.n_tets = ranges->n_tets;
+  refuse_bad_counts(name, static_cast<std::uint64_t>(setup.n_points),
+                    static_cast<std::uint64_t>(setup.n_tets), ranges->skipped);
+  ranges.reset();
+  setup.name = std::move(name);
+  co_await place_ranges(std::move(setup), nullptr, placed);
+}
+
+}  // namespace tess::m2m

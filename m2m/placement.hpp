@@ -1,0 +1,48 @@
+// Set-up of a distributed mesh by all PEs together: no PE holds the whole mesh. A group, one Placer
+// per PE, is led by place() in steps that each end with an epoch or a reduction:
+//
+//     read      every PE reads a range of the points, of which it is the keeper, and of the tetrahedra
+//     corners   asks the keepers for the corners of its tetrahedra; both are checked as by validate()
+//     count     tetrahedra in cells of a Hilbert curve, until it is known where to cut (CurveCut)
+//     send      every tetrahedron goes to the PE of its part
+//     points    a part asks the keepers for its points; the lowest part that asks owns a point
+//     halo      per layer: asks the other parts at its points for their tetrahedra there
+//     ghosts    a part tells the owners of its ghosts where they are, and evaluates its fields
+//     load      the parts, complete, go to their Workers
+//
+// The parts are those of split(), and depend only on the mesh, their number and the halo.
+#pragma once
+
+#include "m2m/field.hpp"
+#include "m2m/mesh.hpp"
+#include "m2m/parallel/scatter.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tess::m2m {
+
+struct PlaceOptions {
+  std::int32_t n_parts = 1;
+  std::int32_t halo_layers = 0;
+  std::vector<FormulaField> fields{};
+};
+
+/// What place() knows of a mesh.
+struct PlacedMesh {
+  DistributedMesh mesh{};
+  GlobalId n_points = 0, n_tets = 0;
+  MeshCensus census{};
+  bool read_in_ranges = false;  ///< false: one PE read the file, and sent the ranges
+};
+
+/// Reads `name` (as read_mesh() does), cuts it by PartitionMethod::curve, and creates the Workers.
+/// The errors are those of read_mesh(), validate(), make_formula() and sample(). Side sets and node
+/// sets of a file that is read in ranges are not read. `placed` must outlive the task.
+Task place(std::string name, PlaceOptions options, PlacedMesh* placed);
+
+/// The same for a mesh in the memory of this PE, which it must outlive.
+Task place(const TetMesh* mesh, PlaceOptions options, PlacedMesh* placed);
+
+}  // namespace tess::m2m

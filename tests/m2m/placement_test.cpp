@@ -1,0 +1,330 @@
+// Compares meshes that all PEs set up together with meshes that one PE cuts: every Worker has the
+// same bytes.
+#include "m2m/placement.hpp"
+
+#include "m2m/io/mesh_ranges.hpp"
+#include "m2m/kuhn.hpp"
+#include "m2m/partition/curve_cut.hpp"
+#include "m2m/partition/id_set.hpp"
+#include "m2m/partition/partition.hpp"
+#include "m2m/read_mesh.hpp"
+#include "m2m/write_exodus.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "tests/m2m/non_conforming.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+#include "tests/support/shared_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+using Contents = std::map<std::int32_t, std::vector<std::byte>>;  // per part
+
+struct JoinContents {
+  Contents operator()(Contents a, const Contents& b) const {
+    a.insert(b.begin(), b.end());
+    return a;
+  }
+};
+
+/// Shows the Workers of its PE.
+struct Inspector : Group<Inspector> {
+  void inspect(ArrayProxy<Worker> workers, std::int32_t n_parts, Callback<Contents> target) {
+    Contents contents;
+    for (std::int32_t k = 0; k < n_parts; ++k)
+      if (const Worker* const worker = workers.local({k})) contents[k] = to_bytes(*worker);
+    contribute(JoinContents{}, std::move(contents), std::move(target));
+  }
+};
+
+Task inspect(DistributedMesh mesh, Contents* contents) {
+  const auto inspectors = create_group<Inspector>();
+  Future<Contents> all;
+  inspectors.broadcast<&Inspector::inspect>(mesh.workers, mesh.n_parts, all.callback());
+  *contents = co_await all;
+}
+
+struct Case {
+  TetMesh mesh;
+  std::int32_t n_parts = 1, halo_layers = 0;
+  bool by_name = false;
+};
+
+Task compare(const Case& c, std::string* difference) {
+  const Aabb domain = bounds(c.mesh);
+  const PlaceOptions options{c.n_parts, c.halo_layers, {{"gaussian", domain}, {"x + 2*y", domain}}};
+  std::vector<Field> fields;
+  for (const FormulaField& field : options.fields)
+    fields.push_back(sample(c.mesh, field.name, make_formula(field.name, field.domain)));
+  DistributedMesh whole;
+  co_await epoch(
+      [&] { whole = scatter(c.mesh, fields, c.n_parts, PartitionMethod::curve, c.halo_layers); });
+  PlacedMesh placed;
+  if (c.by_name)
+    co_await place(c.mesh.name, options, &placed);
+  else
+    co_await place(&c.mesh, options, &placed);
+  Contents want, got;
+  co_await inspect(whole, &want);
+  co_await inspect(placed.mesh, &got);
+  const MeshCensus census = validate(c.mesh);
+  if (static_cast<std::int32_t>(want.size()) != c.n_parts || got.size() != want.size())
+    *difference = "number of parts";
+  else if (census.bounds != placed.census.bounds || census.n_unused != placed.census.n_unused ||
+           census.n_inverted != placed.census.n_inverted || placed.census.n_flat != census.n_flat)
+    *difference = "census";
+  for (std::int32_t k = 0; k < c.n_parts && difference->empty(); ++k)
+    if (got[k] != want[k]) *difference = "part " + std::to_string(k);
+}
+
+void check_on(std::unique_ptr<Machine> machine, const RuntimeOptions& options, const Case& c) {
+  Setup setup{std::move(machine), options};
+  std::string difference;
+  REQUIRE(run(setup, [&]() -> Task { return compare(c, &difference); }) == 0);
+  REQUIRE(difference.empty());
+}
+
+void check_seeds(Case c, std::uint64_t n_seeds) {
+  for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
+    SimulatedOptions options;
+    options.n_pes = std::array{1, 2, 3, 5, 8, 40}[seed % 6];
+    options.cost = Time(100);
+    options.seed = seed;
+    options.migration_chance = 0;
+    c.n_parts = std::array{1, 2, 7, 16, 61}[seed % 5];
+    c.halo_layers = static_cast<std::int32_t>(seed % 3);
+    INFO("--sim pes=" << options.n_pes << ",cost=100ns,migrate=0,seed=" << seed << ", " << c.n_parts
+                      << " parts, halo " << c.halo_layers);
+    RuntimeOptions runtime_options;
+    runtime_options.seed = seed;
+    check_on(make_simulated_machine(options), runtime_options, c);
+  }
+}
+
+/// Unused vertices at both ends, and a flat tetrahedron.
+TetMesh odd_mesh() {
+  TetMesh mesh = kuhn_mesh({3, 0.1});
+  mesh.points.push_back({7, 7, 7});
+  mesh.points.insert(mesh.points.begin(), Point{8, 8, 8});
+  for (Tet& tet : mesh.tets)
+    for (VertexId& v : tet) ++v;
+  mesh.tets[11][3] = mesh.tets[11][2];
+  std::swap(mesh.tets[5][0], mesh.tets[5][1]);
+  // In an order without locality.
+  std::vector<Tet> shuffled(mesh.tets);
+  for (std::size_t t = 0; t < shuffled.size(); ++t)
+    shuffled[t] = mesh.tets[(t * 101) % mesh.tets.size()];
+  mesh.tets = shuffled;
+  return mesh;
+}
+
+Task place_once(const TetMesh* mesh, PlaceOptions options) {
+  PlacedMesh placed;
+  co_await place(mesh, options, &placed);
+}
+
+Task message_of_place(const TetMesh* mesh, PlaceOptions options, std::string* message) {
+  try {
+    co_await place_once(mesh, options);
+  } catch (const Error& error) {
+    *message = error.what();
+  }
+}
+
+std::string refusal(const TetMesh& mesh, std::int32_t n_pes, const PlaceOptions& options = {4}) {
+  SimulatedOptions machine;
+  machine.n_pes = n_pes;
+  Setup setup{make_simulated_machine(machine), {}};
+  std::string message;
+  REQUIRE(run(setup, [&]() -> Task { return message_of_place(&mesh, options, &message); }) == 0);
+  return message;
+}
+
+}  // namespace
+
+TEST_CASE("parts that all PEs set up together are those that one PE cuts, on every schedule",
+          "[m2m][placement]") {
+  for (const TetMesh& mesh : {kuhn_mesh({4, 0.2}), odd_mesh(), test::non_conforming_mesh()}) {
+    INFO(mesh.name);
+    check_seeds({mesh}, 30);
+  }
+  check_seeds({kuhn_mesh({5, 0.1}), 1, 0, true}, 12);
+  for (const std::int32_t pes : {1, 2, 4}) {
+    INFO("threads, " << pes << " PEs");
+    check_on(make_threads_machine(pes), {}, {kuhn_mesh({6, 0.1}), 13, 2, true});
+  }
+}
+
+TEST_CASE("pieces of the curve hold equally many tetrahedra, also where a mesh is much finer",
+          "[m2m][placement]") {
+  TetMesh graded = kuhn_mesh({12});
+  for (Point& p : graded.points)
+    for (double& x : p) x = x * x * x * x * x * x;
+  for (const TetMesh& mesh : {kuhn_mesh({12}), graded}) {
+    for (const std::int32_t n_parts : {2, 3, 8, 50}) {
+      std::vector<std::size_t> sizes(static_cast<std::size_t>(n_parts));
+      for (const std::int32_t part : partition(mesh, n_parts, PartitionMethod::curve))
+        ++sizes.at(static_cast<std::size_t>(part));
+      const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+      const double mean = static_cast<double>(mesh.n_tets()) / n_parts;
+      CAPTURE(n_parts);
+      CHECK(static_cast<double>(*least) > 0.93 * mean);
+      CHECK(static_cast<double>(*most) < 1.07 * mean);
+    }
+  }
+}
+
+TEST_CASE("neighbours on the Hilbert curve share a face, and every cell is on it once",
+          "[m2m][placement]") {
+  constexpr int levels = 3;
+  std::array<std::array<int, 3>, 512> cells{};
+  std::array<bool, 512> seen{};
+  const HilbertCube cube({{0, 0, 0}, {8, 8, 8}});
+  for (int i = 0; i < 512; ++i) {
+    const std::array<int, 3> at{i % 8, i / 8 % 8, i / 64};
+    const std::uint64_t position =
+        hilbert_position(cube.cell({at[0] + 0.5, at[1] + 0.5, at[2] + 0.5}), levels);
+    REQUIRE_FALSE(seen.at(position));
+    seen.at(position) = true;
+    cells[position] = at;
+  }
+  for (std::size_t i = 1; i < cells.size(); ++i) {
+    int steps = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      steps += std::abs(cells[i][axis] - cells[i - 1][axis]);
+    if (steps != 1) FAIL("position " << i);
+  }
+}
+
+TEST_CASE("all PEs together refuse a bad mesh with the message of validate()", "[m2m][placement]") {
+  const TetMesh good = kuhn_mesh({3});
+  std::vector<TetMesh> bad(7, good);
+  bad[0].points[50][1] = std::numeric_limits<double>::quiet_NaN();
+  bad[0].points[20][2] = 1e200;
+  bad[1].tets[100][2] = 64;
+  bad[1].tets[90][1] = -3;
+  for (Point& p : bad[2].points) p[0] = 1e15 + p[0];
+  for (Point& p : bad[3].points)
+    for (double& x : p) x *= 1e-85;
+  for (Point& p : bad[4].points) p[2] = 0;
+  bad[5].tets.clear();
+  for (Point& p : bad[6].points)
+    for (double& x : p) x = 1e14 + x;
+  for (const TetMesh& mesh : bad) {
+    const std::string want = test::message_of([&] { validate(mesh); });
+    for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(mesh, n_pes) == want);
+  }
+  const PlaceOptions options{4, 0, {{"x", bounds(good)}, {"1/(x - 1/3)", bounds(good)}}};
+  const std::string want = test::message_of(
+      [&] { (void)sample(good, "1/(x - 1/3)", make_formula("1/(x - 1/3)", bounds(good))); });
+  REQUIRE_FALSE(want.empty());
+  for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(good, n_pes, options) == want);
+  CHECK_THAT(refusal(good, 2, {0}), Catch::Contains("into 0 parts"));
+}
+
+TEST_CASE("a set of vertices numbers them in ascending order", "[m2m][placement]") {
+  IdSet set(-70, 900);
+  const std::vector<VertexId> ids{-70, -7, -6, 57, 58, 121, 122, 899, 900};
+  for (const VertexId v : {900, 57, -7, 122, -70, 58, -6, 121, 899, 58}) set.add(v);
+  set.number();
+  CHECK(set.list() == ids);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    CHECK(set.rank(ids[i]) == static_cast<std::int32_t>(i));
+  CHECK(set.has(121));
+  CHECK_FALSE(set.has(120));
+  CHECK_FALSE(set.has(-71));
+  CHECK_FALSE(set.has(5000));
+}
+
+TEST_CASE("ranges of kuhn meshes are those of the whole mesh", "[m2m][placement]") {
+  const KuhnBox box{5, 0.2};
+  const TetMesh whole = kuhn_mesh(box);
+  for (const GlobalId first : {0, 1, 6, 17, 100}) {
+    std::vector<Point> points(37);
+    kuhn_points(box, first, points);
+    CHECK(std::equal(points.begin(), points.end(), whole.points.begin() + first));
+    std::vector<Tet> tets(41);
+    kuhn_tets(box, first, tets);
+    CHECK(std::equal(tets.begin(), tets.end(), whole.tets.begin() + first));
+  }
+}
+
+namespace {
+
+/// A binary file of version 4.1: a surface, then tetrahedra in two blocks, nodes in three.
+std::string gmsh_bytes(const TetMesh& mesh, std::uint64_t first_tag, bool swaps_tags) {
+  std::string out = "$MeshFormat\n4.1 1 8\n";
+  const auto put = [&](const auto&... values) {
+    (out.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  };
+  put(1);
+  out += "\n$EndMeshFormat\n$Nodes\n";
+  const std::uint64_t n = mesh.n_points();
+  put(std::uint64_t{3}, n, first_tag, first_tag + n - 1);
+  for (std::uint64_t block = 0; block < 3; ++block) {
+    const std::uint64_t begin = n * block / 3, end = n * (block + 1) / 3;
+    put(3, 1, 0, end - begin);
+    for (std::uint64_t i = begin; i < end; ++i)
+      put(first_tag + (swaps_tags && i + 2 >= n ? 2 * n - 3 - i : i));
+    for (std::uint64_t i = begin; i < end; ++i)
+      put(mesh.points[i][0], mesh.points[i][1], mesh.points[i][2]);
+  }
+  out += "\n$EndNodes\n$Elements\n";
+  const std::uint64_t n_tets = mesh.n_tets();
+  put(std::uint64_t{3}, n_tets + 1, std::uint64_t{1}, n_tets + 1);
+  put(2, 1, 2, std::uint64_t{1}, std::uint64_t{1}, first_tag, first_tag + 1, first_tag + 2);
+  for (std::uint64_t block = 0; block < 2; ++block) {
+    const std::uint64_t begin = n_tets * block / 2, end = n_tets * (block + 1) / 2;
+    put(3, 1, 4, end - begin);
+    for (std::uint64_t t = begin; t < end; ++t) {
+      put(t + 2);
+      for (const VertexId v : mesh.tets[t]) put(first_tag + static_cast<std::uint64_t>(v));
+    }
+  }
+  return out + "\n$EndElements\n";
+}
+
+void check_ranges_of_file(const std::string& path, std::uint64_t n_seeds) {
+  INFO(path);
+  const TetMesh mesh = read_mesh(path);
+  const auto ranges = open_ranges(path, RangeCheck::all);
+  REQUIRE(ranges != nullptr);
+  CHECK(ranges->skipped == skipped_text(mesh));
+  check_seeds({mesh, 1, 0, true}, n_seeds);
+  check_on(make_threads_machine(3), {}, {mesh, 7, 1, true});
+}
+
+}  // namespace
+
+TEST_CASE("all PEs read their ranges of a binary gmsh file and of an ExodusII file",
+          "[m2m][placement]") {
+  const test::Scratch scratch;
+  const TetMesh mesh = odd_mesh();
+  for (const std::uint64_t first_tag : {1U, 100U}) {
+    check_ranges_of_file(scratch.write("a.msh", gmsh_bytes(mesh, first_tag, false)), 6);
+  }
+  write_exodus(scratch.path("a.exo"), mesh, {});
+  check_ranges_of_file(scratch.path("a.exo"), 6);
+}
+
+TEST_CASE("a file that cannot be read in ranges is read by one PE, and sent", "[m2m][placement]") {
+  const test::Scratch scratch;
+  const std::string path = scratch.write("swapped.msh", gmsh_bytes(kuhn_mesh({3}), 1, true));
+  CHECK(open_ranges(path, RangeCheck::all) == nullptr);
+  check_seeds({read_mesh(path), 1, 0, true}, 6);
+}
+
+TEST_CASE("ranges of the real ExodusII and gmsh files are those of the whole meshes",
+          "[m2m][placement][.][shared_data]") {
+  check_ranges_of_file(test::shared_data("nalu/3d_tet4_taylor_green_0p4.exo"), 2);
+  check_ranges_of_file(test::shared_data("nalu/3d_tet4_pipe.exo"), 1);
+  check_ranges_of_file(test::shared_data("mfem/simple-cube-tet4.e"), 2);
+}
