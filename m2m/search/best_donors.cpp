@@ -1,37 +1,39 @@
 #include "m2m/search/best_donors.hpp"
 
+#include "m2m/search/box_block.hpp"
 #include "m2m/search/point_grid.hpp"
+
+#include <algorithm>
 
 namespace tess::m2m {
 namespace {
 
 /// Pairs that are located together; they stay in the first cache.
 constexpr std::size_t batch = 1024;
-/// Up to so many points near a box of the cover, each is compared with each tetrahedron there.
-constexpr std::size_t few = 16;
 
 class Search {
  public:
   Search(const MeshView& mesh, std::span<const Point> points)
       : mesh_(mesh), grid_(points), best_(points.size()), donors_(points.size()) {
-    pairs_.reserve(2 * batch);
+    pairs_.resize(batch + BoxBlock::capacity);
   }
 
   void visit(const Aabb& around, std::span<const std::uint32_t> tets) {
-    near_.clear();
-    grid_.visit_in(around, [&](std::int32_t at) { near_.push_back(at); });
-    if (near_.empty()) return;
-    for (const std::uint32_t t : tets) {
-      const auto tet = static_cast<std::int32_t>(t);
-      const auto found = [&](std::int32_t at) { pairs_.push_back({tet, at}); };
-      const Aabb box = box_of(mesh_.tets[t]);
-      if (near_.size() > few) {
-        grid_.visit_in(box, found);
-      } else {
-        for (const std::int32_t at : near_)
-          if (grid_.is_in(at, box)) found(at);
+    if (!grid_.any_in(around)) return;
+    for (std::size_t first = 0; first < tets.size(); first += BoxBlock::capacity) {
+      const auto members = tets.subspan(first, std::min(BoxBlock::capacity, tets.size() - first));
+      block_.load(mesh_.points, mesh_.tets, members);
+      for (const std::int32_t at : grid_.in(block_.around(), near_)) {
+        n_pairs_ = static_cast<std::size_t>(
+            block_.list_holding(
+                grid_.points()[static_cast<std::size_t>(at)],
+                [&](std::size_t i) {
+                  return PointPair{static_cast<std::int32_t>(members[i]), at};
+                },
+                pairs_.data() + n_pairs_) -
+            pairs_.data());
+        if (n_pairs_ >= batch) locate_batch();
       }
-      if (pairs_.size() >= batch) locate_batch();
     }
   }
 
@@ -53,15 +55,10 @@ class Search {
   }
 
  private:
-  [[nodiscard]] Aabb box_of(const Tet& tet) const {
-    Aabb box = collide::box_of(mesh_.points[static_cast<std::size_t>(tet[0])]);
-    for (std::size_t corner = 1; corner < 4; ++corner)
-      grow(box, mesh_.points[static_cast<std::size_t>(tet[corner])]);
-    return padded(box);
-  }
   void locate_batch() {
     found_.clear();
-    locate_pairs(mesh_.points, mesh_.tets, grid_.points(), pairs_, found_);
+    locate_pairs(mesh_.points, mesh_.tets, grid_.points(), std::span(pairs_).first(n_pairs_),
+                 found_);
     for (const Found& f : found_) {
       const PointPair& pair = pairs_[static_cast<std::size_t>(f.pair)];
       const auto at = static_cast<std::size_t>(pair.point);
@@ -71,16 +68,18 @@ class Search {
       best_[at] = candidate;
       donors_[at] = {mesh_.tets[tet], f.location.weights};
     }
-    n_tested_ += pairs_.size();
-    pairs_.clear();
+    n_tested_ += n_pairs_;
+    n_pairs_ = 0;
   }
 
   const MeshView& mesh_;
   PointGrid grid_;
   std::vector<Candidate> best_;  // per position in the grid
   std::vector<Donor> donors_;
-  std::vector<std::int32_t> near_;  // positions of the points in the current box of the cover
-  std::vector<PointPair> pairs_;
+  BoxBlock block_;
+  std::vector<std::int32_t> near_;  // room for positions of points
+  std::vector<PointPair> pairs_;    // the first n_pairs_ wait for their location
+  std::size_t n_pairs_ = 0;
   std::vector<Found> found_;
   std::uint64_t n_tested_ = 0;
 };

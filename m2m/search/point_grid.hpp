@@ -24,26 +24,48 @@ class PointGrid {
     return !((p[0] < box.lo[0]) | (p[0] > box.hi[0]) | (p[1] < box.lo[1]) | (p[1] > box.hi[1]) |
              (p[2] < box.lo[2]) | (p[2] > box.hi[2]));
   }
-  /// Calls found(position) for each point in the closed box; position is an index into points().
+  /// The positions of the points in the closed box, in `room`. Compares without branches: most
+  /// points of the cells that the box touches are in it, but which is not predictable.
+  [[nodiscard]] std::span<const std::int32_t> in(const Aabb& box,
+                                                 std::vector<std::int32_t>& room) const {
+    room.resize(points_.size());
+    std::size_t n = 0;
+    visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t at = first; at < last; ++at) {
+        room[n] = static_cast<std::int32_t>(at);
+        n += is_in(static_cast<std::int32_t>(at), box) ? 1U : 0U;
+      }
+      return true;
+    });
+    return std::span(room).first(n);
+  }
+  /// True if the closed box holds a point.
+  [[nodiscard]] bool any_in(const Aabb& box) const {
+    return !visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t at = first; at < last; ++at)
+        if (is_in(static_cast<std::int32_t>(at), box)) return false;
+      return true;
+    });
+  }
+
+ private:
+  /// Calls visit(position, end) for the rows of the cells that the box touches, until it returns
+  /// false. Returns whether it never did.
   template <class Visit>
-  void visit_in(const Aabb& box, const Visit& found) const {
+  bool visit_rows(const Aabb& box, const Visit& visit) const {
     std::array<std::int32_t, 3> low{}, high{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (box.hi[axis] < around_.lo[axis] || box.lo[axis] > around_.hi[axis]) return;
+      if (box.hi[axis] < around_.lo[axis] || box.lo[axis] > around_.hi[axis]) return true;
       low[axis] = cells_.along(axis, box.lo[axis]);
       high[axis] = cells_.along(axis, box.hi[axis]);
     }
     for (std::int32_t z = low[2]; z <= high[2]; ++z)
-      for (std::int32_t y = low[1]; y <= high[1]; ++y) {
-        const std::uint32_t first = first_[cells_.number(low[0], y, z)];
-        const std::uint32_t last = first_[cells_.number(high[0], y, z) + 1];
-        for (std::uint32_t at = first; at < last; ++at) {
-          if (is_in(static_cast<std::int32_t>(at), box)) found(static_cast<std::int32_t>(at));
-        }
-      }
+      for (std::int32_t y = low[1]; y <= high[1]; ++y)
+        if (!visit(first_[cells_.number(low[0], y, z)], first_[cells_.number(high[0], y, z) + 1]))
+          return false;
+    return true;
   }
 
- private:
   Aabb around_;
   Cells cells_;
   std::vector<std::uint32_t> first_;  // per cell, and the end: position of its first point
