@@ -54,7 +54,7 @@ namespace tess::m2m {
 struct CouplingOptions {
   Point voxel_origin{0, 0, 0};
   Point voxel_size{0, 0, 0};      ///< zero: chosen
-  OutsidePolicy policy = Keep{};  ///< for target points outside the source
+  OutsidePolicy policy = Keep{};  ///< for target points outside the source; Nearest if `kind` is
   TransferKind kind = TransferKind::linear;
   /// What the values belong to. Kinds that are not conservative: nodes. Targets: nodes or cells.
   Centring source_values = Centring::nodes;
@@ -76,7 +76,9 @@ class Coupling {
  public:
   Coupling() = default;
   Coupling(ArrayProxy<S> source, ArrayProxy<T> target, CouplingOptions options = {})
-      : source_(source), target_(target), options_(std::move(options)) {}
+      : source_(source), target_(target), options_(std::move(options)) {
+    if (options_.kind == TransferKind::nearest) options_.policy = Nearest{};
+  }
 
   /// Valid after the first search.
   [[nodiscard]] CouplingId id() const { return setup_.id; }

@@ -9,6 +9,13 @@
 #include <utility>
 
 namespace tess::m2m {
+namespace {
+
+bool needs_gradients(TransferKind kind) {
+  return kind == TransferKind::second_order || kind == TransferKind::limited;
+}
+
+}  // namespace
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
@@ -28,9 +35,9 @@ DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
 }
 
 NearestAnswer SourceSide::answer(const MeshView& mesh, NearestQuery query) {
-  if (!nearest_) nearest_.emplace(mesh.owned());
-  NearestAnswer answer{setup.id, {}, std::move(query.rows), {}, {}, {}};
-  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+  if (!nearest_) nearest_.emplace(mesh.owned(), mesh.point_ids.first(mesh.owned().size()));
+  NearestAnswer answer{setup.id, {}, std::move(query.keys), {}, {}, {}};
+  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
     const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
     answer.squared_distances.push_back(found.squared_distance);
     answer.vertices.push_back(found.vertex);
@@ -57,7 +64,7 @@ void SourceSide::choose(Choice choice) {
 void SourceSide::prepare(const MeshView& mesh) {
   cover_ = {};
   nearest_.reset();
-  if (setup.kind == TransferKind::linear || !gradient_vertices_.empty()) return;
+  if (!needs_gradients(setup.kind) || !gradient_vertices_.empty()) return;
   for (const auto& [target, donors] : donors_)
     for (const Donor& donor : donors)
       gradient_vertices_.insert(gradient_vertices_.end(), donor.vertices.begin(),
@@ -68,7 +75,7 @@ void SourceSide::prepare(const MeshView& mesh) {
 
 std::vector<Point> SourceSide::gradients(std::span<const double> values,
                                          std::size_t n_components) const {
-  if (setup.kind == TransferKind::linear) return {};
+  if (!needs_gradients(setup.kind)) return {};
   std::vector<Point> mine(gradient_vertices_.size() * n_components), all(values.size());
   m2m::apply(gradient_rows_, values, n_components, std::span(mine));
   for (std::size_t i = 0; i < gradient_vertices_.size(); ++i)
@@ -82,7 +89,7 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
                                             std::span<const Point> gradients,
                                             std::size_t n_components) const {
   std::vector<double> out(donors.size() * n_components);
-  if (setup.kind != TransferKind::linear) {
+  if (needs_gradients(setup.kind)) {
     std::vector<Tet> tets;
     std::vector<PointInTet> points;
     for (const Donor& donor : donors) {

@@ -11,6 +11,7 @@ std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
   asked_.clear();
   nearest_.clear();
+  to_ask_.clear();
   rows_.clear();
   channels_.clear();
   tally_ = {};
@@ -74,29 +75,31 @@ TargetSide::Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& 
   if (sources_.empty()) return {};
   if (nearest_.empty())
     for (std::size_t v = 0; v < best_.size(); ++v)
-      if (best_[v].candidate.status == Status::outside) {
-        const auto row = static_cast<std::int32_t>(v);
-        nearest_.emplace(row, NearestSoFar{.row = row});
+      if (setup.kind == TransferKind::nearest || best_[v].candidate.status == Status::outside) {
+        to_ask_.push_back(static_cast<std::uint32_t>(nearest_.size()));
+        nearest_.push_back({.row = static_cast<std::int32_t>(v)});
       }
   std::map<collide::OwnerId, NearestQuery> queries;
-  for (auto& [row, so_far] : nearest_) {
-    const Point& point = mesh.points[static_cast<std::size_t>(row)];
+  std::erase_if(to_ask_, [&](std::uint32_t key) {
+    NearestSoFar& so_far = nearest_[key];
+    const Point& point = mesh.points[static_cast<std::size_t>(so_far.row)];
     const NearestParts::Part next = nearest_parts_.next(point, so_far.asked);
-    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) continue;
+    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) return true;
     so_far.asked = next;
     NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];
     query.coupling = setup.id;
-    query.rows.push_back(row);
+    query.keys.push_back(key);
     query.points.push_back(point);
     query.squared_reaches.push_back(so_far.squared_distance);
-  }
+    return false;
+  });
   n_open_ = queries.size();
   return {std::make_move_iterator(queries.begin()), std::make_move_iterator(queries.end())};
 }
 
 void TargetSide::add(const NearestAnswer& answer) {
-  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
-    NearestSoFar& mine = nearest_.at(answer.rows[i]);
+  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
+    NearestSoFar& mine = nearest_[answer.keys[i]];
     const double d = answer.squared_distances[i];
     if (answer.vertices[i] < 0 || d > mine.squared_distance ||
         (d == mine.squared_distance && answer.ids[i] >= mine.id))
@@ -113,6 +116,7 @@ TargetSide::Addressed<Choice> TargetSide::choices() {
   std::map<collide::OwnerId, Choice> all;
   for (auto& [source, asked] : asked_) {
     Choice& choice = all[source];
+    if (setup.kind == TransferKind::nearest) continue;
     std::vector<std::int32_t> mine;
     for (std::size_t i = 0; i < asked.held.size(); ++i) {
       if (best_[static_cast<std::size_t>(asked.held[i])].source != source) continue;
@@ -121,17 +125,18 @@ TargetSide::Addressed<Choice> TargetSide::choices() {
     }
     if (!mine.empty()) rows_[source] = std::move(mine);
   }
-  for (const auto& [row, nearest] : nearest_) {
+  for (const NearestSoFar& nearest : nearest_) {
     if (nearest.vertex < 0) continue;
     all[nearest.source].vertices.push_back(nearest.vertex);
-    rows_[nearest.source].push_back(row);
+    rows_[nearest.source].push_back(nearest.row);
   }
   for (std::size_t v = 0; v < best_.size(); ++v) {
     status_[v] = best_[v].candidate.status;
     ++tally_.counts[static_cast<std::size_t>(status_[v])];
   }
   asked_.clear();
-  nearest_.clear();
+  nearest_ = {};
+  to_ask_ = {};
   best_ = {};
   nearest_parts_ = {};
   sources_ = {};

@@ -34,7 +34,7 @@ class TargetSide {
   void add(const NearestAnswer& answer);
   /// True if no answer is under way.
   [[nodiscard]] bool has_all_answers() const { return n_open_ == 0; }
-  /// The next queries for points outside; none if all are answered or the policy needs none.
+  /// The next queries for points that need a nearest vertex; none if all are answered.
   [[nodiscard]] Addressed<NearestQuery> nearest_queries(const MeshView& mesh);
   /// Ends the search: what each source piece that was asked shall send.
   [[nodiscard]] Addressed<Choice> choices();
@@ -59,8 +59,8 @@ class TargetSide {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, asked_, best_, nearest_, nearest_parts_, sources_, n_open_, tally_, status_,
-       rows_, channels_);
+    ar(setup, cover_, asked_, best_, nearest_, to_ask_, nearest_parts_, sources_, n_open_, tally_,
+       status_, rows_, channels_);
   }
 
  private:
@@ -79,7 +79,7 @@ class TargetSide {
     Candidate candidate{};
     collide::OwnerId source{};
   };
-  /// The nearest vertex found so far for a point outside, and the piece that was asked last.
+  /// The nearest vertex found so far for a point, and the piece that was asked last.
   struct NearestSoFar {
     std::int32_t row = 0;
     double squared_distance = std::numeric_limits<double>::infinity();
@@ -100,8 +100,9 @@ class TargetSide {
 
   Cover cover_;
   std::map<collide::OwnerId, Asked> asked_;
-  std::vector<Best> best_;                        // per point owned
-  std::map<std::int32_t, NearestSoFar> nearest_;  // by row
+  std::vector<Best> best_;             // per point owned
+  std::vector<NearestSoFar> nearest_;  // of the points that need a nearest vertex
+  std::vector<std::uint32_t> to_ask_;  // those of them that may have a nearer one in another piece
   NearestParts nearest_parts_;
   std::vector<collide::OwnerId> sources_;  // of the parts in nearest_parts_
   std::uint64_t n_open_ = 0;
