@@ -4,6 +4,7 @@
 #include "m2m/search/point_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace tess::m2m {
 namespace {
@@ -15,6 +16,7 @@ class Search {
  public:
   Search(const MeshView& mesh, std::span<const Point> points)
       : mesh_(mesh), grid_(points), best_(points.size()), donors_(points.size()) {
+    near_.resize(points.size());
     pairs_.resize(batch + BoxBlock::capacity);
   }
 
@@ -23,15 +25,15 @@ class Search {
     for (std::size_t first = 0; first < tets.size(); first += BoxBlock::capacity) {
       const auto members = tets.subspan(first, std::min(BoxBlock::capacity, tets.size() - first));
       block_.load(mesh_.points, mesh_.tets, members);
-      for (const std::int32_t at : grid_.in(block_.around(), near_)) {
-        n_pairs_ = static_cast<std::size_t>(
-            block_.list_holding(
-                grid_.points()[static_cast<std::size_t>(at)],
-                [&](std::size_t i) {
-                  return PointPair{static_cast<std::int32_t>(members[i]), at};
-                },
-                pairs_.data() + n_pairs_) -
-            pairs_.data());
+      list_near();
+      for (const Near& near : std::span(near_).first(n_near_)) {
+        const Point& p = grid_.points()[near.at];
+        for (std::uint64_t boxes = near.boxes; boxes != 0; boxes &= boxes - 1) {
+          const auto box = static_cast<std::size_t>(std::countr_zero(boxes));
+          pairs_[n_pairs_] = {static_cast<std::int32_t>(members[box]),
+                              static_cast<std::int32_t>(near.at)};
+          n_pairs_ += block_.holds(box, p) ? 1U : 0U;
+        }
         if (n_pairs_ >= batch) locate_batch();
       }
     }
@@ -41,6 +43,9 @@ class Search {
     locate_batch();
     BestDonors out;
     out.n_tested = n_tested_;
+    out.points.reserve(best_.size());
+    out.candidates.reserve(best_.size());
+    out.donors.reserve(best_.size());
     std::vector<std::uint32_t> position(best_.size());
     for (std::size_t at = 0; at < best_.size(); ++at)
       position[grid_.numbers()[at]] = static_cast<std::uint32_t>(at);
@@ -55,6 +60,25 @@ class Search {
   }
 
  private:
+  /// A point that some boxes of the block may hold, a bit per box.
+  struct Near {
+    std::uint64_t boxes;
+    std::uint32_t at;
+  };
+
+  /// Separate from the loop over bits, and without branches: whether a point is near is not
+  /// predictable.
+  void list_near() {
+    n_near_ = 0;
+    grid_.visit_rows(block_.around(), [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t at = first; at < last; ++at) {
+        const std::uint64_t boxes = block_.maybe_holding(grid_.points()[at]);
+        near_[n_near_] = {boxes, at};
+        n_near_ += boxes != 0 ? 1U : 0U;
+      }
+      return true;
+    });
+  }
   void locate_batch() {
     found_.clear();
     locate_pairs(mesh_.points, mesh_.tets, grid_.points(), std::span(pairs_).first(n_pairs_),
@@ -77,8 +101,9 @@ class Search {
   std::vector<Candidate> best_;  // per position in the grid
   std::vector<Donor> donors_;
   BoxBlock block_;
-  std::vector<std::int32_t> near_;  // room for positions of points
-  std::vector<PointPair> pairs_;    // the first n_pairs_ wait for their location
+  std::vector<Near> near_;  // the first n_near_ are near the block
+  std::size_t n_near_ = 0;
+  std::vector<PointPair> pairs_;  // the first n_pairs_ wait for their location
   std::size_t n_pairs_ = 0;
   std::vector<Found> found_;
   std::uint64_t n_tested_ = 0;

@@ -7,7 +7,6 @@
 #include "m2m/mesh.hpp"
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,18 +23,14 @@ class BoxBlock {
   /// The box around all of them.
   [[nodiscard]] const Aabb& around() const { return around_; }
 
-  /// Writes make(i) to `out` for each member i of the block whose closed box holds the point, and
-  /// returns the end of what it wrote. There is room for `capacity` at `out`.
-  template <class Make, class T>
-  T* list_holding(const Point& p, const Make& make, T* out) const {
-    for (std::uint64_t near = maybe_holding(p); near != 0; near &= near - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      *out = make(i);
-      const bool outside = (p[0] < low_[0][i]) | (p[0] > high_[0][i]) | (p[1] < low_[1][i]) |
-                           (p[1] > high_[1][i]) | (p[2] < low_[2][i]) | (p[2] > high_[2][i]);
-      out += outside ? 0 : 1;
-    }
-    return out;
+  /// A bit per box, in the order of the members: set if the box may hold the point.
+  [[nodiscard]] std::uint64_t maybe_holding(const Point& p) const {
+    return reaching_[0][slab(0, p[0])] & reaching_[1][slab(1, p[1])] & reaching_[2][slab(2, p[2])];
+  }
+  /// True if the closed box holds the point. Without branches.
+  [[nodiscard]] bool holds(std::size_t box, const Point& p) const {
+    return !((p[0] < low_[0][box]) | (p[0] > high_[0][box]) | (p[1] < low_[1][box]) |
+             (p[1] > high_[1][box]) | (p[2] < low_[2][box]) | (p[2] > high_[2][box]));
   }
 
  private:
@@ -49,11 +44,6 @@ class BoxBlock {
     return static_cast<std::size_t>(
         static_cast<std::int32_t>(at > 0 ? (at < last ? at : last) : 0));
   }
-  /// A bit per box: set if the box may hold the point.
-  [[nodiscard]] std::uint64_t maybe_holding(const Point& p) const {
-    return reaching_[0][slab(0, p[0])] & reaching_[1][slab(1, p[1])] & reaching_[2][slab(2, p[2])];
-  }
-
   Aabb around_{};
   Point per_length_{};
   std::array<Sides, 3> low_{}, high_{};

@@ -24,21 +24,6 @@ class PointGrid {
     return !((p[0] < box.lo[0]) | (p[0] > box.hi[0]) | (p[1] < box.lo[1]) | (p[1] > box.hi[1]) |
              (p[2] < box.lo[2]) | (p[2] > box.hi[2]));
   }
-  /// The positions of the points in the closed box, in `room`. Compares without branches: most
-  /// points of the cells that the box touches are in it, but which is not predictable.
-  [[nodiscard]] std::span<const std::int32_t> in(const Aabb& box,
-                                                 std::vector<std::int32_t>& room) const {
-    room.resize(points_.size());
-    std::size_t n = 0;
-    visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t at = first; at < last; ++at) {
-        room[n] = static_cast<std::int32_t>(at);
-        n += is_in(static_cast<std::int32_t>(at), box) ? 1U : 0U;
-      }
-      return true;
-    });
-    return std::span(room).first(n);
-  }
   /// True if the closed box holds a point.
   [[nodiscard]] bool any_in(const Aabb& box) const {
     return !visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
@@ -48,7 +33,6 @@ class PointGrid {
     });
   }
 
- private:
   /// Calls visit(position, end) for the rows of the cells that the box touches, until it returns
   /// false. Returns whether it never did.
   template <class Visit>
@@ -66,6 +50,7 @@ class PointGrid {
     return true;
   }
 
+ private:
   Aabb around_;
   Cells cells_;
   std::vector<std::uint32_t> first_;  // per cell, and the end: position of its first point
