@@ -9,7 +9,7 @@
 namespace tess::m2m {
 
 void BoxBlock::load(std::span<const Point> points, std::span<const Tet> tets,
-                    std::span<const std::uint32_t> members) {
+                    std::span<const std::uint32_t> members, double reach) {
   // The order of a mesh is often not spatial, so the members are all over it.
   for (const std::uint32_t t : members) __builtin_prefetch(&tets[t]);
   for (const std::uint32_t t : members)
@@ -28,10 +28,10 @@ void BoxBlock::load(std::span<const Point> points, std::span<const Tet> tets,
       high_[axis][i] = box.hi[axis];
     }
   }
-  around_ = padded(around);
+  around_ = padded(around, reach);
   for (std::size_t i = 0; i < n; ++i) {
-    const Aabb box =
-        padded({{low_[0][i], low_[1][i], low_[2][i]}, {high_[0][i], high_[1][i], high_[2][i]}});
+    const Aabb box = padded(
+        {{low_[0][i], low_[1][i], low_[2][i]}, {high_[0][i], high_[1][i], high_[2][i]}}, reach);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low_[axis][i] = box.lo[axis];
       high_[axis][i] = box.hi[axis];

@@ -17,9 +17,9 @@ class BoxBlock {
  public:
   static constexpr std::size_t capacity = 64;
 
-  /// Takes the padded boxes (locate.hpp) of some tetrahedra, at most `capacity`.
+  /// Takes the padded boxes (locate.hpp), extended by `reach`, of at most `capacity` tetrahedra.
   void load(std::span<const Point> points, std::span<const Tet> tets,
-            std::span<const std::uint32_t> members);
+            std::span<const std::uint32_t> members, double reach = 0);
   /// The box around all of them.
   [[nodiscard]] const Aabb& around() const { return around_; }
 
