@@ -26,6 +26,8 @@ struct CouplingSetup {
   CollectionId source{}, target{};
   OutsidePolicy policy{};
   TransferKind kind{};
+  double tolerance = 0;
+  bool clamp = false;
   Centring source_values{}, target_values{};
   GroupProxy<PointDirectory> directory;  ///< only where target pieces exchange values of ghosts
 };

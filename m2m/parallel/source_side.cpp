@@ -15,6 +15,17 @@ bool needs_gradients(TransferKind kind) {
   return kind == TransferKind::second_order || kind == TransferKind::limited;
 }
 
+/// The value, or the least or greatest of a vertex of the donor if it is beyond. NaN stays NaN.
+double clamped(double value, const Donor& donor, const double* values, std::size_t stride) {
+  double low = values[static_cast<std::size_t>(donor.vertices[0]) * stride], high = low;
+  for (const VertexId v : donor.vertices) {
+    const double at = values[static_cast<std::size_t>(v) * stride];
+    low = at < low ? at : low;
+    high = at > high ? at : high;
+  }
+  return value < low ? low : value > high ? high : value;
+}
+
 }  // namespace
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
@@ -24,12 +35,12 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   rounds_.clear();
   gradient_vertices_.clear();
   nearest_.reset();
-  cover_ = cover_tets(mesh.points, mesh.own_tets());
+  cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
   return cover_.boxes;
 }
 
 DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
-  BestDonors best = best_donors(mesh, cover_, query.boxes, query.points);
+  BestDonors best = best_donors(mesh, cover_, query.boxes, query.points, setup.tolerance);
   drafts_[query.from] = std::move(best.donors);
   return {setup.id, {}, std::move(best.points), std::move(best.candidates), best.n_tested};
 }
@@ -103,8 +114,11 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
   }
   double* to = out.data();
   for (const Donor& donor : donors)
-    for (std::size_t c = 0; c < n_components; ++c)
-      *to++ = interpolated(donor.weights, donor.vertices, values.data() + c, n_components);
+    for (std::size_t c = 0; c < n_components; ++c) {
+      const double* const from = values.data() + c;
+      const double value = interpolated(donor.weights, donor.vertices, from, n_components);
+      *to++ = setup.clamp ? clamped(value, donor, from, n_components) : value;
+    }
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tess::m2m {
 namespace {
@@ -27,11 +28,14 @@ std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
   asked_.clear();
   nearest_.clear();
   to_ask_.clear();
+  sources_.clear();
   rows_.clear();
   channels_.clear();
   tally_ = {};
+  worst_ = {};
   best_.assign(n_owned, {});
   status_.assign(n_owned, Status::outside);
+  distance_.assign(n_owned, 0);
   cover_ = cover_points(mesh.owned());
   return std::exchange(cover_.boxes, {});
 }
@@ -44,8 +48,7 @@ void TargetSide::add(const collide::Hits& hits) {
   }
 }
 
-TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh,
-                                                            std::span<const SourcePiece> sources) {
+TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh) {
   Addressed<DonorQuery> out;
   for (auto& [source, asked] : asked_) {
     sort_unique_boxes(asked.boxes);
@@ -61,14 +64,6 @@ TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh
   }
   n_open_ = out.size();
   cover_ = {};
-  if (!sources.empty()) {
-    std::vector<Aabb> boxes;
-    for (const SourcePiece& source : sources) {
-      boxes.push_back(source.box);
-      sources_.push_back(source.owner);
-    }
-    nearest_parts_ = NearestParts(boxes, collide::box_around(mesh.owned()));
-  }
   return out;
 }
 
@@ -86,14 +81,29 @@ void TargetSide::add(const DonorAnswer& answer) {
   --n_open_;
 }
 
+bool TargetSide::needs_sources() {
+  if (!nearest_.empty()) return false;  // they are named
+  for (std::size_t v = 0; v < best_.size(); ++v)
+    if (setup.kind == TransferKind::nearest || best_[v].candidate.status == Status::outside) {
+      to_ask_.push_back(static_cast<std::uint32_t>(nearest_.size()));
+      nearest_.push_back({.row = static_cast<std::int32_t>(v)});
+    }
+  return !nearest_.empty();
+}
+
+void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece> sources) {
+  std::vector<Aabb> boxes;
+  for (const SourcePiece& source : sources) {
+    boxes.push_back(source.box);
+    sources_.push_back(source.owner);
+  }
+  Aabb around = collide::no_box<double, 3>();
+  for (const NearestSoFar& point : nearest_)
+    around = merged(around, collide::box_of(mesh.points[static_cast<std::size_t>(point.row)]));
+  nearest_parts_ = NearestParts(boxes, around);
+}
+
 TargetSide::Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
-  if (sources_.empty()) return {};
-  if (nearest_.empty())
-    for (std::size_t v = 0; v < best_.size(); ++v)
-      if (setup.kind == TransferKind::nearest || best_[v].candidate.status == Status::outside) {
-        to_ask_.push_back(static_cast<std::uint32_t>(nearest_.size()));
-        nearest_.push_back({.row = static_cast<std::int32_t>(v)});
-      }
   std::map<collide::OwnerId, NearestQuery> queries;
   std::erase_if(to_ask_, [&](std::uint32_t key) {
     NearestSoFar& so_far = nearest_[key];
@@ -127,7 +137,7 @@ void TargetSide::add(const NearestAnswer& answer) {
   --n_open_;
 }
 
-TargetSide::Addressed<Choice> TargetSide::choices() {
+TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
   std::map<collide::OwnerId, Choice> all;
   for (auto& [source, asked] : asked_) {
     Choice& choice = all[source];
@@ -140,15 +150,22 @@ TargetSide::Addressed<Choice> TargetSide::choices() {
     }
     if (!mine.empty()) rows_[source] = std::move(mine);
   }
+  for (std::size_t v = 0; v < best_.size(); ++v) {
+    status_[v] = best_[v].candidate.status;
+    distance_[v] = best_[v].candidate.distance;  // infinite if outside
+    ++tally_.counts[static_cast<std::size_t>(status_[v])];
+  }
+  const bool gives_nearest = std::holds_alternative<Nearest>(setup.policy);
   for (const NearestSoFar& nearest : nearest_) {
-    if (nearest.vertex < 0) continue;
+    const auto row = static_cast<std::size_t>(nearest.row);
+    if (status_[row] == Status::outside) distance_[row] = std::sqrt(nearest.squared_distance);
+    if (nearest.vertex < 0 || !gives_nearest) continue;
     all[nearest.source].vertices.push_back(nearest.vertex);
     rows_[nearest.source].push_back(nearest.row);
   }
-  for (std::size_t v = 0; v < best_.size(); ++v) {
-    status_[v] = best_[v].candidate.status;
-    ++tally_.counts[static_cast<std::size_t>(status_[v])];
-  }
+  for (std::size_t v = 0; v < status_.size(); ++v)
+    if (status_[v] >= Status::snapped)
+      worst_.add({mesh.point_ids[v], mesh.points[v], distance_[v], status_[v]});
   asked_.clear();
   nearest_ = {};
   to_ask_ = {};
