@@ -118,8 +118,13 @@ TEST_CASE("a block of boxes names those that hold a point", "[m2m]") {
       BoxBlock block;
       block.load(mesh.points, mesh.tets, members);
       std::size_t n_found = 0, n_maybe = 0;
-      for (Point p : random_points(300, {1.2, 1.2, 1.2}, -0.1)) {
-        p[2] += offset;
+      std::vector<Point> points = random_points(300, {1.2, 1.2, 1.2}, -0.1);
+      for (Point& p : points) p[2] += offset;
+      for (const std::uint32_t t : members) {  // within the padding of a box
+        const Aabb box = tess::collide::box_around(corners_of(mesh.points, mesh.tets[t]));
+        points.push_back({box.lo[0] - 1e-11, box.hi[1], box.hi[2]});
+      }
+      for (const Point& p : points) {
         for (std::size_t i = 0; i < BoxBlock::capacity; ++i) {
           const bool maybe = (block.maybe_holding(p) >> i & 1) != 0;
           const bool holds = i < n && overlap(padded(tess::collide::box_around(
