@@ -54,8 +54,14 @@ namespace tess::m2m {
 struct CouplingOptions {
   Point voxel_origin{0, 0, 0};
   Point voxel_size{0, 0, 0};      ///< zero: chosen
-  OutsidePolicy policy = Keep{};  ///< for target points outside the source
+  OutsidePolicy policy = Keep{};  ///< for target points outside the source; Nearest if `kind` is
   TransferKind kind = TransferKind::linear;
+  /// A point outside that is at most so far from a tetrahedron, in units of the mesh, snaps to the
+  /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.
+  double tolerance = 0;
+  /// Keeps values within those of the vertices of the donor. It matters for points that snap within
+  /// rounding, whose values extrapolate, and for second_order, which then is `limited`.
+  bool clamp = false;
   /// What the values belong to. Kinds that are not conservative: nodes. Targets: nodes or cells.
   Centring source_values = Centring::nodes;
   Centring target_values = Centring::nodes;
@@ -68,6 +74,7 @@ struct SearchSummary {
   double broad = 0;   ///< covers, voxels, pairs of pieces that are near
   double narrow = 0;  ///< point location, points outside
   Tally tally;        ///< of the target points
+  WorstPlaces worst;  ///< of the target points that are snapped or outside
 };
 
 /// A coupling from an array of S to an array of T, which are Pieces. A handle: it can be copied.
@@ -76,7 +83,11 @@ class Coupling {
  public:
   Coupling() = default;
   Coupling(ArrayProxy<S> source, ArrayProxy<T> target, CouplingOptions options = {})
-      : source_(source), target_(target), options_(std::move(options)) {}
+      : source_(source), target_(target), options_(std::move(options)) {
+    if (options_.kind == TransferKind::nearest) options_.policy = Nearest{};
+    if (options_.kind == TransferKind::second_order && options_.clamp)
+      options_.kind = TransferKind::limited;
+  }
 
   /// Valid after the first search.
   [[nodiscard]] CouplingId id() const { return setup_.id; }
@@ -118,7 +129,9 @@ class Coupling {
   void check_options() const;
   Task set_up();
   Task collide_covers();
-  Task find_donors();
+  Task find_donors(LedgerPage& found);
+  /// Gives what the pieces have added to the ledger since the last call.
+  Task close_page(LedgerPage& page);
   Task find_overlaps();
   void enter(const char* phase) const {
     if (options_.on_phase) options_.on_phase(phase);
@@ -138,19 +151,33 @@ Task Coupling<S, T>::search(SearchSummary* summary) {
   co_await collide_covers();
   const Time broad = now();
   enter("narrow");
-  if (is_conservative())
+  LedgerPage found;
+  if (is_conservative()) {
     co_await find_overlaps();
-  else
-    co_await find_donors();
-  Future<LedgerPage> page;
-  setup_.ledger.template broadcast<&Ledger::close_page>(page.callback());
-  const LedgerPage found = co_await page;
-  if (summary != nullptr) *summary = {seconds(broad - start), seconds(now() - broad), found.tally};
+    co_await close_page(found);
+  } else {
+    co_await find_donors(found);
+  }
+  if (summary != nullptr)
+    *summary = {seconds(broad - start), seconds(now() - broad), found.tally, found.worst};
+}
+
+template <class S, class T>
+Task Coupling<S, T>::close_page(LedgerPage& page) {
+  Future<LedgerPage> closed;
+  setup_.ledger.template broadcast<&Ledger::close_page>(closed.callback());
+  page = co_await closed;
 }
 
 template <class S, class T>
 void Coupling<S, T>::check_options() const {
+  if (!(options_.tolerance >= 0 && options_.tolerance <= 1e100))
+    fail(ErrorCode::bad_argument, "tolerance ", options_.tolerance,
+         " is not a length; choose 0 to 1e100 in units of the mesh");
   if (is_conservative()) {
+    if (options_.tolerance > 0 || options_.clamp)
+      fail(ErrorCode::bad_argument, "kind ", name_of(options_.kind),
+           " has no donors: tolerance and clamp are for kinds that interpolate");
     if (std::holds_alternative<Nearest>(options_.policy))
       fail(ErrorCode::bad_argument,
            "a conservative kind has no nearest vertex for what the source does not cover: choose "
@@ -172,6 +199,8 @@ Task Coupling<S, T>::set_up() {
   setup_.target = target_.id();
   setup_.policy = options_.policy;
   setup_.kind = options_.kind;
+  setup_.tolerance = options_.tolerance;
+  setup_.clamp = options_.clamp;
   setup_.source_values = options_.source_values;
   setup_.target_values = options_.target_values;
   co_await epoch([&] {
@@ -202,19 +231,22 @@ Task Coupling<S, T>::collide_covers() {
   co_await collide::run_collision(setup_.collider, to_target);
 }
 
+/// Only points that are in no tetrahedron need to know all source pieces.
 template <class S, class T>
-Task Coupling<S, T>::find_donors() {
-  std::vector<SourcePiece> sources;
-  if (std::holds_alternative<Nearest>(options_.policy)) {
-    Future<LedgerPage> page;
-    setup_.ledger.template broadcast<&Ledger::close_page>(page.callback());
-    LedgerPage all = co_await page;
-    sources = std::move(all.sources);
-    std::sort(sources.begin(), sources.end(),
-              [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
-  }
-  co_await epoch(
-      [&] { target_.template broadcast<&Piece<T>::template m2m_ask<S>>(setup_.id, sources); });
+Task Coupling<S, T>::find_donors(LedgerPage& found) {
+  co_await epoch([&] { target_.template broadcast<&Piece<T>::template m2m_ask<S>>(setup_.id); });
+  co_await close_page(found);
+  if (found.n_waiting == 0) co_return;
+  co_await epoch([&] { source_.template broadcast<&Piece<S>::m2m_name_source>(setup_.id); });
+  LedgerPage page;
+  co_await close_page(page);
+  std::sort(page.sources.begin(), page.sources.end(),
+            [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
+  co_await epoch([&] {
+    target_.template broadcast<&Piece<T>::template m2m_ask_nearest<S>>(setup_.id, page.sources);
+  });
+  co_await close_page(page);
+  found += page;
 }
 
 /// Each step needs all messages of the one before.

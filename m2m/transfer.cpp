@@ -38,7 +38,7 @@ Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions op
   const Time end = now();
   co_await epoch([&] { handle.destroy(); });
   if (summary != nullptr)
-    *summary = {search.broad, search.narrow, seconds(end - start), search.tally};
+    *summary = {search.broad, search.narrow, seconds(end - start), search.tally, search.worst};
 }
 
 }  // namespace tess::m2m

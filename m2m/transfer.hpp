@@ -77,6 +77,7 @@ struct TransferSummary {
   double narrow = 0;  ///< point location, vertices outside
   double apply = 0;   ///< interpolation, values, ghosts
   Tally tally;        ///< of the target vertices
+  WorstPlaces worst;  ///< of the target vertices that are snapped or outside
 };
 
 /// A search and one application.

@@ -12,6 +12,8 @@ const char* name_of(TransferKind kind) noexcept {
       return "second-order";
     case TransferKind::limited:
       return "limited";
+    case TransferKind::nearest:
+      return "nearest";
     case TransferKind::conservative:
       return "conservative";
     case TransferKind::conservative_bounded:

@@ -11,6 +11,7 @@ enum class TransferKind : std::uint8_t {
   linear,        ///< in the tetrahedron that holds the point: second order, bounded by its corners
   second_order,  ///< with recovered gradients: third order where the field is smooth, not bounded
   limited,       ///< the same, kept within the values at the corners of the tetrahedron
+  nearest,       ///< the value of the nearest vertex, also outside: first order, bounded
   conservative,  ///< L2 projection: keeps the integral; second order, not bounded
   conservative_bounded,  ///< the same, kept within the source values that overlap
   conservative_lumped,   ///< with lumped masses: keeps integral and bounds, but smooths
@@ -19,13 +20,14 @@ inline constexpr std::array all_transfer_kinds{
     TransferKind::linear,
     TransferKind::second_order,
     TransferKind::limited,
+    TransferKind::nearest,
     TransferKind::conservative,
     TransferKind::conservative_bounded,
     TransferKind::conservative_lumped,
 };
 
-/// "linear", "second-order", "limited", "conservative", "conservative-bounded" or
-/// "conservative-lumped".
+/// "linear", "second-order", "limited", "nearest", "conservative",
+/// "conservative-bounded" or "conservative-lumped".
 [[nodiscard]] const char* name_of(TransferKind kind) noexcept;
 /// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);

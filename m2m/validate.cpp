@@ -72,16 +72,26 @@ void validate(const MeshView& mesh) {
     fail(ErrorCode::bad_mesh, "a piece of ", n, " points and ", mesh.tets.size(),
          " tetrahedra has ", mesh.point_ids.size(), " point_ids and ", mesh.tet_ids.size(),
          " tet_ids; give an id for each");
-  for (std::size_t i = 0; i < mesh.points.size(); ++i)
-    for (const double x : mesh.points[i])
-      if (!(std::abs(x) <= 1e100))
-        fail(ErrorCode::bad_mesh, "point ", i, " of a piece has the coordinate ", x,
-             "; coordinates must be finite and at most 1e100");
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    for (const VertexId v : mesh.tets[t])
-      if (v < 0 || v >= n)
-        fail(ErrorCode::bad_mesh, "tetrahedron ", t, " of a piece names point ", v,
-             ", but the piece has ", n, " points");
+  // Each search validates, so the passes that decide have no branch and are vectorised.
+  const auto is_bad = [](double x) { return !(std::abs(x) <= 1e100); };
+  bool bad = false;
+  for (const Point& p : mesh.points) bad |= is_bad(p[0]) | is_bad(p[1]) | is_bad(p[2]);
+  if (bad)
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+      for (const double x : mesh.points[i])
+        if (is_bad(x))
+          fail(ErrorCode::bad_mesh, "point ", i, " of a piece has the coordinate ", x,
+               "; coordinates must be finite and at most 1e100");
+  const auto out_of_range = [n](VertexId v) { return (v < 0) | (v >= n); };
+  for (const Tet& tet : mesh.tets)
+    bad |=
+        out_of_range(tet[0]) | out_of_range(tet[1]) | out_of_range(tet[2]) | out_of_range(tet[3]);
+  if (bad)
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+      for (const VertexId v : mesh.tets[t])
+        if (out_of_range(v))
+          fail(ErrorCode::bad_mesh, "tetrahedron ", t, " of a piece names point ", v,
+               ", but the piece has ", n, " points");
 }
 
 }  // namespace tess::m2m

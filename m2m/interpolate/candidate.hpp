@@ -16,21 +16,23 @@ enum class Place : std::uint8_t { corner, elsewhere };
 
 /// The default value means that no candidate is known; every other candidate is better.
 struct Candidate {
-  /// max(0, -smallest weight): 0 within the closed tetrahedron
-  double violation = std::numeric_limits<double>::infinity();
+  /// from the closed tetrahedron, in units of the mesh; 0 within it
+  double distance = std::numeric_limits<double>::infinity();
   /// global id in the source mesh
   GlobalId tet = std::numeric_limits<GlobalId>::max();
   Status status = Status::outside;
   Place place = Place::elsewhere;
 };
 
-/// True if `a` is better than `b`. A corner that coincides with the point comes first, then the
-/// smaller violation, then the lower tetrahedron. With corners first, a mesh that is transferred
+/// True if `a` is better than `b`. A corner that coincides with the point comes first, then
+/// tetrahedra that hold the point, then the nearer one, then the lower one. With corners first, a mesh that is transferred
 /// onto itself keeps its values even if it does not conform (a vertex on the face of a tetrahedron
 /// that does not use it). This is a strict total order of distinct tetrahedra.
 [[nodiscard]] constexpr bool better(const Candidate& a, const Candidate& b) noexcept {
   if (a.place != b.place) return a.place == Place::corner;
-  return a.violation < b.violation || (a.violation == b.violation && a.tet < b.tet);
+  const bool a_holds = a.status < Status::snapped, b_holds = b.status < Status::snapped;
+  if (a_holds != b_holds) return a_holds;
+  return a.distance < b.distance || (a.distance == b.distance && a.tet < b.tet);
 }
 
 }  // namespace tess::m2m

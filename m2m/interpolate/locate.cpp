@@ -1,5 +1,6 @@
 #include "m2m/interpolate/locate.hpp"
 
+#include "m2m/interpolate/nearest_point.hpp"
 #include "m2m/interpolate/orientation.hpp"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corne
     return location;
   }
   if (!snaps(p, corners, volume, total)) return std::nullopt;
-  location.violation = -*std::min_element(location.weights.begin(), location.weights.end());
+  location.distance = nearest_point(p, corners).distance;
   location.status = Status::snapped;
   return location;
 }

@@ -33,15 +33,15 @@ using Weights = std::array<double, 4>;
 
 /// The position of a point that lies in a tetrahedron or snaps to it.
 struct Location {
-  Weights weights;   ///< per vertex of the tetrahedron, in its order; their sum is 1
-  double violation;  ///< max(0, -smallest weight)
-  Status status;     ///< inside, boundary or snapped
+  Weights weights;  ///< per vertex of the tetrahedron, in its order; their sum is 1
+  double distance;  ///< from the closed tetrahedron, in units of the mesh: 0 unless snapped
+  Status status;    ///< inside, boundary or snapped
   Place place = Place::elsewhere;
 };
 
 /// The location as a candidate of the tetrahedron with the global id `tet`.
 [[nodiscard]] inline Candidate candidate_of(const Location& location, GlobalId tet) noexcept {
-  return {location.violation, tet, location.status, location.place};
+  return {location.distance, tet, location.status, location.place};
 }
 
 /// The location of `p` in the tetrahedron with these corners. Empty if `p` is outside and does not
@@ -71,14 +71,16 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
 /// broad phase uses it for the source; target points need no padding.
 [[nodiscard]] Aabb search_box(const std::array<Point, 4>& corners);
 
-/// Contains the search_box() of every tetrahedron with corners in `box`, and costs less.
-[[nodiscard]] inline Aabb padded(const Aabb& box) {
+/// Contains the search_box() of every tetrahedron with corners in `box`, extended by `reach`, and
+/// costs less.
+[[nodiscard]] inline Aabb padded(const Aabb& box, double reach = 0) {
   double extent = 0, largest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     extent += box.hi[axis] - box.lo[axis];  // the sum is at least an edge
     largest = std::max({largest, -box.lo[axis], box.hi[axis]});
   }
-  const double pad = 2.01 * (snap_edges * extent + snap_ulps * largest);
+  // The multiple of the largest coordinate also covers the rounding of box and reach.
+  const double pad = 2.01 * (snap_edges * extent + snap_ulps * (largest + reach)) + reach;
   Aabb out = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.lo[axis] -= pad;

@@ -5,8 +5,10 @@
 #include "collide/collider.hpp"
 #include "m2m/mesh.hpp"
 #include "m2m/tally.hpp"
+#include "m2m/worst_places.hpp"
 #include "runtime/runtime.hpp"
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -20,13 +22,22 @@ struct SourcePiece {
 
 struct LedgerPage {
   Tally tally;
+  WorstPlaces worst;
+  std::uint64_t n_waiting = 0;  ///< target pieces with points that need the nearest vertex
   std::vector<SourcePiece> sources;
+
+  LedgerPage& operator+=(const LedgerPage& other) {
+    tally += other.tally;
+    worst += other.worst;
+    n_waiting += other.n_waiting;
+    sources.insert(sources.end(), other.sources.begin(), other.sources.end());
+    return *this;
+  }
 };
 /// Joins the pages of all PEs.
 struct JoinPages {
   LedgerPage operator()(LedgerPage a, const LedgerPage& b) const {
-    a.tally += b.tally;
-    a.sources.insert(a.sources.end(), b.sources.begin(), b.sources.end());
+    a += b;
     return a;
   }
 };
@@ -35,7 +46,9 @@ class Ledger : public Group<Ledger> {
  public:
   /// Called by pieces on this PE.
   void add(const Tally& tally) { page_.tally += tally; }
+  void add(const WorstPlaces& worst) { page_.worst += worst; }
   void add(const SourcePiece& source) { page_.sources.push_back(source); }
+  void add_waiting() { ++page_.n_waiting; }
 
   /// Entry method: gives the sums since the last call.
   void close_page(Callback<LedgerPage> target) {

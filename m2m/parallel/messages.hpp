@@ -26,6 +26,8 @@ struct CouplingSetup {
   CollectionId source{}, target{};
   OutsidePolicy policy{};
   TransferKind kind{};
+  double tolerance = 0;
+  bool clamp = false;
   Centring source_values{}, target_values{};
   GroupProxy<PointDirectory> directory;  ///< only where target pieces exchange values of ghosts
 };
@@ -50,7 +52,7 @@ struct DonorAnswer {
 struct NearestQuery {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::vector<std::int32_t> rows;  ///< of the target piece
+  std::vector<std::uint32_t> keys;  ///< per point, from the target piece: they come back
   std::vector<Point> points;
   std::vector<double> squared_reaches;  ///< per point: farther vertices are not of interest
 };
@@ -58,7 +60,7 @@ struct NearestQuery {
 struct NearestAnswer {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::vector<std::int32_t> rows;  ///< those of the query
+  std::vector<std::uint32_t> keys;  ///< those of the query
   std::vector<double> squared_distances;
   std::vector<GlobalId> ids;
   std::vector<VertexId> vertices;  ///< in the source piece

@@ -37,6 +37,14 @@ class Piece : public OverlapPiece<C> {
                                                 : couplings.target(id).status();
   }
 
+  /// How far the points of this piece lie from the source, in units of the mesh: per point owned. 0
+  /// if inside or on the boundary; if snapped, from the tetrahedron; if outside, from the nearest
+  /// vertex. Empty for conservative kinds.
+  [[nodiscard]] std::span<const double> distance(CouplingId id) const {
+    if (couplings.is_conservative_target(id)) return {};
+    return couplings.target(id).distance();
+  }
+
   /// The policy of a coupling whose target this piece belongs to.
   [[nodiscard]] const OutsidePolicy& policy(CouplingId id) const {
     return couplings.is_conservative_target(id) ? couplings.overlap_target(id).setup.policy
@@ -110,8 +118,6 @@ class Piece : public OverlapPiece<C> {
     from.setup = setup;
     const MeshView mesh = self().mesh_view();
     setup.collider.submit({me(), detail::source_model, from.start_search(mesh)});
-    if (std::holds_alternative<Nearest>(setup.policy))
-      setup.ledger.local().add(SourcePiece{me(), collide::box_around(mesh.owned())});
   }
   void m2m_submit_target(const CouplingSetup& setup) {
     TargetSide& to = couplings.targets[setup.id];
@@ -126,9 +132,9 @@ class Piece : public OverlapPiece<C> {
   }
 
   template <class S>
-  void m2m_ask(CouplingId id, const std::vector<SourcePiece>& sources) {
+  void m2m_ask(CouplingId id) {
     TargetSide& to = couplings.target(id);
-    for (auto& [source, query] : to.donor_queries(self().mesh_view(), sources)) {
+    for (auto& [source, query] : to.donor_queries(self().mesh_view())) {
       query.from = me();
       at<S>(to.setup.source, source)
           .template send<&Piece<S>::template m2m_answer<C>>(std::move(query));
@@ -147,6 +153,17 @@ class Piece : public OverlapPiece<C> {
   void m2m_receive_donors(const DonorAnswer& answer) {
     TargetSide& to = couplings.target(answer.coupling);
     to.add(answer);
+    ask_on<S>(to);
+  }
+  void m2m_name_source(CouplingId id) {
+    const Aabb box = collide::box_around(self().mesh_view().owned());
+    couplings.source(id).setup.ledger.local().add(SourcePiece{me(), box});
+  }
+  template <class S>
+  void m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources) {
+    TargetSide& to = couplings.target(id);
+    if (!to.waits()) return;
+    to.name_sources(self().mesh_view(), sources);
     ask_on<S>(to);
   }
   template <class T>
@@ -183,6 +200,7 @@ class Piece : public OverlapPiece<C> {
   template <class S>
   void ask_on(TargetSide& to) {
     if (!to.has_all_answers()) return;
+    if (to.needs_sources()) return to.setup.ledger.local().add_waiting();
     auto queries = to.nearest_queries(self().mesh_view());
     for (auto& [source, query] : queries) {
       query.from = me();
@@ -190,11 +208,12 @@ class Piece : public OverlapPiece<C> {
           .template send<&Piece<S>::template m2m_answer_nearest<C>>(std::move(query));
     }
     if (!queries.empty()) return;
-    for (auto& [source, choice] : to.choices()) {
+    for (auto& [source, choice] : to.choices(self().mesh_view())) {
       choice.from = me();
       at<S>(to.setup.source, source).template send<&Piece<S>::m2m_choose>(std::move(choice));
     }
     to.setup.ledger.local().add(to.tally());
+    to.setup.ledger.local().add(to.worst());
   }
 };
 

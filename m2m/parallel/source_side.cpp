@@ -9,6 +9,24 @@
 #include <utility>
 
 namespace tess::m2m {
+namespace {
+
+bool needs_gradients(TransferKind kind) {
+  return kind == TransferKind::second_order || kind == TransferKind::limited;
+}
+
+/// The value, or the least or greatest of a vertex of the donor if it is beyond. NaN stays NaN.
+double clamped(double value, const Donor& donor, const double* values, std::size_t stride) {
+  double low = values[static_cast<std::size_t>(donor.vertices[0]) * stride], high = low;
+  for (const VertexId v : donor.vertices) {
+    const double at = values[static_cast<std::size_t>(v) * stride];
+    low = at < low ? at : low;
+    high = at > high ? at : high;
+  }
+  return value < low ? low : value > high ? high : value;
+}
+
+}  // namespace
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
@@ -17,20 +35,20 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   rounds_.clear();
   gradient_vertices_.clear();
   nearest_.reset();
-  cover_ = cover_tets(mesh.points, mesh.own_tets());
+  cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
   return cover_.boxes;
 }
 
 DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
-  BestDonors best = best_donors(mesh, cover_, query.boxes, query.points);
+  BestDonors best = best_donors(mesh, cover_, query.boxes, query.points, setup.tolerance);
   drafts_[query.from] = std::move(best.donors);
   return {setup.id, {}, std::move(best.points), std::move(best.candidates), best.n_tested};
 }
 
 NearestAnswer SourceSide::answer(const MeshView& mesh, NearestQuery query) {
-  if (!nearest_) nearest_.emplace(mesh.owned());
-  NearestAnswer answer{setup.id, {}, std::move(query.rows), {}, {}, {}};
-  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+  if (!nearest_) nearest_.emplace(mesh.owned(), mesh.point_ids.first(mesh.owned().size()));
+  NearestAnswer answer{setup.id, {}, std::move(query.keys), {}, {}, {}};
+  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
     const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
     answer.squared_distances.push_back(found.squared_distance);
     answer.vertices.push_back(found.vertex);
@@ -57,7 +75,7 @@ void SourceSide::choose(Choice choice) {
 void SourceSide::prepare(const MeshView& mesh) {
   cover_ = {};
   nearest_.reset();
-  if (setup.kind == TransferKind::linear || !gradient_vertices_.empty()) return;
+  if (!needs_gradients(setup.kind) || !gradient_vertices_.empty()) return;
   for (const auto& [target, donors] : donors_)
     for (const Donor& donor : donors)
       gradient_vertices_.insert(gradient_vertices_.end(), donor.vertices.begin(),
@@ -68,7 +86,7 @@ void SourceSide::prepare(const MeshView& mesh) {
 
 std::vector<Point> SourceSide::gradients(std::span<const double> values,
                                          std::size_t n_components) const {
-  if (setup.kind == TransferKind::linear) return {};
+  if (!needs_gradients(setup.kind)) return {};
   std::vector<Point> mine(gradient_vertices_.size() * n_components), all(values.size());
   m2m::apply(gradient_rows_, values, n_components, std::span(mine));
   for (std::size_t i = 0; i < gradient_vertices_.size(); ++i)
@@ -82,7 +100,7 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
                                             std::span<const Point> gradients,
                                             std::size_t n_components) const {
   std::vector<double> out(donors.size() * n_components);
-  if (setup.kind != TransferKind::linear) {
+  if (needs_gradients(setup.kind)) {
     std::vector<Tet> tets;
     std::vector<PointInTet> points;
     for (const Donor& donor : donors) {
@@ -96,8 +114,11 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
   }
   double* to = out.data();
   for (const Donor& donor : donors)
-    for (std::size_t c = 0; c < n_components; ++c)
-      *to++ = interpolated(donor.weights, donor.vertices, values.data() + c, n_components);
+    for (std::size_t c = 0; c < n_components; ++c) {
+      const double* const from = values.data() + c;
+      const double value = interpolated(donor.weights, donor.vertices, from, n_components);
+      *to++ = setup.clamp ? clamped(value, donor, from, n_components) : value;
+    }
   return out;
 }
 

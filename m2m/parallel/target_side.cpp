@@ -1,21 +1,41 @@
 #include "m2m/parallel/target_side.hpp"
 
 #include "runtime/core/check.hpp"
-#include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tess::m2m {
+namespace {
+
+/// Sorts numbers of boxes and removes copies. There are about as many boxes as numbers, so a mark
+/// per box is several times faster than a sort.
+void sort_unique_boxes(std::vector<std::uint32_t>& boxes) {
+  if (boxes.empty()) return;
+  std::vector<std::uint8_t> marks(*std::max_element(boxes.begin(), boxes.end()) + std::size_t{1});
+  for (const std::uint32_t box : boxes) marks[box] = 1;
+  boxes.clear();
+  for (std::size_t box = 0; box < marks.size(); ++box)
+    if (marks[box] != 0) boxes.push_back(static_cast<std::uint32_t>(box));
+}
+
+}  // namespace
+
 std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
-  validate(mesh);
+  // Its tetrahedra are not looked at.
+  validate(MeshView{mesh.points, {}, mesh.point_ids, {}, mesh.n_owned});
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
   asked_.clear();
   nearest_.clear();
+  to_ask_.clear();
+  sources_.clear();
   rows_.clear();
   channels_.clear();
   tally_ = {};
+  worst_ = {};
   best_.assign(n_owned, {});
   status_.assign(n_owned, Status::outside);
+  distance_.assign(n_owned, 0);
   cover_ = cover_points(mesh.owned());
   return std::exchange(cover_.boxes, {});
 }
@@ -28,12 +48,11 @@ void TargetSide::add(const collide::Hits& hits) {
   }
 }
 
-TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh,
-                                                            std::span<const SourcePiece> sources) {
+TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh) {
   Addressed<DonorQuery> out;
   for (auto& [source, asked] : asked_) {
-    sort_unique(asked.boxes);
-    sort_unique(asked.source_boxes);
+    sort_unique_boxes(asked.boxes);
+    sort_unique_boxes(asked.source_boxes);
     DonorQuery query{setup.id, {}, std::exchange(asked.source_boxes, {}), {}};
     for (const std::uint32_t box : asked.boxes)
       for (const std::uint32_t row : cover_.members_of(box)) {
@@ -45,14 +64,6 @@ TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh
   }
   n_open_ = out.size();
   cover_ = {};
-  if (!sources.empty()) {
-    std::vector<Aabb> boxes;
-    for (const SourcePiece& source : sources) {
-      boxes.push_back(source.box);
-      sources_.push_back(source.owner);
-    }
-    nearest_parts_ = NearestParts(boxes, collide::box_around(mesh.owned()));
-  }
   return out;
 }
 
@@ -70,33 +81,50 @@ void TargetSide::add(const DonorAnswer& answer) {
   --n_open_;
 }
 
+bool TargetSide::needs_sources() {
+  if (!nearest_.empty()) return false;  // they are named
+  for (std::size_t v = 0; v < best_.size(); ++v)
+    if (setup.kind == TransferKind::nearest || best_[v].candidate.status == Status::outside) {
+      to_ask_.push_back(static_cast<std::uint32_t>(nearest_.size()));
+      nearest_.push_back({.row = static_cast<std::int32_t>(v)});
+    }
+  return !nearest_.empty();
+}
+
+void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece> sources) {
+  std::vector<Aabb> boxes;
+  for (const SourcePiece& source : sources) {
+    boxes.push_back(source.box);
+    sources_.push_back(source.owner);
+  }
+  Aabb around = collide::no_box<double, 3>();
+  for (const NearestSoFar& point : nearest_)
+    around = merged(around, collide::box_of(mesh.points[static_cast<std::size_t>(point.row)]));
+  nearest_parts_ = NearestParts(boxes, around);
+}
+
 TargetSide::Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
-  if (sources_.empty()) return {};
-  if (nearest_.empty())
-    for (std::size_t v = 0; v < best_.size(); ++v)
-      if (best_[v].candidate.status == Status::outside) {
-        const auto row = static_cast<std::int32_t>(v);
-        nearest_.emplace(row, NearestSoFar{.row = row});
-      }
   std::map<collide::OwnerId, NearestQuery> queries;
-  for (auto& [row, so_far] : nearest_) {
-    const Point& point = mesh.points[static_cast<std::size_t>(row)];
+  std::erase_if(to_ask_, [&](std::uint32_t key) {
+    NearestSoFar& so_far = nearest_[key];
+    const Point& point = mesh.points[static_cast<std::size_t>(so_far.row)];
     const NearestParts::Part next = nearest_parts_.next(point, so_far.asked);
-    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) continue;
+    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) return true;
     so_far.asked = next;
     NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];
     query.coupling = setup.id;
-    query.rows.push_back(row);
+    query.keys.push_back(key);
     query.points.push_back(point);
     query.squared_reaches.push_back(so_far.squared_distance);
-  }
+    return false;
+  });
   n_open_ = queries.size();
   return {std::make_move_iterator(queries.begin()), std::make_move_iterator(queries.end())};
 }
 
 void TargetSide::add(const NearestAnswer& answer) {
-  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
-    NearestSoFar& mine = nearest_.at(answer.rows[i]);
+  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
+    NearestSoFar& mine = nearest_[answer.keys[i]];
     const double d = answer.squared_distances[i];
     if (answer.vertices[i] < 0 || d > mine.squared_distance ||
         (d == mine.squared_distance && answer.ids[i] >= mine.id))
@@ -109,10 +137,11 @@ void TargetSide::add(const NearestAnswer& answer) {
   --n_open_;
 }
 
-TargetSide::Addressed<Choice> TargetSide::choices() {
+TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
   std::map<collide::OwnerId, Choice> all;
   for (auto& [source, asked] : asked_) {
     Choice& choice = all[source];
+    if (setup.kind == TransferKind::nearest) continue;
     std::vector<std::int32_t> mine;
     for (std::size_t i = 0; i < asked.held.size(); ++i) {
       if (best_[static_cast<std::size_t>(asked.held[i])].source != source) continue;
@@ -121,17 +150,25 @@ TargetSide::Addressed<Choice> TargetSide::choices() {
     }
     if (!mine.empty()) rows_[source] = std::move(mine);
   }
-  for (const auto& [row, nearest] : nearest_) {
-    if (nearest.vertex < 0) continue;
-    all[nearest.source].vertices.push_back(nearest.vertex);
-    rows_[nearest.source].push_back(row);
-  }
   for (std::size_t v = 0; v < best_.size(); ++v) {
     status_[v] = best_[v].candidate.status;
+    distance_[v] = best_[v].candidate.distance;  // infinite if outside
     ++tally_.counts[static_cast<std::size_t>(status_[v])];
   }
+  const bool gives_nearest = std::holds_alternative<Nearest>(setup.policy);
+  for (const NearestSoFar& nearest : nearest_) {
+    const auto row = static_cast<std::size_t>(nearest.row);
+    if (status_[row] == Status::outside) distance_[row] = std::sqrt(nearest.squared_distance);
+    if (nearest.vertex < 0 || !gives_nearest) continue;
+    all[nearest.source].vertices.push_back(nearest.vertex);
+    rows_[nearest.source].push_back(nearest.row);
+  }
+  for (std::size_t v = 0; v < status_.size(); ++v)
+    if (status_[v] >= Status::snapped)
+      worst_.add({mesh.point_ids[v], mesh.points[v], distance_[v], status_[v]});
   asked_.clear();
-  nearest_.clear();
+  nearest_ = {};
+  to_ask_ = {};
   best_ = {};
   nearest_parts_ = {};
   sources_ = {};

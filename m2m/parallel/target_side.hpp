@@ -26,22 +26,28 @@ class TargetSide {
   /// Forgets the last search, and returns boxes around the points.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
   void add(const collide::Hits& hits);
-  /// The queries to all source pieces that may hold points. `sources`: all source pieces, sorted by
-  /// owner, if points outside are to have the nearest vertex.
-  [[nodiscard]] Addressed<DonorQuery> donor_queries(const MeshView& mesh,
-                                                    std::span<const SourcePiece> sources);
+  /// The queries to all source pieces that may hold points.
+  [[nodiscard]] Addressed<DonorQuery> donor_queries(const MeshView& mesh);
   void add(const DonorAnswer& answer);
   void add(const NearestAnswer& answer);
   /// True if no answer is under way.
   [[nodiscard]] bool has_all_answers() const { return n_open_ == 0; }
-  /// The next queries for points outside; none if all are answered or the policy needs none.
+  /// After the last answer: true if points need the nearest vertex, which takes name_sources().
+  [[nodiscard]] bool needs_sources();
+  /// True between the two.
+  [[nodiscard]] bool waits() const { return !nearest_.empty() && sources_.empty(); }
+  /// `sources`: all source pieces, sorted by owner.
+  void name_sources(const MeshView& mesh, std::span<const SourcePiece> sources);
+  /// The next queries for points that need a nearest vertex; none if all are answered.
   [[nodiscard]] Addressed<NearestQuery> nearest_queries(const MeshView& mesh);
   /// Ends the search: what each source piece that was asked shall send.
-  [[nodiscard]] Addressed<Choice> choices();
+  [[nodiscard]] Addressed<Choice> choices(const MeshView& mesh);
   [[nodiscard]] const Tally& tally() const { return tally_; }
+  [[nodiscard]] const WorstPlaces& worst() const { return worst_; }
 
   /// Per point owned.
   [[nodiscard]] std::span<const Status> status() const { return status_; }
+  [[nodiscard]] std::span<const double> distance() const { return distance_; }
   [[nodiscard]] std::size_t n_sources() const { return rows_.size(); }
 
   /// The points that a source piece gives values to, in its order.
@@ -59,8 +65,8 @@ class TargetSide {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, asked_, best_, nearest_, nearest_parts_, sources_, n_open_, tally_, status_,
-       rows_, channels_);
+    ar(setup, cover_, asked_, best_, nearest_, to_ask_, nearest_parts_, sources_, n_open_, tally_,
+       worst_, status_, distance_, rows_, channels_);
   }
 
  private:
@@ -79,7 +85,7 @@ class TargetSide {
     Candidate candidate{};
     collide::OwnerId source{};
   };
-  /// The nearest vertex found so far for a point outside, and the piece that was asked last.
+  /// The nearest vertex found so far for a point, and the piece that was asked last.
   struct NearestSoFar {
     std::int32_t row = 0;
     double squared_distance = std::numeric_limits<double>::infinity();
@@ -100,13 +106,16 @@ class TargetSide {
 
   Cover cover_;
   std::map<collide::OwnerId, Asked> asked_;
-  std::vector<Best> best_;                        // per point owned
-  std::map<std::int32_t, NearestSoFar> nearest_;  // by row
+  std::vector<Best> best_;             // per point owned
+  std::vector<NearestSoFar> nearest_;  // of the points that need a nearest vertex
+  std::vector<std::uint32_t> to_ask_;  // those of them that may have a nearer one in another piece
   NearestParts nearest_parts_;
   std::vector<collide::OwnerId> sources_;  // of the parts in nearest_parts_
   std::uint64_t n_open_ = 0;
   Tally tally_;
+  WorstPlaces worst_;
   std::vector<Status> status_;
+  std::vector<double> distance_;                                // per point owned
   std::map<collide::OwnerId, std::vector<std::int32_t>> rows_;  // per source piece, in its order
   std::map<std::uint64_t, Channel> channels_;
 };

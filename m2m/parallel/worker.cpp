@@ -9,6 +9,7 @@ Outcome JoinOutcomes::operator()(Outcome a, const Outcome& b) const {
   a.points.insert(a.points.end(), b.points.begin(), b.points.end());
   a.status.insert(a.status.end(), b.status.begin(), b.status.end());
   a.values.insert(a.values.end(), b.values.begin(), b.values.end());
+  a.distance.insert(a.distance.end(), b.distance.begin(), b.distance.end());
   return a;
 }
 
@@ -17,6 +18,7 @@ void Worker::load(PartLoad load) {
   n_components_ = load.n_components;
   values_ = std::move(load.values);
   status_.assign(static_cast<std::size_t>(part_.n_owned), Status::outside);
+  distance_.assign(status_.size(), 0);
 }
 
 void Worker::move(const RigidMotion& motion) {
@@ -81,6 +83,8 @@ void Worker::commit(CouplingId coupling) {
                   values_.data() + v * n_components_);
   const std::span<const Status> status = this->status(coupling);
   status_.assign(status.begin(), status.end());
+  const std::span<const double> distance = this->distance(coupling);
+  std::copy(distance.begin(), distance.end(), distance_.begin());
 }
 
 void Worker::gather(Callback<Outcome> target) {
@@ -88,7 +92,8 @@ void Worker::gather(Callback<Outcome> target) {
   const auto n = static_cast<std::ptrdiff_t>(n_components_);
   Outcome outcome{{part_.point_ids.begin(), part_.point_ids.begin() + owned},
                   status_,
-                  {values_.begin(), values_.begin() + owned * n}};
+                  {values_.begin(), values_.begin() + owned * n},
+                  distance_};
   contribute(JoinOutcomes{}, std::move(outcome), std::move(target));
 }
 

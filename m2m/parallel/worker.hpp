@@ -35,8 +35,9 @@ struct GhostRows {
 /// first transfer into the mesh every status is `outside`.
 struct Outcome {
   std::vector<GlobalId> points;
-  std::vector<Status> status;  ///< per vertex, from the transfer into the mesh that ended last
-  std::vector<double> values;  ///< points.size() × n_components, row-major
+  std::vector<Status> status;    ///< per vertex, from the transfer into the mesh that ended last
+  std::vector<double> values;    ///< points.size() × n_components, row-major
+  std::vector<double> distance;  ///< per vertex, from the same (Piece::distance())
 };
 /// Joins outcomes in a reduction.
 struct JoinOutcomes {
@@ -63,7 +64,7 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(couplings, part_, n_components_, values_, status_, pending_);
+    ar(couplings, part_, n_components_, values_, status_, distance_, pending_);
   }
 
  private:
@@ -79,8 +80,9 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
 
   MeshPart part_;
   std::uint64_t n_components_ = 0;
-  std::vector<double> values_;  // of all points, row-major
-  std::vector<Status> status_;  // per owned point
+  std::vector<double> values_;    // of all points, row-major
+  std::vector<Status> status_;    // per owned point
+  std::vector<double> distance_;  // per owned point
   std::map<CouplingId, Pending> pending_;
 };
 

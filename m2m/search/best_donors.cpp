@@ -1,97 +1,124 @@
 #include "m2m/search/best_donors.hpp"
 
-#include "m2m/search/point_grid.hpp"
+#include "m2m/interpolate/nearest_point.hpp"
+#include "m2m/search/near_pairs.hpp"
 
 namespace tess::m2m {
 namespace {
 
 /// Pairs that are located together; they stay in the first cache.
 constexpr std::size_t batch = 1024;
-/// Up to so many points near a box of the cover, each is compared with each tetrahedron there.
-constexpr std::size_t few = 16;
 
-class Search {
- public:
-  Search(const MeshView& mesh, std::span<const Point> points)
-      : mesh_(mesh), grid_(points), best_(points.size()), donors_(points.size()) {
-    pairs_.reserve(2 * batch);
+struct Best {
+  std::vector<Candidate> candidates{};  // per point
+  std::vector<Donor> donors{};
+
+  explicit Best(std::size_t n) : candidates(n), donors(n) {}
+  void offer(std::size_t point, const Candidate& candidate, const Tet& tet,
+             const Weights& weights) {
+    if (!better(candidate, candidates[point])) return;
+    candidates[point] = candidate;
+    donors[point] = {tet, weights};
   }
+};
+
+/// Finds the best of the tetrahedra that hold a point, or that it snaps to. The points are in the
+/// order of the pairs' grid.
+class DonorSearch {
+ public:
+  DonorSearch(const MeshView& mesh, std::span<const Point> points)
+      : mesh_(mesh), pairs_(mesh, points, 0), best_(points.size()) {}
 
   void visit(const Aabb& around, std::span<const std::uint32_t> tets) {
-    near_.clear();
-    grid_.visit_in(around, [&](std::int32_t at) { near_.push_back(at); });
-    if (near_.empty()) return;
-    for (const std::uint32_t t : tets) {
-      const auto tet = static_cast<std::int32_t>(t);
-      const auto found = [&](std::int32_t at) { pairs_.push_back({tet, at}); };
-      const Aabb box = box_of(mesh_.tets[t]);
-      if (near_.size() > few) {
-        grid_.visit_in(box, found);
-      } else {
-        for (const std::int32_t at : near_)
-          if (grid_.is_in(at, box)) found(at);
-      }
-      if (pairs_.size() >= batch) locate_batch();
-    }
+    pairs_.visit(around, tets, [&](std::uint32_t tet, std::uint32_t at, bool holds) {
+      waiting_[n_waiting_] = {static_cast<std::int32_t>(tet), static_cast<std::int32_t>(at)};
+      n_waiting_ += holds ? 1U : 0U;
+      if (n_waiting_ == batch) locate();
+    });
   }
-
-  BestDonors take() {
-    locate_batch();
-    BestDonors out;
-    out.n_tested = n_tested_;
-    std::vector<std::uint32_t> position(best_.size());
-    for (std::size_t at = 0; at < best_.size(); ++at)
-      position[grid_.numbers()[at]] = static_cast<std::uint32_t>(at);
-    for (std::size_t point = 0; point < best_.size(); ++point) {
-      const std::uint32_t at = position[point];
-      if (best_[at].status == Status::outside) continue;
-      out.points.push_back(static_cast<std::uint32_t>(point));
-      out.candidates.push_back(best_[at]);
-      out.donors.push_back(donors_[at]);
-    }
-    return out;
+  Best take(std::uint64_t& n_tested) {
+    locate();
+    n_tested = n_tested_;
+    return std::move(best_);
   }
+  [[nodiscard]] const PointGrid& grid() const { return pairs_.grid(); }
 
  private:
-  [[nodiscard]] Aabb box_of(const Tet& tet) const {
-    Aabb box = collide::box_of(mesh_.points[static_cast<std::size_t>(tet[0])]);
-    for (std::size_t corner = 1; corner < 4; ++corner)
-      grow(box, mesh_.points[static_cast<std::size_t>(tet[corner])]);
-    return padded(box);
-  }
-  void locate_batch() {
+  void locate() {
     found_.clear();
-    locate_pairs(mesh_.points, mesh_.tets, grid_.points(), pairs_, found_);
+    locate_pairs(mesh_.points, mesh_.tets, grid().points(), std::span(waiting_).first(n_waiting_),
+                 found_);
     for (const Found& f : found_) {
-      const PointPair& pair = pairs_[static_cast<std::size_t>(f.pair)];
-      const auto at = static_cast<std::size_t>(pair.point);
+      const PointPair& pair = waiting_[static_cast<std::size_t>(f.pair)];
       const auto tet = static_cast<std::size_t>(pair.tet);
-      const Candidate candidate = candidate_of(f.location, mesh_.tet_ids[tet]);
-      if (!better(candidate, best_[at])) continue;
-      best_[at] = candidate;
-      donors_[at] = {mesh_.tets[tet], f.location.weights};
+      best_.offer(static_cast<std::size_t>(pair.point),
+                  candidate_of(f.location, mesh_.tet_ids[tet]), mesh_.tets[tet],
+                  f.location.weights);
     }
-    n_tested_ += pairs_.size();
-    pairs_.clear();
+    n_tested_ += n_waiting_;
+    n_waiting_ = 0;
   }
 
   const MeshView& mesh_;
-  PointGrid grid_;
-  std::vector<Candidate> best_;  // per position in the grid
-  std::vector<Donor> donors_;
-  std::vector<std::int32_t> near_;  // positions of the points in the current box of the cover
-  std::vector<PointPair> pairs_;
+  NearPairs pairs_;
+  Best best_;
+  std::vector<PointPair> waiting_ = std::vector<PointPair>(batch);
+  std::size_t n_waiting_ = 0;
   std::vector<Found> found_;
   std::uint64_t n_tested_ = 0;
 };
 
+/// Snaps the points that no tetrahedron holds to the nearest one within the tolerance.
+void snap(const MeshView& mesh, const Cover& cover, std::span<const std::uint32_t> boxes,
+          std::span<const Point> points, double tolerance, Best& best) {
+  std::vector<std::uint32_t> outside;
+  std::vector<Point> left;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (best.candidates[i].status == Status::outside) {
+      outside.push_back(i);
+      left.push_back(points[i]);
+    }
+  if (left.empty()) return;
+  NearPairs pairs(mesh, left, tolerance);
+  for (const std::uint32_t box : boxes)
+    pairs.visit(cover.boxes[box], cover.members_of(box),
+                [&](std::uint32_t tet, std::uint32_t at, bool holds) {
+                  if (!holds) return;
+                  const NearestPoint near = nearest_point(pairs.grid().points()[at],
+                                                          corners_of(mesh.points, mesh.tets[tet]));
+                  if (near.distance > tolerance) return;
+                  best.offer(outside[pairs.grid().numbers()[at]],
+                             {near.distance, mesh.tet_ids[tet], Status::snapped}, mesh.tets[tet],
+                             near.weights);
+                });
+}
+
 }  // namespace
 
 BestDonors best_donors(const MeshView& mesh, const Cover& cover,
-                       std::span<const std::uint32_t> boxes, std::span<const Point> points) {
-  Search search(mesh, points);
+                       std::span<const std::uint32_t> boxes, std::span<const Point> points,
+                       double tolerance) {
+  BestDonors out;
+  DonorSearch search(mesh, points);
   for (const std::uint32_t box : boxes) search.visit(cover.boxes[box], cover.members_of(box));
-  return search.take();
+  Best best = search.take(out.n_tested);
+  const std::span<const Point> in_grid = search.grid().points();
+  if (tolerance > 0) snap(mesh, cover, boxes, in_grid, tolerance, best);
+
+  std::vector<std::uint32_t> position(points.size());
+  for (std::size_t at = 0; at < points.size(); ++at)
+    position[search.grid().numbers()[at]] = static_cast<std::uint32_t>(at);
+  out.points.reserve(points.size());
+  out.candidates.reserve(points.size());
+  out.donors.reserve(points.size());
+  for (std::size_t point = 0; point < points.size(); ++point) {
+    const std::uint32_t at = position[point];
+    if (best.candidates[at].status == Status::outside) continue;
+    out.points.push_back(static_cast<std::uint32_t>(point));
+    out.candidates.push_back(best.candidates[at]);
+    out.donors.push_back(best.donors[at]);
+  }
+  return out;
 }
 
 }  // namespace tess::m2m

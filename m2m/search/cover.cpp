@@ -44,14 +44,14 @@ Cover cover_points(std::span<const Point> points) {
       [&](std::size_t i, Aabb& box) { grow(box, points[i]); });
 }
 
-Cover cover_tets(std::span<const Point> points, std::span<const Tet> tets) {
+Cover cover_tets(std::span<const Point> points, std::span<const Tet> tets, double reach) {
   Cover out = cover(
       collide::box_around(points), tets.size(),
       [&](std::size_t t) { return points[static_cast<std::size_t>(tets[t][0])]; },
       [&](std::size_t t, Aabb& box) {
         for (const VertexId v : tets[t]) grow(box, points[static_cast<std::size_t>(v)]);
       });
-  for (Aabb& box : out.boxes) box = padded(box);
+  for (Aabb& box : out.boxes) box = padded(box, reach);
   return out;
 }
 

@@ -26,8 +26,9 @@ struct Cover {
   }
 };
 
-/// The boxes contain each tetrahedron with its search_box().
-[[nodiscard]] Cover cover_tets(std::span<const Point> points, std::span<const Tet> tets);
+/// The boxes contain each tetrahedron with its search_box(), extended by `reach`.
+[[nodiscard]] Cover cover_tets(std::span<const Point> points, std::span<const Tet> tets,
+                               double reach = 0);
 [[nodiscard]] Cover cover_points(std::span<const Point> points);
 
 }  // namespace tess::m2m

@@ -22,11 +22,12 @@ std::size_t longest_axis(const Aabb& box) {
 
 }  // namespace
 
-NearestVertex::NearestVertex(std::span<const Point> points)
+NearestVertex::NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids)
     : points_(points.begin(), points.end()), vertices_(points.size()) {
   std::iota(vertices_.begin(), vertices_.end(), 0);
   if (!points.empty()) build(0, static_cast<std::int32_t>(points.size()));
   for (std::size_t i = 0; i < vertices_.size(); ++i) points_[i] = points[at(vertices_[i])];
+  for (const std::int32_t v : vertices_) ids_.push_back(ids.empty() ? v : ids[at(v)]);
 }
 
 /// Sorts only vertices_; the constructor reorders points_ at the end.
@@ -49,6 +50,7 @@ void NearestVertex::build(std::int32_t first, std::int32_t last) {
 
 NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) const {
   Answer best{-1, squared_reach};
+  GlobalId best_id = std::numeric_limits<GlobalId>::max();
   if (nodes_.empty()) return best;
   struct Pending {
     std::int32_t node;
@@ -64,10 +66,11 @@ NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) 
       if (node.second < 0) {
         for (std::int32_t i = node.first; i < node.last; ++i) {
           const double squared = squared_distance(p, points_[at(i)]);
-          const std::int32_t vertex = vertices_[at(i)];
-          const bool first = best.vertex < 0 || vertex < best.vertex;
-          if (squared < best.squared_distance || (squared == best.squared_distance && first))
-            best = {vertex, squared};
+          const bool first = ids_[at(i)] < best_id;
+          if (squared < best.squared_distance || (squared == best.squared_distance && first)) {
+            best = {vertices_[at(i)], squared};
+            best_id = ids_[at(i)];
+          }
         }
         break;
       }

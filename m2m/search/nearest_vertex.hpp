@@ -33,11 +33,11 @@ namespace tess::m2m {
 class NearestVertex {
  public:
   struct Answer {
-    std::int32_t vertex;  ///< index into the points; the lowest if several are equally near
+    std::int32_t vertex;  ///< index into the points; the lowest id if several are equally near
     double squared_distance;
   };
-  /// Copies the points. O(n log n).
-  explicit NearestVertex(std::span<const Point> points);
+  /// Copies the points. `ids`: per point, or empty if the indices are the ids. O(n log n).
+  explicit NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids = {});
 
   /// The vertex nearest to `p` within the reach (inclusive); vertex -1 if there is none.
   [[nodiscard]] Answer find(const Point& p,
@@ -54,6 +54,7 @@ class NearestVertex {
 
   std::vector<Point> points_;           // in the tree's order
   std::vector<std::int32_t> vertices_;  // their indices
+  std::vector<GlobalId> ids_;           // of these
   std::vector<Node> nodes_;
 };
 

@@ -24,23 +24,30 @@ class PointGrid {
     return !((p[0] < box.lo[0]) | (p[0] > box.hi[0]) | (p[1] < box.lo[1]) | (p[1] > box.hi[1]) |
              (p[2] < box.lo[2]) | (p[2] > box.hi[2]));
   }
-  /// Calls found(position) for each point in the closed box; position is an index into points().
+  /// True if the closed box holds a point.
+  [[nodiscard]] bool any_in(const Aabb& box) const {
+    return !visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t at = first; at < last; ++at)
+        if (is_in(static_cast<std::int32_t>(at), box)) return false;
+      return true;
+    });
+  }
+
+  /// Calls visit(position, end) for the rows of the cells that the box touches, until it returns
+  /// false. Returns whether it never did.
   template <class Visit>
-  void visit_in(const Aabb& box, const Visit& found) const {
+  bool visit_rows(const Aabb& box, const Visit& visit) const {
     std::array<std::int32_t, 3> low{}, high{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (box.hi[axis] < around_.lo[axis] || box.lo[axis] > around_.hi[axis]) return;
+      if (box.hi[axis] < around_.lo[axis] || box.lo[axis] > around_.hi[axis]) return true;
       low[axis] = cells_.along(axis, box.lo[axis]);
       high[axis] = cells_.along(axis, box.hi[axis]);
     }
     for (std::int32_t z = low[2]; z <= high[2]; ++z)
-      for (std::int32_t y = low[1]; y <= high[1]; ++y) {
-        const std::uint32_t first = first_[cells_.number(low[0], y, z)];
-        const std::uint32_t last = first_[cells_.number(high[0], y, z) + 1];
-        for (std::uint32_t at = first; at < last; ++at) {
-          if (is_in(static_cast<std::int32_t>(at), box)) found(static_cast<std::int32_t>(at));
-        }
-      }
+      for (std::int32_t y = low[1]; y <= high[1]; ++y)
+        if (!visit(first_[cells_.number(low[0], y, z)], first_[cells_.number(high[0], y, z) + 1]))
+          return false;
+    return true;
   }
 
  private:

@@ -3,6 +3,7 @@
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@ namespace {
 const std::array<Point, 4> unit{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
 
 bool same_bits(const Location& a, const Location& b) {
-  return a.weights == b.weights && a.violation == b.violation && a.status == b.status &&
+  return a.weights == b.weights && a.distance == b.distance && a.status == b.status &&
          a.place == b.place;
 }
 

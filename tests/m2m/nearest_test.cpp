@@ -58,6 +58,20 @@ TEST_CASE("the nearest vertex is that of brute force, and ties go to the lowest"
   CHECK(NearestVertex({}).find({0, 0, 0}).vertex == -1);
 }
 
+TEST_CASE("of equally near vertices the lowest id is found, whatever their order",
+          "[m2m][nearest]") {
+  const TetMesh mesh = kuhn_mesh({6});
+  const auto n = static_cast<GlobalId>(mesh.n_points());
+  std::vector<Point> reversed(mesh.points.rbegin(), mesh.points.rend());
+  std::vector<GlobalId> ids;
+  for (GlobalId v = 0; v < n; ++v) ids.push_back(n - 1 - v);
+  const NearestVertex nearest(reversed, ids);
+  for (const Point& p : queries())
+    if (ids[static_cast<std::size_t>(nearest.find(p).vertex)] !=
+        nearest_by_force(mesh.points, p).vertex)
+      FAIL("not vertex " << nearest_by_force(mesh.points, p).vertex);
+}
+
 TEST_CASE("the search over parts gives the vertex of the whole mesh, with few parts per point",
           "[m2m][nearest]") {
   const TetMesh mesh = kuhn_mesh({12});

@@ -1,6 +1,7 @@
 // Compares the transfer through chares with the transfer in one thread: both give the same bits on
 // every machine and schedule.
 #include "m2m/read_mesh.hpp"
+#include "m2m/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
@@ -26,10 +27,11 @@ struct Case {
   OutsidePolicy policy;
   std::int32_t n_parts = 4;
   Point voxel{};
+  TransferKind kind = TransferKind::linear;
 };
 
 Case make_case(TetMesh source, TetMesh target, OutsidePolicy policy) {
-  Case c{std::move(source), std::move(target), {}, {}, policy, 4, {}};
+  Case c{std::move(source), std::move(target), {}, {}, policy, 4, {}, {}};
   const Aabb domain = bounds(c.source);
   for (const char* name : {"gaussian", "linear"}) {
     const Formula formula = make_formula(name, domain);
@@ -50,6 +52,16 @@ Result serial(const Case& c) {
       transfer_serial(c.source, c.source_fields, c.target, fields, c.policy);
   Result result{report.status, {}};
   for (const Field& field : fields) result.values.push_back(field.values);
+  if (c.kind != TransferKind::nearest) return result;
+  for (std::size_t v = 0; v < c.target.n_points(); ++v) {
+    std::size_t nearest = 0;  // the first of several
+    for (std::size_t s = 1; s < c.source.n_points(); ++s)
+      if (squared_distance(c.target.points[v], c.source.points[s]) <
+          squared_distance(c.target.points[v], c.source.points[nearest]))
+        nearest = s;
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      result.values[f][v] = c.source_fields[f].values[nearest];
+  }
   return result;
 }
 
@@ -59,7 +71,7 @@ Task run_case(const Case& c, Result& result) {
     source = scatter(c.source, c.source_fields, c.n_parts, PartitionMethod::rcb);
     target = scatter(c.target, c.target_fields, c.n_parts + 1, PartitionMethod::hsfc);
   });
-  const TransferOptions options{{0.1, 0, 0}, c.voxel, c.policy};
+  const TransferOptions options{{0.1, 0, 0}, c.voxel, c.policy, c.kind};
   co_await transfer(source, target, options, nullptr);
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
@@ -149,6 +161,18 @@ TEST_CASE("nearest vertices through chares are those of the serial search, also 
     INFO("scale " << scale << ", offset " << offset);
     Case c = make_case(read_mesh("kuhn:6"), moved(read_mesh("kuhn:8"), scale, offset), Nearest{});
     check_on_all_machines(c, 40);
+  }
+}
+
+TEST_CASE("the kind nearest gives each point the value of the nearest vertex, under every policy",
+          "[m2m][parallel]") {
+  // A quarter of the points lie outside, and many are equally near to several vertices.
+  for (const OutsidePolicy& policy : {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}}) {
+    Case c = make_case(read_mesh("kuhn:4"), moved(read_mesh("kuhn:8"), 1.25, -0.25), policy);
+    c.kind = TransferKind::nearest;
+    const std::vector<Status> status = serial(c).status;
+    REQUIRE(std::count(status.begin(), status.end(), Status::outside) > 100);
+    check_on_all_machines(c, 20);
   }
 }
 

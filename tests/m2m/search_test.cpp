@@ -2,6 +2,7 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/search/best_donors.hpp"
+#include "m2m/search/box_block.hpp"
 #include "m2m/search/point_grid.hpp"
 #include "tests/support/catch.hpp"
 
@@ -91,16 +92,53 @@ TEST_CASE("a grid of points finds those in a box", "[m2m]") {
       const Aabb box =
           merged(tess::collide::box_of(points[i]), tess::collide::box_of(points[i + 1]));
       std::vector<std::uint32_t> found, want;
-      grid.visit_in(box, [&](std::int32_t at) {
-        found.push_back(grid.numbers()[static_cast<std::size_t>(at)]);
+      grid.visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t at = first; at < last; ++at)
+          if (grid.is_in(static_cast<std::int32_t>(at), box)) found.push_back(grid.numbers()[at]);
+        return true;
       });
       for (std::uint32_t k = 0; k < points.size(); ++k)
         if (overlap(box, tess::collide::box_of(points[k]), Touching::counts)) want.push_back(k);
       std::sort(found.begin(), found.end());
       REQUIRE(found == want);
+      REQUIRE(grid.any_in(box) == !want.empty());
       n_found += found.size();
     }
     CHECK(n_found >= 70);  // each box has its two corners
+  }
+}
+
+TEST_CASE("a block of boxes names those that hold a point", "[m2m]") {
+  TetMesh mesh = read_mesh("kuhn:4@0.2");
+  for (const double offset : {0.0, 1e9}) {
+    for (Point& p : mesh.points) p[2] += offset;
+    for (const std::size_t n : {std::size_t{1}, std::size_t{17}, BoxBlock::capacity}) {
+      std::vector<std::uint32_t> members;
+      for (std::uint32_t i = 0; i < n; ++i) members.push_back(i * 5);
+      BoxBlock block;
+      block.load(mesh.points, mesh.tets, members);
+      std::size_t n_found = 0, n_maybe = 0;
+      std::vector<Point> points = random_points(300, {1.2, 1.2, 1.2}, -0.1);
+      for (Point& p : points) p[2] += offset;
+      for (const std::uint32_t t : members) {  // within the padding of a box
+        const Aabb box = tess::collide::box_around(corners_of(mesh.points, mesh.tets[t]));
+        points.push_back({box.lo[0] - 1e-11, box.hi[1], box.hi[2]});
+      }
+      for (const Point& p : points) {
+        for (std::size_t i = 0; i < BoxBlock::capacity; ++i) {
+          const bool maybe = (block.maybe_holding(p) >> i & 1) != 0;
+          const bool holds = i < n && overlap(padded(tess::collide::box_around(
+                                                  corners_of(mesh.points, mesh.tets[members[i]]))),
+                                              tess::collide::box_of(p), Touching::counts);
+          REQUIRE((maybe || !holds));
+          REQUIRE((maybe && block.holds(i, p)) == holds);
+          n_found += holds ? 1 : 0;
+          n_maybe += maybe ? 1 : 0;
+        }
+      }
+      CHECK(n_found > 0);
+      if (n == BoxBlock::capacity) CHECK(n_maybe < 2 * n_found);
+    }
   }
 }
 
@@ -113,7 +151,7 @@ TEST_CASE("the narrow phase finds the best tetrahedron of each point among all",
   const Cover cover = cover_tets(mesh.points, mesh.tets);
   std::vector<std::uint32_t> all(cover.boxes.size());
   std::iota(all.begin(), all.end(), 0U);
-  // Few points and many, so that both ways to compare are taken; vertices lie in several tetrahedra.
+  // Vertices lie in several tetrahedra.
   for (const std::size_t n : {std::size_t{30}, std::size_t{3000}}) {
     std::vector<Point> points = random_points(n, {1.2, 1.2, 1.2}, -0.1);
     points.insert(points.end(), mesh.points.begin(), mesh.points.begin() + 100);

@@ -141,7 +141,7 @@ TEST_CASE(
     for (std::size_t t = 0; t < source.n_tets(); ++t) {
       const auto found = locate(target.points[v], corners_of(source.points, source.tets[t]));
       if (!found) continue;
-      const double rank = found->place == Place::corner ? -1 : found->violation;
+      const double rank = found->place == Place::corner ? -1 : found->distance;
       if (rank >= least) continue;
       least = rank;
       first = static_cast<GlobalId>(t);
