@@ -8,7 +8,11 @@
 
 namespace tess::m2m {
 
-void require_weights(TransferKind kind) {
+void require_weights(TransferKind kind, bool clamp) {
+  if (clamp)
+    fail(ErrorCode::bad_argument,
+         "values that are clamped are no matrix times the source values: "
+         "leave out clamp for weights");
   if (kind == TransferKind::limited || is_conservative(kind))
     fail(ErrorCode::bad_argument, "kind ", name_of(kind),
          " has no weights: its values are limited, or solve a system; choose linear or "

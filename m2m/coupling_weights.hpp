@@ -22,7 +22,7 @@ namespace tess::m2m {
                                      std::int64_t n_targets);
 
 /// Throws Error (bad_argument) unless values of this kind are a matrix times the source values.
-void require_weights(TransferKind kind);
+void require_weights(TransferKind kind, bool clamp);
 
 /// Collects the donors of the last search. Points are named by MeshView::point_ids, which must be 0
 /// to n_sources - 1 and 0 to n_targets - 1. For linear couplings apply() of the matrix gives the
@@ -36,7 +36,7 @@ Task collect_weights(Coupling<S, T> coupling, std::int64_t n_sources, std::int64
   TESS_CHECK(
       setup.id != CouplingId{},
       "weights of a coupling are collected before its first search: co_await search() first");
-  require_weights(setup.kind);
+  require_weights(setup.kind, setup.clamp);
   GroupProxy<RowBook> book;
   co_await epoch([&] { book = create_group<RowBook>(); });
   co_await epoch([&] {

@@ -20,7 +20,9 @@ FileFieldsRequest request_of(const DriverOptions& options) {
           r.kind,
           r.partition,
           r.n_chares != 0 ? r.n_chares : r.per_pe * machine().n_pes(),
-          r.voxel};
+          r.voxel,
+          r.tolerance,
+          r.clamp};
 }
 
 }  // namespace

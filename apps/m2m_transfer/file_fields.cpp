@@ -1,6 +1,8 @@
 #include "apps/m2m_transfer/file_fields.hpp"
 
+#include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/plot/write_file.hpp"
+#include "m2m/count_nan.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/field_file.hpp"
 #include "m2m/read_mesh.hpp"
@@ -182,6 +184,7 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
   co_await transfer.search(&found);
   if (!report.searched) {
     report.counts = found.tally.counts;
+    report.worst = found.worst;
     if (!run.request.weights.empty())
       co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
                                static_cast<std::int64_t>(run.target.n_points()), &run.matrix);
@@ -238,7 +241,7 @@ void check_options(const FileFieldsRequest& request) {
   if (!request.weights.empty() && !request.from_weights.empty())
     fail(ErrorCode::bad_argument,
          "--weights writes weights and --from-weights reads them; give one");
-  if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind));
+  if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind), request.clamp);
   plot::require_writable("--weights", request.weights);
   plot::require_writable("--out", request.out);
 }
@@ -266,6 +269,8 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
   Run run{request, read_mesh(request.source), read_mesh(request.target)};
   run.options.policy = parse_policy(request.policy);
   run.options.kind = parse_transfer_kind(request.kind);
+  run.options.tolerance = request.tolerance;
+  run.options.clamp = request.clamp;
   run.options.voxel_size = {request.voxel, request.voxel, request.voxel};
   run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
   report->source = request.source;
@@ -313,9 +318,13 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
       const auto first = values.begin() + static_cast<std::ptrdiff_t>(k * batch.n_each);
       std::vector<Field> result(first, first + static_cast<std::ptrdiff_t>(batch.n_each));
       std::uint64_t hash = result_hash({});
-      for (const Field& field : result) hash = result_hash(field.values, hash);
+      std::size_t n_nan = 0;
+      for (const Field& field : result) {
+        hash = result_hash(field.values, hash);
+        n_nan = std::max(n_nan, count_nan_rows(field.values, field.n_components));
+      }
       const double time = fields.time_of(batch.steps[k]);
-      report->steps.push_back({batch.steps[k], time, hash});
+      report->steps.push_back({batch.steps[k], time, n_nan, hash});
       if (!run.status.empty()) {
         std::vector<double> status;
         for (const Status s : run.status) status.push_back(static_cast<double>(s));
@@ -338,13 +347,16 @@ std::string table(const FileFieldsReport& r) {
   if (r.searched)
     out += fmt::format("  {:<12} {} inside, {} boundary, {} snapped, {} outside\n", "found",
                        r.counts[0], r.counts[1], r.counts[2], r.counts[3]);
+  for (const std::string& place : texts_of(r.worst))
+    out += fmt::format("  {:<12} {}\n", "farthest", place);
   if (r.n_weights > 0)
     out +=
         fmt::format("  {:<12} {} {}\n", "weights", r.n_weights,
                     r.searched ? "written" : fmt::format("read, {} vertices without", r.n_without));
   for (const MovedStep& step : r.steps)
-    out += fmt::format("  {:<12} {:016x}\n", fmt::format("step {} at {:.6g}", step.step, step.time),
-                       step.result_hash);
+    out += fmt::format("  {:<12} {:016x}{}\n",
+                       fmt::format("step {} at {:.6g}", step.step, step.time), step.result_hash,
+                       step.n_nan == 0 ? "" : fmt::format(", NaN at {} vertices", step.n_nan));
   return out;
 }
 
@@ -354,7 +366,8 @@ std::string json(const FileFieldsReport& r) {
     whole.update({{"inside", r.counts[0]},
                   {"boundary", r.counts[1]},
                   {"snapped", r.counts[2]},
-                  {"outside", r.counts[3]}});
+                  {"outside", r.counts[3]},
+                  {"farthest", json_of(r.worst)}});
   else
     whole["without_weights"] = r.n_without;
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
@@ -362,6 +375,7 @@ std::string json(const FileFieldsReport& r) {
   for (const MovedStep& step : r.steps)
     whole["steps"].push_back({{"step", step.step},
                               {"time", step.time},
+                              {"nan_vertices", step.n_nan},
                               {"result_hash", fmt::format("{:016x}", step.result_hash)}});
   return whole.dump(2) + "\n";
 }

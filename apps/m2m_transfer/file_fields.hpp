@@ -6,6 +6,7 @@
 #include "apps/m2m_transfer/names.hpp"
 #include "apps/progress.hpp"
 #include "m2m/field.hpp"
+#include "m2m/worst_places.hpp"
 #include "runtime/runtime.hpp"
 
 #include <array>
@@ -27,11 +28,14 @@ struct FileFieldsRequest {
   std::string policy = "keep", kind = "linear", partition = "rcb";
   std::int32_t n_chares = 8;  ///< per mesh
   double voxel = 0;           ///< edge; 0: chosen
+  double tolerance = 0;       ///< length within which vertices snap to the source
+  bool clamp = false;         ///< keep values within those of the donor
 };
 
 struct MovedStep {
   std::size_t step = 0;
   double time = 0;
+  std::size_t n_nan = 0;          ///< vertices with a NaN, of the field that has most
   std::uint64_t result_hash = 0;  ///< over the fields in order
 };
 struct FileFieldsReport {
@@ -39,6 +43,7 @@ struct FileFieldsReport {
   std::vector<std::string> fields;        ///< with their components
   bool searched = false;                  ///< otherwise the weights were read
   std::array<std::uint64_t, 4> counts{};  ///< per Status, after a search
+  WorstPlaces worst;                      ///< the same
   std::uint64_t n_without = 0;            ///< target vertices without weights, if they were read
   std::uint64_t n_weights = 0;            ///< read or written
   std::vector<MovedStep> steps;

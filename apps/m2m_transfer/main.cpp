@@ -49,6 +49,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
   line.option("--partition", request.partition,
               "method that cuts the meshes into chares: curve (by all PEs together), rcb or hsfc");
+  line.option("--tolerance", request.tolerance,
+              "vertices outside the source but nearer than this length snap to it");
+  line.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
   line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")
       .positive();
   line.option(

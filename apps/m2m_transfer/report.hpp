@@ -4,6 +4,7 @@
 #include "apps/m2m_transfer/names.hpp"
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
+#include "m2m/worst_places.hpp"
 
 #include <array>
 #include <cstdint>
@@ -47,6 +48,7 @@ struct TransferReport {
   double source_edge = 0;                 ///< of a cube with the volume of six average tetrahedra
   double longest_edge = 0;                ///< of the source
   std::array<std::uint64_t, 4> counts{};  ///< per Status, from the last search
+  WorstPlaces worst;                      ///< of the last search
   std::int32_t searches = 1;
   std::vector<FieldError> fields;
   Point worst_at{};  ///< the vertex with the largest error of the first field

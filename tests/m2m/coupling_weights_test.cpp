@@ -145,10 +145,12 @@ TEST_CASE("weights of second-order transfers give the values up to rounding", "[
 }
 
 TEST_CASE("kinds whose values are no matrix times the source have no weights", "[m2m][weights]") {
-  CHECK_THAT(message_of([] { require_weights(TransferKind::limited); }),
+  CHECK_THAT(message_of([] { require_weights(TransferKind::limited, false); }),
              Catch::Contains("kind limited has no weights"));
-  CHECK_THAT(message_of([] { require_weights(TransferKind::conservative); }),
+  CHECK_THAT(message_of([] { require_weights(TransferKind::conservative, false); }),
              Catch::Contains("kind conservative has no weights"));
+  CHECK_THAT(message_of([] { require_weights(TransferKind::linear, true); }),
+             Catch::Contains("leave out clamp"));
 }
 
 TEST_CASE("rows over ids that are no numbering of vertices are refused", "[m2m][weights]") {

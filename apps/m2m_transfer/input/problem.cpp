@@ -82,6 +82,8 @@ Problem load(const Request& request, const Machine& machine) {
   problem.policy = parse_policy(request.policy);
   problem.partition = parse_partition_method(request.partition);
   problem.kind = parse_transfer_kind(request.kind);
+  problem.tolerance = request.tolerance;
+  problem.clamp = request.clamp;
   problem.repeat = request.repeat;
   problem.steps = request.steps;
   std::vector<std::string> names{request.source, request.target};

@@ -30,6 +30,8 @@ struct Request {
   std::int32_t n_chares = 0;  ///< per mesh; 0: per_pe times the number of PEs
   std::int32_t per_pe = 8;
   double voxel = 0;         ///< edge; 0: chosen by the collider
+  double tolerance = 0;     ///< length within which vertices snap to the source
+  bool clamp = false;       ///< keep values within those of the donor
   std::int32_t repeat = 1;  ///< number of transfers; the fastest counts
   std::int32_t steps = 1;   ///< applications of each; the fastest counts
   std::vector<std::string> moves{};
@@ -54,6 +56,8 @@ struct Problem {
   PartitionMethod partition{};
   TransferKind kind{};
   Point voxel{};
+  double tolerance = 0;
+  bool clamp = false;
   std::int32_t repeat = 1, steps = 1;
   std::vector<TransferReport>
       reports{};  ///< per pair; load() fills in what is known before the run

@@ -1,5 +1,7 @@
 #include "apps/m2m_transfer/output/table.hpp"
 
+#include "apps/m2m_transfer/output/farthest.hpp"
+
 #include <array>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -55,6 +57,7 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair["boundary"] = r.counts[1];
   pair["snapped"] = r.counts[2];
   pair["outside"] = r.counts[3];
+  pair["farthest"] = json_of(r.worst);
   pair.update(norms_of(r.fields.front().norms));
   pair["found"] = found_of(r.fields.front().found);
   pair["candidates"] = r.n_candidates;
@@ -105,6 +108,7 @@ std::string table(const TransferReport& r) {
   if (!r.target_split.empty()) line("split", "in the target: " + r.target_split);
   line("found", fmt::format("{} inside, {} boundary, {} snapped, {} outside", r.counts[0],
                             r.counts[1], r.counts[2], r.counts[3]));
+  for (const std::string& place : texts_of(r.worst)) line("farthest", place);
   line("candidates",
        fmt::format("{} ({:.2f} per vertex)", r.n_candidates,
                    static_cast<double>(r.n_candidates) / static_cast<double>(r.targets)));

@@ -105,6 +105,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
     TransferReport& report = problem.reports[p];
     report.seconds.setup = setup;
     report.counts = graph->found()[p].tally.counts;
+    report.worst = graph->found()[p].worst;
     report.n_candidates = graph->found()[p].tally.n_candidates;
     report.searches = graph->searches();
     report.footprint.peak_memory_bytes = peak.peak_memory_bytes;

@@ -21,6 +21,8 @@ GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps:
   options.voxel_size = problem.voxel;
   options.policy = problem.policy;
   options.kind = problem.kind;
+  options.tolerance = problem.tolerance;
+  options.clamp = problem.clamp;
   options.on_phase = [&progress](const char* name) { progress.phase(name); };
   for (const Pair& pair : problem.pairs)
     transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);
