@@ -25,7 +25,7 @@ struct FileFieldsRequest {
   std::string weights{};              ///< file to write them to
   std::string from_weights{};         ///< file to read them from, in place of a search
   std::string out{};                  ///< ExodusII with all steps, or .vtu with one
-  std::string policy = "keep", kind = "linear", partition = "rcb";
+  std::string policy = "keep", kind = "linear", partition = "curve";
   std::int32_t n_chares = 8;  ///< per mesh
   double voxel = 0;           ///< edge; 0: chosen
   double tolerance = 0;       ///< length within which vertices snap to the source

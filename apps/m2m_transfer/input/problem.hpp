@@ -25,7 +25,7 @@ struct Request {
   std::string pairs{};              ///< "A:B,B:C"; empty: source to target
   std::vector<std::string> fields{"gaussian"};
   std::string policy = "keep";
-  std::string partition = "rcb";
+  std::string partition = "curve";
   std::string kind = "linear";
   std::int32_t n_chares = 0;  ///< per mesh; 0: per_pe times the number of PEs
   std::int32_t per_pe = 8;
