@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <tuple>
 
 namespace tess::m2m {
 
@@ -147,77 +145,17 @@ void OverlapTarget::add(const OverlapAnswer& answer) {
   for (std::size_t k = 0; k < answer.tets.size(); ++k)
     for (std::size_t a = 0; a < 4; ++a)
       covered_[asked.tets[answer.tets[k]]][a] += answer.covered[k][a];  // exact in any order
-  for (const std::uint32_t row : answer.rows) asked.rows.push_back(asked.places[row]);
-  asked.tets = {};
-  asked.places = {};
+  std::vector<std::uint32_t> places;
+  for (const std::uint32_t row : answer.rows) places.push_back(asked.places[row]);
+  loads_.add_source(answer.from, std::move(places));
+  asked_.erase(answer.from);
 }
 
 OverlapTarget::Addressed<SharedRows> OverlapTarget::shared_rows() {
-  std::vector<std::uint32_t> n_sources(volumes_.size(), 0);
-  for (const auto& [piece, asked] : asked_)
-    for (const std::uint32_t place : asked.rows) ++n_sources[place];
   Addressed<SharedRows> out;
-  for (const auto& [piece, asked] : asked_) {
-    if (asked.rows.empty()) continue;
-    SharedRows message{setup.id, {}, {}};
-    Source source{.piece = piece};
-    for (const std::uint32_t place : asked.rows) {
-      const bool is_shared = n_sources[place] > 1;
-      message.shared.push_back(is_shared ? 1 : 0);
-      if (!is_shared) source.places.push_back(place);
-    }
-    sources_.push_back(std::move(source));
-    out.emplace_back(piece, std::move(message));
-  }
+  for (auto& [piece, flags] : loads_.shared())
+    out.emplace_back(piece, SharedRows{setup.id, {}, std::move(flags)});
   return out;
-}
-
-void OverlapTarget::join_partial_rows() {
-  struct Entry {
-    std::uint32_t place;
-    GlobalId id;
-    VertexId value;  // among those of all sources
-    double weight;
-  };
-  std::sort(partial_.begin(), partial_.end(),
-            [](const PartialRows& a, const PartialRows& b) { return a.from < b.from; });
-  std::vector<std::uint32_t> n_sources(volumes_.size(), 0);
-  for (const auto& [piece, asked] : asked_)
-    for (const std::uint32_t place : asked.rows) ++n_sources[place];
-  std::vector<Entry> entries;
-  std::uint32_t n_values = 0;
-  for (std::size_t s = 0; s < sources_.size(); ++s) {
-    const PartialRows& rows = partial_[s];
-    sources_[s].first_value = n_values;
-    sources_[s].n_values = static_cast<std::uint32_t>(rows.ids.size());
-    std::size_t row = 0;
-    for (const std::uint32_t place : asked_.at(rows.from).rows) {
-      if (n_sources[place] < 2) continue;
-      for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k)
-        entries.push_back({place, rows.ids[rows.columns[k]],
-                           static_cast<VertexId>(n_values + rows.columns[k]), rows.weights[k]});
-      ++row;
-    }
-    n_values += sources_[s].n_values;
-  }
-  partial_ = {};
-  asked_.clear();
-  // By id, as in the rows of one piece; of several copies of an unknown, the first piece's is used.
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.place, a.id, a.value) < std::tie(b.place, b.id, b.value);
-  });
-  for (auto entry = entries.begin(); entry != entries.end();) {
-    const std::uint32_t place = entry->place;
-    while (entry != entries.end() && entry->place == place) {
-      const Entry& first = *entry;
-      double weight = 0;
-      for (; entry != entries.end() && entry->place == place && entry->id == first.id; ++entry)
-        weight += entry->weight;
-      shared_rows_.add(first.value, weight);
-    }
-    shared_rows_.end_row();
-    shared_places_.push_back(place);
-  }
 }
 
 std::vector<double> OverlapTarget::covered_fractions(const MeshView& mesh) {
@@ -235,7 +173,7 @@ std::vector<double> OverlapTarget::covered_fractions(const MeshView& mesh) {
 }
 
 std::vector<collide::OwnerId> OverlapTarget::finish_search(const MeshView& mesh) {
-  join_partial_rows();
+  loads_.join();
   for (const double fraction : covered_fractions(mesh)) {
     status_.push_back(!(fraction > no_coverage)     ? Status::outside
                       : fraction >= 1 - no_coverage ? Status::inside
@@ -270,58 +208,10 @@ std::size_t OverlapTarget::n_ghost_messages() const {
   return n;
 }
 
-std::size_t OverlapTarget::components_of(const std::vector<GivenValues>& messages) const {
-  const std::size_t per_load = setup.kind == TransferKind::conservative_bounded ? 3 : 1;
-  std::size_t n_components = 0;
-  for (const GivenValues& message : messages)
-    for (const Source& source : sources_) {
-      if (source.piece != message.from) continue;
-      const std::size_t n =
-          message.values.size() / (per_load * source.places.size() + source.n_values);
-      TESS_CHECK(n_components == 0 || n == n_components, "source pieces give ", n_components,
-                 " and ", n, " components in one round: give equally many");
-      n_components = n;
-    }
-  return n_components;
-}
-
-OverlapTarget::Loads OverlapTarget::add_up(const std::vector<GivenValues>& messages) const {
-  const std::size_t n = components_of(messages);
-  const std::size_t n_places = status_.size();
-  const bool bounded = setup.kind == TransferKind::conservative_bounded;
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Loads out;
-  out.values.assign(n_places * n, 0);
-  if (bounded) out.ranges.assign(n_places * n, {inf, -inf});
-  const auto n_values = sources_.back().first_value + sources_.back().n_values;
-  std::vector<double> values(n_values * n);
-  for (const GivenValues& message : messages) {
-    const auto source = std::find_if(sources_.begin(), sources_.end(),
-                                     [&](const Source& s) { return s.piece == message.from; });
-    const double* from = message.values.data();
-    for (const std::uint32_t place : source->places)
-      for (std::size_t c = 0; c < n; ++c) out.values[place * n + c] = *from++;
-    if (bounded)
-      for (const std::uint32_t place : source->places)
-        for (std::size_t c = 0; c < n; ++c, from += 2)
-          out.ranges[place * n + c] = {from[0], from[1]};
-    std::copy_n(from, source->n_values * n, values.data() + source->first_value * n);
-  }
-  std::vector<double> sums(shared_places_.size() * n);
-  m2m::apply(shared_rows_, values, n, sums);
-  std::vector<ValueRange> ranges(bounded ? sums.size() : 0);
-  if (bounded) value_ranges(shared_rows_, values, n, ranges);
-  for (std::size_t k = 0; k < shared_places_.size(); ++k)
-    for (std::size_t c = 0; c < n; ++c) {
-      out.values[shared_places_[k] * n + c] = sums[k * n + c];
-      if (bounded) out.ranges[shared_places_[k] * n + c] = ranges[k * n + c];
-    }
-  return out;
-}
-
 void OverlapTarget::start_round(Channel& channel) {
-  Loads loads = add_up(channel.loads.take());
-  const std::size_t n = status_.empty() ? 1 : loads.values.size() / status_.size();
+  OverlapLoads::Sums loads = loads_.add_up(channel.loads.take(), status_.size(),
+                                           setup.kind == TransferKind::conservative_bounded);
+  const std::size_t n = loads.n_components;
   if (to_cells()) {
     for (std::size_t t = 0; t < covered_.size(); ++t) {
       const std::array<double, 4>& covered = covered_[t];

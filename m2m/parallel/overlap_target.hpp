@@ -1,9 +1,9 @@
-// What a piece knows of a conservative coupling that gives it values: which source pieces send loads
-// or values for its rows, and the projections under way. A place is what gets a value: a point that the
-// piece owns, or a cell.
+// What a piece knows of a conservative coupling that gives it values: the search for overlaps, and the
+// projections under way. A place is what gets a value: a point that the piece owns, or a cell.
 #pragma once
 
 #include "m2m/conservative/projection.hpp"
+#include "m2m/parallel/overlap_loads.hpp"
 #include "m2m/parallel/overlap_messages.hpp"
 #include "m2m/parallel/point_directory.hpp"
 #include "m2m/parallel/rounds.hpp"
@@ -33,7 +33,7 @@ class OverlapTarget {
   void add(const SharedPoints& shared);
   /// After all answers.
   [[nodiscard]] Addressed<SharedRows> shared_rows();
-  void add(PartialRows partial) { partial_.push_back(std::move(partial)); }
+  void add(PartialRows partial) { loads_.add(std::move(partial)); }
   /// After all of these: masses and statuses. Returns the pieces that must know that this one takes
   /// part in projections.
   [[nodiscard]] std::vector<collide::OwnerId> finish_search(const MeshView& mesh);
@@ -42,7 +42,7 @@ class OverlapTarget {
 
   /// Per point or cell that gets a value. `snapped` stands for covered in part.
   [[nodiscard]] std::span<const Status> status() const { return status_; }
-  [[nodiscard]] std::size_t n_sources() const { return sources_.size(); }
+  [[nodiscard]] std::size_t n_sources() const { return loads_.n_sources(); }
 
   void add(GivenValues loads);
   void add(GhostValues ghosts);
@@ -57,8 +57,8 @@ class OverlapTarget {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, numbers_, volumes_, cover_, asked_, partial_, covered_, sources_, shared_places_,
-       shared_rows_, mass_, neighbours_, tally_, status_, channels_);
+    ar(setup, numbers_, volumes_, cover_, asked_, covered_, loads_, mass_, neighbours_, tally_,
+       status_, channels_);
   }
 
  private:
@@ -67,21 +67,9 @@ class OverlapTarget {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> boxes{};  // (mine, theirs), from the hits
     std::vector<std::uint32_t> tets{};                             // as positions in numbers_
     std::vector<std::uint32_t> places{};                           // that may get a row
-    std::vector<std::uint32_t> rows{};                             // that have one, from the answer
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(boxes, tets, places, rows);
-    }
-  };
-  /// What a source piece sends in an application.
-  struct Source {
-    collide::OwnerId piece{};
-    std::vector<std::uint32_t> places{};  // whose loads it sends, in its order
-    std::uint32_t first_value = 0;        // of its unknowns, among those of all sources
-    std::uint32_t n_values = 0;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(piece, places, first_value, n_values);
+      ar(boxes, tets, places);
     }
   };
   /// A piece that shares points with this one.
@@ -106,18 +94,11 @@ class OverlapTarget {
       ar(loads, ghosts, projection, n_steps, waits, result);
     }
   };
-  struct Loads {
-    std::vector<double> values{};      // per place × component
-    std::vector<ValueRange> ranges{};  // the same, if the kind is bounded
-  };
 
   [[nodiscard]] bool to_cells() const { return setup.target_values == Centring::cells; }
   [[nodiscard]] std::array<std::uint32_t, 4> places_of(const MeshView& mesh,
                                                        std::uint32_t tet) const;
-  void join_partial_rows();
   [[nodiscard]] std::vector<double> covered_fractions(const MeshView& mesh);
-  [[nodiscard]] std::size_t components_of(const std::vector<GivenValues>& messages) const;
-  [[nodiscard]] Loads add_up(const std::vector<GivenValues>& messages) const;
   void start_round(Channel& channel);
   void take_ghosts(Channel& channel);
   [[nodiscard]] std::size_t n_ghost_messages() const;
@@ -126,12 +107,9 @@ class OverlapTarget {
   std::vector<double> volumes_;        // around each point, ghosts included; or of each cell
   Cover cover_;
   std::map<collide::OwnerId, Asked> asked_;
-  std::vector<PartialRows> partial_;
   std::vector<std::array<double, 4>> covered_;  // per number: loads of the constant 1
-  std::vector<Source> sources_;                 // by piece
-  std::vector<std::uint32_t> shared_places_;    // whose loads are computed here
-  Rows<double> shared_rows_;                    // for each; columns: values of all sources
-  MassMatrix mass_;                             // of points
+  OverlapLoads loads_;
+  MassMatrix mass_;  // of points
   std::map<collide::OwnerId, Neighbour> neighbours_;
   Tally tally_;
   std::vector<Status> status_;

@@ -181,20 +181,17 @@ TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
 }
 
 void TargetSide::add(GivenValues rows) {
-  Channel& channel = channels_[rows.channel];
-  channel.rounds[rows.round].push_back(std::move(rows));
+  Rounds<GivenValues>& channel = channels_[rows.channel];
+  const std::uint32_t round = rows.round;
+  channel.add(round, std::move(rows));
 }
 
-bool TargetSide::has_next(std::uint64_t channel_id) const {
-  const Channel& channel = channels_.at(channel_id);
-  const auto at = channel.rounds.find(channel.next);
-  return at != channel.rounds.end() && at->second.size() >= rows_.size();
+bool TargetSide::has_next(std::uint64_t channel) const {
+  return channels_.at(channel).has_next(rows_.size());
 }
 
-void TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
-  Channel& channel = channels_.at(channel_id);
-  const auto at = channel.rounds.find(channel.next);
-  for (const GivenValues& message : at->second) {
+void TargetSide::take_next(std::uint64_t channel, std::span<double> values) {
+  for (const GivenValues& message : channels_.at(channel).take()) {
     const std::vector<std::int32_t>& rows = rows_.at(message.from);
     const std::size_t n_components = message.values.size() / rows.size();
     TESS_CHECK(values.size() == n_components * status_.size(), "the source gives ", n_components,
@@ -205,8 +202,6 @@ void TargetSide::take_next(std::uint64_t channel_id, std::span<double> values) {
                   values.data() + static_cast<std::size_t>(rows[i]) * n_components);
   }
   set_outside(values);
-  channel.rounds.erase(at);
-  ++channel.next;
 }
 
 void TargetSide::set_outside(std::span<double> values) const {

@@ -4,6 +4,7 @@
 
 #include "m2m/mesh_view.hpp"
 #include "m2m/parallel/messages.hpp"
+#include "m2m/parallel/rounds.hpp"
 #include "m2m/search/cover.hpp"
 #include "m2m/search/nearest_parts.hpp"
 
@@ -94,16 +95,6 @@ class TargetSide {
     collide::OwnerId source{};
     NearestParts::Part asked{};
   };
-  struct Channel {
-    std::uint32_t next = 0;  // the round to be written next
-    std::map<std::uint32_t, std::vector<GivenValues>>
-        rounds{};  // what has arrived of it and later ones
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(next, rounds);
-    }
-  };
-
   Cover cover_;
   std::map<collide::OwnerId, Asked> asked_;
   std::vector<Best> best_;             // per point owned
@@ -117,7 +108,7 @@ class TargetSide {
   std::vector<Status> status_;
   std::vector<double> distance_;                                // per point owned
   std::map<collide::OwnerId, std::vector<std::int32_t>> rows_;  // per source piece, in its order
-  std::map<std::uint64_t, Channel> channels_;
+  std::map<std::uint64_t, Rounds<GivenValues>> channels_;
 };
 
 }  // namespace tess::m2m
