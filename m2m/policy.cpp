@@ -2,6 +2,7 @@
 
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -18,6 +19,16 @@ OutsidePolicy parse_policy(const std::string& text) {
   }
   fail(ErrorCode::bad_argument, "policy '", text,
        "' is unknown; choose keep, nearest or value:NUMBER");
+}
+
+void fill_outside(const OutsidePolicy& policy, std::span<const Status> status,
+                  std::span<double> values) {
+  const auto* given = std::get_if<UseValue>(&policy);
+  if (given == nullptr || status.empty()) return;
+  const std::size_t n_components = values.size() / status.size();
+  for (std::size_t v = 0; v < status.size(); ++v)
+    if (status[v] == Status::outside)
+      std::fill_n(values.data() + v * n_components, n_components, given->value);
 }
 
 }  // namespace tess::m2m

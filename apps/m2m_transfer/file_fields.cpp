@@ -1,5 +1,7 @@
 #include "apps/m2m_transfer/file_fields.hpp"
 
+#include "apps/m2m_transfer/input/lists.hpp"
+#include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/count_nan.hpp"
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/core.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -24,20 +27,10 @@ namespace {
 /// Values per vertex in one batch; a batch has at least one step.
 constexpr std::size_t batch_components = 64;
 
-/// Commas within brackets belong to a formula.
 std::vector<std::string> split_names(const std::vector<std::string>& lists) {
   std::vector<std::string> names;
-  for (const std::string& list : lists) {
-    std::size_t depth = 0, begin = 0;
-    for (std::size_t i = 0; i <= list.size(); ++i) {
-      const char c = i < list.size() ? list[i] : ',';
-      if (c == '(') ++depth;
-      if (c == ')' && depth > 0) --depth;
-      if (c != ',' || (depth > 0 && i < list.size())) continue;
-      names.push_back(list.substr(begin, i - begin));
-      begin = i + 1;
-    }
-  }
+  for (const std::string& list : lists)
+    std::ranges::move(split_at_commas(list), std::back_inserter(names));
   return names;
 }
 
@@ -325,11 +318,7 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
       }
       const double time = fields.time_of(batch.steps[k]);
       report->steps.push_back({batch.steps[k], time, n_nan, hash});
-      if (!run.status.empty()) {
-        std::vector<double> status;
-        for (const Status s : run.status) status.push_back(static_cast<double>(s));
-        result.push_back({"status", 1, std::move(status)});
-      }
+      if (!run.status.empty()) result.push_back(status_field(run.status));
       out.add(time, result);
     }
   }

@@ -46,7 +46,6 @@ struct TransferReport {
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
   double source_edge = 0;                 ///< of a cube with the volume of six average tetrahedra
-  double longest_edge = 0;                ///< of the source
   std::array<std::uint64_t, 4> counts{};  ///< per Status, from the last search
   WorstPlaces worst;                      ///< of the last search
   std::int32_t searches = 1;

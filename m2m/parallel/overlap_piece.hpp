@@ -138,7 +138,7 @@ class OverlapPiece {
   void take_if_alone(CouplingId id) {
     const OverlapTarget& to = couplings.overlap_target(id);
     if (to.n_sources() != 0) return;
-    to.set_outside(detail::values_of<Take>(self(), id));
+    fill_outside(to.setup.policy, to.status(), detail::values_of<Take>(self(), id));
     notify(id);
   }
 

@@ -251,15 +251,7 @@ void OverlapTarget::write(std::uint64_t channel_id, std::span<double> to) const 
   const std::size_t n = result.size() / status_.size();
   for (std::size_t v = 0; v < status_.size(); ++v)
     if (status_[v] != Status::outside) std::copy_n(result.data() + v * n, n, to.data() + v * n);
-  set_outside(to);
-}
-
-void OverlapTarget::set_outside(std::span<double> values) const {
-  const auto* given = std::get_if<UseValue>(&setup.policy);
-  if (given == nullptr || status_.empty()) return;
-  const std::size_t n = values.size() / status_.size();
-  for (std::size_t v = 0; v < status_.size(); ++v)
-    if (status_[v] == Status::outside) std::fill_n(values.data() + v * n, n, given->value);
+  fill_outside(setup.policy, status_, to);
 }
 
 }  // namespace tess::m2m

@@ -52,8 +52,6 @@ class OverlapTarget {
   [[nodiscard]] bool advance(std::uint64_t channel_id, const Send& send);
   /// Writes the result of a round: a row per status, where there is a value.
   void write(std::uint64_t channel, std::span<double> to) const;
-  /// The value of what is not covered, if the policy gives one.
-  void set_outside(std::span<double> values) const;
 
   template <class Ar>
   void serialize(Ar& ar) {

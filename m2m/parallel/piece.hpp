@@ -76,7 +76,7 @@ class Piece : public OverlapPiece<C> {
     if (couplings.is_conservative_target(id)) return this->template take_if_alone<Take>(id);
     const TargetSide& to = couplings.target(id);
     if (to.n_sources() != 0) return;
-    to.set_outside(detail::values_of<Take>(self(), id));
+    fill_outside(to.setup.policy, to.status(), detail::values_of<Take>(self(), id));
     notify(id);
   }
   template <auto Take>

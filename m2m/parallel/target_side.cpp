@@ -201,16 +201,7 @@ void TargetSide::take_next(std::uint64_t channel, std::span<double> values) {
       std::copy_n(message.values.data() + i * n_components, n_components,
                   values.data() + static_cast<std::size_t>(rows[i]) * n_components);
   }
-  set_outside(values);
-}
-
-void TargetSide::set_outside(std::span<double> values) const {
-  const auto* given = std::get_if<UseValue>(&setup.policy);
-  if (given == nullptr || status_.empty()) return;
-  const std::size_t n_components = values.size() / status_.size();
-  for (std::size_t v = 0; v < status_.size(); ++v)
-    if (status_[v] == Status::outside)
-      std::fill_n(values.data() + v * n_components, n_components, given->value);
+  fill_outside(setup.policy, status_, values);
 }
 
 }  // namespace tess::m2m

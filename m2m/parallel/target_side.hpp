@@ -61,8 +61,6 @@ class TargetSide {
   [[nodiscard]] bool has_next(std::uint64_t channel) const;
   /// Writes it to `values`: n_owned × n_components, row-major.
   void take_next(std::uint64_t channel, std::span<double> values);
-  /// The value of points outside, if the policy gives one.
-  void set_outside(std::span<double> values) const;
 
   template <class Ar>
   void serialize(Ar& ar) {

@@ -4,7 +4,7 @@
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/machine/simulated.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -165,14 +165,7 @@ Task transfers(Cut c, Transferred& found) {
 }
 
 Transferred transferred(const Cut& c, std::uint64_t seed) {
-  SimulatedOptions options;
-  options.n_pes = 1 + static_cast<int>(seed % 5);
-  options.cost = Time(100);
-  options.seed = seed;
-  RuntimeOptions runtime_options;
-  runtime_options.seed = seed;
-  runtime_options.migration_chance = migration_chance(options);
-  Setup setup{make_simulated_machine(options), runtime_options};
+  Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 5), seed);
   Transferred found;
   REQUIRE(run(setup, [&]() -> Task { return transfers(c, found); }) == 0);
   return found;

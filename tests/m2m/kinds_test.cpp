@@ -1,7 +1,7 @@
 // Kinds of transfer through chares: the same bits for any number of parts, and their orders.
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
-#include "runtime/machine/simulated.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -54,14 +54,7 @@ struct KindResult {
 };
 
 KindResult result_of(const KindCase& c, std::uint64_t seed) {
-  SimulatedOptions options;
-  options.n_pes = 1 + static_cast<int>(seed % 4);
-  options.cost = Time(100);
-  options.seed = seed;
-  RuntimeOptions runtime_options;
-  runtime_options.seed = seed;
-  runtime_options.migration_chance = migration_chance(options);
-  Setup setup{make_simulated_machine(options), runtime_options};
+  Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 4), seed);
   KindResult result;
   REQUIRE(run(setup, [&]() -> Task { return transfer_twice(c, result.values, result.error); }) ==
           0);

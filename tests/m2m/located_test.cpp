@@ -6,6 +6,7 @@
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -129,14 +130,7 @@ void check_on_schedules(const LocatedCase& c, std::uint64_t n_seeds = 12) {
   n_seeds = 2;  // the simulated machine is one thread
 #endif
   for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
-    SimulatedOptions options;
-    options.n_pes = 1 + static_cast<int>(seed % 4);
-    options.cost = Time(100);
-    options.seed = seed;
-    RuntimeOptions runtime_options;
-    runtime_options.seed = seed;
-    runtime_options.migration_chance = migration_chance(options);
-    Setup setup{make_simulated_machine(options), runtime_options};
+    Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 4), seed);
     const auto n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
     INFO("seed " << seed << ", " << n_parts << " parts");
     Located got;

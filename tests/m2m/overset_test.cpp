@@ -5,7 +5,7 @@
 #include "apps/overset/body.hpp"
 #include "m2m/interpolate/orientation.hpp"
 #include "m2m/kuhn.hpp"
-#include "runtime/machine/simulated.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -51,15 +51,8 @@ std::pair<Problem, Triangles> random_problem(std::mt19937& random) {
 }
 
 Assembly assembled(Problem problem, std::uint64_t seed) {
-  SimulatedOptions options;
-  options.n_pes = 1 + static_cast<int>(seed % 4);
-  options.cost = Time(100);
-  options.seed = seed;
-  RuntimeOptions runtime_options;
-  runtime_options.seed = seed;
-  runtime_options.migration_chance = migration_chance(options);
   problem.n_parts = 1 + static_cast<std::int32_t>(seed % 5);
-  Setup setup{make_simulated_machine(options), runtime_options};
+  Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 4), seed);
   Assembly out;
   REQUIRE(run(setup, [&]() -> Task { return overset::assemble(problem, out); }) == 0);
   return out;

@@ -3,10 +3,10 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/serial_transfer.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -86,9 +86,7 @@ Task run_case(const Case& c, Result& result) {
   }
 }
 
-void check_same(const Case& c, const Result& want, std::unique_ptr<Machine> machine,
-                const RuntimeOptions& options) {
-  Setup setup{std::move(machine), options};
+void check_same(const Case& c, const Result& want, Setup setup) {
   Result got;
   const int code = run(setup, [&]() -> Task { return run_case(c, got); });
   REQUIRE(code == 0);
@@ -116,22 +114,15 @@ void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
   n_seeds = 2;  // the simulated machine is one thread
 #endif
   for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
-    SimulatedOptions options;
-    options.n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
-    options.cost = Time(100);
-    options.seed = seed;
+    const int n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
     c.n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
     c.voxel.fill(seed % 3 == 0 ? a_voxel(c.source) : 0);
-    RuntimeOptions runtime_options;
-    runtime_options.seed = seed;
-    runtime_options.migration_chance = migration_chance(options);
-    INFO("--sim pes=" << options.n_pes << ",cost=100ns,seed=" << seed << " with " << c.n_parts
-                      << " parts");
-    check_same(c, want, make_simulated_machine(options), runtime_options);
+    INFO("--sim pes=" << n_pes << ",cost=100ns,seed=" << seed << " with " << c.n_parts << " parts");
+    check_same(c, want, tess::test::adversarial(n_pes, seed));
   }
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    check_same(c, want, make_threads_machine(pes), {});
+    check_same(c, want, {make_threads_machine(pes), {}});
   }
 }
 

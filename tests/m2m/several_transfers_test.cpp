@@ -2,9 +2,9 @@
 // transfers in one thread: they give the same bits on every machine and schedule.
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/serial_transfer.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -169,10 +169,9 @@ struct Scenario {
 /// Runs a scenario on many schedules of the simulated machine, which also migrates Workers, and on
 /// threads, with several numbers of parts.
 void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts)>& make) {
-  const auto run_one = [&](std::unique_ptr<Machine> machine, RuntimeOptions options, Parts n) {
+  const auto run_one = [&](Setup setup, Parts n) {
     const Scenario check = make(n);
     HeldBoth held;
-    Setup setup{std::move(machine), std::move(options)};
     REQUIRE(run(setup, [&]() -> Task { return check.program(&held); }) == 0);
     check.judge(held);
   };
@@ -180,22 +179,16 @@ void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts
   n_seeds = 2;  // the simulated machine is one thread
 #endif
   for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
-    SimulatedOptions options;
-    options.n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
-    options.cost = Time(100);
-    options.seed = seed;
-    RuntimeOptions runtime_options;
-    runtime_options.seed = seed;
-    runtime_options.migration_chance = migration_chance(options);
+    const int n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
     const Parts n{static_cast<std::int32_t>(2 + seed * 5 % 7),
                   static_cast<std::int32_t>(1 + seed * 3 % 8)};
-    INFO("--sim pes=" << options.n_pes << ",cost=100ns,seed=" << seed << " with " << n.a << " and "
-                      << n.b << " parts");
-    run_one(make_simulated_machine(options), runtime_options, n);
+    INFO("--sim pes=" << n_pes << ",cost=100ns,seed=" << seed << " with " << n.a << " and " << n.b
+                      << " parts");
+    run_one(tess::test::adversarial(n_pes, seed), n);
   }
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    run_one(make_threads_machine(pes), {}, {5, 3});
+    run_one({make_threads_machine(pes), {}}, {5, 3});
   }
 }
 

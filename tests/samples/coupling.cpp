@@ -1,8 +1,8 @@
 // The sample of m2m/coupling.hpp, compiled and run. tests/samples/check.py compares the text.
 #include "m2m/coupling.hpp"
 
-#include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
+#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 
 #include <array>
@@ -205,15 +205,8 @@ TEST_CASE("the sample of m2m/coupling.hpp moves a linear field exactly between o
 
 TEST_CASE("own chares may migrate while they are coupled", "[m2m]") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    SimulatedOptions options;
-    options.n_pes = 1 + static_cast<int>(seed % 5);
-    options.cost = Time(100);
-    options.seed = seed;
-    RuntimeOptions runtime_options;
-    runtime_options.seed = seed;
-    runtime_options.migration_chance = migration_chance(options);
     INFO("seed " << seed);
-    Setup setup{make_simulated_machine(options), runtime_options};
+    Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 5), seed);
     check_run(setup);
   }
 }

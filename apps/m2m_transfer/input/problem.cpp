@@ -70,7 +70,6 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   report.voxel = problem.voxel[0];
   report.source_tets = source.mesh.n_tets();
   report.source_edge = typical_edge(source.mesh);
-  report.longest_edge = longest_edge(source.mesh);
   report.targets = target.mesh.n_points();
   return report;
 }

@@ -58,13 +58,23 @@ std::string explain(const Problem& problem, Output output) {
   out += fmt::format("  {} {} of one component{}\n", n_fields, n_fields == 1 ? "field" : "fields",
                      n_fields == 1 ? "" : ", located once for all fields");
   if (r.chares > 1)
-    out +=
-        fmt::format("  Zoltan, which cuts each mesh into {} chares on {} PEs\n", r.chares, r.pes);
+    out += fmt::format("  {} cuts each mesh into {} chares on {} PEs\n",
+                       problem.partition == PartitionMethod::curve
+                           ? "a Hilbert curve, followed by all PEs together,"
+                           : "Zoltan, on one process,",
+                       r.chares, r.pes);
   out += "  covers of some dozens of tetrahedra or vertices each, whose boxes meet in voxels";
   out += problem.voxel[0] == 0 ? "\n" : fmt::format(" with edges of {:.4g}\n", problem.voxel[0]);
-  if (std::holds_alternative<Nearest>(problem.policy))
-    out += "  the search for the nearest source vertex, for each vertex outside\n";
-  if (problem.kind != TransferKind::linear)
+  const bool conservative = is_conservative(problem.kind);
+  const bool gradients = source_halo_layers(problem.kind) > 0;
+  if (!conservative)
+    out += fmt::format("  the search for the nearest source vertex, for each vertex{}\n",
+                       problem.kind == TransferKind::nearest ? "" : " outside");
+  if (conservative)
+    out +=
+        "  integrals over the intersections of tetrahedra, and a layer of tetrahedra around a "
+        "chare of the target\n";
+  if (gradients)
     out +=
         "  recovered gradients at the donors' vertices, from two layers of tetrahedra around a "
         "chare\n";
@@ -77,10 +87,8 @@ std::string explain(const Problem& problem, Output output) {
                             : "  the search in further steps (--steps): the donors are kept\n";
   if (r.chares == 1) out += "  partitioning: each mesh is one chare\n";
   if (r.processes == 1) out += "  serialisation: within a process messages are moved, not packed\n";
-  if (!std::holds_alternative<Nearest>(problem.policy))
-    out += "  the search for nearest vertices (--policy nearest)\n";
-  if (problem.kind == TransferKind::linear)
-    out += "  recovered gradients and halos (--kind second-order)\n";
+  if (conservative) out += "  the search for donors and for nearest vertices\n";
+  if (!gradients) out += "  recovered gradients and their halos (--kind second-order)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
   for (const Pair& pair : problem.pairs)
     if (!overlap(problem.source_of(pair).census.bounds, problem.target_of(pair).census.bounds,

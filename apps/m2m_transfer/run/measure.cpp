@@ -1,6 +1,7 @@
 #include "apps/m2m_transfer/run/measure.hpp"
 
 #include "apps/m2m_transfer/input/formulas.hpp"
+#include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 
 #include <optional>
@@ -43,14 +44,12 @@ void compare_with_truth(Problem& problem, const GraphRun& graph, std::size_t p,
     error.target_integral = integral(masses, values);
     if (problem.kind == TransferKind::linear && needs_values(pair.source, problem.pairs))
       if (const auto second = largest_second_derivative(name, domain))
-        error.bound = linear_bound(report.longest_edge, *second);
+        error.bound = linear_bound(longest_edge(problem.source_of(pair).mesh), *second);
     report.fields.push_back(std::move(error));
     hash = result_hash(values, hash);
     target.fields.push_back({name, 1, values});
   }
-  std::vector<double> status;
-  for (const Status s : result.status) status.push_back(static_cast<double>(s));
-  target.fields.push_back({"status", 1, std::move(status)});
+  target.fields.push_back(status_field(result.status));
   report.result_hash = hash;
   report.worst_at = target.mesh.points[static_cast<std::size_t>(report.fields.front().norms.worst)];
 }
