@@ -2,8 +2,8 @@
 // points and of the tetrahedra, and builds the parts whose Workers are at home on its PE.
 #pragma once
 
+#include "m2m/checks/mesh_findings.hpp"
 #include "m2m/field.hpp"
-#include "m2m/mesh_findings.hpp"
 #include "m2m/parallel/worker.hpp"
 #include "m2m/partition/curve_cut.hpp"
 #include "m2m/partition/id_set.hpp"

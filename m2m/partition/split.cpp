@@ -1,6 +1,6 @@
 #include "m2m/partition/split.hpp"
 
-#include "m2m/tets_of_vertices.hpp"
+#include "m2m/topology/tets_of_vertices.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/sort_unique.hpp"
 

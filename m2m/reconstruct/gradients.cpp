@@ -3,7 +3,7 @@
 #include "m2m/reconstruct/gather.hpp"
 #include "m2m/reconstruct/gradient_fit.hpp"
 #include "m2m/reconstruct/second_order.hpp"
-#include "m2m/tets_of_vertices.hpp"
+#include "m2m/topology/tets_of_vertices.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // Checks a mesh before it is used.
-#include "m2m/mesh_findings.hpp"
+#include "m2m/checks/mesh_findings.hpp"
 #include "m2m/mesh_view.hpp"
 #include "runtime/core/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "m2m/tets_of_vertices.hpp"
+#include "m2m/topology/tets_of_vertices.hpp"
 
 namespace tess::m2m {
 

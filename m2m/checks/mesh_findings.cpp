@@ -1,4 +1,4 @@
-#include "m2m/mesh_findings.hpp"
+#include "m2m/checks/mesh_findings.hpp"
 
 #include "runtime/core/error.hpp"
 
