@@ -9,9 +9,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace apps {
+
+/// Seconds until all of `n_parts` parts are done, if part `part` (from 1) began `began` seconds after
+/// the first and has lasted `lasted` seconds: the parts to come take as long as those before on
+/// average. None while the first part runs.
+[[nodiscard]] std::optional<double> seconds_left(std::uint32_t part, std::uint32_t n_parts,
+                                                 double began, double lasted) noexcept;
 
 class Progress {
  public:
@@ -42,6 +49,10 @@ class Progress {
   std::atomic<std::uint64_t> part_{0};
   std::mutex line_;
   bool shown_ = false;  // under line_
+  // Under line_: the part that was shown last, and when it and the first were.
+  std::uint64_t part_shown_ = 0;
+  double first_part_began_ = 0;
+  double part_began_ = 0;
   std::condition_variable_any wake_;
   std::jthread thread_;  // last: it uses all of the above
 };

@@ -9,12 +9,15 @@
 //     blocks.broadcast<&Block::step>(0);
 #pragma once
 
+#include "runtime/ask.hpp"
 #include "runtime/chare.hpp"
 #include "runtime/collections/call.hpp"
 #include "runtime/collections/moving.hpp"
 #include "runtime/collections/routing.hpp"
 #include "runtime/messages/read_all.hpp"
+#include "runtime/priority.hpp"
 #include "runtime/scheduler/pe_action.hpp"
+#include "runtime/timer.hpp"
 
 namespace tess {
 
@@ -27,6 +30,9 @@ namespace detail {
 /// A member of a group.
 template <class C>
 concept OnePerPe = requires { C::one_per_pe; };
+
+/// The priority of a message is that which its class gives the entry method.
+struct OfEntry {};
 
 template <class C>
 class Array final : public ArrayOf<typename C::Index> {
@@ -44,7 +50,9 @@ class Array final : public ArrayOf<typename C::Index> {
   [[nodiscard]] PeId home(const Index& index) const override {
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
       const PeId at = C::place(index, this->pe_.n_pes());
-      check_exists(this->pe_, at);
+      TESS_CHECK(at.value >= 0 && at.value < this->pe_.n_pes(), "place() of ", this->name(),
+                 " puts the element ", index_text(index), " on ", at, ", but the run has ",
+                 this->pe_.n_pes(), this->pe_.n_pes() == 1 ? " PE" : " PEs");
       return at;
     } else {
       if constexpr (Coordinates<Index>) {
@@ -114,7 +122,8 @@ class Array final : public ArrayOf<typename C::Index> {
 #endif
       }
     }
-    this->add_arrived(std::exchange(arrival.element, nullptr), arrival.from);
+    this->add_arrived(std::exchange(arrival.element, nullptr), arrival.from,
+                      std::move(arrival.memberships));
   }
 
   static void pack_element(C& element, Writer& ar) {
@@ -134,6 +143,7 @@ class Array final : public ArrayOf<typename C::Index> {
       (void)ar.template take<Index>();
       Base::drop_record(pe, ar);
     }
+    tess::detail::drop(pe, arrival.memberships);
     pe.completion().processed(arrival.epoch);
     if (arrival.element == nullptr) return;
     // The part of the array that the element left may have been freed, but its destructor may call
@@ -193,7 +203,7 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   void destroy(Indexed& element) override { delete &static_cast<C&>(element); }
-  void ship(Indexed& element, PeId to) override {
+  void ship(Indexed& element, PeId to, Memberships&& memberships) override {
     TESS_CHECK(Migratable<C>, this->name(),
                " cannot migrate: it needs a default constructor and serialize()");
     Pe& pe = this->pe_;
@@ -202,6 +212,7 @@ class Array final : public ArrayOf<typename C::Index> {
     arrival->collection = this->id();
     arrival->from = pe.id();
     arrival->element = &static_cast<C&>(element);
+    arrival->memberships = std::move(memberships);
 #ifdef TESS_CHECKS_ALL
     // Within a process the element is also rebuilt from its bytes, so members that serialize()
     // omits are lost on one PE as they are on a cluster.
@@ -222,7 +233,7 @@ template <class C>
 void Arrival<C>::pack(Envelope& envelope, Writer& ar) {
   auto& arrival = static_cast<Arrival&>(envelope);
   if (arrival.element != nullptr) arrival.pack_state();
-  ar(arrival.collection, arrival.from, arrival.state);
+  ar(arrival.collection, arrival.from, arrival.state, arrival.memberships);
 }
 
 template <class C>
@@ -255,25 +266,49 @@ class ElementProxy {
   ElementProxy(CollectionId collection, const Index& index)
       : collection_(collection), index_(index) {}
 
-  /// Sends a message. If there is no element, the message waits at the home of the index.
+  /// Sends a message. If there is no element, the message waits at the home of the index. The entry
+  /// method's attributes may change this (EntryAttributes).
   template <auto F, class... Args>
   void send(Args&&... args) const {
-    post<F>(detail::Demand::none, std::forward<Args>(args)...);
+    send_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
+  }
+  /// Sends a message from this PE once the delay is over, unless the timer is cancelled before. The
+  /// current epoch and the run wait for it.
+  template <auto F, class... Args>
+  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
+    static_assert(detail::check_entry<C, F, Args...>());
+    return after(delay, [to = *this, arguments = typename detail::EntryTraits<F>::Arguments(
+                                         std::forward<Args>(args)...)] {
+      std::apply([&to](const auto&... argument) { to.template send<F>(argument...); }, arguments);
+    });
+  }
+  /// Calls member function F of the element and returns what `co_await` waits for: the value that F
+  /// returns, or the end of its coroutine. The call is sent at once. A tess::Error that F throws is
+  /// thrown in the asker, and so is one if the element was destroyed. If there is no element yet,
+  /// the call waits at the home of the index.
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
+    static_assert(detail::check_ask<C, F, Args...>());
+    Pe& pe = current_pe();
+    Ask<C, F> reply(index_);
+    post_message(pe, detail::AskCall<C, F>::make(pe, collection_, index_, reply.place(),
+                                                 std::forward<Args>(args)...));
+    return reply;
   }
   /// Sends a message. If there is no element, it is created on this PE; of several PEs that demand
   /// it at once exactly one creates it.
   template <auto F, class... Args>
   void send_or_create_here(Args&&... args) const {
-    static_assert(std::is_default_constructible_v<C>,
-                  "a chare that is created on demand needs a default constructor");
-    post<F>(detail::Demand::here, std::forward<Args>(args)...);
+    send_on_demand<F>(detail::OfEntry(), detail::Demand::here, std::forward<Args>(args)...);
   }
   /// Sends a message. If there is no element, it is created on the home PE of the index.
   template <auto F, class... Args>
   void send_or_create_home(Args&&... args) const {
-    static_assert(std::is_default_constructible_v<C>,
-                  "a chare that is created on demand needs a default constructor");
-    post<F>(detail::Demand::home, std::forward<Args>(args)...);
+    send_on_demand<F>(detail::OfEntry(), detail::Demand::home, std::forward<Args>(args)...);
+  }
+  /// The same element for messages with a priority.
+  [[nodiscard]] PrioritisedElement<C, Index> with(Priority priority) const {
+    return {*this, priority};
   }
 
   /// Creates the element on this PE with these constructor arguments; it is misuse if the element
@@ -333,22 +368,82 @@ class ElementProxy {
     return *static_cast<detail::Array<C>*>(collection);
   }
 
-  template <auto F, class... Args>
-  void post(detail::Demand demand, Args&&... args) const {
+  friend class PrioritisedElement<C, Index>;
+
+  // `Of` is OfEntry, or the Priority that the sender gave.
+
+  template <auto F, class Of, class... Args>
+  void send_as(Of of, Args&&... args) const {
+    static_assert(detail::check_entry<C, F, Args...>());
+    if constexpr (detail::entry_rule<C, F>.inlined)
+      if (run_now<F>(std::forward<Args>(args)...)) return;
+    queue<F>(of, std::forward<Args>(args)...);
+  }
+  /// The same, never inside the caller's entry method.
+  template <auto F, class Of, class... Args>
+  void queue(Of of, Args&&... args) const {
+    constexpr detail::Creates creates = detail::entry_rule<C, F>.creates;
+    if constexpr (creates == detail::Creates::no) {
+      post<F>(of, detail::Demand::none, std::forward<Args>(args)...);
+    } else {
+      send_on_demand<F>(
+          of, creates == detail::Creates::here ? detail::Demand::here : detail::Demand::home,
+          std::forward<Args>(args)...);
+    }
+  }
+  template <auto F, class Of, class... Args>
+  void send_on_demand(Of of, detail::Demand demand, Args&&... args) const {
+    static_assert(!detail::OnePerPe<C>, "a group has all its members: none is created on demand");
+    static_assert(std::is_default_constructible_v<C>,
+                  "a chare that is created on demand needs a default constructor");
+    post<F>(of, demand, std::forward<Args>(args)...);
+  }
+  template <auto F, class Of, class... Args>
+  void post(Of of, detail::Demand demand, Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
     auto* message = [&]<class... P>(std::tuple<P...>*) {
-      return detail::Call<C, F>::make(pe, collection_, index_,
-                                      detail::as_parameter<P>(std::forward<Args>(args))...);
+      if constexpr (std::is_same_v<Of, Priority>) {
+        return detail::PrioritisedCall<C, F>::make(
+            pe, collection_, index_, of.value,
+            detail::as_parameter<P>(std::forward<Args>(args))...);
+      } else {
+        return detail::Call<C, F>::make(pe, collection_, index_,
+                                        detail::as_parameter<P>(std::forward<Args>(args))...);
+      }
     }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
     message->demand = demand;
     message->ask = demand == detail::Demand::here;
+    weigh(pe, message->arguments);
+    post_message(pe, message);
+  }
+  template <class Arguments>
+  void weigh(Pe& pe, const Arguments& arguments) const {
     if constexpr (!detail::OnePerPe<C>)  // a balancer does not move members of groups
       if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
           [[unlikely]]
-        meter->sent({collection_, IndexHash<Index>()(index_)},
-                    detail::payload_bytes(message->arguments));
-    post_message(pe, message);
+        meter->sent({collection_, IndexHash<Index>()(index_)}, detail::payload_bytes(arguments));
+  }
+  /// Calls the entry method inside the caller's. Returns false, and takes no argument, if it must be
+  /// queued.
+  template <auto F, class... Args>
+  [[nodiscard]] bool run_now(Args&&... args) const {
+    Pe& pe = current_pe();
+    auto* array = static_cast<detail::Array<C>*>(detail::find_collection(pe, collection_));
+    if (array == nullptr) return false;
+    auto* element = array->free_to_run(index_);
+    if (element == nullptr) return false;
+    auto arguments = detail::as_parameters<typename detail::EntryTraits<F>::Arguments>(
+        std::forward<Args>(args)...);
+    weigh(pe, arguments);
+    array->run_now(*element, detail::Call<C, F>::entry, [&] {
+      std::apply(
+          [element](auto&... argument) {
+            (void)(static_cast<C*>(element)->*F)(std::move(argument)...);
+          },
+          arguments);
+    });
+    return true;
   }
   void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
     pe.completion().sent(message->epoch);
@@ -390,9 +485,9 @@ class ElementProxy {
     const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
     const ElementProxy element(collection, index);
     if constexpr (std::is_same_v<T, NoValue>) {
-      element.template send<F>();
+      element.template queue<F>(detail::OfEntry());
     } else {
-      element.template send<F>(std::forward<T>(value));
+      element.template queue<F>(detail::OfEntry(), std::forward<T>(value));
     }
   }
   template <auto F, class T>
@@ -450,14 +545,10 @@ class ArrayProxy {
   /// Calls entry method F of every element that exists when the broadcast reaches its PE.
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
-    static_assert(detail::check_entry<C, F, Args...>());
-    using Arguments = typename detail::EntryTraits<F>::Arguments;
-    static_assert(std::is_copy_constructible_v<Arguments>,
-                  "each element gets a copy of a broadcast's arguments, so they can be copied");
-    detail::start_broadcast(id_,
-                            detail::SharedCall(new detail::CallOfAll<C, F>(
-                                detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
+    broadcast_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
   }
+  /// The same array for broadcasts with a priority.
+  [[nodiscard]] PrioritisedArray<C> with(Priority priority) const { return {*this, priority}; }
 
   /// Ends the array: on every PE its elements are destroyed and its memory is freed, including that
   /// of its balancer. Messages, broadcasts, contributions and elements that are still under way to
@@ -493,6 +584,24 @@ class ArrayProxy {
   }
 
  private:
+  friend class PrioritisedArray<C>;
+
+  template <auto F, class Of, class... Args>
+  void broadcast_as(Of of, Args&&... args) const {
+    static_assert(detail::check_entry<C, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    static_assert(std::is_copy_constructible_v<Arguments>,
+                  "each element gets a copy of a broadcast's arguments, so they can be copied");
+    auto arguments = detail::as_parameters<Arguments>(std::forward<Args>(args)...);
+    if constexpr (std::is_same_v<Of, Priority>) {
+      detail::start_broadcast(id_, detail::SharedCall(new detail::PrioritisedCallOfAll<C, F>(
+                                       of, std::move(arguments))));
+    } else {
+      detail::start_broadcast(
+          id_, detail::SharedCall(new detail::CallOfAll<C, F>(std::move(arguments))));
+    }
+  }
+
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
     const ArrayProxy all(from_bytes<CollectionId>(callback.where()));

@@ -32,7 +32,7 @@ class Future {
   Future(Future&& other) noexcept : pe_(other.pe_) { take(other); }
   Future& operator=(Future&& other) noexcept {
     if (this == &other) return *this;
-    TESS_CHECK(!waiting_, "a future is overwritten while a coroutine waits for it");
+    TESS_CHECK(waiting_ == nullptr, "a future is overwritten while a coroutine waits for it");
     if (id_ != 0) pe_->leave_future(id_);
     take(other);
     return *this;
@@ -49,15 +49,23 @@ class Future {
 
   [[nodiscard]] bool await_ready() const { return value_.has_value(); }
   void await_suspend(Task::Handle task) {
-    TESS_CHECK(id_ != 0, "a future that was moved from is awaited: await the one it moved to");
-    TESS_CHECK(!waiting_, "two coroutines await one future");
-    waiting_ = task;
-    suspend(task, [] { return text("a future of ", name_of_type<T>); });
+    own_.start(task, 1);
+    wait(own_);
+    suspend(task, [this] { return waits_for(); });
   }
   T await_resume() {
     waiting_ = nullptr;
     if constexpr (!std::is_void_v<T>) return std::move(*value_);
   }
+
+  // For when_all and when_any.
+  void wait(detail::Waiter& waiter) {
+    TESS_CHECK(id_ != 0, "a future that was moved from is awaited: await the one it moved to");
+    TESS_CHECK(waiting_ == nullptr, "two coroutines await one future");
+    waiting_ = &waiter;
+  }
+  void withdraw() { waiting_ = nullptr; }
+  [[nodiscard]] std::string waits_for() const { return text("a future of ", name_of_type<T>); }
 
  private:
   struct Result {
@@ -83,7 +91,7 @@ class Future {
         "future until its result is there");
     TESS_CHECK(!future->value_, "a future was given two results");
     future->value_ = std::move(result.value);
-    if (future->waiting_) resume_later(future->waiting_);
+    if (future->waiting_ != nullptr) future->waiting_->wake();
     pe.completion().processed(pe.context().epoch);
   }
   static std::string describe(const Callback<Value>& callback) {
@@ -94,7 +102,7 @@ class Future {
                                                            &Future::give, &Future::describe};
 
   void take(Future& other) {
-    TESS_CHECK(!other.waiting_, "a future is moved while a coroutine waits for it");
+    TESS_CHECK(other.waiting_ == nullptr, "a future is moved while a coroutine waits for it");
     TESS_CHECK(&current_pe() == other.pe_, "a future of ", other.pe_->id(), " is moved on ",
                current_pe().id(), ": send its callback() instead");
     pe_ = other.pe_;
@@ -106,7 +114,8 @@ class Future {
   Pe* pe_;
   std::uint64_t id_ = 0;  // 0: moved from
   std::optional<Value> value_;
-  Task::Handle waiting_;
+  detail::Waiter own_;
+  detail::Waiter* waiting_ = nullptr;
 };
 
 }  // namespace tess

@@ -52,6 +52,24 @@ class MemberProxy {
     member().template send<F>(std::forward<Args>(args)...);
   }
 
+  /// The same member for messages with a priority.
+  [[nodiscard]] PrioritisedElement<G, Index1> with(Priority priority) const {
+    detail::check_exists(current_pe(), pe_);
+    return member().with(priority);
+  }
+  /// As ElementProxy::send_after().
+  template <auto F, class... Args>
+  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
+    detail::check_exists(current_pe(), pe_);
+    return member().template send_after<F>(delay, std::forward<Args>(args)...);
+  }
+  /// As ElementProxy::ask().
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<G, F> ask(Args&&... args) const {
+    detail::check_exists(current_pe(), pe_);
+    return member().template ask<F>(std::forward<Args>(args)...);
+  }
+
   [[nodiscard]] PeId next_pe() const { return pe_; }
 
   /// A target for results: entry method F of this member.
@@ -104,6 +122,10 @@ class GroupProxy {
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
     ArrayProxy<G>(id_).template broadcast<F>(std::forward<Args>(args)...);
+  }
+  /// The same group for broadcasts with a priority.
+  [[nodiscard]] PrioritisedArray<G> with(Priority priority) const {
+    return ArrayProxy<G>(id_).with(priority);
   }
 
   /// Ends the group: on every PE its member is destroyed and its memory is freed. Messages that are

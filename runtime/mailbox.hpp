@@ -35,21 +35,34 @@ class Mailbox {
   /// Passes a message to the coroutine that has waited longest for its key; if there is none, keeps
   /// it. Messages of one key are taken in the order in which they were put.
   void put(Value value) {
+    if (!give(value)) kept_.emplace(value.*KeyMember, std::move(value));
+  }
+
+ private:
+  /// Passes the message to a coroutine that waits for its key; false if there is none.
+  [[nodiscard]] bool give(Value& value) {
     const Key& key = value.*KeyMember;
     for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
       if (!((*at)->key_ == key)) continue;
       Take* take = *at;
       waiting_.erase(at);
       take->value_ = std::move(value);
-      resume_later(take->task_);
-      return;
+      std::exchange(take->waiting_, nullptr)->wake();
+      return true;
     }
-    kept_.emplace(key, std::move(value));
+    return false;
+  }
+  void put_back(Value value) {
+    if (give(value)) return;
+    const Key key = value.*KeyMember;
+    kept_.emplace_hint(kept_.lower_bound(key), key, std::move(value));
   }
 
+ public:
   class Take {
    public:
     [[nodiscard]] bool await_ready() {
+      if (value_) return true;
       const auto at = box_.kept_.lower_bound(key_);  // the oldest message of this key
       if (at == box_.kept_.end() || box_.kept_.key_comp()(key_, at->first)) return false;
       value_ = std::move(at->second);
@@ -57,19 +70,34 @@ class Mailbox {
       return true;
     }
     void await_suspend(Task::Handle task) {
-      task_ = task;
-      box_.waiting_.push_back(this);
-      suspend(task,
-              [this] { return text("a message of key ", key_, " (", name_of_type<Value>, ")"); });
+      own_.start(task, 1);
+      wait(own_);
+      suspend(task, [this] { return waits_for(); });
     }
     Value await_resume() { return std::move(*value_); }
+
+    // For when_all and when_any.
+    void wait(detail::Waiter& waiter) {
+      waiting_ = &waiter;
+      box_.waiting_.push_back(this);
+    }
+    /// A message that this has taken is again the oldest of its key.
+    void withdraw() {
+      if (waiting_ != nullptr) std::erase(box_.waiting_, this);
+      waiting_ = nullptr;
+      if (value_) box_.put_back(*std::exchange(value_, std::nullopt));
+    }
+    [[nodiscard]] std::string waits_for() const {
+      return text("a message of key ", key_, " (", name_of_type<Value>, ")");
+    }
 
    private:
     friend class Mailbox;
     Take(Mailbox& box, Key key) : box_(box), key_(std::move(key)) {}
     Mailbox& box_;
     Key key_;
-    Task::Handle task_;
+    detail::Waiter own_;
+    detail::Waiter* waiting_ = nullptr;
     std::optional<Value> value_;
   };
 

@@ -5,6 +5,14 @@
 //       std::string operator()(std::string a, std::string b) const;
 //     };
 //
+// An operation with a finishing step has combine() and finish(), which is called once, at the root:
+//
+//     struct Mean {
+//       struct Part { double sum; std::int64_t n; };
+//       Part combine(Part a, const Part& b) const;
+//       double finish(Part all) const;      // contribute(Mean{}, Part{x, 1}, Callback<double>)
+//     };
+//
 // Its members, if it has any, travel with the values, so they are serialisable; all elements give
 // the same.
 // It must be associative and commutative. in_order(op) combines in the order of indices, so that a
@@ -83,6 +91,11 @@ inline constexpr Max max{};
 inline constexpr LogicalAnd logical_and{};
 inline constexpr LogicalOr logical_or{};
 inline constexpr Concatenate concatenate{};
+
+/// The list of all pairs (index, value), in the order of indices:
+/// contribute(tess::gather, x, target) with a Callback<std::vector<std::pair<Index, T>>>.
+struct Gather {};
+inline constexpr Gather gather{};
 
 /// An operation that is applied in the order of indices, once all values are at the root.
 template <class Op>

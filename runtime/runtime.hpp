@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/array.hpp"
+#include "runtime/ask.hpp"
 #include "runtime/callback.hpp"
 #include "runtime/chare.hpp"
 #include "runtime/core/check.hpp"
@@ -14,10 +15,13 @@
 #include "runtime/group.hpp"
 #include "runtime/here.hpp"
 #include "runtime/mailbox.hpp"
+#include "runtime/priority.hpp"
 #include "runtime/reduction.hpp"
 #include "runtime/room.hpp"
 #include "runtime/run.hpp"
 #include "runtime/scoped.hpp"
+#include "runtime/section.hpp"
 #include "runtime/shared_array.hpp"
+#include "runtime/singleton.hpp"
 #include "runtime/task.hpp"
 #include "runtime/timer.hpp"

@@ -81,6 +81,10 @@ void resume_later(Task::Handle task) {
   pe.send_here(message);
 }
 
+void detail::Waiter::wake() {
+  if (--n_left_ == 0) resume_later(task_);
+}
+
 void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type> self) noexcept {
   promise_type& promise = self.promise();
   if (promise.parent) {

@@ -7,6 +7,7 @@
 #include "runtime/scheduler/block.hpp"
 
 #include <coroutine>
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <string>
@@ -89,6 +90,24 @@ class [[nodiscard]] Task {
 /// For awaitables: suspends a coroutine and records what it waits for. The awaitable resumes it
 /// through resume_later().
 void suspend(Task::Handle task, std::function<std::string()> waits_for);
+
+namespace detail {
+/// A suspended coroutine, and the number of results that it waits for before it continues: one; all
+/// of several (when_all); or the first of several (when_any), where the later ones have no effect.
+class Waiter {
+ public:
+  void start(Task::Handle task, std::ptrdiff_t n_results) {
+    task_ = task;
+    n_left_ = n_results;
+  }
+  /// A result is there.
+  void wake();
+
+ private:
+  Task::Handle task_;
+  std::ptrdiff_t n_left_ = 0;
+};
+}  // namespace detail
 
 /// Puts a suspended coroutine into the queue of its PE; must be called on that PE.
 void resume_later(Task::Handle task);

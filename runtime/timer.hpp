@@ -3,6 +3,7 @@
 //     using namespace std::chrono_literals;
 //     tess::after(5ms, [blocks] { blocks[{0}].send<&Block::look>(1); });
 //     tess::after(5ms, blocks[{0}].target<&Block::look>(), 1);       // the same
+//     blocks[{0}].send_after<&Block::look>(5ms, 1);                  // the same
 //     const tess::Timer timer = tess::every(1s, [log] { log.local().print(); });
 //     timer.cancel();
 //
@@ -32,28 +33,15 @@ consteval bool check_timer_call() {
 }
 }  // namespace detail
 
-/// Calls `call` once, after the delay. The timer is a message of the current epoch: the epoch and
-/// the run do not end before the call and all that it causes are done.
-template <class F>
-  requires std::invocable<F&>
-void after(std::chrono::nanoseconds delay, F call) {
-  static_assert(detail::check_timer_call<F>());
-  current_pe().timers().after(delay, std::move(call));
-}
-/// Calls a target with a value, once, after the delay.
-template <class T>
-void after(std::chrono::nanoseconds delay, Callback<T> target, std::type_identity_t<T> value) {
-  after(delay, [target = std::move(target), value = std::move(value)] { target(value); });
-}
-
-/// A periodic timer, as a value: it can be stored, sent, and used on every PE.
+/// A timer, as a value: it can be stored, sent, and used on every PE.
 class Timer {
  public:
   Timer() = default;
   Timer(PeId pe, std::uint64_t number) : pe_(pe), number_(number) {}
 
   /// Ends the timer. On its own PE it is never called again; from another PE it may be called until
-  /// this request arrives. Cancelling it again, or a Timer() that names none, has no effect.
+  /// this request arrives. The epoch of a timer that runs once no longer waits for it. Cancelling it
+  /// again, or a timer that has run, or a Timer() that names none, has no effect.
   void cancel() const {
     if (number_ != 0) detail::cancel_timer(pe_, number_);
   }
@@ -68,6 +56,21 @@ class Timer {
   PeId pe_{};
   std::uint64_t number_ = 0;
 };
+
+/// Calls `call` once, after the delay. The timer is a message of the current epoch: the epoch and
+/// the run do not end before the call and all that it causes are done, or the timer is cancelled.
+template <class F>
+  requires std::invocable<F&>
+Timer after(std::chrono::nanoseconds delay, F call) {
+  static_assert(detail::check_timer_call<F>());
+  Pe& pe = current_pe();
+  return {pe.id(), pe.timers().after(delay, std::move(call))};
+}
+/// Calls a target with a value, once, after the delay.
+template <class T>
+Timer after(std::chrono::nanoseconds delay, Callback<T> target, std::type_identity_t<T> value) {
+  return after(delay, [target = std::move(target), value = std::move(value)] { target(value); });
+}
 
 /// Calls `call` after each period, until the timer is cancelled or the run ends. A call that comes
 /// late replaces those that it missed. The timer belongs to no epoch, and nothing waits for its

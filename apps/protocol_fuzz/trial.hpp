@@ -46,6 +46,9 @@ class Trial {
   /// Of the simulated machine: bytes under way from process to process.
   [[nodiscard]] std::uint64_t message_memory() const { return message_memory_; }
 
+  /// Lets no message wait for credit.
+  void give_memory() { message_memory_ = std::uint64_t{32} << 20U; }
+
   /// Turns forced migrations off.
   void forbid_forced_migration() { forced_migration_ = false; }
 

@@ -14,6 +14,7 @@ namespace tess::detail {
 struct Bundle : Link {
   static constexpr std::uint32_t capacity = 28;
   std::uint32_t n = 0;
+  bool prioritised = false;              ///< one of them has a priority
   std::array<Link*, capacity> messages;  // the first n
 };
 

@@ -106,6 +106,14 @@ class ArrayOf : public Collection {
     return record == nullptr ? nullptr : record->element();
   }
 
+  [[nodiscard]] const Index& index_of(const Element& element) const {
+    return static_cast<const Indexed&>(element).index_;
+  }
+  /// The place of an element that is here.
+  [[nodiscard]] Place place_of(const Element& element) const {
+    return Place{pe_.id(), element.state_.version};
+  }
+
   /// The PE to which a message for this index is sent, as far as this PE knows.
   [[nodiscard]] PeId next_pe(const Index& index) {
     const Record* record = table_.find(index);
@@ -140,12 +148,38 @@ class ArrayOf : public Collection {
     }
   }
 
+  /// The element of this index if it may be called now, inside another entry method; otherwise null.
+  [[nodiscard]] Indexed* free_to_run(const Index& index) {
+    if (!pe_.may_nest()) return nullptr;
+    Indexed* element = find(index);
+    return element != nullptr && element->n_suspended_ == 0 ? element : nullptr;
+  }
+  /// Calls that element as a part of the running message, which its epochs wait for. An exception
+  /// ends the job once the caller is done.
+  template <class Invoke>
+  void run_now(Indexed& element, const Action& action, const Invoke& invoke) {
+    const Pe::Nested nested(pe_);
+    const Action* const outer = pe_.running();
+    const std::uint32_t led_by = Collection::led_by(pe_.context(), id());
+    pe_.begins(&action);
+    {
+      const ElementScope scope(pe_, element, &action, pe_.context().epoch, led_by);
+      try {
+        invoke();
+      } catch (...) {
+        pe_.keep_exception(std::current_exception());
+      }
+    }
+    pe_.begins(outer);
+  }
+
   [[nodiscard]] std::string index_text_of(const Element& element) const override {
     return index_text(static_cast<const Indexed&>(element).index_);
   }
 
   void settle(Element& element) override {
     if (element.n_suspended_ != 0) return;
+    const Pe::Nested none(pe_, Pe::most_nested);  // its destructor may send messages
     if (element.destroy_requested_) {
       destroy_here(static_cast<Indexed&>(element));
     } else if (element.migrate_to_.value >= 0) {
@@ -215,7 +249,7 @@ class ArrayOf : public Collection {
   virtual Indexed* construct_default() = 0;
   virtual void destroy(Indexed& element) = 0;
   /// Sends the element to another PE; it is no longer listed here.
-  virtual void ship(Indexed& element, PeId to) = 0;
+  virtual void ship(Indexed& element, PeId to, Memberships&& memberships) = 0;
   [[nodiscard]] virtual DeadLetters dead_letters() const = 0;
 
   /// Constructs an element on this PE.
@@ -237,7 +271,7 @@ class ArrayOf : public Collection {
   }
 
   /// Adds an element that arrived from another PE.
-  void add_arrived(Indexed* element, PeId from);
+  void add_arrived(Indexed* element, PeId from, Memberships&& memberships);
 
   void destroy_all();
 

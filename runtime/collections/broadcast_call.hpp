@@ -38,6 +38,7 @@ class BroadcastCall
 
   [[nodiscard]] virtual const BroadcastKind& kind() const = 0;
   [[nodiscard]] virtual const Action& action() const = 0;
+  [[nodiscard]] virtual std::int64_t priority() const = 0;
   /// Calls the entry method; the arguments are kept for the next element.
   virtual void invoke(Element& element) const = 0;
   virtual void pack(Writer& ar) const = 0;
@@ -51,6 +52,7 @@ struct NumberedCall {
   SharedCall call;
   std::uint32_t n_complete = 0;
 
+  [[nodiscard]] std::int64_t priority() const { return call->priority(); }
   /// The collection has ended, so no element is called. Returns the number of lost broadcasts.
   std::uint64_t drop(Pe& pe) const;
 

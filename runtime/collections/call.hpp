@@ -5,6 +5,7 @@
 #include "runtime/collections/array_of.hpp"
 #include "runtime/collections/make_chare.hpp"
 #include "runtime/core/round_trip.hpp"
+#include "runtime/messages/entry_attributes.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/block.hpp"
 
@@ -52,6 +53,7 @@ struct TypedMessage : ElementMessage<typename C::Index> {
     message->collection = collection;
     message->index = index;
     message->asker = pe.id();
+    if constexpr (HasPriority<Derived>) message->prioritised = Derived::priority_of(*message) != 0;
     if (pe.context().led_by != 0) message->led_by = Collection::led_by(pe.context(), collection);
 #ifdef TESS_CHECKS_ALL
     const std::string difference = arguments_difference(message->arguments);
@@ -66,11 +68,14 @@ struct TypedMessage : ElementMessage<typename C::Index> {
       pe.keep_early(message->collection, envelope, &drop);
       return;
     }
-    static_cast<Array<C>*>(collection)->arrive(message);
+    static_cast<ArrayOf<Index>*>(collection)->arrive(message);
   }
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
+    const auto& of = static_cast<const ElementAction<Index>&>(*envelope.action);
+    if (of.undelivered != nullptr)
+      of.undelivered(pe, static_cast<ElementMessage<Index>&>(envelope));
     pe.completion().processed(envelope.epoch);
-    return static_cast<const ElementAction<Index>&>(*envelope.action).n_dead_letters();
+    return of.n_dead_letters();
   }
   static void destroy(Envelope* envelope) {
     auto* message = static_cast<Derived*>(envelope);
@@ -105,7 +110,46 @@ struct Call final : TypedMessage<Call<C, F>, C, typename EntryTraits<F>::Argumen
         },
         message.arguments);
   }
+  /// The priority that the class gives to F.
+  static std::int64_t priority_of(const Envelope& /*message*/)
+    requires(entry_rule<C, F>.priority != 0)
+  {
+    return entry_rule<C, F>.priority;
+  }
   static inline const ElementAction<Index> entry{std::type_identity<Call>{}, &Call::invoke};
+};
+
+/// The arguments of a message that carries its own priority.
+template <class Arguments>
+struct WithPriority;
+template <class... P>
+struct WithPriority<std::tuple<P...>> {
+  using type = std::tuple<std::int64_t, P...>;
+};
+
+/// The same call with the priority that the sender gave it.
+template <class C, auto F>
+struct PrioritisedCall final
+    : TypedMessage<PrioritisedCall<C, F>, C,
+                   typename WithPriority<typename EntryTraits<F>::Arguments>::type> {
+  using Base = TypedMessage<PrioritisedCall, C,
+                            typename WithPriority<typename EntryTraits<F>::Arguments>::type>;
+  using Index = typename C::Index;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<Index>& envelope) {
+    auto& message = static_cast<PrioritisedCall&>(envelope);
+    std::apply(
+        [&element](std::int64_t /*priority*/, auto&... argument) {
+          (void)(static_cast<C&>(element).*F)(std::move(argument)...);
+        },
+        message.arguments);
+  }
+  static std::int64_t priority_of(const Envelope& envelope) {
+    return std::get<0>(static_cast<const PrioritisedCall&>(envelope).arguments);
+  }
+  static inline const ElementAction<Index> entry{std::type_identity<PrioritisedCall>{},
+                                                 &PrioritisedCall::invoke};
 };
 
 /// A call of the constructor of C with these argument types.
@@ -173,6 +217,7 @@ struct Arrival final : Envelope {
   PeId from{};
   C* element = nullptr;
   Buffer state;  // the serialised state, once the object is gone
+  Memberships memberships;
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* arrival = static_cast<Arrival*>(envelope);
@@ -196,7 +241,7 @@ struct Arrival final : Envelope {
   static void pack(Envelope& envelope, Writer& ar);
   static Envelope* unpack(Pe& /*pe*/, Reader& ar) {
     auto arrival = std::make_unique<Arrival>();
-    ar(arrival->collection, arrival->from, arrival->state);
+    ar(arrival->collection, arrival->from, arrival->state, arrival->memberships);
     return arrival.release();
   }
   static inline const Action entry{naming::name_of<Arrival>(), &run, &destroy, &pack, &unpack,
@@ -205,7 +250,7 @@ struct Arrival final : Envelope {
 
 /// A call of entry method F of all elements.
 template <class C, auto F>
-class CallOfAll final : public BroadcastCall {
+class CallOfAll : public BroadcastCall {
  public:
   using Arguments = typename EntryTraits<F>::Arguments;
 
@@ -213,6 +258,7 @@ class CallOfAll final : public BroadcastCall {
 
   [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
   [[nodiscard]] const Action& action() const override { return action_; }
+  [[nodiscard]] std::int64_t priority() const override { return entry_rule<C, F>.priority; }
   void invoke(Element& element) const override {
     std::apply(
         [&element](const auto&... argument) { (void)(static_cast<C&>(element).*F)(argument...); },
@@ -228,6 +274,32 @@ class CallOfAll final : public BroadcastCall {
       naming::name_of<CallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
 
   Arguments arguments_;
+};
+
+/// The same with the priority that the sender gave it.
+template <class C, auto F>
+class PrioritisedCallOfAll final : public CallOfAll<C, F> {
+ public:
+  using Arguments = typename EntryTraits<F>::Arguments;
+
+  PrioritisedCallOfAll(Priority priority, Arguments arguments)
+      : CallOfAll<C, F>(std::move(arguments)), priority_(priority.value) {}
+
+  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
+  [[nodiscard]] std::int64_t priority() const override { return priority_; }
+  void pack(Writer& ar) const override {
+    ar(priority_);
+    CallOfAll<C, F>::pack(ar);
+  }
+
+ private:
+  static SharedCall unpack(Reader& ar) {
+    const Priority priority{ar.take<std::int64_t>()};
+    return SharedCall(new PrioritisedCallOfAll(priority, ar.take<Arguments>()));
+  }
+  static inline const BroadcastKind kind_{naming::name_of<PrioritisedCallOfAll>(), &unpack};
+
+  std::int64_t priority_;
 };
 
 }  // namespace tess::detail

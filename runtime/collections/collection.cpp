@@ -1,6 +1,7 @@
 #include "runtime/collections/collection.hpp"
 
 #include "runtime/collections/balance_record.hpp"
+#include "runtime/collections/sections.hpp"
 #include "runtime/core/check.hpp"
 
 namespace tess::detail {
@@ -28,6 +29,23 @@ Collection::~Collection() = default;
 
 ReductionTree& Collection::tree(Track track) {
   return track == Track::own ? reductions_ : *second_tree_;
+}
+
+Sections& Collection::sections() {
+  if (!sections_) sections_ = std::make_unique<Sections>(*this);
+  return *sections_;
+}
+
+Memberships Collection::leave_sections(Element& element) {
+  return element.in_sections_ ? sections_->leave(element) : Memberships();
+}
+
+void Collection::end_memberships(Element& element) {
+  if (element.in_sections_) sections_->destroyed(element);
+}
+
+void Collection::enter_sections(Element& element, Memberships&& memberships) {
+  if (!memberships.empty()) sections().enter(element, std::move(memberships));
 }
 
 void Collection::list(Element& element) {
@@ -144,6 +162,7 @@ std::string Collection::elements_before(std::uint32_t number) const {
 void Collection::describe_waiting(std::vector<std::string>& lines) const {
   reductions_.describe_waiting(lines);
   if (second_tree_ != nullptr) second_tree_->describe_waiting(lines);
+  if (sections_) sections_->describe_waiting(lines);
   if (watcher_ != nullptr) return;
   for (const Element* element : elements_)
     if (element != nullptr && element->balance_ &&
@@ -200,6 +219,7 @@ bool Collection::awake(Element& element) {
 
 void Collection::end() {
   ended_ = true;
+  if (sections_) sections_->end_all();
   if (watcher_ != nullptr) watcher_->collection_ends();
   watcher_ = nullptr;
   for (Element* element : elements_) {

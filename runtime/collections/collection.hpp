@@ -4,6 +4,7 @@
 
 #include "runtime/collections/collection_hosts.hpp"
 #include "runtime/collections/element.hpp"
+#include "runtime/collections/membership.hpp"
 #include "runtime/scheduler/pe.hpp"
 
 #include <array>
@@ -16,6 +17,7 @@
 namespace tess::detail {
 
 struct LoadRecord;
+class Sections;
 
 /// The PE that numbers the broadcasts and completes the reductions of a collection.
 [[nodiscard]] inline PeId root_of(CollectionId id, std::int32_t n_pes) {
@@ -55,6 +57,8 @@ class Collection : public HostedCollection {
   [[nodiscard]] BroadcastLog& broadcasts() { return broadcasts_; }
   [[nodiscard]] ReductionTree& reductions() { return reductions_; }
   [[nodiscard]] ReductionTree& tree(Track track);
+  /// Its sections on this PE; made by the first call.
+  [[nodiscard]] Sections& sections();
   /// Sets a library's tree, to which messages of the second track go; the library owns it.
   void set_second_tree(ReductionTree& tree) { second_tree_ = &tree; }
 
@@ -186,6 +190,12 @@ class Collection : public HostedCollection {
   /// Registers an element that was just created here.
   void register_new(Element& element);
 
+  /// An element leaves or is destroyed: it is not listed any more.
+  [[nodiscard]] Memberships leave_sections(Element& element);
+  void end_memberships(Element& element);
+  /// An element arrives with its memberships.
+  void enter_sections(Element& element, Memberships&& memberships);
+
   Pe& pe_;
 
  private:
@@ -212,6 +222,7 @@ class Collection : public HostedCollection {
   ReductionHostOfCollection reduction_host_{*this, Track::own};
   BroadcastLog broadcasts_;
   ReductionTree reductions_;
+  std::unique_ptr<Sections> sections_;  // null until a section has members or messages here
 };
 
 /// Marks that code of an element runs: the element is the context's element, and it neither leaves

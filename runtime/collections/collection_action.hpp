@@ -52,8 +52,22 @@ struct CollectionAction {
       return 0;
     }
   }
+  static std::int64_t priority_of(const Envelope& envelope)
+    requires requires(const Payload& payload) { payload.priority(); }
+  {
+    return static_cast<const Held&>(envelope).payload.payload.priority();
+  }
+  static constexpr bool has_priority = requires(const Payload& payload) { payload.priority(); };
+  static constexpr Action::PriorityOf priority_function() {
+    if constexpr (has_priority) {
+      return &CollectionAction::priority_of;
+    } else {
+      return nullptr;
+    }
+  }
   static inline const Action action{
-      naming::name_of<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind};
+      naming::name_of<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind,
+      priority_function()};
 };
 
 /// Sends a payload to the part of a collection on a PE, where it may not be known yet. It counts as
@@ -62,8 +76,10 @@ template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Pe& pe, CollectionId id, PeId to,
                         typename CollectionAction<Handler, Kind>::Payload payload) {
   using A = CollectionAction<Handler, Kind>;
-  pe.send(to, pe.stamp(A::Held::make(pe, A::action,
-                                     ToCollection<typename A::Payload>{id, std::move(payload)})));
+  auto* message =
+      A::Held::make(pe, A::action, ToCollection<typename A::Payload>{id, std::move(payload)});
+  if constexpr (A::has_priority) message->prioritised = message->payload.payload.priority() != 0;
+  pe.send(to, pe.stamp(message));
 }
 template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Collection& collection, PeId to,

@@ -26,6 +26,7 @@ class Group;
 namespace tess::detail {
 
 class Collection;
+class Sections;
 struct BalanceRecord;
 
 /// Frees a record; not inline, since most elements have none.
@@ -56,6 +57,7 @@ class TessElement {
 
  private:
   friend class Collection;
+  friend class Sections;
   template <class>
   friend class ArrayOf;
   template <class>
@@ -80,6 +82,7 @@ class TessElement {
   PeId migrate_to_{-1};             // the PE to move to once none of its code runs or waits
   bool destroy_requested_ = false;  // to be destroyed once none of its code runs or waits
   bool has_run_ = false;            // code other than its constructor has run here
+  bool in_sections_ = false;        // it is a member of sections, which are listed in Sections
 };
 
 using Element = TessElement;

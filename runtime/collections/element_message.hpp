@@ -14,6 +14,7 @@ enum class Demand : std::uint8_t {
   home,              ///< create it by its default constructor on the home PE of the index
   insert,            ///< the message is a constructor call; misuse if the element exists
   insert_if_absent,  ///< the message is a constructor call; no effect if the element exists
+  member,  ///< as none, but once an element was destroyed it is dropped, whatever the array
 };
 
 template <class Index>
@@ -36,6 +37,10 @@ struct ElementMessage : Envelope {
   }
 };
 
+/// Messages of this type may be prioritised.
+template <class Message>
+concept HasPriority = requires(const Envelope& message) { Message::priority_of(message); };
+
 /// The action for an entry method or a constructor of a chare with this type of index.
 template <class Index>
 struct ElementAction : Action {
@@ -43,23 +48,40 @@ struct ElementAction : Action {
   using Invoke = void (*)(Element&, ElementMessage<Index>&);
   /// Constructs the element from the constructor's arguments; only for insert demands.
   using Construct = Element* (*)(ElementMessage<Index>&);
+  /// The message will never be delivered, since its element or the array was destroyed. Such a
+  /// message is no dead letter.
+  using Undelivered = void (*)(Pe&, ElementMessage<Index>&);
 
   /// The action of `Message`. `traffic` is user, or control for a message that the user did not
   /// send and that is no dead letter. (A constructor, and no function that returns the action: where
   /// a program never names `Message::entry`, g++ 12 would register a temporary instead.)
   template <class Message>
   explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
-                         Traffic t = Traffic::user)
+                         Traffic t = Traffic::user, Undelivered u = nullptr)
       : Action(naming::name_of<Message>(), &Message::run, &Message::destroy, &Message::pack,
-               &Message::unpack, t),
+               &Message::unpack, t, priority_function<Message>()),
         invoke(i),
-        construct(c) {}
+        construct(c),
+        undelivered(u) {}
 
   /// The number of dead letters (0 or 1) for a message of this kind that is not delivered.
-  [[nodiscard]] std::uint64_t n_dead_letters() const { return traffic == Traffic::user ? 1 : 0; }
+  [[nodiscard]] std::uint64_t n_dead_letters() const {
+    return traffic == Traffic::user && undelivered == nullptr ? 1 : 0;
+  }
 
   Invoke invoke;
   Construct construct;
+  Undelivered undelivered;
+
+ private:
+  template <class Message>
+  static Action::PriorityOf priority_function() {
+    if constexpr (HasPriority<Message>) {
+      return &Message::priority_of;
+    } else {
+      return nullptr;
+    }
+  }
 };
 
 }  // namespace tess::detail

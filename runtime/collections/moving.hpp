@@ -20,12 +20,12 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
   broadcasts().left(element.state_.seen_broadcast);
   ++pe_.statistics().migrations;
   pe_.completion().sent(pe_.context().epoch);
-  ship(element, to);
+  ship(element, to, leave_sections(element));
   reductions().advance();
 }
 
 template <class Index>
-void ArrayOf<Index>::add_arrived(Indexed* element, PeId from) {
+void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memberships) {
   const Index index = element->index_;
   const EpochId epoch = pe_.context().epoch;
   const std::uint64_t seen = element->state_.seen_broadcast;
@@ -33,6 +33,7 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from) {
   table_.at(index).set_here(*element);
   count_arrival(*element);
   list(*element);
+  enter_sections(*element, std::move(memberships));
   // It stays until it has received the broadcasts that it missed: only then has it arrived.
   ++element->n_suspended_;
   for (const NumberedCall& call : broadcasts().missed(seen)) {
@@ -134,6 +135,7 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   ++n_departures_;
   table_.at(index).set_unknown();
   end_wait(element);
+  end_memberships(element);
   if (watcher() != nullptr) [[unlikely]]
     watcher()->destroyed(element);
   destroy(element);

@@ -6,11 +6,6 @@
 
 namespace tess::detail {
 
-void settle(Completion& completion, const std::vector<EpochShare>& shares) {
-  for (const EpochShare& share : shares)
-    for (std::uint64_t k = 0; k < share.n; ++k) completion.processed(share.epoch);
-}
-
 void ReductionTree::end() {
   for (const auto& [number, gathering] : gathering_) settle(completion_, gathering.shares);
   for (const auto& [number, whole] : whole_) settle(completion_, whole.sum.shares);
@@ -58,28 +53,6 @@ void ReductionTree::take(std::uint32_t number, const Cause& cause) {
   } else if (learn(number, cause.led_by)) {
     ask_children(number, cause);
   }
-}
-
-void ReductionTree::merge(Gathering& into, std::unique_ptr<Partial> value) {
-  if (!value) return;
-  if (!into.value) {
-    into.kind = &value->kind();
-    into.value = std::move(value);
-    return;
-  }
-  TESS_CHECK(into.kind == &value->kind(),
-             "two elements contribute to one reduction with different types: ", into.kind->name(),
-             " and ", value->kind().name());
-  into.value->merge(std::move(*value));
-}
-
-void ReductionTree::merge(Gathering& into, const EpochShare& share) {
-  for (EpochShare& mine : into.shares) {
-    if (mine.epoch != share.epoch) continue;
-    mine.n += share.n;
-    return;
-  }
-  into.shares.push_back(share);
 }
 
 void ReductionTree::remove_member(std::uint32_t next) {
@@ -152,8 +125,8 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
   Gathering& gathering = gathering_[number];
   gathering.known = true;
   ++gathering.n;
-  merge(gathering, std::move(value));
-  merge(gathering, EpochShare{epoch, 1});
+  gathering.merge_value(std::move(value));
+  gathering.merge_shares({{epoch, 1}});
   current_ = &gathering;
   current_number_ = number;
   take(number, gathering, cause);
@@ -196,15 +169,15 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != here_) {
     host_.send(parent_,
                ReductionReport{number, gathered.n, gathered.change, false, 0, gathered.cause,
-                               PartialBox{std::move(gathered.value)}, std::move(gathered.shares)});
+                               std::move(gathered.value), std::move(gathered.shares)});
     return;
   }
   Whole& whole = whole_[number];
   whole.all_reported = true;
   whole.sum.n += gathered.n;
   whole.sum.change += gathered.change;
-  merge(whole.sum, std::move(gathered.value));
-  merge(whole.sum, gathered.shares);
+  whole.sum.merge_value(std::move(gathered.value.held));
+  whole.sum.merge_shares(gathered.shares);
   complete_if_whole();
 }
 
@@ -216,8 +189,8 @@ void ReductionTree::on_report(ReductionReport&& report) {
     Whole& whole = whole_[report.number];
     whole.sum.n += report.n;
     whole.sum.change += report.change;
-    merge(whole.sum, std::move(report.value.held));
-    merge(whole.sum, report.shares);
+    whole.sum.merge_value(std::move(report.value.held));
+    whole.sum.merge_shares(report.shares);
     if (report.joins != 0) whole_[report.joins].sum.change += 1;
     take(report.number, report.cause);
     advance();
@@ -228,8 +201,8 @@ void ReductionTree::on_report(ReductionReport&& report) {
   gathering.known = true;
   gathering.n += report.n;
   gathering.change += report.change;
-  merge(gathering, std::move(report.value.held));
-  merge(gathering, report.shares);
+  gathering.merge_value(std::move(report.value.held));
+  gathering.merge_shares(report.shares);
   take(report.number, gathering, report.cause);
   ++gathering.children;
   // The same holds for a PE that reported without this knowledge.
@@ -253,8 +226,7 @@ void ReductionTree::complete_if_whole() {
     Gathering done = std::move(sum);
     whole_.erase(at);
     ++next_complete_;
-    if (done.value)
-      host_.deliver(*done.value, done.shares.size() == 1 ? done.shares.front().epoch : EpochId{});
+    if (done.value.held) host_.deliver(*done.value.held, done.epoch());
     // The result has been sent in the same epoch before the contributions are settled.
     settle(completion_, done.shares);
   }

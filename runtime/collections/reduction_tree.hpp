@@ -31,9 +31,9 @@
 //              it at the number that this broadcast leads to.
 #pragma once
 
+#include "runtime/collections/gathered.hpp"
 #include "runtime/collections/led_to.hpp"
 #include "runtime/collections/number_counts.hpp"
-#include "runtime/collections/partial.hpp"
 #include "runtime/core/ids.hpp"
 
 #include <cstdint>
@@ -47,14 +47,6 @@ namespace tess::detail {
 
 class Completion;
 class Pe;
-
-/// Contributions in one epoch: the epoch is not done while they are under way.
-struct EpochShare {
-  EpochId epoch;
-  std::uint64_t n = 0;
-};
-/// Counts the contributions as processed in their epochs.
-void settle(Completion& completion, const std::vector<EpochShare>& shares);
 
 /// The causes of contributions: the last broadcast that any of the contributors had received, and
 /// the first that led to one of the contributions (0: none is known).
@@ -143,10 +135,9 @@ class ReductionTree {
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
   /// place; otherwise null, then call contribute(). After adding, the caller calls added().
   [[nodiscard]] Partial* open_sum(std::uint32_t number, const PartialKind& kind, EpochId epoch) {
-    if (current_ == nullptr || current_number_ != number || !current_->value ||
-        current_->kind != &kind || current_->shares.front().epoch != epoch)
+    if (current_ == nullptr || current_number_ != number || !current_->takes(kind, epoch))
       return nullptr;
-    return current_->value.get();
+    return current_->value.held.get();
   }
   /// A contribution was added to open_sum().
   void added(std::uint32_t number, const Cause& cause);
@@ -172,23 +163,14 @@ class ReductionTree {
   void describe_waiting(std::vector<std::string>& lines) const;
 
  private:
-  struct Gathering {
-    std::uint64_t n = 0;
+  struct Gathering : Gathered {
     std::int64_t change = 0;
     std::int32_t children = 0;
     bool known = false;  // an element contributed, or a PE reported or asked
     bool asked = false;  // the children were asked to begin
-    std::unique_ptr<Partial> value;
-    const PartialKind* kind = nullptr;  // kind of the value
     Cause cause;
-    std::vector<EpochShare> shares;
   };
 
-  static void merge(Gathering& into, std::unique_ptr<Partial> value);
-  static void merge(Gathering& into, const EpochShare& share);
-  static void merge(Gathering& into, const std::vector<EpochShare>& shares) {
-    for (const EpochShare& share : shares) merge(into, share);
-  }
   [[nodiscard]] bool ready(std::uint32_t number) const;
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();

@@ -128,6 +128,14 @@ void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
     park(message, Parked::waiting);  // it refers to an incarnation that this home does not know yet
     return;
   }
+  if (message->demand == Demand::member) {
+    if (destroyed) {
+      dead_letter(message);
+    } else {
+      park(message, Parked::waiting);
+    }
+    return;
+  }
   const bool revives =
       message->demand == Demand::none && destroyed && dead_letters() == DeadLetters::recreate;
   if (message->demand == Demand::home || revives) {
@@ -152,8 +160,9 @@ void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
 template <class Index>
 void ArrayOf<Index>::dead_letter(CallMessage* message) {
   const EpochId epoch = message->epoch;
-  pe_.statistics().dead_letters +=
-      static_cast<const ElementAction<Index>&>(*message->action).n_dead_letters();
+  const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
+  if (action.undelivered != nullptr) action.undelivered(pe_, *message);
+  pe_.statistics().dead_letters += action.n_dead_letters();
   discard(message);
   pe_.completion().processed(epoch);
 }

@@ -94,9 +94,9 @@ template <class Parameters, class... Args>
   }(static_cast<Parameters*>(nullptr));
 }
 
-/// Checks that F is an entry method of C that can be called with these arguments.
+/// Checks that F is a member function of C that can be called with these arguments.
 template <class C, auto F, class... Args>
-consteval bool check_entry() {
+consteval bool check_call() {
   using Traits = EntryTraits<F>;
   static_assert(Traits::is_member,
                 "an entry method is a member function: send<&Class::function>(…)");
@@ -104,12 +104,9 @@ consteval bool check_entry() {
     static_assert(
         std::is_base_of_v<typename Traits::Class, C>,
         "this entry method belongs to another class than the elements of this collection");
-    static_assert(
-        std::is_void_v<typename Traits::Result> || std::is_same_v<typename Traits::Result, Task>,
-        "an entry method returns void or tess::Task");
     static_assert(Traits::by_value_or_const,
                   "an entry method takes its arguments by value or const reference");
-    static_assert(std::is_void_v<typename Traits::Result> || Traits::by_value,
+    static_assert(!std::is_same_v<typename Traits::Result, Task> || Traits::by_value,
                   "a coroutine takes its arguments by value: the message is gone once it waits");
     if constexpr (sizeof...(Args) == Traits::n_arguments) {
       static_assert(std::is_constructible_v<typename Traits::Arguments, Args...>,
@@ -123,6 +120,28 @@ consteval bool check_entry() {
     }
   }
   return true;
+}
+
+/// Checks that F is an entry method of C that can be called with these arguments.
+template <class C, auto F, class... Args>
+consteval bool check_entry() {
+  if constexpr (EntryTraits<F>::is_member) {
+    using Result = typename EntryTraits<F>::Result;
+    static_assert(std::is_void_v<Result> || std::is_same_v<Result, Task>,
+                  "an entry method returns void or tess::Task");
+  }
+  return check_call<C, F, Args...>();
+}
+
+/// Checks that F is a member function of C whose reply can be awaited.
+template <class C, auto F, class... Args>
+consteval bool check_ask() {
+  if constexpr (EntryTraits<F>::is_member) {
+    using Result = typename EntryTraits<F>::Result;
+    static_assert(std::is_void_v<Result> || std::is_same_v<Result, std::decay_t<Result>>,
+                  "a reply is a value: a function that is asked returns no reference");
+  }
+  return check_call<C, F, Args...>();
 }
 
 /// The type of value that a target of entry method F takes: its argument, or `Without`.

@@ -31,8 +31,9 @@ struct Envelope : Link {
   EpochId epoch{};
   PeId source{};
   PeId target{};
-  bool counted = true;      ///< in epoch 0; false for messages that measure or end the run
-  std::uint32_t trace = 0;  ///< the number of its send on the source PE, if a trace is kept
+  bool counted = true;       ///< in epoch 0; false for messages that measure or end the run
+  bool prioritised = false;  ///< its action gives its priority, which is not 0
+  std::uint32_t trace = 0;   ///< the number of its send on the source PE, if a trace is kept
   /// Credit that the PE that runs it owes to `sender`, which packed it for this hop (outbox.hpp); 0
   /// within a process.
   std::uint32_t charge = 0;
@@ -45,15 +46,17 @@ struct Action : Registered {
   using Destroy = void (*)(Envelope*);
   using Pack = void (*)(Envelope&, Writer&);
   using Unpack = Envelope* (*)(Pe&, Reader&);
+  using PriorityOf = std::int64_t (*)(const Envelope&);
 
   Action(naming::Name name, Run run_, Destroy destroy_, Pack pack_, Unpack unpack_,
-         Traffic traffic_)
+         Traffic traffic_, PriorityOf priority_of_ = nullptr)
       : Registered(name),
         run(run_),
         destroy(destroy_),
         pack(pack_),
         unpack(unpack_),
-        traffic(traffic_) {}
+        traffic(traffic_),
+        priority_of(priority_of_) {}
 
   /// The duration of its messages as known in this process: a message that may be slow must not
   /// delay earlier messages to other PEs.
@@ -71,6 +74,7 @@ struct Action : Registered {
   Pack pack;
   Unpack unpack;
   Traffic traffic;
+  PriorityOf priority_of;  ///< null if none of its messages is prioritised
 
  private:
   mutable std::atomic<Pace> pace_{Pace::unknown};

@@ -48,7 +48,7 @@ void Outbox::put(Envelope* message) {
   Lane& to = lane(process);
   const bool charged = message->action->traffic == Traffic::user && message->counted;
   if (charged && to.under_way >= limit_) [[unlikely]] {
-    to.waiting.push(message);
+    to.waiting.push(message, message->prioritised ? message->action->priority_of(*message) : 0);
   } else {
     pack(to, process, message, charged);
   }
@@ -102,7 +102,8 @@ std::size_t Outbox::write(Lane& lane, Envelope* message, bool charged) {
                       message->target,
                       message->trace << PackedHeader::n_flags |
                           (message->counted ? PackedHeader::counted : 0U) |
-                          (charged ? PackedHeader::charged : 0U)};
+                          (charged ? PackedHeader::charged : 0U) |
+                          (message->prioritised ? PackedHeader::prioritised : 0U)};
   Writer write(room, &attached_);
   write(header);
   message->action->pack(*message, write);

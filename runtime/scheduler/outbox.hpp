@@ -16,7 +16,7 @@
 //     portion = limit / (2 × PEs of the receiving process):  its PEs together keep back less than
 //     half of the limit, so some of the bytes under way are always about to be repaid
 //
-// A message that has run is repaid wherever it goes then, and messages of the runtime itself are
+// Messages that wait here leave in the order of their priorities. A message that has run is repaid wherever it goes then, and messages of the runtime itself are
 // not charged. So nothing that holds credit waits for credit, and no deadlock is possible. A
 // message that waits here counts as sent and not processed, so its epochs wait for it.
 //
@@ -51,11 +51,12 @@ struct PackedHeader {
   std::uint32_t action = 0;
   PeId source{};
   PeId target{};
-  std::uint32_t trace_and_flags = 0;  ///< the lowest bits: counted, charged
+  std::uint32_t trace_and_flags = 0;  ///< the lowest bits: counted, charged, prioritised
 
   static constexpr std::uint32_t counted = 1;
   static constexpr std::uint32_t charged = 2;
-  static constexpr unsigned n_flags = 2;
+  static constexpr std::uint32_t prioritised = 4;
+  static constexpr unsigned n_flags = 3;
 };
 static_assert(Bitwise<PackedFrom> && Bitwise<PackedHeader>);
 

@@ -42,8 +42,23 @@ struct Pe::Tables {
   ById<std::vector<Envelope*>> early;  // messages that arrived before their collection
 };
 
+/// A place is used again: the number of a future is its place, and above it how often the place had
+/// been used before.
 struct Pe::Futures {
-  boost::unordered_flat_map<std::uint64_t, void*> by_number;
+  struct Place {
+    void* future = nullptr;  // null: not in use
+    std::uint32_t n_used = 0;
+  };
+  std::vector<Place> places{1};  // the first is never used: no future has number 0
+  std::vector<std::uint32_t> unused;
+
+  /// Null if this number's future is no longer there.
+  [[nodiscard]] Place* find(std::uint64_t id) {
+    const auto at = static_cast<std::uint32_t>(id);
+    if (at >= places.size()) return nullptr;
+    Place& place = places[at];
+    return place.future != nullptr && place.n_used == id >> 32U ? &place : nullptr;
+  }
 };
 
 Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
@@ -73,7 +88,7 @@ Pe::~Pe() = default;
 void Pe::route(PeId to, Envelope* message) {
   message->target = to;
   if (to == id_ && !intercepts_) {
-    ready_.push(message);
+    enqueue(message);
   } else if (static_cast<std::uint32_t>(to.value - first_here_) <
              static_cast<std::uint32_t>(n_here_)) {
     ++statistics_.sent_remote;
@@ -99,6 +114,8 @@ void Pe::pass(PeId to, Envelope* message, std::size_t n_bytes) {
   if (bundle == nullptr) bundle = new (allocate_block(*this, sizeof(Bundle))) Bundle;
   if (bundle->n == 0) opened_.push_back(to.value - first_here_);
   bundle->messages[bundle->n++] = message;
+  if (message->prioritised) [[unlikely]]
+    bundle->prioritised = true;
   if (bundle->n == Bundle::capacity) post(bundle, to);
   hold();
 }
@@ -107,6 +124,7 @@ void Pe::post(Bundle*& bundle, PeId to) {
   if (bundle->n == 1) {  // posted alone; the bundle is kept for later messages
     auto* const message = static_cast<Envelope*>(bundle->messages[0]);
     bundle->n = 0;
+    bundle->prioritised = false;
     machine_.post(id_, to, message, sizeof(Envelope), message->action->traffic);
   } else {
     machine_.post_bundle(to, std::exchange(bundle, nullptr));
@@ -114,7 +132,12 @@ void Pe::post(Bundle*& bundle, PeId to) {
 }
 
 void Pe::accept(Bundle* bundle) {
-  for (std::uint32_t i = 0; i < bundle->n; ++i) ready_.push(bundle->messages[i]);
+  if (bundle->prioritised) [[unlikely]] {
+    for (std::uint32_t i = 0; i < bundle->n; ++i)
+      enqueue(static_cast<Envelope*>(bundle->messages[i]));
+  } else {
+    for (std::uint32_t i = 0; i < bundle->n; ++i) ready_.push(bundle->messages[i]);
+  }
   Pool::release(bundle, &pool_);
 }
 
@@ -360,21 +383,31 @@ Pe::Ending Pe::take_ending(CollectionId id) {
 }
 
 std::uint64_t Pe::enter_future(void* future) {
-  futures_->by_number.emplace(++n_futures_, future);
-  return n_futures_;
+  if (futures_->unused.empty()) {
+    futures_->unused.push_back(static_cast<std::uint32_t>(futures_->places.size()));
+    futures_->places.emplace_back();
+  }
+  const std::uint32_t at = futures_->unused.back();
+  futures_->unused.pop_back();
+  Futures::Place& place = futures_->places[at];
+  place.future = future;
+  return std::uint64_t{place.n_used} << 32U | at;
 }
 
 void Pe::move_future(std::uint64_t id, void* future) {
-  futures_->by_number[id] = future;
+  if (Futures::Place* place = futures_->find(id)) place->future = future;
 }
 
 void Pe::leave_future(std::uint64_t id) {
-  futures_->by_number.erase(id);
+  Futures::Place* place = futures_->find(id);
+  if (place == nullptr) return;
+  place->future = nullptr;
+  if (++place->n_used != 0) futures_->unused.push_back(static_cast<std::uint32_t>(id));
 }
 
 void* Pe::find_future(std::uint64_t id) const {
-  const auto at = futures_->by_number.find(id);
-  return at == futures_->by_number.end() ? nullptr : at->second;
+  const Futures::Place* place = futures_->find(id);
+  return place == nullptr ? nullptr : place->future;
 }
 
 std::vector<HostedCollection*> Pe::collections() const {

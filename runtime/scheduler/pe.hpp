@@ -52,6 +52,7 @@ struct PeStatistics {
   std::uint64_t forwards = 0;      ///< messages that met an element's former PE
   std::uint64_t migrations = 0;    ///< elements that left
   std::uint64_t dead_letters = 0;  ///< undeliverable messages to destroyed elements
+  std::uint64_t late_replies = 0;  ///< replies that came after their asker had stopped waiting
 };
 
 class Pe {
@@ -117,7 +118,7 @@ class Pe {
     if (intercepts_) [[unlikely]] {
       route(id_, message);
     } else {
-      ready_.push(message);
+      enqueue(message);
     }
   }
   /// Sends a stamped message to this PE once the delay is over.
@@ -165,7 +166,7 @@ class Pe {
   void accept(Link* first) {
     for (Link* next = nullptr; first != nullptr; first = next) {
       next = first->next;
-      ready_.push(first);
+      enqueue(static_cast<Envelope*>(first));
     }
   }
   void accept(Bundle* bundle);
@@ -256,10 +257,38 @@ class Pe {
     HostedCollection* collection_;
   };
 
+  /// True if an entry method runs that may call another inside its send().
+  [[nodiscard]] bool may_nest() const {
+    return context_->element != nullptr && n_nested_ < most_nested &&
+           constructed_index_ == nullptr && !stopped_;
+  }
+  static constexpr unsigned most_nested = 16;
+  /// Marks a call of an entry method inside another, or, with most_nested, code that must not call
+  /// any.
+  class Nested {
+   public:
+    explicit Nested(Pe& pe, unsigned n = 1) : pe_(pe), n_(n) { pe_.n_nested_ += n_; }
+    Nested(const Nested&) = delete;
+    Nested& operator=(const Nested&) = delete;
+    ~Nested() { pe_.n_nested_ -= n_; }
+
+   private:
+    Pe& pe_;
+    const unsigned n_;
+  };
+
   /// True if the schedule may migrate an element after each message (forced migrations).
   [[nodiscard]] bool intercepts() const { return intercepts_; }
 
  private:
+  /// Puts a message into the queue of this PE.
+  void enqueue(Envelope* message) {
+    if (message->prioritised) [[unlikely]] {
+      ready_.push(message, message->action->priority_of(*message));
+    } else {
+      ready_.push(message);
+    }
+  }
   void route(PeId to, Envelope* message);
   /// Passes a message to another PE of this process.
   void pass(PeId to, Envelope* message, std::size_t n_bytes);
@@ -294,11 +323,11 @@ class Pe {
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
-  std::uint64_t n_futures_ = 0;
   struct Futures;
   const std::unique_ptr<Futures> futures_;  // outlives the elements below, whose members they are
   std::string place_;                       // where the pending exception was thrown
   const void* constructed_index_ = nullptr;
+  unsigned n_nested_ = 0;
   HostedCollection* constructing_collection_ = nullptr;
   ReadyQueue ready_;
   Context of_message_;  // context of the running message

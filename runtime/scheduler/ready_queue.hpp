@@ -1,8 +1,11 @@
-// The messages that a PE may run, first in first out, in a growing ring of pointers. A message is
-// touched only when its turn is near; it is then prefetched. Used by one thread.
+// The messages that a PE may run: first those of negative priority, then those without a priority
+// (or of priority 0), then those of positive priority. The middle ones are first in first out, in a
+// growing ring of pointers. Such a message is touched only when its turn is near; it is then
+// prefetched. Used by one thread.
 #pragma once
 
 #include "runtime/base/link.hpp"
+#include "runtime/scheduler/priority_queue.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -17,11 +20,12 @@ class ReadyQueue {
   ReadyQueue& operator=(const ReadyQueue&) = delete;
   ~ReadyQueue() = default;
 
-  [[nodiscard]] bool empty() const { return head_ == tail_; }
-  [[nodiscard]] std::size_t size() const { return tail_ - head_; }
-  /// Calls visit(link) for every message, the oldest first.
+  [[nodiscard]] bool empty() const { return head_ == tail_ && prioritised_.empty(); }
+  [[nodiscard]] std::size_t size() const { return tail_ - head_ + prioritised_.size(); }
+  /// Calls visit(link) for every message, in any order.
   void for_each(const auto& visit) const {
     for (std::size_t at = head_; at != tail_; ++at) visit(ring_[at & mask_]);
+    prioritised_.for_each(visit);
   }
 
   void push(Link* link) {
@@ -29,15 +33,22 @@ class ReadyQueue {
       grow();
     ring_[tail_++ & mask_] = link;
   }
+  void push(Link* link, std::int64_t priority) {
+    if (priority == 0) return push(link);
+    prioritised_.push(link, priority);
+  }
 
-  /// The message whose turn comes after n others, already prefetched; null if there is none. n is
+  /// The message without a priority that comes after n others, already prefetched; null if there is none. n is
   /// less than the prefetch distance.
   [[nodiscard]] Link* ahead(std::size_t n) const {
     return head_ + n < tail_ ? ring_[(head_ + n) & mask_] : nullptr;
   }
 
-  /// Removes the oldest message; the queue must not be empty.
+  /// Removes the next message; the queue must not be empty.
   Link* pop() {
+    if (!prioritised_.empty()) [[unlikely]] {
+      if (prioritised_.top() < 0 || head_ == tail_) return prioritised_.pop();
+    }
     if (head_ + distance < tail_) {
       const char* soon = reinterpret_cast<const char*>(ring_[(head_ + distance) & mask_]);
       __builtin_prefetch(soon, 1);
@@ -64,6 +75,7 @@ class ReadyQueue {
   std::size_t mask_ = first_capacity - 1;
   std::size_t head_ = 0,
               tail_ = 0;  // counted from the start; the slot is the count modulo the capacity
+  PriorityQueue prioritised_;
 };
 
 }  // namespace tess::detail

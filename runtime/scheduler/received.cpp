@@ -40,6 +40,7 @@ Envelope* unpack(Pe& pe, PeId sender, const PackedHeader& header, Reader& body,
   message->source = header.source;
   message->target = header.target;
   message->counted = (header.trace_and_flags & PackedHeader::counted) != 0;
+  message->prioritised = (header.trace_and_flags & PackedHeader::prioritised) != 0;
   message->trace = header.trace_and_flags >> PackedHeader::n_flags;
   if ((header.trace_and_flags & PackedHeader::charged) != 0) {
     message->charge = credit_of(n_bytes);
@@ -81,7 +82,7 @@ Envelope* Pe::place(std::span<const std::byte> head, std::span<const std::uint64
 
 void Pe::hand_over(Envelope* message, std::size_t n_bytes) {
   if (message->target == id_) {
-    ready_.push(message);
+    enqueue(message);
   } else {
     pass(message->target, message, n_bytes);
   }

@@ -10,13 +10,8 @@
 namespace tess::detail {
 namespace {
 
-/// A timer that runs once; its message never leaves the process.
-struct Expiry {
-  Timers::Call call;
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {
-    TESS_CHECK(false, "a timer cannot leave its PE");
-  }
+struct Due {
+  std::uint64_t timer = 0;
 };
 struct Tick {
   std::uint64_t timer = 0;
@@ -25,8 +20,8 @@ struct Cancel {
   std::uint64_t timer = 0;
 };
 
-void timer_expires(Pe& pe, Expiry&& expiry) {
-  pe.timers().on_expired(expiry.call);
+void timer_is_due(Pe& pe, Due&& due) {
+  pe.timers().on_due(due.timer);
 }
 void timer_ticks(Pe& pe, Tick&& tick) {
   pe.timers().on_tick(tick.timer);
@@ -37,18 +32,36 @@ void timer_is_cancelled(Pe& pe, Cancel&& cancel) {
 
 }  // namespace
 
-void Timers::after(Time delay, Call call) {
+std::uint64_t Timers::after(Time delay, Call call) {
   TESS_CHECK(delay >= Time(0), "a timer cannot wait for ", delay.count(), " ns");
-  ++n_waiting_;
-  pe_.completion().sent(pe_.context().epoch);
-  pe_.send_after(delay, pe_.stamp(make_message<&timer_expires>(pe_, Expiry{std::move(call)})));
+  const EpochId epoch = pe_.context().epoch;
+  once_.emplace(++n_made_, Once{epoch, std::move(call)});
+  pe_.completion().sent(epoch);
+  pe_.completion().hop_sent();
+  auto* const message = pe_.stamp(make_message<&timer_is_due>(pe_, Due{n_made_}));
+  message->counted = false;
+  pe_.post_after(delay, message);
+  return n_made_;
 }
 
-void Timers::on_expired(const Call& call) {
-  --n_waiting_;
-  const EpochId epoch = pe_.context().epoch;
-  call();
-  pe_.completion().processed(epoch);
+void Timers::on_due(std::uint64_t timer) {
+  const auto at = once_.find(timer);
+  if (at == once_.end() || pe_.stopped()) return;
+  const Once due = std::move(at->second);  // moved out: the call may set timers
+  once_.erase(at);
+  due.call();
+  pe_.completion().processed(due.epoch);
+  pe_.completion().hop_processed();
+}
+
+void Timers::cancel(std::uint64_t timer) {
+  if (const auto at = once_.find(timer); at != once_.end()) {
+    pe_.completion().processed(at->second.epoch);
+    pe_.completion().hop_processed();
+    once_.erase(at);
+  } else {
+    periodic_.erase(timer);
+  }
 }
 
 std::uint64_t Timers::every(Time period, Call call) {

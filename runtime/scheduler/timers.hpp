@@ -1,5 +1,6 @@
-// The timers of one PE. A timer that runs once is a message that arrives later: it is sent when the
-// timer is set and processed when it has run, so its epoch and the run wait for it.
+// The timers of one PE. A timer that runs once counts as a message of its epoch: it is sent when the
+// timer is set and processed when it has run or is cancelled, so its epoch and the run wait for it.
+// The message that wakes it is not counted; that of a cancelled timer finds none.
 //
 // A periodic timer belongs to no epoch, and neither epochs nor the run wait for its next tick. What
 // a tick sends is counted in epoch 0. So that the run does not end while such a message is under
@@ -10,6 +11,7 @@
 //                  sum > S  a tick has sent something: thaw, and check again
 #pragma once
 
+#include "runtime/core/ids.hpp"
 #include "runtime/machine/machine.hpp"
 
 #include <cstddef>
@@ -28,25 +30,30 @@ class Timers {
 
   explicit Timers(Pe& pe) : pe_(pe) {}
 
-  /// Calls `call` on this PE after the delay, in the current epoch.
-  void after(Time delay, Call call);
+  /// Calls `call` on this PE after the delay, in the current epoch, unless the timer is cancelled
+  /// before; returns its number.
+  std::uint64_t after(Time delay, Call call);
   /// Calls `call` on this PE after each period, until the timer is cancelled; returns its number.
   std::uint64_t every(Time period, Call call);
-  /// `call` is not called again.
-  void cancel(std::uint64_t timer) { periodic_.erase(timer); }
+  /// `call` is not called again. No effect on a timer that has run or was cancelled.
+  void cancel(std::uint64_t timer);
 
   /// No tick runs until thaw(). Returns the number of periodic timers.
   std::size_t freeze();
   void thaw();
 
   /// The number of timers that run once and have not run yet.
-  [[nodiscard]] std::size_t n_waiting() const { return n_waiting_; }
+  [[nodiscard]] std::size_t n_waiting() const { return once_.size(); }
 
   // Handlers of the messages.
-  void on_expired(const Call& call);
+  void on_due(std::uint64_t timer);
   void on_tick(std::uint64_t timer);
 
  private:
+  struct Once {
+    EpochId epoch;
+    Call call;
+  };
   struct Periodic {
     Time period{0};
     Time due{0};
@@ -55,14 +62,14 @@ class Timers {
   void set_tick(std::uint64_t timer, Time due);
 
   Pe& pe_;
-  std::size_t n_waiting_ = 0;
   std::uint64_t n_made_ = 0;
+  std::unordered_map<std::uint64_t, Once> once_;
   std::unordered_map<std::uint64_t, Periodic> periodic_;
   bool frozen_ = false;
   std::vector<std::uint64_t> kept_;  // timers whose tick came while they were frozen
 };
 
-/// Cancels a periodic timer of any PE: on this PE at once, on another soon.
+/// Cancels a timer of any PE: on this PE at once, on another soon.
 void cancel_timer(PeId pe, std::uint64_t timer);
 
 }  // namespace tess::detail

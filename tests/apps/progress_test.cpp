@@ -71,6 +71,25 @@ TEST_CASE("progress names the phase on a terminal and removes its line", "[apps]
   CHECK(terminal.shows("\r\x1b[K"));
 }
 
+TEST_CASE("the time left is that of the parts to come", "[apps][progress]") {
+  CHECK_FALSE(apps::seconds_left(0, 0, 0, 5).has_value());
+  CHECK_FALSE(apps::seconds_left(1, 4, 0, 5).has_value());
+  // Three parts took 6 s: this one has 1.5 s to go, and two of 2 s come after it.
+  CHECK(apps::seconds_left(4, 6, 6, 0.5) == 5.5);
+  CHECK(apps::seconds_left(4, 6, 6, 3) == 4.0);
+  CHECK(apps::seconds_left(6, 6, 10, 9) == 0.0);
+}
+
+TEST_CASE("progress says how long the rest takes", "[apps][progress]") {
+  Terminal terminal;
+  Progress progress(terminal.file(), 1ms, 1ms);
+  progress.phase("search");
+  progress.part(1, 3);
+  CHECK(terminal.shows("1 of 3: search, 0 s"));
+  progress.part(2, 3);
+  CHECK(terminal.shows("2 of 3: search, 0 s, about 0 s left"));
+}
+
 TEST_CASE("short work shows no progress", "[apps][progress]") {
   const Terminal terminal;
   {

@@ -14,7 +14,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-options=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "-DCOMPONENTS=$(IFS=';'; echo "${components[*]}")")
+# Without optimisation: what is tested is the way, not the speed.
+options=(-G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_UNITY_BUILD=ON "-DCOMPONENTS=$(IFS=';'; echo "${components[*]}")")
 if [[ $way == installed ]]; then
   cmake --install "$from" --prefix "$scratch/prefix" >/dev/null
   # As another machine has it: the source folder of the project is not looked at.
@@ -24,8 +25,7 @@ if [[ $way == installed ]]; then
   fi
   options+=("-DCMAKE_PREFIX_PATH=$scratch/prefix")
 else
-  # Without optimisation: what is tested is the way, not the speed.
-  options+=("-DTESSERA=$from" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+  options+=("-DTESSERA=$from")
 fi
 
 cmake -S "$here/outside" -B "$scratch/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }

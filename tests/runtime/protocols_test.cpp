@@ -86,6 +86,13 @@ TEST_CASE("an element created in the middle of a step is never one ahead or behi
           "[runtime][protocol]") {
   run_seeds("refinement", &two_to_eight);
 }
+TEST_CASE("each member of a section meets each multicast once, and its reductions are exact",
+          "[runtime][protocol][section]") {
+  run_seeds("sections");
+}
+TEST_CASE("a section ends in mid-use, and later ones lack nothing", "[runtime][protocol]") {
+  run_seeds("sections_end");
+}
 TEST_CASE("messages find an element that visits every PE", "[runtime][protocol]") {
   run_seeds("tour");
 }
@@ -107,11 +114,21 @@ TEST_CASE("early messages migrate with their mailbox", "[runtime][protocol]") {
 TEST_CASE("every timer runs once, and its epoch waits for it", "[runtime][protocol][timers]") {
   run_seeds("timers");
 }
+TEST_CASE("every ask gets its reply or its error", "[runtime][protocol][ask]") {
+  run_seeds("asks");
+}
 TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]") {
   run_seeds("payloads");
 }
 TEST_CASE("a flood is held back within the budget, and all of it arrives", "[runtime][protocol]") {
   run_seeds("floods");
+}
+TEST_CASE("messages that are ready on a PE run in the order of their priorities",
+          "[runtime][protocol][priority]") {
+  run_seeds("priorities");
+}
+TEST_CASE("the PEs of a process share one object of a process group", "[runtime][protocol]") {
+  run_seeds("process_groups");
 }
 TEST_CASE("a deadlock reports what each wait is for", "[runtime][protocol]") {
   run_seeds("deadlocks");
@@ -145,11 +162,13 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
   // Not the scenarios whose report depends on one order of events, and not balance_first_round,
   // whose loads are those of the simulated clock.
   for (const char* name :
-       {"create_at_once", "message_first",    "lives",         "broadcasts",     "rounds",
-        "newborns",       "refinement",       "tour",          "epochs",         "epoch_migrations",
-        "flood_exit",     "mailboxes",        "destroyed",     "constructors",   "timers",
-        "payloads",       "floods",           "groups",        "balance_rounds", "balance_barrier",
-        "balance_rotate", "balance_periodic", "balance_epochs"}) {
+       {"create_at_once",   "message_first",  "lives",           "broadcasts",
+        "rounds",           "newborns",       "refinement",      "sections",
+        "sections_end",     "tour",           "epochs",          "epoch_migrations",
+        "flood_exit",       "mailboxes",      "destroyed",       "constructors",
+        "timers",           "asks",           "payloads",        "floods",
+        "groups",           "balance_rounds", "balance_barrier", "balance_rotate",
+        "balance_periodic", "balance_epochs", "priorities",      "process_groups"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

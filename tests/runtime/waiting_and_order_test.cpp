@@ -27,7 +27,7 @@ struct Note {
 };
 std::vector<int> served;  // one thread runs all simulated PEs
 
-class Waiter : public tess::Chare<Waiter, tess::Index1> {
+class Taker : public tess::Chare<Taker, tess::Index1> {
  public:
   tess::Task read(int waiter) {
     const Note note = co_await notes_.take(7);
@@ -46,7 +46,7 @@ class Giver : public tess::Chare<Giver, tess::Index1> {
   }
 };
 
-tess::Task gather(std::vector<int>& gathered, int n) {
+tess::Task collect_values(std::vector<int>& gathered, int n) {
   const auto members = tess::create<Giver>(tess::sparse);
   co_await tess::epoch([&] {
     for (int i = 0; i < n; ++i) members[{(i * 37) % n}].insert_on(tess::PeId{i % 3});
@@ -61,9 +61,9 @@ tess::Task gather(std::vector<int>& gathered, int n) {
 TEST_CASE("a message goes to the coroutine that has waited longest", "[runtime][mailbox]") {
   served.clear();
   const auto main = [] {
-    const auto waiters = tess::create<Waiter>(tess::range(1));
-    for (int i = 1; i <= 4; ++i) waiters[{0}].send<&Waiter::read>(i);
-    for (int i = 1; i <= 4; ++i) waiters[{0}].send<&Waiter::put>(i);
+    const auto takers = tess::create<Taker>(tess::range(1));
+    for (int i = 1; i <= 4; ++i) takers[{0}].send<&Taker::read>(i);
+    for (int i = 1; i <= 4; ++i) takers[{0}].send<&Taker::put>(i);
   };
   REQUIRE(simulate(1, std::nullopt, main) == 0);
   CHECK(served == std::vector<int>{11, 22, 33, 44});
@@ -73,7 +73,8 @@ TEST_CASE("in_order combines in the order of indices, wherever the elements are"
           "[runtime][reduction]") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     std::vector<int> gathered;
-    REQUIRE(simulate(3, seed, [&gathered]() -> tess::Task { return gather(gathered, 50); }) == 0);
+    REQUIRE(simulate(3, seed,
+                     [&gathered]() -> tess::Task { return collect_values(gathered, 50); }) == 0);
     std::vector<int> expected(50);
     std::iota(expected.begin(), expected.end(), 0);
     CHECK(gathered == expected);

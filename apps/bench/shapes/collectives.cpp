@@ -104,6 +104,62 @@ tess::Task measure_sparse(const Bench& bench, std::int32_t n_elements, Samples& 
   co_await hold_votes(bench, voters, n_elements, samples);
 }
 
+/// The members of a section hold the votes.
+class Chorister : public tess::Chare<Chorister> {
+ public:
+  void vote(std::int32_t value) {
+    contribute(section_, tess::sum, value, section_first_.target<&Chorister::next>());
+  }
+  void join(tess::SectionProxy<Chorister> section) {
+    section_ = section;
+    section_first_ = array()[{0}];
+  }
+  void begin(Rounds rounds) {
+    rounds_ = std::move(rounds);
+    value_ = 1;
+    section_.broadcast<&Chorister::vote>(value_);
+  }
+  void next(std::int32_t sum) {
+    TESS_CHECK(sum == value_ * rounds_.n_elements, rounds_.n_elements, " votes of ", value_,
+               " add up to ", sum);
+    if (value_ == rounds_.n)
+      rounds_.done(value_);
+    else
+      section_.broadcast<&Chorister::vote>(++value_);
+  }
+
+ private:
+  tess::SectionProxy<Chorister> section_;
+  tess::ElementProxy<Chorister, tess::Index1> section_first_;
+  std::int32_t value_ = 0;
+  Rounds rounds_;
+};
+
+/// Every hundredth of the elements is a member.
+tess::Task measure_section(const Bench& bench, std::int32_t n_elements, Samples& samples) {
+  const auto all = tess::create<Chorister>(tess::range(n_elements));
+  const std::int32_t n_members = n_elements / 100;
+  tess::SectionProxy<Chorister> section;
+  const auto make = [&] {
+    section = tess::create_section_if(all, [](tess::Index1 index) { return index.x % 100 == 0; });
+    all.broadcast<&Chorister::join>(section);
+  };
+  co_await tess::epoch(make);
+  std::int32_t n_rounds = 2;
+  for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
+    tess::Future<std::int32_t> done;
+    const Stopwatch watch;
+    all[{0}].send<&Chorister::begin>(Rounds{n_rounds, n_members, done.callback()});
+    const std::int32_t last = co_await done;
+    const double nanoseconds = watch.nanoseconds() / n_rounds;
+    TESS_CHECK(last == n_rounds, last, " rounds were held, not ", n_rounds);
+    if (turn == 0)
+      n_rounds = static_cast<std::int32_t>(times_in_sample(nanoseconds, bench.size(200, 3)));
+    else
+      samples.add(nanoseconds / n_members);
+  }
+}
+
 int run_collectives(Bench& bench) {
   const auto measure = [&bench](const char* name, auto program, std::int32_t n_elements) {
     if (!bench.wants(name)) return 0;
@@ -113,6 +169,9 @@ int run_collectives(Bench& bench) {
     return code;
   };
   int code = measure("broadcast_sum_1k", &measure_dense, bench.size(1000, 100));
+  if (code == 0) code = measure("broadcast_sum_10k", &measure_dense, bench.size(10'000, 1000));
+  if (code == 0)
+    code = measure("section_sum_100_of_10k", &measure_section, bench.size(10'000, 1000));
   if (code == 0) code = measure("broadcast_sum_100k", &measure_dense, bench.size(100'000, 1000));
   if (code == 0)
     code = measure("broadcast_sum_1M_sparse", &measure_sparse, bench.size(1'000'000, 2000));
@@ -126,6 +185,8 @@ Shape collectives_shape() {
           "broadcast of an int that all contribute, the sum starts the next of 200 rounds, "
           "elapsed time over rounds and elements",
           {{"broadcast_sum_1k", "1 000 elements of a dense array"},
+           {"broadcast_sum_10k", "10 000 elements of a dense array"},
+           {"section_sum_100_of_10k", "a section of 100 of the 10 000 elements"},
            {"broadcast_sum_100k", "100 000 elements of a dense array"},
            {"broadcast_sum_1M_sparse", "10^6 elements of a sparse array"}},
           &run_collectives};

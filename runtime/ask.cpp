@@ -1,0 +1,58 @@
+#include "runtime/ask.hpp"
+
+#include "runtime/core/check.hpp"
+
+namespace tess::detail {
+
+AskBase::AskBase(AskBase&& other) noexcept
+    : failure_(std::move(other.failure_)),
+      pe_(other.pe_),
+      id_(std::exchange(other.id_, 0)),
+      timer_(std::exchange(other.timer_, 0)),
+      limit_(other.limit_) {
+  TESS_CHECK(other.waiting_ == nullptr, "an ask is moved while a coroutine waits for it");
+  if (id_ != 0) pe_->move_future(id_, this);
+}
+
+void AskBase::await_suspend(Task::Handle task) {
+  own_.start(task, 1);
+  wait(own_);
+  suspend(task, [this] { return waits_for(); });
+}
+
+void AskBase::wait(Waiter& waiter) {
+  TESS_CHECK(id_ != 0, "an ask that was cancelled or moved from is awaited");
+  TESS_CHECK(waiting_ == nullptr, "two coroutines await one ask");
+  waiting_ = &waiter;
+}
+
+AskBase* AskBase::take(Pe& pe, std::uint64_t id) {
+  auto* ask = static_cast<AskBase*>(pe.find_future(id));
+  if (ask == nullptr) ++pe.statistics().late_replies;
+  return ask;
+}
+
+void AskBase::set_deadline(Time limit) {
+  if (id_ == 0) return;  // the reply is there
+  limit_ = limit;
+  if (timer_ != 0) pe_->timers().cancel(timer_);
+  timer_ = pe_->timers().after(limit, [pe = pe_, id = id_] {
+    if (auto* ask = static_cast<AskBase*>(pe->find_future(id)); ask != nullptr) ask->expire();
+  });
+}
+
+void AskBase::expire() {
+  timer_ = 0;
+  failure_ = Failure{ErrorCode::environment,
+                     text(waits_for(), " did not come within ",
+                          std::chrono::duration<double, std::milli>(limit_).count(),
+                          " ms: allow more time, or catch this error")};
+  done();
+}
+
+void AskBase::leave() {
+  if (id_ != 0) pe_->leave_future(std::exchange(id_, 0));
+  if (timer_ != 0) pe_->timers().cancel(std::exchange(timer_, 0));
+}
+
+}  // namespace tess::detail

@@ -1,0 +1,264 @@
+// Awaited replies: the value that a member function of an element returns, on any PE.
+//
+// Sample: tests/samples/ask.cpp
+//
+//     const double depth = co_await wells[{5}].ask<&Well::depth>();
+//     // …
+//     co_await wells[{2}].ask<&Well::slow>().within(5us);
+//
+// The function returns a value or nothing, or is a coroutine (tess::Task), whose end is awaited. An
+// Error that it throws, and one that says that no reply came within the limit, are thrown here.
+//
+// An ask is a message with the number of a place on the asking PE; the reply is a message to that
+// place. The call is sent when ask() is called, so several may be under way at once: see when.hpp.
+// An Ask that is destroyed before its reply is there is cancelled: the function still runs, and its
+// reply is dropped and counted (statistics().late_replies).
+#pragma once
+
+#include "runtime/callback.hpp"
+#include "runtime/collections/call.hpp"
+#include "runtime/core/duration.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/task.hpp"
+
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace tess {
+
+namespace detail {
+
+/// Where a reply goes.
+struct ReplyPlace {
+  std::uint64_t id = 0;
+  PeId pe{};
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id, pe);
+  }
+};
+
+/// An error as a reply carries it.
+struct Failure {
+  ErrorCode code{};
+  std::string message;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(code, message);
+  }
+};
+
+/// The part of an ask that does not depend on the type of the reply. It stays on its PE.
+class AskBase {
+ public:
+  AskBase() : pe_(&current_pe()), id_(pe_->enter_future(this)) {}
+  AskBase(const AskBase&) = delete;
+  AskBase& operator=(const AskBase&) = delete;
+  AskBase& operator=(AskBase&&) = delete;
+  virtual ~AskBase() { leave(); }
+
+  [[nodiscard]] ReplyPlace place() const { return {id_, pe_->id()}; }
+  /// No reply is wanted any more.
+  void cancel() { leave(); }
+
+  void await_suspend(Task::Handle task);
+
+  // For when_all and when_any.
+  void wait(Waiter& waiter);
+  void withdraw() { waiting_ = nullptr; }
+  /// "the reply of Cell[5].f"
+  [[nodiscard]] virtual std::string waits_for() const = 0;
+
+  /// Takes the reply's place; null, and counted, if its asker waits no longer.
+  [[nodiscard]] static AskBase* take(Pe& pe, std::uint64_t id);
+
+ protected:
+  /// Not while a coroutine waits for it, and on its own PE only.
+  AskBase(AskBase&& other) noexcept;
+
+  void set_deadline(Time limit);
+  void done() {
+    leave();
+    if (waiting_ != nullptr) std::exchange(waiting_, nullptr)->wake();
+  }
+  std::optional<Failure> failure_;
+
+ private:
+  void leave();
+  void expire();
+
+  Pe* pe_;
+  std::uint64_t id_ = 0;  // 0: no reply is expected
+  std::uint64_t timer_ = 0;
+  Time limit_{0};
+  Waiter own_;
+  Waiter* waiting_ = nullptr;
+};
+
+template <class Value>
+class AskOf : public AskBase {
+ public:
+  struct Reply {
+    std::uint64_t id = 0;
+    std::optional<Value> value;
+    std::optional<Failure> failure;
+    using GivesMembers = void;
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(id, value, failure);
+    }
+  };
+
+  /// Replies, in the epoch of the call.
+  static void answer(Pe& here, EpochId epoch, const ReplyPlace& to, std::optional<Value>&& value,
+                     std::optional<Failure>&& failure) {
+    here.completion().sent(epoch);
+    auto* message = here.stamp(
+        make_message<&AskOf::arrives>(here, Reply{to.id, std::move(value), std::move(failure)}));
+    message->epoch = epoch;
+    here.send(to.pe, message);
+  }
+
+  [[nodiscard]] bool await_ready() const { return value_.has_value() || failure_.has_value(); }
+
+ protected:
+  std::optional<Value> value_;
+
+ private:
+  static void arrives(Pe& pe, Reply&& reply) {
+    const EpochId epoch = pe.context().epoch;
+    if (auto* ask = static_cast<AskOf*>(AskBase::take(pe, reply.id)); ask != nullptr) {
+      ask->value_ = std::move(reply.value);
+      ask->failure_ = std::move(reply.failure);
+      ask->done();
+    }
+    pe.completion().processed(epoch);
+  }
+};
+
+/// The value that member function F replies; NoValue for none.
+template <auto F>
+using ReplyValue = std::conditional_t<std::is_void_v<typename EntryTraits<F>::Result> ||
+                                          std::is_same_v<typename EntryTraits<F>::Result, Task>,
+                                      NoValue, typename EntryTraits<F>::Result>;
+
+template <class Place, class Tuple>
+struct WithPlace;
+template <class Place, class... P>
+struct WithPlace<Place, std::tuple<P...>> {
+  using Type = std::tuple<Place, P...>;
+};
+
+/// A call of member function F of an element of C that replies.
+template <class C, auto F>
+struct AskCall final
+    : TypedMessage<AskCall<C, F>, C,
+                   typename WithPlace<ReplyPlace, typename EntryTraits<F>::Arguments>::Type> {
+  using Base =
+      TypedMessage<AskCall, C,
+                   typename WithPlace<ReplyPlace, typename EntryTraits<F>::Arguments>::Type>;
+  using Index = typename C::Index;
+  using Value = ReplyValue<F>;
+  using Result = typename EntryTraits<F>::Result;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<Index>& envelope) {
+    auto& message = static_cast<AskCall&>(envelope);
+    C& chare = static_cast<C&>(element);
+    std::apply(
+        [&](const ReplyPlace& to, auto&... argument) {
+          if constexpr (std::is_same_v<Result, Task>) {
+            (void)serve(&chare, to, std::move(argument)...);
+          } else {
+            std::optional<Value> value;
+            std::optional<Failure> failure;
+            try {
+              if constexpr (std::is_void_v<Result>) {
+                (chare.*F)(std::move(argument)...);
+                value.emplace();
+              } else {
+                value.emplace((chare.*F)(std::move(argument)...));
+              }
+            } catch (const Error& error) {
+              failure = Failure{error.code(), error.what()};
+            }
+            reply(to, message.epoch, std::move(value), std::move(failure));
+          }
+        },
+        message.arguments);
+  }
+  /// The element was destroyed, or its array was.
+  static void undelivered(Pe& pe, ElementMessage<Index>& envelope) {
+    auto& message = static_cast<AskCall&>(envelope);
+    AskOf<Value>::answer(
+        pe, message.epoch, std::get<0>(message.arguments), std::nullopt,
+        Failure{ErrorCode::out_of_range, text(name(message.index),
+                                              " is asked, but the element was destroyed: ask only "
+                                              "elements that exist, or catch this error")});
+  }
+  [[nodiscard]] static std::string name(const Index& index) {
+    const std::string entry = plain_name(naming::value<F>());
+    const auto colons = entry.rfind("::");
+    return text(plain_name(name_of_type<C>), index_text(index), ".",
+                colons == std::string::npos ? entry : entry.substr(colons + 2));
+  }
+  static inline const ElementAction<Index> entry{std::type_identity<AskCall>{}, &AskCall::invoke,
+                                                 nullptr, Traffic::user, &AskCall::undelivered};
+
+ private:
+  static void reply(const ReplyPlace& to, EpochId epoch, std::optional<Value>&& value,
+                    std::optional<Failure>&& failure) {
+    AskOf<Value>::answer(current_pe(), epoch, to, std::move(value), std::move(failure));
+  }
+  /// Runs a coroutine of the element, and replies once it is done.
+  template <class... P>
+  static Task serve(C* chare, ReplyPlace to, P... argument) {
+    const EpochId epoch = current_pe().context().epoch;
+    std::optional<Failure> failure;
+    try {
+      Task work = (chare->*F)(std::move(argument)...);
+      co_await work;
+    } catch (const Error& error) {
+      failure = Failure{error.code(), error.what()};
+    }
+    std::optional<Value> value;
+    if (!failure) value.emplace();
+    reply(to, epoch, std::move(value), std::move(failure));
+  }
+};
+
+}  // namespace detail
+
+/// An awaited reply of member function F of an element of C; made by ElementProxy::ask().
+template <class C, auto F>
+class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
+  using Value = detail::ReplyValue<F>;
+
+ public:
+  using Index = typename C::Index;
+
+  explicit Ask(const Index& index) : index_(index) {}
+
+  /// If no reply has come after this time from now, the asker gets an Error that names the element,
+  /// the function and the time. A reply that comes later is dropped and counted.
+  [[nodiscard]] Ask within(std::chrono::nanoseconds limit) && {
+    this->set_deadline(limit);
+    return std::move(*this);
+  }
+
+  auto await_resume() {
+    if (this->failure_) throw Error(this->failure_->code, this->failure_->message);
+    if constexpr (!std::is_same_v<Value, NoValue>) return std::move(*this->value_);
+  }
+  [[nodiscard]] std::string waits_for() const override {
+    return "the reply of " + detail::AskCall<C, F>::name(index_);
+  }
+
+ private:
+  Index index_;
+};
+
+}  // namespace tess

@@ -1,0 +1,138 @@
+// Sections: some elements of an array, by a list of their indices.
+//
+//     auto row = tess::create_section(blocks, {{3, 0}, {3, 1}, {3, 2}});
+//     row.broadcast<&Block::step>(0);                 // a multicast: calls each member once
+//     contribute(row, tess::sum, value, target);      // in a member: a reduction over the members
+//
+// The members are the elements that the list finds: one that is created later joins then, one that
+// is destroyed leaves, and a later element of its index is no member. Members may migrate at any
+// time. An element may be in many sections.
+#pragma once
+
+#include "runtime/array.hpp"
+#include "runtime/collections/section_lists.hpp"
+
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace tess {
+
+/// The proxy of a section: a small value that can be stored, sent, and used on every PE.
+template <class C>
+class SectionProxy {
+ public:
+  /// Of no section: it can only be assigned to.
+  SectionProxy() = default;
+  SectionProxy(CollectionId array, detail::SectionId id) : array_(array), id_(id) {}
+
+  [[nodiscard]] ArrayProxy<C> array() const { return ArrayProxy<C>(array_); }
+
+  /// Calls entry method F of each member once, also of those that the list finds later. All members
+  /// receive the multicasts of a section in one order.
+  template <auto F, class... Args>
+  void broadcast(Args&&... args) const {
+    static_assert(detail::check_entry<C, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    static_assert(std::is_copy_constructible_v<Arguments>,
+                  "each element gets a copy of a broadcast's arguments, so they can be copied");
+    using Lists = detail::SectionListsOf<typename C::Index>;
+    TESS_CHECK(array_ != CollectionId{}, "a broadcast to an empty SectionProxy<", name_of_type<C>,
+               ">: assign create_section() to it first");
+    Pe& pe = current_pe();
+    detail::SectionCall call;
+    call.numbered.epoch = pe.context().epoch;
+    call.numbered.call = detail::SharedCall(
+        new detail::CallOfAll<C, F>(detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
+    if (pe.context().led_by != 0) call.led_by = detail::Collection::led_by(pe.context(), array_);
+    pe.completion().sent(call.numbered.epoch);
+    detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
+  }
+
+  /// Ends the section: it frees what it holds on every PE; its members stay. What is still under way
+  /// to it is dropped: multicasts and contributions. The current epoch waits until all PEs have freed
+  /// it. Ending a section again has no effect.
+  void destroy() const { detail::end_section(array_, id_); }
+
+  /// A target for results: entry method F of all members.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    using T = typename decltype(detail::target_value<F, NoValue>())::type;
+    return detail::make_target<T>(target_kind<F, T>, std::in_place, array_, id_);
+  }
+
+  friend auto operator<=>(const SectionProxy&, const SectionProxy&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(array_, id_);
+  }
+
+ private:
+  template <class>
+  friend class detail::TessContributor;
+  [[nodiscard]] PeId root(const Pe& pe) const {
+    return detail::root_of(CollectionId{id_.value}, pe.n_pes());
+  }
+
+  template <auto F, class T>
+  static void call_target(const Callback<T>& callback, T&& value) {
+    const auto [array, id] =
+        from_bytes<std::tuple<CollectionId, detail::SectionId>>(callback.where());
+    const SectionProxy all(array, id);
+    if constexpr (std::is_same_v<T, NoValue>) {
+      all.template broadcast<F>();
+    } else {
+      all.template broadcast<F>(std::forward<T>(value));
+    }
+  }
+  template <auto F, class T>
+  static std::string describe_target(const Callback<T>& /*callback*/) {
+    return text(plain_name(naming::value<F>()), " of the members of a section of ",
+                plain_name(name_of_type<C>));
+  }
+  template <auto F, class T>
+  static inline const typename Callback<T>::Kind target_kind{
+      naming::name_of<&SectionProxy::call_target<F, T>>(), &SectionProxy::call_target<F, T>,
+      &SectionProxy::describe_target<F, T>};
+
+  CollectionId array_{};
+  detail::SectionId id_{};
+};
+
+/// Makes a section of an array, from any PE. The indices differ from each other; they need not have
+/// elements yet. Returns immediately.
+template <class C>
+SectionProxy<C> create_section(const ArrayProxy<C>& array, std::vector<typename C::Index> indices) {
+  using Index = typename C::Index;
+  using Lists = detail::SectionListsOf<Index>;
+  {
+    std::unordered_map<Index, bool, IndexHash<Index>> known;
+    for (const Index& index : indices)
+      TESS_CHECK(known.emplace(index, true).second, "the list of a section of ", name_of_type<C>,
+                 " has the index ", index_text(index), " twice");
+  }
+  Pe& pe = current_pe();
+  const detail::SectionId id{pe.new_collection_id(LateMessages::ignored).value};
+  const EpochId epoch = pe.context().epoch;
+  pe.completion().sent(epoch);
+  detail::send_to_collection<&Lists::create_arrives>(
+      pe, array.id(), detail::root_of(CollectionId{id.value}, pe.n_pes()),
+      {id, epoch, std::move(indices)});
+  return SectionProxy<C>(array.id(), id);
+}
+
+/// The section of the initial elements (ArrayProxy::range) whose index fulfils the condition.
+template <class C, class Condition>
+SectionProxy<C> create_section_if(const ArrayProxy<C>& array, const Condition& condition) {
+  using Index = typename C::Index;
+  static_assert(std::is_invocable_r_v<bool, const Condition&, const Index&>,
+                "the condition of a section is a function of an index that returns bool");
+  std::vector<Index> indices;
+  for (std::int64_t rank = 0; rank < array.size(); ++rank) {
+    const auto index = index_at<Index>(array.range(), rank);
+    if (condition(index)) indices.push_back(index);
+  }
+  return create_section(array, std::move(indices));
+}
+
+}  // namespace tess

@@ -1,0 +1,85 @@
+// One chare without an index:
+//
+//     const auto census = tess::create_one<Census>(args…);               // the runtime chooses the PE
+//     const auto writer = tess::create_one_on<Writer>(tess::PeId{0}, path);
+//     census.send<&Census::add>(3);
+//
+// It is an array of one element, so it may migrate, and its proxy can be sent. Each is known on every
+// PE: for very many tasks use one array, whose elements are inserted or created on demand.
+#pragma once
+
+#include "runtime/array.hpp"
+
+#include <utility>
+
+namespace tess {
+
+/// The proxy of a chare that create_one() made.
+template <class C>
+class ChareProxy {
+  static_assert(std::is_default_constructible_v<typename C::Index>,
+                "the index of a single chare has a default constructor");
+
+ public:
+  /// Of no chare: it can only be assigned to.
+  ChareProxy() = default;
+  explicit ChareProxy(CollectionId id) : id_(id) {}
+
+  template <auto F, class... Args>
+  void send(Args&&... args) const {
+    element().template send<F>(std::forward<Args>(args)...);
+  }
+  /// The same chare for messages with a priority.
+  [[nodiscard]] auto with(Priority priority) const { return element().with(priority); }
+  /// A target for results: entry method F.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    return element().template target<F>();
+  }
+  void migrate_to(PeId pe) const { element().migrate_to(pe); }
+  [[nodiscard]] PeId next_pe() const { return element().next_pe(); }
+
+  /// Ends the chare and frees it on every PE, as ArrayProxy::destroy().
+  void destroy() const { detail::end_collection(id_); }
+
+  /// The chare as the element that it is.
+  [[nodiscard]] ElementProxy<C> element() const { return {id_, typename C::Index{}}; }
+  [[nodiscard]] CollectionId id() const { return id_; }
+
+  friend auto operator<=>(const ChareProxy&, const ChareProxy&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_);
+  }
+
+ private:
+  CollectionId id_{};
+};
+
+/// Creates one chare on that PE. Returns immediately: messages wait for it.
+template <class C, class... Args>
+ChareProxy<C> create_one_on(PeId pe, Args&&... args) {
+  static_assert(!detail::OnePerPe<C>, "a group is made by create_group()");
+  const ChareProxy<C> chare(create<C>(sparse).id());
+  chare.element().insert_on(pe, std::forward<Args>(args)...);
+  return chare;
+}
+
+/// The same; the runtime chooses the PE. Many such chares are spread over all PEs.
+template <class C, class... Args>
+ChareProxy<C> create_one(Args&&... args) {
+  static_assert(!detail::OnePerPe<C>, "a group is made by create_group()");
+  const ChareProxy<C> chare(create<C>(sparse).id());
+  chare.element().insert_on(detail::root_of(chare.id(), current_pe().n_pes()),
+                            std::forward<Args>(args)...);
+  return chare;
+}
+
+}  // namespace tess
+
+template <class C>
+struct std::hash<tess::ChareProxy<C>> {
+  std::size_t operator()(const tess::ChareProxy<C>& proxy) const {
+    return std::hash<tess::CollectionId>()(proxy.id());
+  }
+};

@@ -1,0 +1,270 @@
+// Waiting for several results at once: asks, futures, messages of mailboxes, and times. Not part of
+// runtime.hpp.
+//
+// Sample: tests/samples/ask.cpp
+//
+//     const auto [left, right] =
+//         co_await tess::when_all(wells[{4}].ask<&Well::depth>(), wells[{6}].ask<&Well::depth>());
+//     // …
+//     const auto first = co_await tess::when_any(wells[{5}].ask<&Well::depth>(), tess::sleep(50ms));
+//     if (first.index() == 0) found.in_time = std::get<0>(first);
+//
+// What is given as a variable stays usable: a future that comes second in when_any keeps its result.
+// An ask that is made in the call is cancelled, and a mailbox keeps its message.
+#pragma once
+
+#include "runtime/callback.hpp"
+#include "runtime/scheduler/pe.hpp"
+#include "runtime/task.hpp"
+
+#include <concepts>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tess {
+
+/// A time to wait for: `co_await tess::sleep(5ms)`. It starts when it is made.
+class [[nodiscard]] Sleep {
+ public:
+  explicit Sleep(Time delay) : pe_(&current_pe()), state_(std::make_shared<State>()) {
+    timer_ = pe_->timers().after(delay, [state = state_] {
+      state->over = true;
+      if (state->waiting != nullptr) state->waiting->wake();
+    });
+  }
+  Sleep(Sleep&& other) noexcept = default;
+  Sleep(const Sleep&) = delete;
+  Sleep& operator=(const Sleep&) = delete;
+  Sleep& operator=(Sleep&&) = delete;
+  ~Sleep() {
+    if (state_ && !state_->over) pe_->timers().cancel(timer_);
+  }
+
+  [[nodiscard]] bool await_ready() const { return state_->over; }
+  void await_suspend(Task::Handle task) {
+    own_.start(task, 1);
+    wait(own_);
+    suspend(task, [this] { return waits_for(); });
+  }
+  void await_resume() const {}
+
+  // For when_all and when_any.
+  void wait(detail::Waiter& waiter) { state_->waiting = &waiter; }
+  void withdraw() { state_->waiting = nullptr; }
+  [[nodiscard]] std::string waits_for() const { return "a time"; }
+
+ private:
+  struct State {
+    bool over = false;
+    detail::Waiter* waiting = nullptr;
+  };
+  Pe* pe_;
+  std::uint64_t timer_ = 0;
+  std::shared_ptr<State> state_;
+  detail::Waiter own_;
+};
+[[nodiscard]] inline Sleep sleep(std::chrono::nanoseconds delay) {
+  return Sleep(delay);
+}
+
+namespace detail {
+
+template <class A>
+concept Joinable = requires(std::remove_reference_t<A>& a, Waiter& waiter) {
+  a.wait(waiter);
+  a.withdraw();
+  { a.await_ready() } -> std::same_as<bool>;
+};
+
+/// What an awaitable gives; NoValue for nothing.
+template <class A>
+using Awaited = decltype(std::declval<std::remove_reference_t<A>&>().await_resume());
+template <class A>
+using AwaitedValue =
+    std::conditional_t<std::is_void_v<Awaited<A>>, NoValue, std::decay_t<Awaited<A>>>;
+template <class A>
+AwaitedValue<A> result_of(A& of) {
+  if constexpr (std::is_void_v<Awaited<A>>) {
+    of.await_resume();
+    return {};
+  } else {
+    return of.await_resume();
+  }
+}
+
+inline void add_reason(std::string& all, const char* word, const std::string& one) {
+  all += (all.empty() ? "" : word) + one;
+}
+
+/// Several awaitables: all or the first. Each calls a function with every part.
+template <class... A>
+class Parts {
+ public:
+  using All = std::tuple<AwaitedValue<A>...>;
+  using First = std::variant<AwaitedValue<A>...>;
+  explicit Parts(A&&... a) : parts_(std::forward<A>(a)...) {}
+  template <class Do>
+  void each(const Do& run) {
+    std::apply([&run](auto&... part) { (run(part), ...); }, parts_);
+  }
+  All all() {
+    return std::apply([](auto&... part) { return All{result_of(part)...}; }, parts_);
+  }
+  First first(std::size_t which) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      std::optional<First> result;
+      (void)((I == which
+                  ? (result.emplace(std::in_place_index<I>, result_of(std::get<I>(parts_))), true)
+                  : false) ||
+             ...);
+      return std::move(*result);
+    }(std::index_sequence_for<A...>());
+  }
+
+ private:
+  std::tuple<A...> parts_;
+};
+
+template <class A>
+class PartsOfVector {
+ public:
+  using All = std::vector<AwaitedValue<A>>;
+  struct First {
+    std::size_t which = 0;
+    AwaitedValue<A> value;
+    [[nodiscard]] std::size_t index() const { return which; }
+  };
+  explicit PartsOfVector(std::vector<A>&& a) : parts_(std::move(a)) {}
+  template <class Do>
+  void each(const Do& run) {
+    for (A& part : parts_) run(part);
+  }
+  All all() {
+    All results;
+    for (A& part : parts_) results.push_back(result_of(part));
+    return results;
+  }
+  First first(std::size_t which) { return {which, result_of(parts_[which])}; }
+
+ private:
+  std::vector<A> parts_;
+};
+
+template <class P>
+class [[nodiscard]] WhenAll {
+ public:
+  explicit WhenAll(P parts) : parts_(std::move(parts)) {}
+  [[nodiscard]] bool await_ready() {
+    bool ready = true;
+    parts_.each([&ready](auto& part) { ready = part.await_ready() && ready; });
+    return ready;
+  }
+  void await_suspend(Task::Handle task) {
+    std::ptrdiff_t n = 0;
+    parts_.each([&](auto& part) {
+      if (part.await_ready()) return;
+      part.wait(waiter_);
+      ++n;
+    });
+    waiter_.start(task, n);
+    suspend(task, [this] {
+      std::string all;
+      parts_.each([&all](auto& part) {
+        if (!part.await_ready()) add_reason(all, " and ", part.waits_for());
+      });
+      return all;
+    });
+  }
+  typename P::All await_resume() { return parts_.all(); }
+
+ private:
+  P parts_;
+  Waiter waiter_;
+};
+
+template <class P>
+class [[nodiscard]] WhenAny {
+ public:
+  explicit WhenAny(P parts) : parts_(std::move(parts)) {}
+  [[nodiscard]] bool await_ready() { return find() != none; }
+  void await_suspend(Task::Handle task) {
+    waits_ = true;
+    waiter_.start(task, 1);
+    parts_.each([this](auto& part) { part.wait(waiter_); });
+    suspend(task, [this] {
+      std::string all;
+      parts_.each([&all](auto& part) { add_reason(all, " or ", part.waits_for()); });
+      return all;
+    });
+  }
+  typename P::First await_resume() {
+    const std::size_t which = find();
+    std::size_t i = 0;
+    if (waits_)
+      parts_.each([&](auto& part) {
+        if (i++ != which) part.withdraw();
+      });
+    return parts_.first(which);
+  }
+
+ private:
+  static constexpr std::size_t none = ~std::size_t{0};
+  /// The first that is ready.
+  [[nodiscard]] std::size_t find() {
+    std::size_t i = 0, found = none;
+    parts_.each([&](auto& part) {
+      if (found == none && part.await_ready()) found = i;
+      ++i;
+    });
+    return found;
+  }
+
+  P parts_;
+  Waiter waiter_;
+  bool waits_ = false;
+};
+
+template <class... A>
+consteval bool check_joined() {
+  static_assert((Joinable<A> && ...),
+                "when_all and when_any take asks, futures, mailbox.take(…) and tess::sleep(…)");
+  return true;
+}
+
+}  // namespace detail
+
+/// When awaited, gives all results, as a tuple; NoValue for what has none. An error of any is
+/// thrown once all are there.
+template <class... A>
+[[nodiscard]] auto when_all(A&&... a) {
+  static_assert(detail::check_joined<A...>());
+  return detail::WhenAll<detail::Parts<A...>>(detail::Parts<A...>(std::forward<A>(a)...));
+}
+/// The same of a vector: gives a vector.
+template <class A>
+[[nodiscard]] auto when_all(std::vector<A>&& a) {
+  static_assert(detail::check_joined<A>());
+  return detail::WhenAll<detail::PartsOfVector<A>>(detail::PartsOfVector<A>(std::move(a)));
+}
+/// When awaited, gives the first result, as a variant whose index() says which one it is. If several
+/// are there, it is the first in the order of the arguments.
+template <class... A>
+[[nodiscard]] auto when_any(A&&... a) {
+  static_assert(detail::check_joined<A...>());
+  return detail::WhenAny<detail::Parts<A...>>(detail::Parts<A...>(std::forward<A>(a)...));
+}
+/// The same of a vector: gives {which, value}.
+template <class A>
+[[nodiscard]] auto when_any(std::vector<A>&& a) {
+  static_assert(detail::check_joined<A>());
+  return detail::WhenAny<detail::PartsOfVector<A>>(detail::PartsOfVector<A>(std::move(a)));
+}
+
+}  // namespace tess

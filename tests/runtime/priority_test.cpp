@@ -1,0 +1,204 @@
+// Priorities and attributes of entry methods, and single chares, as programs use them.
+#include "runtime/machine/simulated.hpp"
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/adversarial.hpp"
+#include "tests/support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+namespace {
+
+std::vector<std::string> said;  // on PE 0
+int depth_now = 0, deepest = 0;
+
+class Actor : public tess::Chare<Actor> {
+ public:
+  void say(std::string word) { said.push_back(std::move(word)); }
+  void say_soon(std::string word) { said.push_back(std::move(word)); }
+  void say_at_once(std::string word) { said.push_back(std::move(word)); }
+  void throw_at_once() { throw std::runtime_error("thrown inside a send"); }
+  void on_demand(std::string word) { said.push_back(std::move(word)); }
+
+  void act_by_priority() {
+    const auto other = array()[{1}];
+    other.with(tess::Priority{1}).send<&Actor::say>("late");
+    other.send<&Actor::say>("plain");
+    other.with(tess::Priority{-1}).send<&Actor::say>("early");
+    other.send<&Actor::say_soon>("by the class");
+    other.with(tess::expedited).send<&Actor::say>("expedited");
+    other.with(tess::Priority{2}).send<&Actor::say_soon>("last");
+    array()[{1}].with(tess::Priority{0}).send<&Actor::say>("plain, too");
+  }
+  void act_by_broadcast() {
+    array()[{1}].send<&Actor::say>("message");
+    array().with(tess::Priority{-1}).broadcast<&Actor::say>("broadcast");
+    array()[{1}].send<&Actor::say>("message");
+  }
+  void act_inline() {
+    array()[{1}].send<&Actor::say_at_once>("other");
+    said.push_back("after other");
+    self().send<&Actor::say_at_once>("self");
+    said.push_back("after self");
+  }
+  void dive() {
+    deepest = std::max(deepest, ++depth_now);
+    if (index().x < 99) array()[{index().x + 1}].send<&Actor::dive>();
+    --depth_now;
+  }
+  void send_to_thrower() {
+    array()[{1}].send<&Actor::throw_at_once>();
+    said.push_back("goes on");
+  }
+  void leave_inside() {
+    array()[{1}].send<&Actor::end_at_once>();
+    array()[{1}].send<&Actor::say_at_once>("never");
+  }
+  void end_at_once() { destroy(); }
+
+  using EntryAttributes =
+      tess::Attributes<tess::EntryMethod<&Actor::say_soon, tess::Priority{-7}>,
+                       tess::EntryMethod<&Actor::say_at_once, tess::inline_when_local>,
+                       tess::EntryMethod<&Actor::throw_at_once, tess::inline_when_local>,
+                       tess::EntryMethod<&Actor::end_at_once, tess::inline_when_local>,
+                       tess::EntryMethod<&Actor::dive, tess::inline_when_local>,
+                       tess::EntryMethod<&Actor::on_demand, tess::create_here, tess::expedited>>;
+};
+
+template <auto F>
+int act(int n_actors, int n_pes = 1) {
+  said.clear();
+  tess::Setup setup{tess::make_threads_machine(n_pes), {}};
+  setup.options.report = [](const std::string& line) { said.push_back(line); };
+  return tess::run(setup,
+                   [&] { tess::create<Actor>(tess::range(n_actors))[{0}].template send<F>(); });
+}
+
+}  // namespace
+
+TEST_CASE("the messages of an entry method run by priority", "[runtime][priority]") {
+  REQUIRE(act<&Actor::act_by_priority>(2) == 0);
+  CHECK(said == std::vector<std::string>{"expedited", "by the class", "early", "plain",
+                                         "plain, too", "late", "last"});
+}
+
+TEST_CASE("a broadcast with a priority overtakes messages without one", "[runtime][priority]") {
+  REQUIRE(act<&Actor::act_by_broadcast>(2) == 0);
+  CHECK(said == std::vector<std::string>{"broadcast", "broadcast", "message", "message"});
+}
+
+TEST_CASE("an inline entry method runs inside send(), but not inside its own element",
+          "[runtime][priority]") {
+  REQUIRE(act<&Actor::act_inline>(2) == 0);
+  CHECK(said == std::vector<std::string>{"other", "after other", "after self", "self"});
+}
+
+TEST_CASE("a chain of inline entry methods has a bounded depth", "[runtime][priority]") {
+  deepest = depth_now = 0;
+  REQUIRE(act<&Actor::dive>(100) == 0);
+  CHECK(deepest == 17);  // the first is not inside another
+}
+
+TEST_CASE("an exception of an inline entry method ends the job and names its element",
+          "[runtime][priority]") {
+  REQUIRE(act<&Actor::send_to_thrower>(2) == 1);
+  REQUIRE(said.size() == 2);
+  CHECK(said[0] == "goes on");
+  CHECK_THAT(said[1], Catch::Contains("thrown inside a send") && Catch::Contains("Actor[1], in") &&
+                          Catch::Contains("throw_at_once"));
+}
+
+TEST_CASE("an element that ends inside a send() gets no more messages", "[runtime][priority]") {
+  REQUIRE(act<&Actor::leave_inside>(2) == 0);
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("1 messages to elements that had been destroyed"));
+}
+
+TEST_CASE("an entry method that creates on demand needs no other call", "[runtime][priority]") {
+  said.clear();
+  tess::Setup setup{tess::make_threads_machine(1), {}};
+  REQUIRE(tess::run(setup, [] {
+            tess::create<Actor>(tess::sparse)[{5}].send<&Actor::on_demand>("here");
+          }) == 0);
+  CHECK(said == std::vector<std::string>{"here"});
+}
+
+namespace {
+
+/// Counts what it is sent, on whichever PE.
+class Single : public tess::Chare<Single> {
+ public:
+  Single() = default;
+  explicit Single(int start) : count_(start) {}
+  void add(int n) { count_ += n; }
+  void tell(tess::Callback<std::pair<int, int>> target) {
+    target(std::pair(count_, tess::my_pe().value));
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(count_);
+  }
+
+ private:
+  int count_ = 0;
+};
+
+class SingleAdder : public tess::Group<SingleAdder> {
+ public:
+  void add(tess::ChareProxy<Single> to) { to.send<&Single::add>(1); }
+};
+
+tess::Task use_single(int& count, int& first_pe, int& last_pe, std::size_t& n_left) {
+  const tess::PeId last{tess::n_pes() - 1};
+  tess::ChareProxy<Single> anywhere;
+  co_await tess::epoch([&] { anywhere = tess::create_one<Single>(1); });
+  const auto single = tess::create_one_on<Single>(last, 100);
+  tess::Future<std::pair<int, int>> first, second;
+  single.send<&Single::tell>(first.callback());
+  const auto before = co_await first;
+  first_pe = before.second;
+  const auto senders = tess::create_group<SingleAdder>();
+  co_await tess::epoch([&] {
+    senders.broadcast<&SingleAdder::add>(single);
+    single.migrate_to(tess::PeId{0});
+    senders.broadcast<&SingleAdder::add>(single);
+  });
+  single.with(tess::expedited).send<&Single::tell>(second.callback());
+  const auto after = co_await second;
+  count = after.first;
+  last_pe = after.second;
+  co_await tess::epoch([&] {
+    anywhere.destroy();
+    single.destroy();
+    senders.destroy();
+  });
+  n_left = tess::n_collections();
+}
+
+void check_single(tess::Setup setup, bool moves_by_force) {
+  const int n_pes = setup.machine->n_pes();
+  int count = 0, first_pe = -1, last_pe = -1;
+  std::size_t n_left = 9;
+  REQUIRE(tess::run(setup, [&]() -> tess::Task {
+            return use_single(count, first_pe, last_pe, n_left);
+          }) == 0);
+  CHECK(count == 100 + 2 * n_pes);
+  if (!moves_by_force) {
+    CHECK(first_pe == n_pes - 1);
+    CHECK(last_pe == 0);
+  }
+  CHECK(n_left == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a single chare is made where it is asked for, moves, and ends", "[runtime][single]") {
+  check_single({tess::make_threads_machine(1), {}}, false);
+  check_single({tess::make_threads_machine(3), {}}, false);
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    INFO("seed " << seed);
+    check_single(tess::test::adversarial(1 + static_cast<int>(seed % 5), seed), true);
+  }
+}

@@ -1,0 +1,83 @@
+// Sections as a user writes them; reductions with a finishing step and gather by index, over arrays
+// and sections.
+#include "runtime/machine/simulated.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+int run_on_four(std::uint64_t seed, std::function<tess::Task()> main) {
+  tess::SimulatedOptions options;
+  options.n_pes = 4;
+  options.seed = seed;
+  options.cost = std::chrono::nanoseconds(100);
+  options.migration_chance = 0.2;
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(options);
+  return tess::run(setup, std::move(main));
+}
+
+struct Mean {
+  struct Part {
+    double sum = 0;
+    std::int64_t n = 0;
+  };
+  Part combine(Part a, const Part& b) const { return {a.sum + b.sum, a.n + b.n}; }
+  double finish(Part all) const { return all.sum / static_cast<double>(all.n); }
+};
+using Squares = std::vector<std::pair<tess::Index1, std::int32_t>>;
+
+class Cell : public tess::Chare<Cell> {
+ public:
+  void all_squares(tess::Callback<Squares> target) {
+    contribute(tess::gather, index().x * index().x, target);
+  }
+  void mean_of_all(tess::Callback<double> target) {
+    contribute(Mean{}, Mean::Part{1.0 * index().x, 1}, target);
+  }
+  struct Request {
+    tess::SectionProxy<Cell> section;
+    tess::Callback<double> mean;
+    tess::Callback<Squares> squares;
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(section, mean, squares);
+    }
+  };
+  void ask(Request request) {
+    contribute(request.section, tess::in_order(Mean{}), Mean::Part{1.0 * index().x, 1},
+               request.mean);
+    contribute(request.section, tess::gather, index().x * index().x, request.squares);
+  }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+
+tess::Task reduce() {
+  const auto cells = tess::create<Cell>(tess::range(10));
+  tess::Future<Squares> squares, some_squares;
+  tess::Future<double> mean, some_mean;
+  cells.broadcast<&Cell::all_squares>(squares.callback());
+  cells.broadcast<&Cell::mean_of_all>(mean.callback());
+  const auto odd = tess::create_section_if(cells, [](tess::Index1 i) { return i.x % 2 == 1; });
+  odd.broadcast<&Cell::ask>(Cell::Request{odd, some_mean.callback(), some_squares.callback()});
+  const Squares all = co_await squares;
+  REQUIRE(all.size() == 10);
+  for (std::int32_t i = 0; i < 10; ++i)
+    CHECK(all[static_cast<std::size_t>(i)] == std::pair(tess::Index1{i}, i * i));
+  CHECK(co_await mean == 4.5);
+  CHECK(co_await some_mean == 5.0);
+  const Squares some = co_await some_squares;
+  CHECK(some == Squares{{{1}, 1}, {{3}, 9}, {{5}, 25}, {{7}, 49}, {{9}, 81}});
+  co_await tess::epoch([&] { odd.destroy(); });
+}
+
+}  // namespace
+
+TEST_CASE("reductions are finished at the root and gathered by index, over arrays and sections",
+          "[runtime][section]") {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    INFO("seed " << seed);
+    CHECK(run_on_four(seed, [] { return reduce(); }) == 0);
+  }
+}
