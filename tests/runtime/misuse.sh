@@ -63,7 +63,7 @@ for kind in short long; do
   says simulated ${kind}_element "Uneven<[01]> *>\[0\]\|Uneven<[01]>: " "serialize()"
   says simulated ${kind}_argument "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
   says simulated ${kind}_broadcast "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
-  says simulated ${kind}_sum "MergedPartial<Uneven<[01]>, Sum>: " "serialize()"
+  says simulated ${kind}_sum "MergedPartial<Uneven<[01]>, Sum, Uneven<[01]> *>: " "serialize()"
 done
 says processes short_element "Uneven<0> \?>\[0\]\|Uneven<0>: " "serialize()"
 
