@@ -4,6 +4,7 @@
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
+#include "runtime/monitor/monitor.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/service/service.hpp"
@@ -12,6 +13,8 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace tess {
@@ -41,6 +44,31 @@ std::size_t memory_size(std::string_view option, std::string_view value) {
     fail(ErrorCode::bad_argument, option, ": ", value,
          " is not a size of 1 byte to 1024 GiB: write it as 64MiB (KiB, MiB, GiB, or bytes)");
   return number << shift;
+}
+
+/// "8080", "0.0.0.0:8080", "[::1]:8080".
+MonitorOptions monitor_options(std::string_view value, std::string_view token) {
+  MonitorOptions options;
+  options.token = token;
+  std::string_view port = value;
+  if (const std::size_t colon = value.rfind(':'); colon != std::string_view::npos) {
+    std::string_view address = value.substr(0, colon);
+    if (address.starts_with('[') && address.ends_with(']'))
+      address = address.substr(1, address.size() - 2);
+    options.address = address;
+    port = value.substr(colon + 1);
+  }
+  unsigned number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc() || end != port.data() + port.size() || number > 65535)
+    fail(ErrorCode::bad_argument, "--monitor ", value,
+         " is not a port of 0 … 65535, or ADDRESS:PORT");
+  options.port = static_cast<std::uint16_t>(number);
+  const bool is_loopback = options.address.starts_with("127.") || options.address == "::1";
+  if (!is_loopback && token.empty())
+    fail(ErrorCode::bad_argument, "--monitor ", value,
+         ": other machines can reach this address: give a --monitor-token that they must know");
+  return options;
 }
 
 void print_error(const char* program, const Error& error) {
@@ -97,6 +125,11 @@ std::string options_help() {
          "              later messages wait at their sender\n"
          "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
          "chares\n"
+         "  --monitor [ADDRESS:]PORT\n"
+         "              serve a page that shows the run while it goes on (port 0: any free one)\n"
+         "  --monitor-token T\n"
+         "              what a browser must bring (?token=T); needed for an address that others "
+         "can reach\n"
          "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
          "              chrome://tracing (process p of several writes F.p)\n";
 }
@@ -106,6 +139,8 @@ Setup take_options(int& argc, char** argv) {
   std::int32_t pes = 0;
   std::string simulated;
   bool simulates = false;
+  std::optional<std::string_view> monitor;
+  std::string_view token;
   int kept = 1;
   for (int i = 1; i < argc; ++i) {
     std::string_view option = argv[i];
@@ -131,6 +166,10 @@ Setup take_options(int& argc, char** argv) {
       setup.options.messages.memory_bytes = memory_size("--message-memory", value);
     } else if (takes_value("--trace")) {
       setup.options.trace = value;
+    } else if (takes_value("--monitor")) {
+      monitor = value;
+    } else if (takes_value("--monitor-token")) {
+      token = value;
     } else if (option == "--stats") {
       setup.options.statistics = true;
     } else {
@@ -138,6 +177,7 @@ Setup take_options(int& argc, char** argv) {
     }
   }
   argc = kept;
+  if (monitor) setup.options.monitor = monitor_options(*monitor, token);
   if (simulates) {
     const SimulatedOptions options = parse_simulated(simulated);
     setup.machine = make_simulated_machine(options);
@@ -156,6 +196,8 @@ int run_on(Setup& setup, std::function<void()> main) {
   detail::Runtime runtime(*setup.machine, setup.options, &detail::element_text, std::move(main));
   detail::Service service(runtime, setup.options.signals);
   runtime.serve(service);
+  std::optional<detail::Monitor> monitor;
+  if (setup.options.monitor) monitor.emplace(runtime, *setup.options.monitor);
   return runtime.run();
 }
 

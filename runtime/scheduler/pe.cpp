@@ -262,6 +262,8 @@ void Pe::exception(const char* what, int exit_code) {
 
 std::size_t Pe::step(std::size_t most) {
   if (ready_.empty()) return 0;
+  if (idle_time_.idle()) [[unlikely]]
+    idle_time_.end(now());
   const RunsOn here(*this);
   std::size_t n = 0;
   if (meter_) [[unlikely]]
@@ -310,7 +312,10 @@ bool Pe::idle() {
   } else {
     pool_.flush();
   }
-  return flush() || busy || !ready_.empty();
+  const bool works = flush() || busy || !ready_.empty();
+  if (idle_time_.measured() && !works) [[unlikely]]
+    idle_time_.begin(now());
+  return works;
 }
 
 void Pe::drop_all() {

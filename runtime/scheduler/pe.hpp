@@ -11,6 +11,7 @@
 #include "runtime/scheduler/completion_messages.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/hosted_collection.hpp"
+#include "runtime/scheduler/idle_time.hpp"
 #include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
@@ -75,6 +76,9 @@ class Pe {
   /// replaced.
   Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
+  [[nodiscard]] IdleTime& idle_time() { return idle_time_; }
+  /// The number of messages in the queue of this PE.
+  [[nodiscard]] std::size_t n_ready() const { return ready_.size(); }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
   [[nodiscard]] Random& random() { return random_; }
   [[nodiscard]] Timers& timers() { return timers_; }
@@ -341,6 +345,7 @@ class Pe {
   std::unique_ptr<Trace> trace_;
   double migration_chance_ = 0;
   unsigned idle_calls_ = 0;
+  IdleTime idle_time_;
   std::size_t messages_since_report_ = 0;
 
   const std::unique_ptr<Outbox> outbox_;  // messages to other processes

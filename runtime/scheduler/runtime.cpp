@@ -96,6 +96,11 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, ElementText na
 
 Runtime::~Runtime() = default;
 
+void Runtime::watch(ProcessMonitor& monitor) {
+  monitor_ = &monitor;
+  for (const auto& pe : pes_) pe->idle_time().start();
+}
+
 int Runtime::run() {
   Registry::seal();
   if (!machine_.agree(Registry::fingerprint())) {
@@ -251,6 +256,7 @@ void Runtime::on_leave(int code) {
   exit_code_ = code;
   left_ = true;
   if (service_ != nullptr) service_->close();
+  if (monitor_ != nullptr) monitor_->close();
   machine_.stop();
 }
 

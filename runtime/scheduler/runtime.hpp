@@ -17,6 +17,7 @@
 
 #include "runtime/machine/machine.hpp"
 #include "runtime/scheduler/pe.hpp"
+#include "runtime/scheduler/process_monitor.hpp"
 #include "runtime/scheduler/process_service.hpp"
 #include "runtime/scheduler/runtime_options.hpp"
 
@@ -45,6 +46,10 @@ class Runtime final : public Program {
   /// Called before run(). The service lives until the run has ended.
   void serve(ProcessService& service) { service_ = &service; }
   [[nodiscard]] ProcessService& service() { return *service_; }
+  /// Called before run(): the PEs measure their idle time, and the monitor hears of what happens.
+  void watch(ProcessMonitor& monitor);
+  /// Null if the run is not monitored.
+  [[nodiscard]] ProcessMonitor* monitor() { return monitor_; }
   /// Posts a message to a PE of this process once the delay is over.
   void post_after(PeId to, Envelope* message, Time delay);
 
@@ -115,6 +120,7 @@ class Runtime final : public Program {
 
   Machine& machine_;
   ProcessService* service_ = nullptr;
+  ProcessMonitor* monitor_ = nullptr;
   const RuntimeOptions options_;
   const ElementText element_text_;
   const std::function<void()> main_;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace tess::detail {
@@ -16,11 +17,20 @@ struct MessageOptions {
                              << 20;  ///< most bytes under way from one process to another
 };
 
+/// A live view of the run for a web browser.
+struct MonitorOptions {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  ///< 0: any free one
+  std::string token;       ///< every request must bring it; empty only on a loopback address
+  std::int64_t period_ms = 500;
+};
+
 struct RuntimeOptions {
   std::uint64_t seed = 0;
   double migration_chance = 0;  ///< probability of a forced migration after a message, for testing
   bool statistics = false;      ///< print the counters of each PE
   MessageOptions messages;
+  std::optional<MonitorOptions> monitor;
   std::string trace;  ///< the file of the trace; empty: no trace
   /// Takes SIGINT, SIGTERM and SIGUSR1, where the program has left them to the system.
   bool signals = true;
@@ -34,6 +44,7 @@ struct RuntimeOptions {
 namespace tess {
 
 using detail::MessageOptions;
+using detail::MonitorOptions;
 using detail::RuntimeOptions;
 
 }  // namespace tess

@@ -1,0 +1,216 @@
+#include "runtime/monitor/board.hpp"
+
+#include "runtime/scheduler/runtime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <limits>
+#include <utility>
+
+namespace tess::detail {
+namespace {
+
+constexpr std::size_t most_past = 600;     // frames and rounds: five minutes
+constexpr std::size_t most_pictures = 16;  // names
+constexpr std::size_t most_pixels = 1 << 20;
+
+/// Values as text for JSON: the grey levels 0 to 255 between `least` and `most`, two hexadecimal
+/// digits each.
+std::string hexadecimal(const std::vector<float>& values, float least, float most) {
+  std::string out;
+  out.reserve(2 * values.size());
+  const float scale = most > least ? 255.0F / (most - least) : 0.0F;
+  for (const float value : values) {
+    const auto level =
+        std::isfinite(value) ? static_cast<unsigned>((value - least) * scale + 0.5F) : 0U;
+    constexpr const char* digits = "0123456789abcdef";
+    out += digits[level >> 4U & 15U];
+    out += digits[level & 15U];
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+Board::Board(const Machine& machine)
+    : n_pes_(machine.n_pes()),
+      n_processes_(machine.n_processes()),
+      virtual_time_(machine.virtual_time()),
+      pes_(static_cast<std::size_t>(machine.n_pes())) {}
+
+void Board::arrived(PeSample sample) {
+  collect_census(sample);
+  OfPe& of = pes_.at(static_cast<std::size_t>(sample.pe.value));
+  // Of two samples in one period the frame shows the sum.
+  if (!of.is_new) of.before = std::move(of.last);
+  of.last = std::move(sample);
+  of.is_new = of.known = true;
+}
+
+void Board::note(const BalanceNote& note) {
+  new_rounds_.push_back(
+      fmt::format(R"({{"t":{:.3f},"text":{},"before":{:.4g},"predicted":{:.4g}}})", seconds_,
+                  quoted(note.text), note.before, note.predicted));
+}
+
+void Board::draw(const PicturePart& part) {
+  const auto n_pixels =
+      static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
+  if (part.columns <= 0 || n_pixels > most_pixels) return;
+  if (!pictures_.contains(part.name) && pictures_.size() == most_pictures) return;
+  Picture& picture = pictures_[part.name];
+  if (picture.width != part.width || picture.height != part.height)
+    picture = Picture{part.width, part.height,
+                      std::vector<float>(n_pixels, std::numeric_limits<float>::quiet_NaN()), false};
+  for (std::size_t i = 0; i < part.values.size(); ++i) {
+    const std::int32_t x = part.x + static_cast<std::int32_t>(i) % part.columns;
+    const std::int32_t y = part.y + static_cast<std::int32_t>(i) / part.columns;
+    if (x < part.width && y < part.height)
+      picture.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width) +
+                     static_cast<std::size_t>(x)] = part.values[i];
+  }
+  picture.changed = true;
+}
+
+std::vector<Event> Board::take_events(double seconds,
+                                      const std::function<std::string(PeId)>& runs) {
+  seconds_ = seconds;
+  std::vector<Event> events;
+  for (std::string& round : std::exchange(new_rounds_, {}))
+    events.push_back({"round", std::move(round)});
+  events.push_back({"frame", frame(seconds, runs)});
+  past_.insert(past_.end(), events.begin(), events.end());
+  while (past_.size() > most_past) past_.pop_front();
+  for (auto& [name, picture] : pictures_) {
+    if (std::exchange(picture.changed, false)) events.push_back(event_of(name, picture));
+  }
+  if (takes_census_ && census_from_.size() == pes_.size()) {
+    takes_census_ = false;
+    events.push_back({"census", quoted(census_.empty() ? "nothing waits"
+                                                       : list_of_waiting(std::move(census_)))});
+    census_.clear();
+  }
+  return events;
+}
+
+std::vector<Event> Board::past() const {
+  std::vector<Event> events(past_.begin(), past_.end());
+  for (const auto& [name, picture] : pictures_) events.push_back(event_of(name, picture));
+  return events;
+}
+
+void Board::begin_census() {
+  takes_census_ = true;
+  census_from_.clear();
+  census_.clear();
+}
+
+void Board::collect_census(PeSample& sample) {
+  if (!takes_census_ || !sample.has_census || !census_from_.insert(sample.pe.value).second) return;
+  std::move(sample.census.begin(), sample.census.end(), std::back_inserter(census_));
+}
+
+std::string Board::frame(double seconds, const std::function<std::string(PeId)>& runs) {
+  std::vector<int> busy, rates, queues;
+  std::vector<std::uint64_t> memory;
+  std::uint64_t n_epochs = 0, n_migrations = 0, n_bytes = 0;
+  double latest = 0;
+  std::string late;
+  for (OfPe& of : pes_) {
+    const PeSample& now = of.last;
+    const auto passed = static_cast<double>(now.at_ns - of.before.at_ns);
+    const auto idle = static_cast<double>(now.idle_ns - of.before.idle_ns);
+    int percent = of.known && of.is_new && passed > 0
+                      ? static_cast<int>(std::clamp(100 * (1 - idle / passed), 0.0, 100.0) + 0.5)
+                      : 0;
+    const double rate =
+        of.is_new && passed > 0
+            ? static_cast<double>(now.counts.messages - of.before.counts.messages) * 1e9 / passed
+            : 0;
+    if (!of.is_new) {  // it does not answer: it runs something long
+      const auto index = static_cast<std::int32_t>(&of - pes_.data());
+      if (const std::string action = runs(PeId{index}); !action.empty()) {
+        percent = 100;
+        late += fmt::format("{}[{},{}]", late.empty() ? "" : ",", index, quoted(action));
+      }
+    }
+    of.is_new = false;
+    busy.push_back(percent);
+    rates.push_back(static_cast<int>(std::min(rate, 2e9)));
+    queues.push_back(static_cast<int>(std::min<std::uint64_t>(now.n_ready, 2'000'000'000)));
+    if (now.process_bytes != 0) memory.push_back(now.process_bytes);
+    n_epochs = std::max(n_epochs, now.n_epochs);  // all PEs that took part know an epoch
+    n_migrations += now.counts.migrations;
+    n_bytes += now.counts.bytes_sent;
+    latest = std::max(latest, static_cast<double>(now.at_ns) * 1e-9);
+  }
+  std::string out =
+      fmt::format(R"({{"t":{:.3f},"pes":{},"processes":{},"epochs":{},"migrations":{},"bytes":{},)",
+                  seconds, n_pes_, n_processes_, n_epochs, n_migrations, n_bytes);
+  if (virtual_time_) out += fmt::format(R"("virtual":{:.9g},)", latest);
+  out += fmt::format(R"("busy":[{}],"rate":[{}],"queue":[{}],"memory":[{}],"late":[{}],)",
+                     fmt::join(busy, ","), fmt::join(rates, ","), fmt::join(queues, ","),
+                     fmt::join(memory, ","), late);
+  return out + "\"collections\":[" + collections() + "]}";
+}
+
+std::string Board::collections() const {
+  struct Sum {
+    std::string name;
+    std::uint64_t all = 0, least = ~std::uint64_t{0}, most = 0;
+    std::size_t n_pes = 0;
+  };
+  std::map<CollectionId, Sum> sums;
+  for (const OfPe& of : pes_) {
+    for (const CollectionSample& here : of.last.collections) {
+      Sum& sum = sums[here.id];
+      sum.name = here.name;
+      sum.all += here.n_local;
+      sum.least = std::min(sum.least, here.n_local);
+      sum.most = std::max(sum.most, here.n_local);
+      ++sum.n_pes;
+    }
+  }
+  std::string out;
+  for (const auto& [id, sum] : sums)
+    out += fmt::format(R"({}{{"id":"{:x}","name":{},"n":{},"least":{},"most":{}}})",
+                       out.empty() ? "" : ",", id.value, quoted(sum.name), sum.all,
+                       sum.n_pes < pes_.size() ? 0 : sum.least, sum.most);
+  return out;
+}
+
+Event Board::event_of(const std::string& name, const Picture& picture) {
+  float least = std::numeric_limits<float>::infinity(), most = -least;
+  for (const float value : picture.values) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  if (least > most) least = most = 0;
+  return {"picture",
+          fmt::format(
+              R"({{"name":{},"width":{},"height":{},"least":{:.6g},"most":{:.6g},"values":"{}"}})",
+              quoted(name), picture.width, picture.height, least, most,
+              hexadecimal(picture.values, least, most))};
+}
+
+}  // namespace tess::detail

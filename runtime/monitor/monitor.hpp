@@ -1,0 +1,76 @@
+// The monitor of a run (--monitor [ADDRESS:]PORT): each process asks its PEs for samples twice a
+// second; those of all processes meet in process 0, which serves a page that draws them.
+//
+//     thread of each process, every period:  asks each of its PEs that has answered the last time
+//     PE:         sample_of(pe)  ->  process 0: straight into the store
+//                                    others: by a message to PE 0, which puts it there
+//     thread of process 0, every period:     store -> frame -> all browsers (server.hpp)
+//
+// None of these messages is counted by an epoch, so the run ends as it would without them. A PE
+// that runs a long entry method answers when it is over; until then the page shows it as busy, with
+// the name of the entry method. On the simulated machine the samples are taken every period of wall
+// time and show virtual time; their messages take part in the schedule.
+#pragma once
+
+#include "runtime/monitor/sample.hpp"
+#include "runtime/scheduler/process_monitor.hpp"
+#include "runtime/scheduler/runtime_options.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tess::detail {
+
+class Runtime;
+
+/// One picture, or a part of one, that the program draws: rows of values from the top left.
+struct PicturePart {
+  std::string name;
+  std::int32_t width = 0, height = 0;  ///< of the whole picture
+  std::int32_t x = 0, y = 0;           ///< where the part begins
+  std::int32_t columns = 0;            ///< of the part
+  std::vector<float> values;           ///< of the part, row by row
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(name, width, height, x, y, columns, values);
+  }
+};
+
+class Monitor final : public ProcessMonitor {
+ public:
+  /// On process 0 it serves from now on. Throws Error if the port cannot be had.
+  Monitor(Runtime& runtime, const MonitorOptions& options);
+  Monitor(const Monitor&) = delete;
+  Monitor& operator=(const Monitor&) = delete;
+  ~Monitor() override;
+
+  void balanced(Pe& pe, BalanceNote note) override;
+  void close() override;
+
+  // On the threads of PEs.
+
+  /// A PE of this process has taken its sample.
+  void answered(Pe& pe, PeSample sample);
+  /// On process 0: the sample of a PE of another process.
+  void arrived(PeSample sample);
+  /// Someone wants to know what waits: the next samples of this process say it.
+  void want_census();
+  /// True if a part of a picture that begins there is wanted: once between two samples of the PE.
+  [[nodiscard]] bool wants_part(const Pe& pe, const std::string& name, std::int32_t x,
+                                std::int32_t y);
+  /// On process 0.
+  void draw(const PicturePart& part);
+  void note(const BalanceNote& note);
+
+ private:
+  class Loop;
+  std::unique_ptr<Loop> loop_;
+};
+
+/// Sends a part of a picture to the monitor.
+void send_part(Pe& pe, PicturePart part);
+
+}  // namespace tess::detail

@@ -1,0 +1,219 @@
+#include "runtime/monitor/server.hpp"
+
+#include "runtime/core/error.hpp"
+#include "runtime/monitor/page.hpp"
+
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include <chrono>
+#include <deque>
+#include <string_view>
+#include <utility>
+
+namespace tess::detail {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using Tcp = asio::ip::tcp;
+
+constexpr std::size_t most_waiting = 8;           // events for one browser that reads slowly
+constexpr std::uint64_t most_request = 16 << 10;  // bytes
+constexpr std::size_t most_listeners = 64;
+
+/// "path?token=T": the two.
+struct Target {
+  std::string path, token;
+};
+Target target_of(std::string_view given) {
+  const std::size_t mark = std::min(given.find('?'), given.size());
+  Target target{std::string(given.substr(0, mark)), {}};
+  constexpr std::string_view key = "token=";
+  for (std::size_t at = mark; at < given.size();) {
+    const std::size_t next = std::min(given.find('&', at + 1), given.size());
+    const std::string_view part = given.substr(at + 1, next - at - 1);
+    if (part.starts_with(key)) target.token = part.substr(key.size());
+    at = next;
+  }
+  return target;
+}
+
+/// Compares all characters, so that the time tells nothing of where they differ.
+bool same(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) return false;
+  unsigned differs = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    differs |= static_cast<unsigned>(a[i]) ^ static_cast<unsigned>(b[i]);
+  return differs == 0;
+}
+
+bool names_this_machine(std::string_view host) {
+  if (const std::size_t colon = host.rfind(':');
+      colon != std::string_view::npos && host.find(']', colon) == std::string_view::npos)
+    host = host.substr(0, colon);
+  return host == "localhost" || host == "[::1]" || host.starts_with("127.");
+}
+
+/// A connection: one request and its answer, or a listener. It lives while an operation holds it.
+class Connection final : public Listener, public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(Server& server, Tcp::socket socket) : server_(server), stream_(std::move(socket)) {
+    parser_.body_limit(most_request);
+    parser_.header_limit(most_request);
+  }
+
+  void read() {
+    stream_.expires_after(std::chrono::seconds(10));
+    http::async_read(stream_, buffer_, parser_,
+                     [self = shared_from_this()](beast::error_code error, std::size_t) {
+                       if (!error) self->answer();
+                     });
+  }
+
+  void send(const std::shared_ptr<const std::string>& event) override {
+    if (waiting_.size() >= most_waiting) return;  // it reads slowly: this one it misses
+    waiting_.push_back(event);
+    if (waiting_.size() == 1) write_next();
+  }
+
+ private:
+  void answer() {
+    const auto& request = parser_.get();
+    const Target target =
+        target_of(std::string_view(request.target().data(), request.target().size()));
+    const auto host = request[http::field::host];
+    if (request.method() != http::verb::get)
+      return reply(http::status::method_not_allowed, "only GET\n");
+    if (server_.token().empty() ? !names_this_machine(std::string_view(host.data(), host.size()))
+                                : !same(target.token, server_.token()))
+      return reply(http::status::forbidden,
+                   server_.token().empty()
+                       ? "ask for localhost, or start the run with --monitor-token\n"
+                       : "the token is missing or wrong: add ?token=…\n");
+    if (target.path == "/")
+      return reply(http::status::ok, monitor_page(), "text/html; charset=utf-8");
+    if (target.path == "/census") {
+      server_.source().begin_census();
+      return reply(http::status::accepted, "the answer comes as an event\n");
+    }
+    if (target.path == "/events") return listen();
+    reply(http::status::not_found, "there is / and /events\n");
+  }
+
+  void reply(http::status status, std::string body,
+             const char* type = "text/plain; charset=utf-8") {
+    auto response = std::make_shared<http::response<http::string_body>>(status, 11);
+    response->set(http::field::content_type, type);
+    response->set(http::field::cache_control, "no-store");
+    response->set("Content-Security-Policy",
+                  "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+                  "connect-src 'self'");
+    response->keep_alive(false);
+    response->body() = std::move(body);
+    response->prepare_payload();
+    http::async_write(stream_, *response,
+                      [self = shared_from_this(), response](beast::error_code, std::size_t) {
+                        beast::error_code ignored;
+                        self->stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
+                      });
+  }
+
+  void listen() {
+    stream_.expires_never();
+    std::string all =
+        "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n"
+        "Connection: close\r\n\r\n";
+    for (const Event& event : server_.source().past()) all += as_text(event);
+    waiting_.push_back(std::make_shared<const std::string>(std::move(all)));
+    server_.listens(weak_from_this());
+    write_next();
+  }
+
+  void write_next() {
+    asio::async_write(stream_.socket(), asio::buffer(*waiting_.front()),
+                      [self = shared_from_this()](beast::error_code error, std::size_t) {
+                        if (error) return;
+                        self->waiting_.pop_front();
+                        if (!self->waiting_.empty()) {
+                          self->write_next();
+                        } else {
+                          self->keep();
+                        }
+                      });
+  }
+
+  /// Between two events a read holds the connection, which ends when the browser leaves.
+  void keep() {
+    if (reads_) return;
+    reads_ = true;
+    stream_.socket().async_read_some(
+        asio::buffer(ignored_), [self = shared_from_this()](beast::error_code error, std::size_t) {
+          self->reads_ = false;
+          if (!error) self->keep();
+        });
+  }
+
+  Server& server_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_;
+  http::request_parser<http::string_body> parser_;
+  std::deque<std::shared_ptr<const std::string>> waiting_;  // the first is under way
+  bool reads_ = false;
+  std::array<char, 64> ignored_{};
+};
+
+/// Binds to an address of this machine.
+Tcp::acceptor bound(asio::io_context& io, const MonitorOptions& options) {
+  beast::error_code error;
+  const auto address = asio::ip::make_address(options.address, error);
+  Tcp::acceptor acceptor(io);
+  const Tcp::endpoint at(address, options.port);
+  if (!error) acceptor.open(at.protocol(), error);
+  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(at, error);
+  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error)
+    fail(ErrorCode::environment, "--monitor ", options.address, ":", options.port, ": ",
+         error.message(), "; choose another port, or 0 for any");
+  return acceptor;
+}
+
+}  // namespace
+
+std::string as_text(const Event& event) {
+  return "event: " + event.kind + "\ndata: " + event.json + "\n\n";
+}
+
+Server::Server(asio::io_context& io, const MonitorOptions& options, Source source)
+    : token_(options.token), source_(std::move(source)), acceptor_(bound(io, options)) {
+  accept();
+}
+
+void Server::accept() {
+  acceptor_.async_accept([this](beast::error_code error, Tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error && listeners_.size() < most_listeners)
+      std::make_shared<Connection>(*this, std::move(socket))->read();
+    accept();
+  });
+}
+
+void Server::publish(const std::vector<Event>& events) {
+  std::erase_if(listeners_, [](const auto& listener) { return listener.expired(); });
+  if (listeners_.empty()) return;
+  auto all = std::make_shared<std::string>();
+  for (const Event& event : events) *all += as_text(event);
+  for (const auto& listener : listeners_) {
+    if (const auto connection = listener.lock()) connection->send(all);
+  }
+}
+
+}  // namespace tess::detail

@@ -1,0 +1,70 @@
+// The web server of the monitor. On the thread that runs its io_context:
+//
+//     GET /          the page
+//     GET /events    server-sent events: what has been (Board::past), then each event as it comes
+//     GET /census    asks what waits; the answer comes as an event
+//
+// A browser that reads more slowly than events come misses frames, and never holds anything up:
+// one event is under way to it at a time, and what comes meanwhile is kept only up to a limit.
+// With a token every request must bring it (?token=…); without one the server answers only requests
+// for this machine by name, so that no page of the web can read it through a browser here.
+#pragma once
+
+#include "runtime/monitor/board.hpp"
+#include "runtime/scheduler/runtime_options.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tess::detail {
+
+/// A browser that listens to the events.
+class Listener {
+ public:
+  Listener() = default;
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+  virtual ~Listener() = default;
+  virtual void send(const std::shared_ptr<const std::string>& event) = 0;
+};
+
+class Server {
+ public:
+  /// What the server asks of the monitor.
+  struct Source {
+    std::function<std::vector<Event>()> past;
+    std::function<void()> begin_census;
+  };
+
+  /// Listens. Throws Error if the address or port cannot be had.
+  Server(boost::asio::io_context& io, const MonitorOptions& options, Source source);
+
+  [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  /// Sends events to all browsers.
+  void publish(const std::vector<Event>& events);
+
+  // For its connections.
+  [[nodiscard]] const Source& source() const { return source_; }
+  [[nodiscard]] const std::string& token() const { return token_; }
+  void listens(std::weak_ptr<Listener> listener) { listeners_.push_back(std::move(listener)); }
+
+ private:
+  void accept();
+
+  const std::string token_;
+  const Source source_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  std::vector<std::weak_ptr<Listener>> listeners_;
+};
+
+/// An event as it stands in the stream.
+[[nodiscard]] std::string as_text(const Event& event);
+
+}  // namespace tess::detail
