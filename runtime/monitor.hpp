@@ -1,9 +1,10 @@
 // What a program draws on the page of --monitor.
 //
-//     tess::show("temperature", {.width = 64, .height = 64, .x = 16 * i, .y = 16 * j, .columns = 16},
-//                [this] { return tile_.values(); });
+//     tess::show("temperature", [this] {
+//       return tess::Picture{64, 64, x_, y_, tile_.width(), tile_.values()};
+//     });
 //
-// Each element shows its part of the picture as often as it likes: a part is taken about twice a
+// Each element shows its part of the picture whenever it likes: a part is taken about twice a
 // second, and otherwise, or without --monitor, the function is not called.
 #pragma once
 
@@ -13,36 +14,48 @@
 
 #include <concepts>
 #include <cstdint>
-#include <ranges>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace tess {
 
-/// Where a part stands in a picture, in pixels from the top left.
-struct PictureArea {
-  std::int32_t width = 0, height = 0;  ///< of the whole picture; at most 2^20 pixels
+/// A part of a picture: numbers, row by row, from the top left.
+struct Picture {
+  std::int32_t width = 0, height = 0;  ///< of the whole picture, in pixels; at most 2^20 of them
   std::int32_t x = 0, y = 0;           ///< of the part's first pixel
   std::int32_t columns = 0;            ///< of the part
+  std::vector<double> values;          ///< of the part; not finite: drawn as the least
 };
 
-/// Shows a part of a picture: the values that `values()` returns, row by row (any range of
-/// numbers). Parts of different times may meet in a picture.
+/// Shows what `picture()` returns. `part` tells the parts of a picture apart that one PE shows: of
+/// each it takes one between two samples. Parts of different times may meet in a picture.
 template <std::invocable F>
-  requires std::ranges::input_range<std::invoke_result_t<F>>
-void show(const std::string& name, const PictureArea& area, F&& values) {
+  requires std::same_as<std::invoke_result_t<F>, Picture>
+void show(std::string_view name, std::uint64_t part, F&& picture) {
   Pe& pe = current_pe();
   auto* const monitor = static_cast<detail::Monitor*>(pe.runtime().monitor());
-  if (monitor == nullptr || pe.stopped() || !monitor->wants_part(pe, name, area.x, area.y)) return;
-  TESS_CHECK(area.width > 0 && area.height > 0 && area.columns > 0 && area.x >= 0 && area.y >= 0 &&
-                 area.x + area.columns <= area.width,
-             "show(\"", name, "\"): a part of ", area.columns, " columns at ", area.x, ",", area.y,
-             " is outside of a picture of ", area.width, " x ", area.height);
-  detail::PicturePart part{name, area.width, area.height, area.x, area.y, area.columns, {}};
-  for (const auto value : std::forward<F>(values)())
-    part.values.push_back(static_cast<float>(value));
-  detail::send_part(pe, std::move(part));
+  if (monitor == nullptr || pe.stopped() || !monitor->wants_part(pe, name, part)) return;
+  Picture of = std::forward<F>(picture)();
+  if (of.values.empty()) return;
+  const bool fits = of.width > 0 && of.height > 0 && of.x >= 0 && of.y >= 0 && of.columns > 0 &&
+                    of.x + of.columns <= of.width &&
+                    static_cast<std::int64_t>(of.width) * of.height <= 1 << 20 &&
+                    of.values.size() <= static_cast<std::size_t>(of.columns) *
+                                            static_cast<std::size_t>(of.height - of.y);
+  TESS_CHECK(fits, "show(\"", name, "\"): ", of.values.size(), " values in ", of.columns,
+             " columns at ", of.x, ",", of.y, " do not fit into a picture of ", of.width, " x ",
+             of.height, " (at most 2^20 pixels)");
+  detail::PicturePart out{std::string(name), of.width, of.height, of.x, of.y, of.columns, {}};
+  out.values.assign(of.values.begin(), of.values.end());
+  detail::send_part(pe, std::move(out));
+}
+/// Shows the running element's part of a picture.
+template <std::invocable F>
+void show(std::string_view name, F&& picture) {
+  const detail::Element* element = current_pe().context().element;
+  show(name, reinterpret_cast<std::uintptr_t>(element), std::forward<F>(picture));
 }
 
 }  // namespace tess

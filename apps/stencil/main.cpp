@@ -4,6 +4,7 @@
 // values from the exact iterate.
 #include "apps/command_line.hpp"
 #include "apps/stencil/grid.hpp"
+#include "runtime/monitor.hpp"
 #include "runtime/runtime.hpp"
 
 #include <fmt/core.h>
@@ -32,6 +33,7 @@ class Block : public tess::Chare<Block, tess::Index2> {
       tile_.set_halo(edge.side, edge.values);
     }
     contribute(tess::max, tile_.jacobi(), array().target<&Block::decide>());
+    show();
   }
   void receive(Edge edge) { edges_.put(std::move(edge)); }
 
@@ -49,6 +51,16 @@ class Block : public tess::Chare<Block, tess::Index2> {
   }
 
  private:
+  /// The block's part of the picture on the page of --monitor.
+  void show() const {
+    const std::int32_t stride = (grid_.problem.size + 255) / 256;
+    const std::int32_t side = (grid_.problem.size + stride - 1) / stride;
+    tess::show("temperature", [&] {
+      Tile::Sampled part = tile_.sampled(stride);
+      return tess::Picture{side, side, part.x, part.y, part.columns, std::move(part.values)};
+    });
+  }
+
   Grid grid_;
   Tile tile_;
   tess::Mailbox<&Edge::step> edges_;

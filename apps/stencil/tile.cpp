@@ -100,4 +100,15 @@ Outcome Tile::compare(std::int32_t steps) const {
   return outcome;
 }
 
+Tile::Sampled Tile::sampled(std::int32_t stride) const {
+  const auto next = [stride](std::int32_t from) { return (from + stride - 1) / stride * stride; };
+  Sampled out{next(x_) / stride, next(y_) / stride, 0, {}};
+  for (std::int32_t y = next(y_); y < y_ + height_; y += stride) {
+    out.columns = 0;
+    for (std::int32_t x = next(x_); x < x_ + width_; x += stride, ++out.columns)
+      out.values.push_back(values_[at(x - x_, y - y_)]);
+  }
+  return out;
+}
+
 }  // namespace stencil

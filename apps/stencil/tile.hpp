@@ -42,6 +42,14 @@ class Tile {
 
   [[nodiscard]] Outcome compare(std::int32_t steps) const;
 
+  /// The points of the tile whose coordinates in the grid are multiples of `stride`.
+  struct Sampled {
+    std::int32_t x = 0, y = 0;  ///< the first one, in strides
+    std::int32_t columns = 0;
+    std::vector<double> values;
+  };
+  [[nodiscard]] Sampled sampled(std::int32_t stride) const;
+
   template <class Ar>
   void serialize(Ar& ar) {
     ar(problem_, x_, y_, width_, height_, values_, source_);

@@ -63,7 +63,7 @@ void Board::arrived(PeSample sample) {
   // Of two samples in one period the frame shows the sum.
   if (!of.is_new) of.before = std::move(of.last);
   of.last = std::move(sample);
-  of.is_new = of.known = true;
+  of.is_new = true;
 }
 
 void Board::note(const BalanceNote& note) {
@@ -139,23 +139,22 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
     const PeSample& now = of.last;
     const auto passed = static_cast<double>(now.at_ns - of.before.at_ns);
     const auto idle = static_cast<double>(now.idle_ns - of.before.idle_ns);
-    int percent = of.known && of.is_new && passed > 0
-                      ? static_cast<int>(std::clamp(100 * (1 - idle / passed), 0.0, 100.0) + 0.5)
-                      : 0;
-    const double rate =
-        of.is_new && passed > 0
-            ? static_cast<double>(now.counts.messages - of.before.counts.messages) * 1e9 / passed
-            : 0;
-    if (!of.is_new) {  // it does not answer: it runs something long
+    if (of.is_new && passed > 0) {
+      const auto ran = static_cast<double>(now.counts.messages - of.before.counts.messages);
+      of.percent = static_cast<int>(std::clamp(100 * (1 - idle / passed), 0.0, 100.0) + 0.5);
+      of.rate = std::min(ran * 1e9 / passed, 2e9);
+    }
+    if (!of.is_new) {  // perhaps it runs something long
       const auto index = static_cast<std::int32_t>(&of - pes_.data());
       if (const std::string action = runs(PeId{index}); !action.empty()) {
-        percent = 100;
+        of.percent = 100;
+        of.rate = 0;
         late += fmt::format("{}[{},{}]", late.empty() ? "" : ",", index, quoted(action));
       }
     }
     of.is_new = false;
-    busy.push_back(percent);
-    rates.push_back(static_cast<int>(std::min(rate, 2e9)));
+    busy.push_back(of.percent);
+    rates.push_back(static_cast<int>(of.rate));
     queues.push_back(static_cast<int>(std::min<std::uint64_t>(now.n_ready, 2'000'000'000)));
     if (now.process_bytes != 0) memory.push_back(now.process_bytes);
     n_epochs = std::max(n_epochs, now.n_epochs);  // all PEs that took part know an epoch

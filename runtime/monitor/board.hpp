@@ -48,8 +48,9 @@ class Board {
  private:
   struct OfPe {
     PeSample last, before;
-    bool is_new = false;
-    bool known = false;
+    bool is_new = false;  // came since the last frame
+    int percent = 0;      // busy
+    double rate = 0;      // messages a second
   };
   struct Picture {
     std::int32_t width = 0, height = 0;

@@ -1,5 +1,6 @@
 #include "runtime/monitor/monitor.hpp"
 
+#include "runtime/core/hash.hpp"
 #include "runtime/monitor/board.hpp"
 #include "runtime/monitor/server.hpp"
 #include "runtime/scheduler/pe_action.hpp"
@@ -10,11 +11,11 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <thread>
-#include <tuple>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -102,10 +103,9 @@ class Monitor::Loop {
     const std::lock_guard lock(mutex_);
     wants_census_ = true;
   }
-  [[nodiscard]] bool wants_part(const Pe& pe, const std::string& name, std::int32_t x,
-                                std::int32_t y) {
+  [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
     // Only this PE's thread uses its set; answered() clears it on the same thread.
-    return of_pe(pe.id()).parts.emplace(name, x, y).second;
+    return of_pe(pe.id()).parts.insert(mix(std::hash<std::string_view>()(name)) ^ mix(part)).second;
   }
   void draw(const PicturePart& part) {
     const std::lock_guard lock(mutex_);
@@ -118,8 +118,8 @@ class Monitor::Loop {
 
  private:
   struct OfPe {
-    bool asked = false;  // and has not answered yet
-    std::set<std::tuple<std::string, std::int32_t, std::int32_t>> parts;  // sent since its sample
+    bool asked = false;                       // and has not answered yet
+    std::unordered_set<std::uint64_t> parts;  // hashes of those that were sent since its sample
   };
 
   [[nodiscard]] PeId first_pe() const {
@@ -206,6 +206,7 @@ Monitor::Monitor(Runtime& runtime, const MonitorOptions& options)
 Monitor::~Monitor() = default;
 
 void Monitor::balanced(Pe& pe, BalanceNote note) {
+  if (is_on_process_0(pe)) return loop_->note(note);
   send_uncounted<&note_arrives>(pe, PeId{0}, std::move(note));
 }
 void Monitor::close() {
@@ -220,8 +221,8 @@ void Monitor::arrived(PeSample sample) {
 void Monitor::want_census() {
   loop_->want_census();
 }
-bool Monitor::wants_part(const Pe& pe, const std::string& name, std::int32_t x, std::int32_t y) {
-  return loop_->wants_part(pe, name, x, y);
+bool Monitor::wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
+  return loop_->wants_part(pe, name, part);
 }
 void Monitor::draw(const PicturePart& part) {
   loop_->draw(part);
@@ -231,6 +232,7 @@ void Monitor::note(const BalanceNote& note) {
 }
 
 void send_part(Pe& pe, PicturePart part) {
+  if (is_on_process_0(pe)) return monitor_of(pe).draw(part);
   send_uncounted<&part_arrives>(pe, PeId{0}, std::move(part));
 }
 

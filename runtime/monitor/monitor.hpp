@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tess::detail {
@@ -58,9 +59,8 @@ class Monitor final : public ProcessMonitor {
   void arrived(PeSample sample);
   /// Someone wants to know what waits: the next samples of this process say it.
   void want_census();
-  /// True if a part of a picture that begins there is wanted: once between two samples of the PE.
-  [[nodiscard]] bool wants_part(const Pe& pe, const std::string& name, std::int32_t x,
-                                std::int32_t y);
+  /// True if this part of a picture is wanted: once between two samples of the PE.
+  [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part);
   /// On process 0.
   void draw(const PicturePart& part);
   void note(const BalanceNote& note);

@@ -256,10 +256,16 @@ Task Balancer::round() {
   }
   const Round& round =
       coordinator_->finish(seconds(pe.now() - began), seconds(began - phase_began_));
-  if (coordinator_->options().lines == RoundLines::print) {
-    const std::vector<Round>& history = coordinator_->history();
-    pe.runtime().error_line(
-        describe(round, history.size() > 1 ? &history[history.size() - 2] : nullptr));
+  const bool prints = coordinator_->options().lines == RoundLines::print;
+  detail::ProcessMonitor* const monitor = pe.runtime().monitor();
+  if (!prints && monitor == nullptr) co_return;
+  const std::vector<Round>& history = coordinator_->history();
+  const std::string line =
+      describe(round, history.size() > 1 ? &history[history.size() - 2] : nullptr);
+  if (prints) pe.runtime().error_line(line);
+  if (monitor != nullptr) {
+    detail::BalanceNote note{line, round.before, round.predicted};
+    monitor->balanced(pe, std::move(note));
   }
 }
 
