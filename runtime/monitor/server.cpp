@@ -132,6 +132,7 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
         "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n"
         "Connection: close\r\n\r\n";
     for (const Event& event : server_.source().past()) all += as_text(event);
+    all += as_text({"now", "{}"});
     waiting_.push_back(std::make_shared<const std::string>(std::move(all)));
     server_.listens(weak_from_this());
     write_next();

@@ -1,7 +1,7 @@
 // The web server of the monitor. On the thread that runs its io_context:
 //
 //     GET /          the page
-//     GET /events    server-sent events: what has been (Board::past), then each event as it comes
+//     GET /events    server-sent events: what has been (Board::past), `now`, then each event as it comes
 //     GET /census    asks what waits; the answer comes as an event
 //
 // A browser that reads more slowly than events come misses frames, and never holds anything up:

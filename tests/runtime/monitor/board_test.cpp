@@ -1,4 +1,4 @@
-// What process 0 makes of samples: frames, pictures, the census; and who may ask.
+// What process 0 makes of samples: frames, pictures, the census; and the options of --monitor.
 #include "runtime/monitor/board.hpp"
 
 #include "runtime/machine/simulated.hpp"

@@ -1,0 +1,155 @@
+// The page of a run that serves one (--monitor PORT), as a table in a terminal: connects, and prints
+// a frame whenever one comes.
+//
+//     tess_monitor --connect localhost:8080 [--token T] [--frames N]
+#include "apps/command_line.hpp"
+#include "runtime/core/error.hpp"
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/write.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <unistd.h>
+
+namespace {
+
+using nlohmann::json;
+using Tcp = boost::asio::ip::tcp;
+
+struct Options {
+  std::string connect = "localhost:8080", token;
+  std::int32_t n_frames = 0;
+  std::int32_t n_rows = 24;
+};
+
+/// The stream of events of a run. Throws tess::Error if it cannot be had.
+class Events {
+ public:
+  explicit Events(const Options& options) : options_(options), socket_(io_) {
+    const std::size_t colon = options.connect.rfind(':');
+    const std::string host = options.connect.substr(0, colon);
+    const std::string port =
+        colon == std::string::npos ? "8080" : options.connect.substr(colon + 1);
+    boost::system::error_code error;
+    const auto found = Tcp::resolver(io_).resolve(host, port, error);
+    if (!error) boost::asio::connect(socket_, found, error);
+    if (error) refuse(error.message() + "; is the run started with --monitor?");
+    const std::string query = options.token.empty() ? "" : "?token=" + options.token;
+    boost::asio::write(socket_, boost::asio::buffer("GET /events" + query +
+                                                    " HTTP/1.1\r\nHost: " + host + "\r\n\r\n"));
+    const std::string status = line();
+    if (status.find(" 200 ") == std::string::npos)
+      refuse("it answers \"" + status + "\"; a run with --monitor-token wants --token");
+    while (!line().empty()) {
+    }
+  }
+
+  /// Reads the next event; false if the run is over.
+  bool next(std::string& kind, json& data) {
+    for (kind.clear();;) {
+      const std::string text = line();
+      if (over_) return false;
+      if (text.starts_with("event: ")) kind = text.substr(7);
+      if (text.starts_with("data: ")) data = json::parse(text.substr(6));
+      if (text.empty() && !kind.empty()) return true;
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const {
+    tess::fail(tess::ErrorCode::environment, "--connect ", options_.connect, ": ", why);
+  }
+  std::string line() {
+    boost::system::error_code error;
+    const std::size_t n =
+        boost::asio::read_until(socket_, boost::asio::dynamic_buffer(text_), '\n', error);
+    over_ = static_cast<bool>(error);
+    std::string out = text_.substr(0, n);
+    text_.erase(0, n);
+    while (!out.empty() && (out.back() == '\n' || out.back() == '\r')) out.pop_back();
+    return out;
+  }
+
+  const Options& options_;
+  boost::asio::io_context io_;
+  Tcp::socket socket_;
+  std::string text_;
+  bool over_ = false;
+};
+
+void print_frame(const json& frame, const std::string& round, std::int32_t n_rows) {
+  const auto n_pes = frame["busy"].size();
+  fmt::print("{:.1f} s", frame["t"].get<double>());
+  if (frame.contains("virtual")) fmt::print(" (virtual {:.6g} s)", frame["virtual"].get<double>());
+  fmt::print(", {} PEs in {} processes, {} epochs open, {} migrations\n", n_pes,
+             frame["processes"].get<int>(), frame["epochs"].get<std::uint64_t>(),
+             frame["migrations"].get<std::uint64_t>());
+  // With more PEs than rows a row is the mean of several.
+  const std::size_t rows = std::min(n_pes, static_cast<std::size_t>(n_rows));
+  fmt::print("{:>13} {:>6} {:>12} {:>9}\n", "PEs", "busy", "messages/s", "queue");
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::size_t from = row * n_pes / rows, to = (row + 1) * n_pes / rows;
+    double busy = 0, rate = 0, queue = 0;
+    for (std::size_t pe = from; pe < to; ++pe) {
+      busy += frame["busy"][pe].get<double>() / static_cast<double>(to - from);
+      rate += frame["rate"][pe].get<double>();
+      queue += frame["queue"][pe].get<double>();
+    }
+    fmt::print("{:>13} {:>5.0f}% {:>12.0f} {:>9.0f} {}\n",
+               to - from == 1 ? fmt::format("{}", from) : fmt::format("{}-{}", from, to - 1), busy,
+               rate, queue, std::string(static_cast<std::size_t>(busy / 4), '#'));
+  }
+  for (const json& late : frame["late"])
+    fmt::print("PE {} is in {}\n", late[0].get<int>(), late[1].get<std::string>());
+  fmt::print("{:>24} {:>10} {:>10} {:>10}\n", "chares", "all", "least", "most");
+  for (const json& one : frame["collections"])
+    fmt::print("{:>24} {:>10} {:>10} {:>10}\n", one["name"].get<std::string>(),
+               one["n"].get<std::uint64_t>(), one["least"].get<std::uint64_t>(),
+               one["most"].get<std::uint64_t>());
+  if (!round.empty()) fmt::print("{}\n", round);
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+int watch(const Options& options) {
+  Events events(options);
+  const bool clears = isatty(STDOUT_FILENO) != 0;
+  std::string kind, round;
+  json data;
+  for (std::int32_t n = 0; options.n_frames == 0 || n < options.n_frames;) {
+    if (!events.next(kind, data)) {
+      fmt::print("the run is over\n");
+      return 0;
+    }
+    if (kind == "round") round = data["text"];
+    if (kind != "frame") continue;
+    if (clears) fmt::print("\033[H\033[2J");
+    print_frame(data, round, options.n_rows);
+    ++n;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] {
+    Options options;
+    apps::CommandLine line(
+        "Shows a run that was started with --monitor PORT, as a table in a terminal.");
+    line.option("--connect", options.connect, "HOST:PORT of the run");
+    line.option("--token", options.token, "its --monitor-token");
+    line.option("--frames", options.n_frames, "ends after so many frames; 0: when the run ends")
+        .between(0, 1'000'000'000);
+    line.option("--rows", options.n_rows, "lines for PEs; more PEs share them").between(1, 10'000);
+    if (!line.parse(argc, argv, "")) return 0;
+    return watch(options);
+  });
+}

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# The page of a run, drawn by a real browser: page.sh STENCIL CHROMIUM. Fails unless the page that its script has
+# filled shows the chares, a curve and a picture.
+set -euo pipefail
+stencil=$1 chromium=$2
+scratch=$(mktemp -d)
+"$stencil" --pes 2 --monitor 0 --size 256 --blocks 4 --steps 1000000000 >"$scratch/out" 2>"$scratch/lines" &
+run=$!
+trap 'kill -TERM "$run" 2>/dev/null || true; wait "$run" 2>/dev/null || true; rm -rf "$scratch"' EXIT
+for _ in $(seq 100); do
+  url=$(grep -o 'http://[0-9.:]*/' "$scratch/lines" || true)
+  if [[ -n $url ]]; then break; fi
+  sleep 0.1
+done
+timeout 60 "$chromium" --headless --no-sandbox --disable-gpu --virtual-time-budget=2000 --user-data-dir="$scratch/profile" \
+  --dump-dom "$url?frames=3" >"$scratch/page" 2>"$scratch/errors" || { cat "$scratch/errors"; exit 1; }
+for want in 'stencil::Block</td><td>16</td>' '<polyline points=' '>temperature</h2><canvas width="256" height="256"' '2 PEs in 1 process'; do
+  if ! grep -qF "$want" "$scratch/page"; then
+    echo "FAILED: the page does not have: $want"
+    cat "$scratch/page"
+    exit 1
+  fi
+done
+echo "the page shows the run"
