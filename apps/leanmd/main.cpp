@@ -1,0 +1,142 @@
+// leanmd: molecular dynamics on cells and pairs of cells, after the Charm++ miniapp of this name.
+#include "apps/command_line.hpp"
+#include "apps/leanmd/report.hpp"
+#include "apps/leanmd/stability.hpp"
+#include "apps/leanmd/study.hpp"
+#include "apps/plot/write_file.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fmt/ranges.h>
+
+namespace leanmd {
+namespace {
+
+struct Settings {
+  Options options;
+  InitialState state{.n_atoms = 4000, .gradient = 0.8};
+  double density = 0.5;
+  std::vector<std::int32_t> cells{6, 6, 6};
+  std::string balance, json, plot;
+  bool study = false, stability = false, explain = false;
+};
+
+/// Reports an error of a run, after the results.
+void end_with(const std::string& error) {
+  if (error.empty()) return;
+  std::fprintf(stderr, "leanmd: %s\n", error.c_str());
+  tess::exit(1);
+}
+
+tess::Task run_once(Settings s) {
+  if (s.explain) tess::print(explain(s.options, s.state.n_atoms));
+  const Motion motion(s.options.problem.box.edge, s.options.problem.dt);
+  Outcome outcome;
+  co_await simulate(s.options, initial_atoms(s.state, motion), outcome);
+  s.options.progress->clear();
+  tess::print(table(s.options, outcome));
+  if (!s.json.empty() && outcome.error.empty()) plot::write_file(s.json, json(s.options, outcome));
+  end_with(outcome.error);
+}
+
+tess::Task run_study(Settings s) {
+  std::vector<StudyRow> rows;
+  co_await study(s.options, s.state, rows);
+  s.options.progress->clear();
+  tess::print(study_table(rows));
+  if (!s.json.empty()) plot::write_file(s.json, study_json(rows));
+  if (!s.plot.empty()) draw_study(s.plot, rows);
+}
+
+tess::Task run_stability(Settings s) {
+  std::vector<StabilityRow> rows;
+  co_await stability_report(rows);
+  s.options.progress->clear();
+  tess::print(stability_table(rows));
+  for (const StabilityRow& row : rows)
+    if (!row.ok) end_with(row.name + " failed");
+}
+
+template <class... Text>
+[[noreturn]] void refuse(const Text&... text) {
+  tess::fail(tess::ErrorCode::bad_argument, text...);
+}
+
+/// What no single option can be checked for.
+void check(Settings& s) {
+  Problem& p = s.options.problem;
+  if (!(s.density > 0 && s.density <= 1))
+    refuse("--density: ", s.density, " is not above 0 and at most 1");
+  if (!(s.state.gradient >= 0 && s.state.gradient <= 1))
+    refuse("--gradient: ", s.state.gradient, " is not from 0 to 1");
+  if (!(s.state.temperature >= 0 && s.state.temperature <= 1000))
+    refuse("--temperature: ", s.state.temperature, " is not from 0 to 1000");
+  if (!(p.dt >= least_dt && p.dt <= 1)) refuse("--dt: ", p.dt, " is not from 1e-5 to 1");
+  if (!(p.skin >= 0)) refuse("--skin: ", p.skin, " is negative");
+  if (!(p.cutoff >= 1)) refuse("--cutoff: ", p.cutoff, " is not at least 1");
+  s.state.edge = std::cbrt(static_cast<double>(s.state.n_atoms) / s.density);
+  p.box.edge = s.state.edge;
+  if (2 * (p.cutoff + p.skin) > p.box.edge)
+    refuse("--cutoff: ", p.cutoff, " and --skin ", p.skin,
+           " reach over half of the box, whose edge is ", p.box.edge,
+           "; give more --atoms or a lower --density");
+  for (const std::int32_t n : s.cells)
+    if (n < 1 || n > 256) refuse("--cells: ", n, " is not from 1 to 256");
+  std::ranges::copy(s.cells, p.box.n_cells.begin());
+  if (!s.balance.empty()) s.options.balance = tess::parse_balance(s.balance);
+  p.balanced = s.options.balance && s.options.balance->when != tess::BalanceWhen::periodic;
+  if (s.study && s.stability) refuse("--study: cannot be combined with --stability");
+  if (!s.plot.empty() && !s.study) refuse("--plot ", s.plot, ": is for --study");
+  plot::require_writable("--json", s.json);
+  if (!s.plot.empty()) (void)plot::data_path(s.plot);
+  plot::require_writable("--plot", s.plot);
+}
+
+int run(tess::Setup& setup, int argc, char** argv) {
+  Settings s;
+  Problem& p = s.options.problem;
+  apps::CommandLine line("Molecular dynamics: Lennard-Jones atoms in a periodic box.", "leanmd");
+  line.option("--cells", s.cells, "cells of the box on each axis: as 4,4,4")
+      .separated_by(',')
+      .takes(3, 3);
+  line.option("--atoms", s.state.n_atoms, "number of atoms").between(1, 1 << 20);
+  line.option("--steps", s.options.n_steps, "time steps").between(0, 100'000'000);
+  line.option("--dt", p.dt, "time step, in reduced units");
+  line.option("--cutoff", p.cutoff, "distance from which on atoms have no force on each other");
+  line.option("--density", s.density, "atoms per volume; the box has the edge that follows");
+  line.option("--gradient", s.state.gradient, "0: even; 1: all the denser the smaller x is");
+  line.option("--temperature", s.state.temperature, "of the start");
+  line.option("--seed", s.state.seed, "of the start");
+  line.option("--exchange", p.exchange_every, "steps after which atoms change cells")
+      .between(1, 1'000'000);
+  line.option("--skin", p.skin, "atoms may move by half of it between two exchanges");
+  line.option("--every", p.every, "steps between two looks at the result, and balance barriers")
+      .between(1, 1'000'000);
+  line.option(
+      "--balance", s.balance,
+      "computes migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]");
+  line.flag("--check", s.options.check, "compare the first and the last forces with all pairs");
+  line.flag("--reverse", s.options.reverse,
+            "afterwards run back with reversed velocities: must return to the start");
+  line.option("--json", s.json, "write the result as JSON");
+  line.flag("--study", s.study, "energy drift against time step: five of them");
+  line.option("--plot", s.plot, "draw the study: FILE.svg");
+  line.flag("--stability", s.stability, "stiff and extreme cases; exit code 1 if one fails");
+  line.flag("--explain", s.explain, "print what this run does");
+  if (!line.parse(argc, argv)) return 0;
+  check(s);
+  apps::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
+  s.options.progress = &progress;
+  return tess::run(setup, [&]() -> tess::Task {
+    if (s.stability) return run_stability(s);
+    return s.study ? run_study(s) : run_once(s);
+  });
+}
+
+}  // namespace
+}  // namespace leanmd
+
+int main(int argc, char** argv) {
+  return tess::guarded(argc, argv,
+                       [&](tess::Setup& setup) { return leanmd::run(setup, argc, argv); });
+}

@@ -1,0 +1,91 @@
+#include "apps/leanmd/study.hpp"
+
+#include "apps/plot/chart.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace leanmd {
+
+tess::Task study(Options options, InitialState state, std::vector<StudyRow>& rows) {
+  const double dt = options.problem.dt;
+  const double time = dt * options.n_steps;
+  for (const double factor : {2.0, 1.0, 0.5, 0.25, 0.125}) {
+    options.problem.dt = dt * factor;
+    options.n_steps = static_cast<std::int32_t>(std::lround(time / options.problem.dt));
+    const Motion motion(options.problem.box.edge, options.problem.dt);
+    Outcome outcome;
+    co_await simulate(options, initial_atoms(state, motion), outcome);
+    StudyRow row{options.problem.dt, options.n_steps, outcome.drift(), outcome.seconds, 0,
+                 outcome.error};
+    if (!rows.empty() && rows.back().error.empty() && row.drift > 0 && rows.back().drift > 0)
+      row.order = std::log(rows.back().drift / row.drift) / std::log(rows.back().dt / row.dt);
+    rows.push_back(row);
+  }
+}
+
+double fitted_order(const std::vector<StudyRow>& rows) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const StudyRow& row : rows) {
+    if (!row.error.empty() || row.drift <= 0) continue;
+    const double u = std::log(row.dt), v = std::log(row.drift);
+    n += 1, x += u, y += v, xx += u * u, xy += u * v;
+  }
+  return n < 2 ? 0 : (n * xy - x * y) / (n * xx - x * x);
+}
+
+std::string study_table(const std::vector<StudyRow>& rows) {
+  std::string out =
+      fmt::format("{:>10}{:>8}{:>14}{:>8}{:>12}\n", "dt", "steps", "energy drift", "order", "s");
+  for (const StudyRow& row : rows) {
+    if (!row.error.empty()) {
+      out += fmt::format("{:>10.4g}{:>8}  {}\n", row.dt, row.n_steps, row.error);
+      continue;
+    }
+    out += fmt::format("{:>10.4g}{:>8}{:>14.3e}{:>8}{:>12.4f}\n", row.dt, row.n_steps, row.drift,
+                       row.order == 0 ? "-" : fmt::format("{:.2f}", row.order), row.seconds);
+  }
+  return out + fmt::format(
+                   "fitted order {:.2f}; drift: greatest change of the total energy per "
+                   "atom\n",
+                   fitted_order(rows));
+}
+
+std::string study_json(const std::vector<StudyRow>& rows) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const StudyRow& row : rows) {
+    nlohmann::ordered_json one{{"dt", row.dt},
+                               {"steps", row.n_steps},
+                               {"energy_drift", row.drift},
+                               {"seconds", row.seconds}};
+    if (!row.error.empty()) one["error"] = row.error;
+    list.push_back(std::move(one));
+  }
+  return nlohmann::ordered_json{{"machine", tess::machine().describe()},
+                                {"fitted_order", fitted_order(rows)},
+                                {"rows", std::move(list)}}
+             .dump(2) +
+         "\n";
+}
+
+void draw_study(const std::string& svg, const std::vector<StudyRow>& rows) {
+  plot::Chart chart{.title = "velocity Verlet: error against run time",
+                    .x_label = "seconds",
+                    .y_label = "energy drift per atom",
+                    .x_log = true,
+                    .y_log = true};
+  plot::Series drift{.name = "dt from left to right: shorter"};
+  for (const StudyRow& row : rows)
+    if (row.error.empty()) drift.points.push_back({row.seconds, row.drift});
+  if (drift.points.empty()) return;
+  // Twice the steps, a quarter of the error.
+  const plot::Point first = drift.points.front(), last = drift.points.back();
+  plot::Series square{.name = "order 2",
+                      .points = {first, {last.x, first.y * std::pow(first.x / last.x, 2)}},
+                      .style = plot::Style::dashes};
+  chart.series = {std::move(drift), std::move(square)};
+  (void)plot::write_svg(svg, chart);
+}
+
+}  // namespace leanmd
