@@ -83,8 +83,14 @@ void check(Settings& s) {
   for (const std::int32_t n : s.cells)
     if (n < 1 || n > 256) refuse("--cells: ", n, " is not from 1 to 256");
   std::ranges::copy(s.cells, p.box.n_cells.begin());
+  if (4 * p.box.least_cell_edge() < p.cutoff + p.skin)
+    refuse("--cells: a cell of edge ", p.box.least_cell_edge(),
+           " is shorter than a quarter of --cutoff and --skin; give fewer cells");
   if (!s.balance.empty()) s.options.balance = tess::parse_balance(s.balance);
   p.balanced = s.options.balance && s.options.balance->when != tess::BalanceWhen::periodic;
+  if (s.study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
+    refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
+           ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
   if (s.study && s.stability) refuse("--study: cannot be combined with --stability");
   if (!s.plot.empty() && !s.study) refuse("--plot ", s.plot, ": is for --study");
   plot::require_writable("--json", s.json);

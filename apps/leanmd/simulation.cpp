@@ -9,7 +9,7 @@ namespace leanmd {
 namespace {
 
 /// Above this share of the kinetic energy a change of the total energy is an instability.
-constexpr double unstable_share = 0.25;
+constexpr double unstable_share = 0.1;
 
 std::string describe(const Trouble& trouble, const Problem& problem) {
   const std::string where = fmt::format("step {}, atom {}: ", trouble.step, trouble.atom);
@@ -89,7 +89,10 @@ tess::Task Simulation::run(std::vector<Atom> atoms) {
   });
   co_await tess::epoch([&] { cells_.broadcast<&Cell::create_section>(); });
   std::optional<tess::BalancerProxy> balancer;
-  if (options_.balance) balancer = tess::start_balancing(computes_, *options_.balance);
+  if (options_.balance) {
+    balancer = tess::start_balancing(computes_.handle(), *options_.balance);
+    co_await balancer->begin_phase();
+  }
 
   const tess::Time begin = tess::now();
   co_await run_to(0);
