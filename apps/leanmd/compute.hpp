@@ -10,6 +10,7 @@
 #include "runtime/section.hpp"
 #include "runtime/shared_array.hpp"
 
+#include <array>
 #include <vector>
 
 namespace leanmd {
@@ -32,6 +33,12 @@ class Compute : public tess::Chare<Compute, tess::Index6> {
 
   void take(Coordinates coordinates);
   void resume_from_sync();
+
+  /// For balancers that keep neighbours together: the place of the first of the two cells.
+  [[nodiscard]] std::array<double, 3> balance_position() const {
+    const auto& x = index().x;
+    return {1.0 * x[0], 1.0 * x[1], 1.0 * x[2]};
+  }
 
   template <class Ar>
   void serialize(Ar& ar) {

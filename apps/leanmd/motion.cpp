@@ -41,7 +41,8 @@ void Motion::drift(std::span<Atom> atoms) const {
 
 std::vector<Atom> initial_atoms(const InitialState& state, const Motion& motion) {
   constexpr double wide = 1.05;  // a spacing at which atoms neither overlap nor fly apart
-  std::int64_t side = static_cast<std::int64_t>(state.edge / wide);
+  const double most = 2 * std::cbrt(state.n_atoms);  // points per atom are bounded
+  std::int64_t side = static_cast<std::int64_t>(std::min(state.edge / wide, most));
   while (side * side * side < state.n_atoms) ++side;
 
   // A draw without replacement by weight: the points with the least keys -log(u) / weight

@@ -70,7 +70,7 @@ std::vector<Case> cases() {
   now.problem.cutoff = 4.5;
   now.problem.skin = 0.2;
   add("cutoff of half the box", now, random_atoms(now, 400), 2e-3);
-  now = base(15, {5, 5, 5});
+  now = base(10, {5, 5, 5});
   add("empty cells", now, random_atoms(now, 60), 2e-3);
   now = base(40, {4, 4, 4});
   add("all atoms in one cell", now, cube(now, 4, 1.1), 2e-3);

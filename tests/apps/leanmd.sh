@@ -54,6 +54,15 @@ assert 1.9 < study["fitted_order"] < 2.1, study
 assert len(study["rows"]) == 5 and all(row["seconds"] > 0 for row in study["rows"]), study' "$scratch/study.json" && [[ -s $scratch/study.csv ]] &&
   pass || fail "the study"
 
+# With a fixed cost the times of the simulated machine are exact: balancing gains over a fifth.
+seconds_of() {
+  timeout 60 "$leanmd" --atoms 2000 --cells 4,4,4 --gradient 1 --steps 30 --every 6 --sim pes=4,cost=500ns --json "$scratch/time.json" "$@" >/dev/null
+  sed -n 's/.*"seconds": \([^,]*\),/\1/p' "$scratch/time.json" | head -1
+}
+plain=$(seconds_of)
+balanced=$(seconds_of --balance greedy_refine)
+python3 -c "import sys; sys.exit(0 if $balanced < 0.8 * $plain else 1)" && pass || fail "balanced $balanced s, without $plain s"
+
 fails 1 "lower --" "${case[@]}" --dt 0.1
 fails 1 "unstable until" --atoms 400 --density 0.55 --gradient 0 --cells 3,3,3 --exchange 1 --steps 60 --dt 0.03
 fails 2 "--cells: 0" --cells 0,1,1
