@@ -59,10 +59,7 @@ tess::Task Cell::step(std::int32_t step) {
   check_forces();
   if (step > 0 && !totals_.trouble) Motion::kick(atoms_, forces_.on);
 
-  Vector energies{0, forces_.energy, forces_.energy};
-  for (const Atom& atom : atoms_) energies[0] += motion_.energy(atom);
-  energies[2] += energies[0];
-  totals_.energies.push_back(energies);
+  totals_.energies.push_back(energies());
   if (step < run_.last) {
     self().send<&Cell::step>(step + 1);
   } else {
@@ -107,15 +104,22 @@ void Cell::check_forces() {
                      atoms_[static_cast<std::size_t>(forces_.closest)].id};
 }
 
+Vector Cell::energies() const {
+  if (totals_.trouble) return {};  // they might overflow
+  std::int64_t kinetic = 0;
+  for (const Atom& atom : atoms_) kinetic += motion_.energy(atom);
+  return {kinetic, forces_.energy, kinetic + forces_.energy};
+}
+
 void Cell::reverse() {
   for (Atom& atom : atoms_)
     for (std::int64_t& v : atom.velocity) v = -v;
 }
 
-void Cell::show(tess::Callback<std::vector<AtomForce>> result) {
+void Cell::show(const tess::Callback<std::vector<AtomForce>>& result) {
   std::vector<AtomForce> all;
   for (std::size_t i = 0; i < atoms_.size(); ++i) all.emplace_back(atoms_[i], forces_.on[i]);
-  contribute(tess::concatenate, std::move(all), std::move(result));
+  contribute(tess::concatenate, std::move(all), result);
 }
 
 void Cell::sum_up() {

@@ -73,7 +73,7 @@ class Cell : public tess::Chare<Cell, tess::Index3> {
   void reverse();
   /// All atoms with the forces on them, to `result`.
   using AtomForce = std::pair<Atom, Vector>;
-  void show(tess::Callback<std::vector<AtomForce>> result);
+  void show(const tess::Callback<std::vector<AtomForce>>& result);
 
   // Messages of a step.
   struct Arrivals {
@@ -94,6 +94,7 @@ class Cell : public tess::Chare<Cell, tess::Index3> {
   void advance(std::int32_t step);
   void send_leavers(std::int32_t step);
   void check_forces();
+  [[nodiscard]] Vector energies() const;
   void sum_up();
 
   Problem problem_;

@@ -36,6 +36,7 @@ std::string describe(const Trouble& trouble, const Problem& problem) {
 /// The number of atoms whose force is not, bit for bit, the sum over all pairs.
 std::int64_t wrong_forces(const Problem& problem, const std::vector<Cell::AtomForce>& all) {
   std::vector<Position> positions;
+  positions.reserve(all.size());
   for (const auto& [atom, force] : all) positions.push_back(atom.at);
   Forces expected;
   expected.on.resize(all.size());
@@ -148,6 +149,7 @@ void Simulation::examine(const Totals& totals) {
   outcome_.hash = totals.hash;
   if (totals.trouble) {
     outcome_.error = describe(totals.trouble, options_.problem);
+    outcome_.energies.resize(static_cast<std::size_t>(std::max(1, totals.trouble.step)));
   } else if (totals.n_atoms != n_atoms_) {
     outcome_.error = fmt::format("{} atoms of {} are there", totals.n_atoms, n_atoms_);
   } else if (totals.momentum != momentum_) {

@@ -23,7 +23,7 @@ struct Options {
 };
 
 struct Outcome {
-  std::vector<Vector> energies;  ///< per step, from 0: kinetic, potential, both; in quanta
+  std::vector<Vector> energies;  ///< as Totals::energies, from step 0 on
   std::int64_t n_atoms = 0;      ///< at the end
   std::uint64_t first_hash = 0, hash = 0;
   std::int64_t wrong_forces = -1;  ///< atoms whose force is not that of all pairs; -1: not compared
