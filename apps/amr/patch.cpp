@@ -19,6 +19,8 @@ std::size_t idx(std::int32_t i) {
 }  // namespace
 
 Patch::Patch(const Problem& problem, BlockIndex index) : problem_(problem), index_(index) {
+  const double h = problem_.spacing(index_.level());
+  value_per_quantum_ = 1 / (quanta * h * h * h);
   masses_.resize(idx(n() * n() * n()));
 }
 
@@ -26,11 +28,6 @@ std::array<double, 3> Patch::low() const {
   const Cell place = index_.coordinates();
   const double edge = 1.0 / (1 << index_.level());
   return {place[0] * edge, place[1] * edge, place[2] * edge};
-}
-
-double Patch::quanta_per_cell() const {
-  const double h = problem_.spacing(index_.level());
-  return quanta * h * h * h;
 }
 
 Cell Patch::below(Face face, std::int32_t depth, std::int32_t column, std::int32_t row) const {
@@ -50,21 +47,21 @@ void Patch::fill(double time) {
   for (std::int32_t z = 0; z < n(); ++z)
     for (std::int32_t y = 0; y < n(); ++y)
       for (std::int32_t x = 0; x < n(); ++x)
-        masses_[at({x, y, z})] = std::llround(means[0][idx(x)] * means[1][idx(y)] *
-                                              means[2][idx(z)] * quanta_per_cell());
+        masses_[at({x, y, z})] = std::llrint(means[0][idx(x)] * means[1][idx(y)] *
+                                             means[2][idx(z)] / value_per_quantum_);
 }
 
 Norms Patch::compare(double time) const {
   Patch exact(problem_, index_);
   exact.fill(time);
   Norms norms;
-  const double volume = quanta_per_cell();
+  const double volume = 1 / value_per_quantum_;
   for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const double value = static_cast<double>(masses_[i]) / volume;
-    const double error = value - static_cast<double>(exact.masses_[i]) / volume;
+    const double value = static_cast<double>(masses_[i]) * value_per_quantum_;
+    const double error = value - static_cast<double>(exact.masses_[i]) * value_per_quantum_;
     norms.mass += masses_[i];
-    norms.l1 += std::llround(std::abs(error) * volume);
-    norms.l2 += std::llround(error * error * volume);
+    norms.l1 += std::llrint(std::abs(error) * volume);
+    norms.l2 += std::llrint(error * error * volume);
     norms.linf = std::max(norms.linf, std::abs(error));
     norms.largest = std::max(norms.largest, value);
     norms.least = std::min(norms.least, value);
@@ -78,11 +75,12 @@ double Patch::steepness() const {
   Quanta most = 0;
   for (std::int32_t axis = 0; axis < 3; ++axis)
     for (std::int32_t row = 0; row < n(); ++row)
-      for (std::int32_t column = 0; column < n(); ++column)
-        for (std::int32_t i = 1; i < n(); ++i)
-          most = std::max(most, std::abs(masses_[at(below(2 * axis, i, column, row))] -
-                                         masses_[at(below(2 * axis, i - 1, column, row))]));
-  return static_cast<double>(most) / quanta_per_cell();
+      for (std::int32_t column = 0; column < n(); ++column) {
+        const Quanta* const first = &masses_[at(below(2 * axis, 0, column, row))];
+        for (std::size_t i = 1; i < idx(n()); ++i)
+          most = std::max(most, std::abs(first[i * stride(axis)] - first[(i - 1) * stride(axis)]));
+      }
+  return static_cast<double>(most) * value_per_quantum_;
 }
 
 std::vector<double> Patch::layers(Face face) const {
@@ -103,7 +101,7 @@ std::vector<double> Patch::coarse_layers(Face face) const {
         for (std::int32_t part = 0; part < n_octants; ++part)
           sum += masses_[at(
               below(face, layer + half(part, 0), column + half(part, 1), row + half(part, 2)))];
-        values.push_back(static_cast<double>(sum) / (8 * quanta_per_cell()));
+        values.push_back(static_cast<double>(sum) * value_per_quantum_ / 8);
       }
   return values;
 }
@@ -163,12 +161,15 @@ void Patch::compute_flows(std::int32_t axis) {
   const double w = problem_.order == 3 ? (2 - c) / 3 : 0.5;
   const double share = problem_.order == 1 ? 0 : (1 - c) / 2;
   const double through = v * problem_.dt * h * h * quanta;  // of u = 1
+  const std::size_t step = stride(axis);
   const std::int32_t m = n();
   flows_.resize(idx(m * m * (m + 1)));
   std::vector<double> u(idx(m + 4));  // two cells beyond each end
   for (std::int32_t row = 0; row < m; ++row)
     for (std::int32_t column = 0; column < m; ++column) {
-      for (std::int32_t i = 0; i < m; ++i) u[idx(i + 2)] = value(below(2 * axis, i, column, row));
+      const Quanta* const first = &masses_[at(below(2 * axis, 0, column, row))];
+      for (std::int32_t i = 0; i < m; ++i)
+        u[idx(i + 2)] = static_cast<double>(first[idx(i) * step]) * value_per_quantum_;
       for (std::int32_t layer = 0; layer < 2; ++layer) {
         const std::size_t from = idx((layer * m + row) * m + column);
         u[idx(1 - layer)] = halo_[0][from];
@@ -180,7 +181,7 @@ void Patch::compute_flows(std::int32_t axis) {
         const double upwind = v >= 0
                                   ? left[0] + share * (w * across + (1 - w) * (left[0] - left[-1]))
                                   : left[1] - share * (w * across + (1 - w) * (left[2] - left[1]));
-        flows_[idx((row * m + column) * (m + 1) + face)] = std::llround(through * upwind);
+        flows_[idx((row * m + column) * (m + 1) + face)] = std::llrint(through * upwind);
       }
     }
 }
@@ -208,18 +209,19 @@ void Patch::set_flows(Face face, std::int32_t quadrant, const std::vector<Quanta
 
 void Patch::apply_flows(std::int32_t axis) {
   const std::int32_t m = n();
+  const std::size_t step = stride(axis);
   for (std::int32_t row = 0; row < m; ++row)
     for (std::int32_t column = 0; column < m; ++column) {
+      Quanta* const first = &masses_[at(below(2 * axis, 0, column, row))];
       const Quanta* const flow = &flows_[idx((row * m + column) * (m + 1))];
-      for (std::int32_t i = 0; i < m; ++i)
-        masses_[at(below(2 * axis, i, column, row))] += flow[i] - flow[i + 1];
+      for (std::int32_t i = 0; i < m; ++i) first[idx(i) * step] += flow[i] - flow[i + 1];
     }
 }
 
 std::vector<Quanta> Patch::refined(std::int32_t octant) const {
   const std::int32_t m = n();
   Patch child(problem_, index_.child(octant));
-  const double volume = child.quanta_per_cell();
+  const double volume = 1 / child.value_per_quantum_;
   for (std::int32_t z = 0; z < m / 2; ++z)
     for (std::int32_t y = 0; y < m / 2; ++y)
       for (std::int32_t x = 0; x < m / 2; ++x) {
@@ -228,7 +230,7 @@ std::vector<Quanta> Patch::refined(std::int32_t octant) const {
         Quanta rest = masses_[at(cell)];
         for (std::int32_t part = 0; part < n_octants; ++part) {
           const Quanta mass =
-              part + 1 < n_octants ? std::llround(part_value(cell, part) * volume) : rest;
+              part + 1 < n_octants ? std::llrint(part_value(cell, part) * volume) : rest;
           rest -= mass;
           child.masses_[at({2 * x + half(part, 0), 2 * y + half(part, 1), 2 * z + half(part, 2)})] =
               mass;

@@ -74,7 +74,7 @@ class Patch {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(problem_, index_, masses_, halo_, flows_);
+    ar(problem_, index_, value_per_quantum_, masses_, halo_, flows_);
   }
 
  private:
@@ -85,9 +85,12 @@ class Patch {
   /// A cell by its place seen from a face: depth below it, column and row.
   [[nodiscard]] std::array<std::int32_t, 3> below(Face face, std::int32_t depth,
                                                   std::int32_t column, std::int32_t row) const;
-  [[nodiscard]] double quanta_per_cell() const;
+  /// The distance in masses_ of two cells beside each other along an axis.
+  [[nodiscard]] std::size_t stride(std::int32_t axis) const {
+    return static_cast<std::size_t>(axis == 0 ? 1 : axis == 1 ? n() : n() * n());
+  }
   [[nodiscard]] double value(const std::array<std::int32_t, 3>& cell) const {
-    return static_cast<double>(masses_[at(cell)]) / quanta_per_cell();
+    return static_cast<double>(masses_[at(cell)]) * value_per_quantum_;
   }
   /// The value in the part `octant` of a cell, by the slopes within this patch.
   [[nodiscard]] double part_value(const std::array<std::int32_t, 3>& cell,
@@ -95,6 +98,7 @@ class Patch {
 
   Problem problem_;
   BlockIndex index_;
+  double value_per_quantum_ = 1;
   std::vector<Quanta> masses_;               // [z][y][x]
   std::array<std::vector<double>, 2> halo_;  // of a sweep: layers below and above
   std::vector<Quanta> flows_;                // of a sweep: [row][column][face along the axis]

@@ -43,10 +43,10 @@ tess::Task plant(Blocks blocks, const Problem& problem, Outcome& outcome) {
   });
   for (std::int32_t level = problem.least_level;; ++level) {
     co_await tess::epoch([&] { blocks.broadcast<&Block::fill>(); });
+    co_await take_census(blocks, 0, outcome);
     if (level == problem.most_level) break;
     co_await change_tree(blocks);
   }
-  co_await take_census(blocks, 0, outcome);
 }
 
 }  // namespace

@@ -90,6 +90,12 @@ std::vector<Case> cases() {
                  .holds = [](const Outcome& found, const Outcome& other) {
                    return found.end.norms.hash == other.end.norms.hash && found.n_destroyed > 0;
                  }});
+  Problem odd = usual;
+  odd.n_cells = 10;
+  all.push_back({.name = "10 cells along an edge: volumes are no powers of two",
+                 .expected = "values within bounds",
+                 .problem = odd,
+                 .holds = &bounded});
   all.push_back({.name = "max level 0: one block, its own neighbour",
                  .expected = "one block, values within bounds",
                  .problem = small(0, 0),
