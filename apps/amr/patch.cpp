@@ -85,6 +85,7 @@ double Patch::steepness() const {
 
 std::vector<double> Patch::layers(Face face) const {
   std::vector<double> values;
+  values.reserve(idx(2 * n() * n()));
   for (std::int32_t layer = 0; layer < 2; ++layer)
     for (std::int32_t row = 0; row < n(); ++row)
       for (std::int32_t column = 0; column < n(); ++column)
@@ -123,6 +124,7 @@ std::vector<double> Patch::fine_layers(Face face, std::int32_t quadrant) const {
   const std::int32_t axis = face / 2;
   const std::int32_t first_column = (quadrant & 1) * n() / 2, first_row = (quadrant >> 1) * n() / 2;
   std::vector<double> values;
+  values.reserve(idx(2 * n() * n()));
   for (std::int32_t layer = 0; layer < 2; ++layer)
     for (std::int32_t row = 0; row < n(); ++row)
       for (std::int32_t column = 0; column < n(); ++column) {
