@@ -69,6 +69,22 @@ TEST_CASE("a tree that is refined everywhere has the bits of a uniform one", "[a
   CHECK(run(refined, 3, 3).end.norms.hash != want.end.norms.hash);  // of another width
 }
 
+TEST_CASE("a field that smears out takes its tree down with it", "[apps][amr]") {
+  Settings settings = small(1, 4);
+  Problem& problem = settings.problem;
+  problem.order = 1;
+  problem.width = 0.05;
+  problem.refine = 0.03;
+  problem.n_steps = 130;
+  problem.complete();
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    CAPTURE(seed);
+    const Outcome outcome = run(settings, 3, seed);
+    CHECK(outcome.most_blocks > 50);
+    CHECK(outcome.end.n_blocks < 50);
+  }
+}
+
 TEST_CASE("errors fall with the level of the tree and with the order", "[apps][amr]") {
   const auto error = [](std::int32_t order, std::int32_t level) {
     Settings settings = small(2, level);
