@@ -75,7 +75,7 @@ TEST_CASE("a field that smears out takes its tree down with it", "[apps][amr]") 
   problem.order = 1;
   problem.width = 0.05;
   problem.refine = 0.03;
-  problem.n_steps = 130;
+  problem.n_steps = 160;
   problem.complete();
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     CAPTURE(seed);
