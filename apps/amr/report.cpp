@@ -80,11 +80,11 @@ void draw(const std::string& path, const std::vector<Row>& rows) {
                     .y_label = "L1 error",
                     .x_log = true,
                     .y_log = true};
+  const std::int32_t coarsest = rows.front().settings.problem.least_level;
   for (const Row& row : rows) {
     const Problem& p = row.settings.problem;
     const std::string name =
-        fmt::format("order {}{}", p.order,
-                    p.least_level == p.most_level && p.least_level > 2 ? ", uniform" : "");
+        fmt::format("order {}{}", p.order, p.least_level > coarsest ? ", uniform" : "");
     const auto same = std::ranges::find(chart.series, name, &plot::Series::name);
     plot::Series& series =
         same != chart.series.end() ? *same : chart.series.emplace_back(plot::Series{.name = name});
