@@ -162,11 +162,11 @@ void Block::change() {
   destroy();
 }
 
-void Block::count(double time, tess::Callback<Census> result) {
+void Block::count(double time, const tess::Callback<Census>& result) {
   Census mine{patch_.compare(time), 1, is_new_ ? 1 : 0, {}};
   mine.of_level.at(static_cast<std::size_t>(level())) = 1;
   is_new_ = false;
-  contribute(Join(), mine, std::move(result));
+  contribute(Join(), mine, result);
 }
 
 }  // namespace amr

@@ -72,7 +72,7 @@ class Block : public tess::Chare<Block, BlockIndex> {
   void plan() { choose(); }
   void hear(Choice of_neighbour);
   void change();
-  void count(double time, tess::Callback<Census> result);
+  void count(double time, const tess::Callback<Census>& result);
 
   [[nodiscard]] std::array<double, 3> balance_position() const { return patch_.low(); }
 

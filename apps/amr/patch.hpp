@@ -80,7 +80,9 @@ class Patch {
  private:
   [[nodiscard]] std::int32_t n() const { return problem_.n_cells; }
   [[nodiscard]] std::size_t at(const std::array<std::int32_t, 3>& cell) const {
-    return static_cast<std::size_t>((cell[2] * n() + cell[1]) * n() + cell[0]);
+    const std::int32_t row = cell[2] * n() + cell[1];
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(n()) +
+           static_cast<std::size_t>(cell[0]);
   }
   /// A cell by its place seen from a face: depth below it, column and row.
   [[nodiscard]] std::array<std::int32_t, 3> below(Face face, std::int32_t depth,
