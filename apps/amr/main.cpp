@@ -6,6 +6,8 @@
 #include "apps/progress.hpp"
 #include "runtime/runtime.hpp"
 
+#include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 
 namespace amr {

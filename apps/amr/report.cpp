@@ -3,6 +3,7 @@
 #include "apps/plot/chart.hpp"
 #include "apps/plot/write_file.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

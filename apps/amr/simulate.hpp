@@ -4,6 +4,7 @@
 #include "apps/amr/block.hpp"
 #include "runtime/balance_options.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace amr {

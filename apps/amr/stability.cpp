@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace amr {
 namespace {

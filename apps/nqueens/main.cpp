@@ -7,6 +7,7 @@
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 
 namespace nqueens {

@@ -5,6 +5,7 @@
 #include "runtime/core/serialize.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
