@@ -50,7 +50,9 @@ class Searcher : public tess::Group<Searcher> {
   void learn(const Found& found) {
     if (found.path < best_.path) best_ = found;
   }
-  void report(tess::Callback<Tally> total) { contribute(Join(), Tally{tally_, best_}, total); }
+  void report(const tess::Callback<Tally>& total) {
+    contribute(Join(), Tally{tally_, best_}, total);
+  }
 
  private:
   void send(const Board& board) const;
