@@ -1,0 +1,45 @@
+#include "apps/amr/problem.hpp"
+
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace amr {
+
+void Problem::complete() {
+  using tess::ErrorCode;
+  if (n_cells < 4 || n_cells % 2 != 0)
+    tess::fail(ErrorCode::bad_argument, "--cells: ", n_cells, " is not an even number from 4 on");
+  if (least_level > most_level)
+    tess::fail(ErrorCode::bad_argument, "--least-level: ", least_level, " is above --max-level ",
+               most_level);
+  if (!(cfl > 0 && cfl <= 1))
+    tess::fail(ErrorCode::bad_argument, "--cfl: ", cfl,
+               " is not within 0 … 1: the scheme is unstable above 1");
+  double fastest = 0;
+  for (const double v : velocity) fastest = std::max(fastest, std::abs(v));
+  if (!(fastest > 0 && std::isfinite(fastest)))
+    tess::fail(ErrorCode::bad_argument, "--velocity: one component must differ from 0");
+  // Rounding must not add a step to a number of steps that is exact.
+  if (n_steps == 0)
+    n_steps = static_cast<std::int32_t>(
+        std::ceil(end * fastest / (cfl * spacing(most_level)) * (1 - 1e-12)));
+  else
+    end = n_steps * cfl * spacing(most_level) / fastest;
+  dt = end / n_steps;
+}
+
+double Problem::mean(std::int32_t axis, double low, double h, double time) const {
+  const auto a = static_cast<std::size_t>(axis);
+  const double scale = 1 / (width * std::numbers::sqrt2);
+  double from = low - centre[a] - velocity[a] * time;
+  from -= std::floor(from);
+  double sum = 0;
+  for (const double image : {-2.0, -1.0, 0.0, 1.0})
+    sum += std::erf((from + image + h) * scale) - std::erf((from + image) * scale);
+  return sum * width * std::sqrt(std::numbers::pi / 2) / h;
+}
+
+}  // namespace amr

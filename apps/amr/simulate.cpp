@@ -1,0 +1,90 @@
+#include "apps/amr/simulate.hpp"
+
+#include "runtime/balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace amr {
+namespace {
+
+using Blocks = tess::ArrayProxy<Block>;
+
+/// Each leaf chooses its level, and the tree changes.
+tess::Task change_tree(Blocks blocks) {
+  co_await tess::epoch([&] { blocks.broadcast<&Block::plan>(); });
+  co_await tess::epoch([&] { blocks.broadcast<&Block::change>(); });
+}
+
+/// Counts the leaves, and compares with the field at a time.
+tess::Task take_census(Blocks blocks, double time, Outcome& outcome) {
+  tess::Future<Census> census;
+  blocks.broadcast<&Block::count>(time, census.callback());
+  const std::int64_t n_before = outcome.end.n_blocks;
+  const Census found = co_await census;
+  outcome.end = found;
+  outcome.n_created += found.n_new;
+  outcome.n_destroyed += n_before + found.n_new - found.n_blocks;
+  outcome.most_blocks = std::max(outcome.most_blocks, found.n_blocks);
+}
+
+/// Uniform blocks of the least level, then as fine as the field at time 0 demands.
+tess::Task plant(Blocks blocks, const Problem& problem, Outcome& outcome) {
+  const std::int32_t edge = 1 << problem.least_level;
+  const auto n_cells = static_cast<std::size_t>(problem.n_cells);
+  co_await tess::epoch([&] {
+    for (std::int32_t i = 0; i < edge * edge * edge; ++i) {
+      const BlockIndex index =
+          BlockIndex::at(problem.least_level, {i % edge, i / edge % edge, i / edge / edge});
+      Birth birth{.problem = problem};
+      birth.masses.resize(n_cells * n_cells * n_cells);
+      blocks[index].send_or_create_home<&Block::begin>(std::move(birth));
+    }
+  });
+  for (std::int32_t level = problem.least_level;; ++level) {
+    co_await tess::epoch([&] { blocks.broadcast<&Block::fill>(); });
+    co_await take_census(blocks, 0, outcome);
+    if (level == problem.most_level) break;
+    co_await change_tree(blocks);
+  }
+}
+
+}  // namespace
+
+double Outcome::l2() const {
+  return std::sqrt(static_cast<double>(end.norms.l2) * 0x1p-60);
+}
+
+tess::Task simulate(const Settings& settings, Outcome& outcome,
+                    std::function<void(std::int32_t)> part) {
+  const Problem& problem = settings.problem;
+  const Blocks blocks = tess::create<Block>(tess::sparse);
+  std::optional<tess::BalancerProxy> balancer;
+  if (settings.balance) balancer = tess::start_balancing(blocks, *settings.balance);
+  co_await plant(blocks, problem, outcome);
+  outcome.mass_at_start = outcome.end.norms.mass;
+  const std::int64_t cells_per_block =
+      std::int64_t{problem.n_cells} * problem.n_cells * problem.n_cells;
+  const tess::Time begin = tess::now();
+  std::int32_t n = 0;
+  for (std::int32_t step = 0; step < problem.n_steps; step += n) {
+    n = std::min(settings.change_every, problem.n_steps - step);
+    if (part) part(step);
+    if (step > 0) {
+      co_await change_tree(blocks);
+      co_await take_census(blocks, step * problem.dt, outcome);
+      if (balancer) {
+        co_await balancer->round();
+      }
+    }
+    co_await tess::epoch([&] { blocks.broadcast<&Block::advance>(step, n); });
+    outcome.cell_steps += outcome.end.n_blocks * cells_per_block * n;
+  }
+  outcome.seconds = tess::seconds(tess::now() - begin);
+  co_await take_census(blocks, problem.n_steps * problem.dt, outcome);
+  if (balancer)
+    for (const auto& round : balancer->history()) outcome.n_moved += round.n_moved;
+  blocks.destroy();
+}
+
+}  // namespace amr

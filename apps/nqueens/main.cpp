@@ -1,0 +1,122 @@
+// nqueens: how many ways are there to put n queens on a board of n × n squares such that none attacks
+// another? A tree search in messages with priorities, checked against the known counts.
+#include "apps/command_line.hpp"
+#include "apps/nqueens/report.hpp"
+#include "apps/plot/write_file.hpp"
+#include "apps/progress.hpp"
+#include "runtime/runtime.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+namespace nqueens {
+namespace {
+
+struct Options {
+  Problem problem;
+  std::optional<std::int32_t> grain;
+  std::uint64_t expected = 0;
+  std::string form = "group", priority = "path", json, plot;
+  std::int32_t repeat = 1;
+  bool study = false;
+};
+
+/// One problem, or with --study each grain in both forms; the first of a study is one task.
+std::vector<Problem> problems_of(const Options& options) {
+  if (!options.study) return {options.problem};
+  std::vector<Problem> all;
+  for (const Form form : {Form::group, Form::chares}) {
+    Problem problem = options.problem;
+    problem.form = form;
+    for (std::int32_t rows = 0; rows <= std::min(problem.n - 1, 7); ++rows) {
+      problem.grain = problem.n - rows;
+      all.push_back(problem);
+    }
+  }
+  return all;
+}
+
+tess::Task measure(Options options, bool speaks) {
+  apps::Progress progress(speaks ? stderr : nullptr);
+  progress.phase("searching");
+  const std::vector<Problem> problems = problems_of(options);
+  std::vector<Row> rows;
+  tess::print_text(tess::machine().describe() + "\n" + head());
+  for (const Problem& problem : problems) {
+    progress.part(static_cast<std::uint32_t>(rows.size()) + 1,
+                  static_cast<std::uint32_t>(problems.size()));
+    Row row{.problem = problem, .outcome = {}};
+    for (std::int32_t k = 0; k < options.repeat; ++k) {
+      Outcome outcome;
+      co_await search(problem, outcome);
+      if (k == 0 || outcome.seconds < row.outcome.seconds) row.outcome = outcome;
+    }
+    rows.push_back(row);
+    if (options.study)
+      rows.back().efficiency = rows.front().outcome.seconds / (tess::n_pes() * row.outcome.seconds);
+    progress.clear();
+    tess::print_text(line(rows.back()));
+    if (const std::string why = fault(row, options.expected); !why.empty()) {
+      std::fprintf(stderr, "nqueens: wrong answer: %s\n", why.c_str());
+      tess::exit(1);
+      co_return;
+    }
+  }
+  if (!options.json.empty()) write_json(options.json, rows, tess::machine().describe());
+  if (!options.plot.empty()) draw(options.plot, rows);
+}
+
+int run(tess::Setup& setup, int argc, char** argv) {
+  Options options;
+  Problem& problem = options.problem;
+  apps::CommandLine line("Counts the solutions of the n queens problem by a search in messages.",
+                         "nqueens");
+  line.option("N", problem.n, "queens").between(1, most_queens);
+  line.option("--grain", options.grain,
+              "boards with at most so many rows left are searched serially (default: N - 4)")
+      .between(1, most_queens);
+  line.option("--form", options.form,
+              "group: tasks are messages to PEs; chares: each task is a chare created on demand")
+      .one_of({"group", "chares"});
+  line.option("--priority", options.priority,
+              "path: boards on the left first, so depth first; none: as they come, breadth first")
+      .one_of({"path", "none"});
+  line.flag("--first", problem.first, "find the first solution only, in the order of columns");
+  const apps::Option expected =
+      line.option("--expect", options.expected,
+                  "exit with 1 unless there are so many solutions (default: the known number)");
+  line.option("--repeat", options.repeat, "runs, of which the fastest counts").between(1, 1000);
+  line.flag("--study", options.study, "every grain in both forms: time, tasks, efficiency");
+  line.option("--json", options.json, "write the rows to this file");
+  line.option("--plot", options.plot, "with --study: draw them to this SVG file");
+  if (!line.parse(argc, argv)) return 0;
+  if (!expected.is_given()) options.expected = known_count(problem.n);
+  problem.prioritised = options.priority == "path";
+  problem.form = options.form == "group" ? Form::group : Form::chares;
+  problem.grain = options.grain.value_or(std::max(problem.n - 4, 1));
+  if (problem.n - problem.grain > most_path_rows)
+    tess::fail(tess::ErrorCode::bad_argument, "--grain: ", problem.grain, " of ", problem.n,
+               " rows leaves more than ", most_path_rows, " for tasks: give at least ",
+               problem.n - most_path_rows);
+  if (!options.plot.empty()) {
+    if (!options.study)
+      tess::fail(tess::ErrorCode::bad_argument, "--plot ", options.plot, ": needs --study");
+    (void)plot::data_path(options.plot);
+  }
+  if (options.study && (options.grain || problem.first))
+    tess::fail(tess::ErrorCode::bad_argument,
+               "--study tries all grains and counts: leave out --grain and --first");
+  plot::require_writable("--json", options.json);
+  plot::require_writable("--plot", options.plot);
+  const bool speaks = setup.machine->process() == tess::ProcessId{0};
+  return tess::run(setup, [&] { return measure(options, speaks); });
+}
+
+}  // namespace
+}  // namespace nqueens
+
+int main(int argc, char** argv) {
+  return tess::guarded(argc, argv,
+                       [&](tess::Setup& setup) { return nqueens::run(setup, argc, argv); });
+}

@@ -1,0 +1,28 @@
+// What nqueens prints and writes.
+#pragma once
+
+#include "apps/nqueens/search.hpp"
+
+#include <string>
+#include <vector>
+
+namespace nqueens {
+
+/// One run: its efficiency is the time of one task on one PE, divided by PEs × its own time.
+struct Row {
+  Problem problem;
+  Outcome outcome;
+  double efficiency = 0;  ///< 0: unknown
+};
+
+[[nodiscard]] std::string head();
+[[nodiscard]] std::string line(const Row& row);
+
+/// Empty if the answer is right; `expected` is the number of solutions.
+[[nodiscard]] std::string fault(const Row& row, std::uint64_t expected);
+
+void write_json(const std::string& path, const std::vector<Row>& rows, const std::string& machine);
+/// Efficiency against the number of tasks, a line per form.
+void draw(const std::string& path, const std::vector<Row>& rows);
+
+}  // namespace nqueens

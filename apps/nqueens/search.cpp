@@ -1,0 +1,147 @@
+#include "apps/nqueens/search.hpp"
+
+#include "runtime/core/hash.hpp"
+#include "runtime/runtime.hpp"
+
+#include <limits>
+
+namespace nqueens {
+namespace {
+
+/// The index of a task's chare: one per board.
+struct Place {
+  std::int64_t path = 0;
+  std::int64_t row = 0;
+  friend bool operator==(const Place&, const Place&) = default;
+};
+
+/// A solution, and the path of the task that found it.
+struct Found {
+  std::int64_t path = std::numeric_limits<std::int64_t>::max();
+  Solution queens{};
+};
+
+struct Tally {
+  Outcome outcome;
+  Found found;
+};
+struct Join {
+  Tally operator()(const Tally& a, const Tally& b) const {
+    Tally all = a.found.path <= b.found.path ? a : b;
+    const Outcome &x = a.outcome, &y = b.outcome;
+    all.outcome.count = {x.count.n_solutions + y.count.n_solutions,
+                         x.count.n_boards + y.count.n_boards};
+    all.outcome.n_tasks = x.n_tasks + y.n_tasks;
+    all.outcome.n_dropped = x.n_dropped + y.n_dropped;
+    return all;
+  }
+};
+
+class Branch;
+
+/// The part of a PE in the search: it runs tasks and adds up.
+class Searcher : public tess::Group<Searcher> {
+ public:
+  explicit Searcher(const Problem& problem) : problem_(problem) {}
+
+  void use(tess::ArrayProxy<Branch> branches) { branches_ = branches; }
+  void run(Board board);
+  /// Another member knows a solution.
+  void learn(const Found& found) {
+    if (found.path < best_.path) best_ = found;
+  }
+  void report(const tess::Callback<Tally>& total) {
+    contribute(Join(), Tally{tally_, best_}, total);
+  }
+
+ private:
+  void send(const Board& board) const;
+  void search_serially(const Board& board);
+
+  Problem problem_;
+  tess::ArrayProxy<Branch> branches_;
+  Outcome tally_;
+  Found best_;
+};
+
+/// A task as a chare, for the form `chares`. It knows its group by its first message.
+class Branch : public tess::Chare<Branch, Place> {
+ public:
+  void run(tess::GroupProxy<Searcher> searchers, Board board) {
+    searchers.local().run(board);
+    destroy();
+  }
+};
+
+void Searcher::run(Board board) {
+  ++tally_.n_tasks;
+  if (board.path > best_.path) {
+    ++tally_.n_dropped;
+  } else if (problem_.n - board.row <= problem_.grain) {
+    search_serially(board);
+  } else {
+    ++tally_.count.n_boards;
+    for (std::uint32_t free = board.free(problem_.n); free != 0; free &= free - 1)
+      send(board.with(free & -free));
+  }
+}
+
+void Searcher::send(const Board& board) const {
+  const tess::Priority priority{problem_.prioritised ? board.path : 0};
+  if (problem_.form == Form::chares) {
+    const auto branch = branches_[{board.path, board.row}];
+    if (problem_.prioritised)
+      branch.with(priority).send_or_create_home<&Branch::run>(group(), board);
+    else
+      branch.send_or_create_home<&Branch::run>(group(), board);
+  } else {
+    const auto n_pes = static_cast<std::uint64_t>(tess::n_pes());
+    const std::uint64_t hash = tess::mix(static_cast<std::uint64_t>(board.path + board.row));
+    const auto member = group()[tess::PeId{static_cast<std::int32_t>((hash >> 32U) % n_pes)}];
+    if (problem_.prioritised)
+      member.with(priority).send<&Searcher::run>(board);
+    else
+      member.send<&Searcher::run>(board);
+  }
+}
+
+void Searcher::search_serially(const Board& board) {
+  if (problem_.first) {
+    if (const auto queens = first_below(board, problem_.n, tally_.count.n_boards)) {
+      best_ = {board.path, *queens};
+      group().with(tess::expedited).broadcast<&Searcher::learn>(best_);
+    }
+  } else {
+    const Count below = count_below(board, problem_.n);
+    tally_.count.n_solutions += below.n_solutions;
+    tally_.count.n_boards += below.n_boards;
+  }
+}
+
+}  // namespace
+
+tess::Task search(const Problem& problem, Outcome& outcome) {
+  tess::GroupProxy<Searcher> searchers;
+  tess::ArrayProxy<Branch> branches;
+  co_await tess::epoch([&] {
+    searchers = tess::create_group<Searcher>(problem);
+    branches = tess::create<Branch>(tess::sparse);
+    searchers.broadcast<&Searcher::use>(branches);
+  });
+  const tess::Time begin = tess::now();
+  co_await tess::epoch([&] { searchers[tess::my_pe()].send<&Searcher::run>(Board()); });
+  const double seconds = tess::seconds(tess::now() - begin);
+  tess::Future<Tally> total;
+  searchers.broadcast<&Searcher::report>(total.callback());
+  const Tally tally = co_await total;
+  outcome = tally.outcome;
+  outcome.seconds = seconds;
+  outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
+  outcome.solution = tally.found.queens;
+  outcome.hash = problem.first ? tess::hash_bytes(&outcome.solution, sizeof outcome.solution)
+                               : tess::hash_bytes(&outcome.count, sizeof outcome.count);
+  searchers.destroy();
+  branches.destroy();
+}
+
+}  // namespace nqueens
