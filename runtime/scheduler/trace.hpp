@@ -24,6 +24,9 @@ class Trace {
   void ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
            std::uint32_t number);
 
+  /// Records an event of the program: a span, or a moment if it begins when it ends.
+  void event(std::string name, std::uint64_t begin, std::uint64_t end);
+
   struct Slice {
     const Action* action = nullptr;
     std::uint64_t begin = 0, end = 0;  // in ticks of the PE's meter
@@ -34,6 +37,11 @@ class Trace {
     std::uint64_t at = 0;
     std::uint32_t number = 0;
   };
+  struct Event {
+    std::string name;
+    std::uint64_t begin = 0, end = 0;
+  };
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const std::vector<Slice>& slices() const { return slices_; }
   [[nodiscard]] const std::vector<Send>& sends() const { return sends_; }
   /// The number of records that did not fit.
@@ -45,6 +53,7 @@ class Trace {
   std::uint64_t n_dropped_ = 0;
   std::vector<Slice> slices_;
   std::vector<Send> sends_;
+  std::vector<Event> events_;
 };
 
 /// One PE's records and the clock of their times.
