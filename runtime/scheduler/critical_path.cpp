@@ -47,8 +47,7 @@ class Walk {
   }
   [[nodiscard]] double time(At at, std::uint64_t ticks) const {
     const TraceOfPe& of = pes_[at.pe];
-    return of.seconds_per_tick *
-           (static_cast<double>(ticks) - static_cast<double>(of.origin));
+    return of.seconds_per_tick * (static_cast<double>(ticks) - static_cast<double>(of.origin));
   }
   [[nodiscard]] std::optional<At> last() const {
     std::optional<At> best;
@@ -134,8 +133,9 @@ std::string describe(const CriticalPath& path, std::size_t n_longest) {
     return a.second.seconds > b.second.seconds;
   });
   for (std::size_t i = 0; i < std::min(sorted.size(), n_longest); ++i)
-    out += fmt::format("\n  {:5.1f} % {}, {} times", all > 0 ? 100 * sorted[i].second.seconds / all : 0,
-                       sorted[i].first, sorted[i].second.n);
+    out += fmt::format("\n  {:5.1f} % {}, {} times",
+                       all > 0 ? 100 * sorted[i].second.seconds / all : 0, sorted[i].first,
+                       sorted[i].second.n);
   std::vector<std::size_t> order(path.links.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t n = std::min(n_longest, order.size());
@@ -147,10 +147,10 @@ std::string describe(const CriticalPath& path, std::size_t n_longest) {
   if (n > 0) out += "\n  its longest links:";
   for (std::size_t i = 0; i < n; ++i) {
     const auto& link = path.links[order[i]];
-    out += fmt::format("\n    {:>13} {} on PE {}, at {}", milliseconds(link.seconds),
-                       (link.waits ? "until the beginning of " : "in ") +
-                           plain_name(link.action->name()),
-                       link.pe.value, milliseconds(link.begin));
+    out += fmt::format(
+        "\n    {:>13} {} on PE {}, at {}", milliseconds(link.seconds),
+        (link.waits ? "until the beginning of " : "in ") + plain_name(link.action->name()),
+        link.pe.value, milliseconds(link.begin));
   }
   return out;
 }

@@ -1,8 +1,7 @@
 #include "runtime/scheduler/runtime.hpp"
 
-#include "runtime/scheduler/critical_path.hpp"
-
 #include "runtime/core/check.hpp"
+#include "runtime/scheduler/critical_path.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 #include <algorithm>
@@ -173,9 +172,8 @@ void Runtime::write_traces() {
                    pes_.front()->meter()->made()});
   write_trace(trace_path(), machine_.process(), all);
   if (machine_.n_pes_here() != machine_.n_pes()) return;  // the path goes through other processes
-  const bool complete = std::all_of(all.begin(), all.end(), [](const TraceOfPe& pe) {
-    return pe.trace->n_dropped() == 0;
-  });
+  const bool complete = std::all_of(all.begin(), all.end(),
+                                    [](const TraceOfPe& pe) { return pe.trace->n_dropped() == 0; });
   error_line(complete ? "tessera: " + describe(critical_path(all))
                       : "tessera: the critical path is not known: the trace is not complete");
 }
