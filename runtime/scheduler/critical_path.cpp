@@ -11,6 +11,9 @@
 namespace tess::detail {
 namespace {
 
+/// A PE that begins a slice so many seconds after another was idle: it waited for the message.
+constexpr double idle_from = 1e-6;
+
 /// A slice by its PE (the place in the list) and its number there.
 struct At {
   std::size_t pe = 0, slice = 0;
@@ -53,9 +56,12 @@ class Walk {
     std::optional<At> best;
     double end = 0;
     for (std::size_t pe = 0; pe < pes_.size(); ++pe) {
-      const std::size_t n = pes_[pe].trace->slices().size();
-      if (n == 0) continue;
-      const At at{pe, n - 1};
+      const auto& slices = pes_[pe].trace->slices();
+      const auto users = std::find_if(slices.rbegin(), slices.rend(), [](const Trace::Slice& one) {
+        return one.action->traffic == Traffic::user;
+      });
+      if (users == slices.rend()) continue;
+      const At at{pe, static_cast<std::size_t>(slices.rend() - users) - 1};
       if (!best || time(at, slice(at).end) > end) {
         best = at;
         end = time(at, slice(at).end);
@@ -70,14 +76,14 @@ class Walk {
   };
   /// The slice that a slice waited for, and the time from which on it no longer did.
   [[nodiscard]] Cause cause_of(At at, double begin) const {
-    Cause cause;
+    Cause before;
     if (at.slice > 0) {
-      const At before{at.pe, at.slice - 1};
-      cause = {before, std::min(time(before, slice(before).end), begin)};
+      const At last{at.pe, at.slice - 1};
+      before = {last, std::min(time(last, slice(last).end), begin)};
+      if (begin - before.time <= idle_from) return before;
     }
     const Cause sent = sender_of(slice(at));
-    if (sent.slice && sent.time <= begin && (!cause.slice || sent.time > cause.time)) return sent;
-    return cause;
+    return sent.slice ? sent : before;
   }
   /// The slice in which a message was sent, and when.
   [[nodiscard]] Cause sender_of(const Trace::Slice& of) const {
@@ -87,16 +93,10 @@ class Walk {
     if (source == pes_.end()) return {};
     const auto& sends = source->trace->sends();
     if (of.number > sends.size() || sends[of.number - 1].number != of.number) return {};
-    const std::uint64_t when = sends[of.number - 1].at;
-    const auto& slices = source->trace->slices();
-    const auto after = std::upper_bound(
-        slices.begin(), slices.end(), when,
-        [](std::uint64_t ticks, const Trace::Slice& one) { return ticks < one.begin; });
-    if (after == slices.begin()) return {};
-    const At sender{static_cast<std::size_t>(source - pes_.begin()),
-                    static_cast<std::size_t>(after - slices.begin()) - 1};
-    // Between two slices the scheduler sent it: it belongs to the end of the first.
-    return {sender, time(sender, std::min(when, slice(sender).end))};
+    const Trace::Send& send = sends[of.number - 1];
+    if (send.slice == Trace::no_slice || send.slice >= source->trace->slices().size()) return {};
+    const At sender{static_cast<std::size_t>(source - pes_.begin()), send.slice};
+    return {sender, time(sender, std::min(send.at, slice(sender).end))};
   }
 
   const std::vector<TraceOfPe>& pes_;
@@ -132,7 +132,8 @@ std::string describe(const CriticalPath& path, std::size_t n_longest) {
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
     return a.second.seconds > b.second.seconds;
   });
-  for (std::size_t i = 0; i < std::min(sorted.size(), n_longest); ++i)
+  for (std::size_t i = 0; i < std::min(sorted.size(), n_longest) && sorted[i].second.seconds > 0;
+       ++i)
     out += fmt::format("\n  {:5.1f} % {}, {} times",
                        all > 0 ? 100 * sorted[i].second.seconds / all : 0, sorted[i].first,
                        sorted[i].second.n);

@@ -1,7 +1,7 @@
 // The critical path of a traced run: the chain of entry methods and messages that its end waited
-// for. It is followed backwards from the slice that ended last. A slice could begin only after its
-// message was sent and after the slice before it on its PE had ended; the later of the two is its
-// cause:
+// for. It is followed backwards from the slice of an entry method that ended last. What a slice
+// waited for is the slice before it on its PE, if the PE was busy until then, and otherwise the
+// send of its message:
 //
 //     PE 0   ▇▇▇▇▇▇▇▇ send ▇▇▇          ▇▇▇▇▇▇▇▇▇▇▇  the last end
 //                       ╲              ╱

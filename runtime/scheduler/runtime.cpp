@@ -174,7 +174,7 @@ void Runtime::write_traces() {
   if (machine_.n_pes_here() != machine_.n_pes()) return;  // the path goes through other processes
   const bool complete = std::all_of(all.begin(), all.end(),
                                     [](const TraceOfPe& pe) { return pe.trace->n_dropped() == 0; });
-  error_line(complete ? "tessera: " + describe(critical_path(all))
+  error_line(complete ? "tessera: " + detail::describe(critical_path(all))
                       : "tessera: the critical path is not known: the trace is not complete");
 }
 

@@ -101,7 +101,8 @@ class TraceWriter {
 std::uint32_t Trace::sent(std::uint64_t at) {
   n_sent_ = n_sent_ % most_numbers + 1;
   if (sends_.size() < most_) {
-    sends_.push_back({at, n_sent_});
+    const auto n = static_cast<std::uint32_t>(slices_.size());
+    sends_.push_back({at, n_sent_, in_slice_ ? n : n == 0 ? no_slice : n - 1});
   } else {
     ++n_dropped_;
   }
@@ -110,6 +111,7 @@ std::uint32_t Trace::sent(std::uint64_t at) {
 
 void Trace::ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
                 std::uint32_t number) {
+  in_slice_ = false;
   if (slices_.size() < most_) {
     slices_.push_back({action, begin, end, source, number});
   } else {

@@ -80,14 +80,14 @@ TEST_CASE("a trace that cannot be written is refused before the run", "[runtime]
 namespace {
 
 /// The critical path that a run printed.
-std::string path_of(const std::function<void()>& main, const std::string& trace) {
+std::string path_of(const std::function<void()>& main, const std::string& file) {
   tess::Setup setup;
   tess::SimulatedOptions options;
   options.n_pes = 3;
   options.latency = std::chrono::microseconds(10);
   options.cost = tess::Time(0);
   setup.machine = tess::make_simulated_machine(options);
-  setup.options.trace = trace;
+  setup.options.trace = file;
   std::string all;
   setup.options.report = [&](const std::string& line) { all += line + "\n"; };
   REQUIRE(tess::run(setup, main) == 0);
@@ -129,9 +129,9 @@ TEST_CASE("the critical path goes through the slower branch", "[runtime][trace]"
   const std::string report =
       path_of([] { tess::create<Fork>(tess::range(3))[{0}].send<&Fork::start>(); }, path);
   INFO(report);
-  // 5 before the send, 300, 7 and 20; two messages of 10 us on the way.
+  // 5 before the send, 300, 7 and 20; two messages of 10 us on the way, and their bytes.
   CHECK(report.find("0.332 ms in entry methods") != std::string::npos);
-  CHECK(report.find("0.02 ms of waiting") != std::string::npos);
+  CHECK(report.find("0.02001 ms of waiting") != std::string::npos);
   CHECK(report.find("0.3 ms in Fork::work on PE 1") != std::string::npos);
   CHECK(report.find("on PE 2") == std::string::npos);
   std::ifstream file(path);
