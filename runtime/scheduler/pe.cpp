@@ -234,6 +234,7 @@ void Pe::run_traced(Envelope* message) {
   const std::uint32_t number = message->trace;
   const std::uint64_t begin = meter_->now();
   meter_->forget_entered();
+  trace_->begins();
   run(message);
   if (meter_->entered() != nullptr) action = meter_->entered();
   trace_->ran(action, begin, meter_->now(), source, number);

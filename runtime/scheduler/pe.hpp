@@ -107,6 +107,8 @@ class Pe {
     trace_ = std::make_unique<Trace>(most_records);
   }
   [[nodiscard]] const Trace* trace() const { return trace_.get(); }
+  /// Null without a trace.
+  [[nodiscard]] Trace* trace_to_write() { return trace_.get(); }
 
   // Sending and forwarding of stamped messages. All functions take ownership.
 

@@ -1,6 +1,7 @@
 #include "runtime/scheduler/runtime.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/scheduler/critical_path.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 #include <algorithm>
@@ -170,6 +171,11 @@ void Runtime::write_traces() {
     all.push_back({pe->id(), pe->trace(), pe->meter()->seconds(1'000'000'000) * 1e-9,
                    pes_.front()->meter()->made()});
   write_trace(trace_path(), machine_.process(), all);
+  if (machine_.n_pes_here() != machine_.n_pes()) return;  // the path goes through other processes
+  const bool complete = std::all_of(all.begin(), all.end(),
+                                    [](const TraceOfPe& pe) { return pe.trace->n_dropped() == 0; });
+  error_line(complete ? "tessera: " + detail::describe(critical_path(all))
+                      : "tessera: the critical path is not known: the trace is not complete");
 }
 
 std::string Runtime::trace_path() const {

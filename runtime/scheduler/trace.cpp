@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fmt/core.h>
 #include <memory>
+#include <utility>
 
 namespace tess::detail {
 namespace {
@@ -17,7 +18,7 @@ std::string escaped(const std::string& name) {
   std::string out;
   for (const char c : name) {
     if (c == '"' || c == '\\') out += '\\';
-    out += c;
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
   return out;
 }
@@ -55,6 +56,15 @@ class TraceWriter {
     for (const Trace::Send& send : of.trace->sends())
       event("s", "message", of.pe, micros(of, send.at),
             fmt::format(R"(,"cat":"m","id":{})", arrow(of.pe, send.number)));
+    for (const Trace::Event& one : of.trace->events()) {
+      const double begin = micros(of, one.begin);
+      if (one.begin == one.end) {
+        event("i", escaped(one.name), of.pe, begin, R"(,"s":"t")");
+      } else {
+        event("X", escaped(one.name), of.pe, begin,
+              fmt::format(",\"dur\":{:.3f}", micros(of, one.end) - begin));
+      }
+    }
     if (of.trace->n_dropped() != 0)
       std::fprintf(stderr, "tessera: --trace %s: PE %d had %llu records more than fit\n",
                    path_.c_str(), of.pe.value,
@@ -91,7 +101,8 @@ class TraceWriter {
 std::uint32_t Trace::sent(std::uint64_t at) {
   n_sent_ = n_sent_ % most_numbers + 1;
   if (sends_.size() < most_) {
-    sends_.push_back({at, n_sent_});
+    const auto n = static_cast<std::uint32_t>(slices_.size());
+    sends_.push_back({at, n_sent_, in_slice_ ? n : n == 0 ? no_slice : n - 1});
   } else {
     ++n_dropped_;
   }
@@ -100,8 +111,17 @@ std::uint32_t Trace::sent(std::uint64_t at) {
 
 void Trace::ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
                 std::uint32_t number) {
+  in_slice_ = false;
   if (slices_.size() < most_) {
     slices_.push_back({action, begin, end, source, number});
+  } else {
+    ++n_dropped_;
+  }
+}
+
+void Trace::event(std::string name, std::uint64_t begin, std::uint64_t end) {
+  if (events_.size() < most_) {
+    events_.push_back({std::move(name), begin, end});
   } else {
     ++n_dropped_;
   }

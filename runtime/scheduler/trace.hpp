@@ -20,9 +20,14 @@ class Trace {
 
   /// Records the send of a message; returns its number, which the slice will refer to; never 0.
   [[nodiscard]] std::uint32_t sent(std::uint64_t at);
+  /// A slice begins; ran() ends it.
+  void begins() { in_slice_ = true; }
   /// Records the run of a message of `source` with the number that it has there (0: none).
   void ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
            std::uint32_t number);
+
+  /// Records an event of the program: a span, or a moment if it begins when it ends.
+  void event(std::string name, std::uint64_t begin, std::uint64_t end);
 
   struct Slice {
     const Action* action = nullptr;
@@ -33,7 +38,15 @@ class Trace {
   struct Send {
     std::uint64_t at = 0;
     std::uint32_t number = 0;
+    /// The slice that sent it; for one that is sent between two, the first; no_slice: before all.
+    std::uint32_t slice = 0;
   };
+  static constexpr std::uint32_t no_slice = ~std::uint32_t{0};
+  struct Event {
+    std::string name;
+    std::uint64_t begin = 0, end = 0;
+  };
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const std::vector<Slice>& slices() const { return slices_; }
   [[nodiscard]] const std::vector<Send>& sends() const { return sends_; }
   /// The number of records that did not fit.
@@ -42,9 +55,11 @@ class Trace {
  private:
   const std::size_t most_;
   std::uint32_t n_sent_ = 0;
+  bool in_slice_ = false;
   std::uint64_t n_dropped_ = 0;
   std::vector<Slice> slices_;
   std::vector<Send> sends_;
+  std::vector<Event> events_;
 };
 
 /// One PE's records and the clock of their times.

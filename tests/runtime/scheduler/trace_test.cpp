@@ -1,4 +1,6 @@
 // --trace: the contents of the file for a run with known messages.
+#include "runtime/trace.hpp"
+
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
@@ -73,4 +75,77 @@ TEST_CASE("a trace has a slice for each message, and an arrow from the send that
 
 TEST_CASE("a trace that cannot be written is refused before the run", "[runtime][trace]") {
   CHECK_THROWS_AS(run_relay("/no/such/folder/trace.json", 2), tess::Error);
+}
+
+namespace {
+
+/// The critical path that a run printed.
+std::string path_of(const std::function<void()>& main, const std::string& file) {
+  tess::Setup setup;
+  tess::SimulatedOptions options;
+  options.n_pes = 3;
+  options.latency = std::chrono::microseconds(10);
+  options.cost = tess::Time(0);
+  setup.machine = tess::make_simulated_machine(options);
+  setup.options.trace = file;
+  std::string all;
+  setup.options.report = [&](const std::string& line) { all += line + "\n"; };
+  REQUIRE(tess::run(setup, main) == 0);
+  return all;
+}
+
+/// Element 1 works longer than element 2; element 0 begins when both have told it.
+class Fork : public tess::Chare<Fork, tess::Index1> {
+ public:
+  void start() {
+    tess::charge(std::chrono::microseconds(5));
+    array()[{1}].send<&Fork::work>(300);
+    array()[{2}].send<&Fork::work>(100);
+    tess::charge(std::chrono::microseconds(40));  // after the sends: not on the path
+  }
+  void work(int microseconds) {
+    const tess::Span span("lifting");
+    tess::charge(std::chrono::microseconds(microseconds));
+    array()[{0}].send<&Fork::join>();
+  }
+  void join() {
+    tess::charge(std::chrono::microseconds(7));
+    if (++n_joined_ < 2) return;
+    tess::mark("joined");
+    array()[{0}].send<&Fork::finish>();
+  }
+  void finish() { tess::charge(std::chrono::microseconds(20)); }
+
+ private:
+  int n_joined_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("the critical path goes through the slower branch", "[runtime][trace]") {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("tess_path_" + std::to_string(getpid()) + ".json"))
+          .string();
+  const std::string report =
+      path_of([] { tess::create<Fork>(tess::range(3))[{0}].send<&Fork::start>(); }, path);
+  INFO(report);
+  // 5 before the send, 300, 7 and 20; two messages of 10 us on the way, and their bytes.
+  CHECK(report.find("0.332 ms in entry methods") != std::string::npos);
+  CHECK(report.find("0.02001 ms of waiting") != std::string::npos);
+  CHECK(report.find("0.3 ms in Fork::work on PE 1") != std::string::npos);
+  CHECK(report.find("on PE 2") == std::string::npos);
+  std::ifstream file(path);
+  int n_spans = 0, n_marks = 0;
+  const auto written = nlohmann::json::parse(file);
+  for (const auto& event : written.at("traceEvents")) {
+    if (event.at("name") == "lifting") {
+      ++n_spans;
+      CHECK(event.at("ph") == "X");
+      CHECK((event.at("dur") == 300 || event.at("dur") == 100));
+    }
+    if (event.at("name") == "joined") n_marks += event.at("ph") == "i" ? 1 : 100;
+  }
+  CHECK(n_spans == 2);
+  CHECK(n_marks == 1);
+  std::filesystem::remove(path);
 }
