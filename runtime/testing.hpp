@@ -5,9 +5,9 @@
 //
 //     tess::test::for_seeds(0, 200, [](std::uint64_t seed) {
 //       int found = 0;
-//       tess::test::Machine machine{.pes = 4, .seed = seed};
+//       const tess::test::Machine machine{.pes = 4, .seed = seed};
 //       machine.run([&]() -> tess::Task { return write_twice(found); }).require_success();
-//       if (found != 20) throw std::runtime_error("found " + std::to_string(found));
+//       tess::test::expect(found == 20, "found ", found);
 //     });
 //
 // A seed that fails is run again with fewer and fewer of these decisions, as long as it fails.
