@@ -119,8 +119,9 @@ std::string Decisions::delay_in_words(const Event& delayed) const {
   // Messages of the user are the likelier cause.
   if (std::any_of(earlier.begin(), earlier.end(), [](const Event* one) { return !one->system; }))
     std::erase_if(earlier, [](const Event* one) { return one->system; });
-  std::string words = text(delayed.system ? "the runtime's message " : "the message ", delayed.what, " from ", delayed.from, " to ", delayed.to,
-                           " was delayed by ", seconds(delayed.arrives - delayed.due) * 1e6, " us");
+  std::string words = text(delayed.system ? "the runtime's message " : "the message ", delayed.what,
+                           " from ", delayed.from, " to ", delayed.to, " was delayed by ",
+                           seconds(delayed.arrives - delayed.due) * 1e6, " us");
   if (earlier.empty()) return words;
   words += text(" behind ", earlier.front()->what, " from ", earlier.front()->from);
   if (earlier.size() > 1)

@@ -77,34 +77,62 @@ std::string count(std::size_t n, const char* one, const char* several) {
   return text(n, " ", n == 1 ? one : several);
 }
 
-/// Shrinks a failure, and describes it.
-std::string explain(const Program& program, std::uint64_t seed, const Outcome& found,
-                    const SeedOptions& options) {
-  const DecisionIds all = found.taken.value_or(DecisionIds{});
-  const std::string kind = kind_of(found.failure);
+/// A failure of a seed with as few decisions as were found.
+struct Found {
+  std::uint64_t seed = 0;
+  Outcome outcome;  // with all decisions
+  Shrunk shrunk;
+};
+
+/// A try counts only if it fails in the same way.
+Found shrink_seed(const Program& program, std::uint64_t seed, const Outcome& outcome,
+                  unsigned most_tries) {
+  const std::string kind = kind_of(outcome.failure);
   const auto fails = [&](const DecisionIds& some) -> std::optional<DecisionIds> {
-    const Outcome outcome = run_apart(program, seed, {.keep = some});
-    if (outcome.failure.empty() || kind_of(outcome.failure) != kind) return std::nullopt;
-    return outcome.taken.value_or(some);
+    const Outcome one = run_apart(program, seed, {.keep = some});
+    if (one.failure.empty() || kind_of(one.failure) != kind) return std::nullopt;
+    return one.taken.value_or(some);
   };
-  const Shrunk shrunk = shrink(all, fails, options.most_tries);
-  const Repeat repeat{seed, shrunk.kept};
-  const Outcome last = run_apart(program, seed, {.keep = shrunk.kept, .in_words = true});
-  if (kind_of(last.failure) != kind)
-    return report_of({seed, std::nullopt}, found,
-                     text("it did not fail again in the same way with ",
-                          count(shrunk.kept.size(), "decision", "decisions"), " of ", all.size(),
-                          ": the program depends on more than the seed"),
+  return {seed, outcome, shrink(outcome.taken.value_or(DecisionIds{}), fails, most_tries)};
+}
+
+/// Shrinks a failure, and describes it. If it needs several decisions, one of the next seeds may
+/// show the same with fewer.
+std::string explain(const Program& program, std::uint64_t seed, std::uint64_t end,
+                    const Outcome& first, const SeedOptions& options) {
+  constexpr std::uint64_t most_seeds = 20;
+  Found best = shrink_seed(program, seed, first, options.most_tries);
+  const std::size_t n_of_first = best.shrunk.kept.size();
+  unsigned n_tries = best.shrunk.n_tries;
+  for (std::uint64_t other = seed + 1; other < std::min(end, seed + most_seeds); ++other) {
+    if (best.shrunk.kept.size() < 2 || n_tries >= options.most_tries) break;
+    ++n_tries;
+    const Outcome outcome = run_apart(program, other, {});
+    if (kind_of(outcome.failure) != kind_of(first.failure)) continue;
+    Found found = shrink_seed(program, other, outcome, options.most_tries - n_tries);
+    n_tries += found.shrunk.n_tries;
+    if (found.shrunk.kept.size() < best.shrunk.kept.size()) best = std::move(found);
+  }
+  const Repeat repeat{best.seed, best.shrunk.kept};
+  const std::size_t n_all = best.outcome.taken.value_or(DecisionIds{}).size();
+  const Outcome last = run_apart(program, best.seed, {.keep = repeat.keep, .in_words = true});
+  if (kind_of(last.failure) != kind_of(first.failure))
+    return report_of({seed, std::nullopt}, first,
+                     "it did not fail again in the same way: the program depends on more than the "
+                     "seed",
                      options.name);
-  if (shrunk.kept.empty())
+  if (repeat.keep->empty())
     return report_of(repeat, last, "no disorder is needed: it fails in the plain order too",
                      options.name);
+  const std::string also =
+      best.seed == seed ? "" : text(" (seed ", seed, " fails too, and needs ", n_of_first, ")");
   return report_of(
       repeat, last,
-      text("shrunk to ", shrunk.kept.size(), " of ", count(all.size(), "decision", "decisions"),
-           " in ", count(shrunk.n_tries, "try", "tries"),
-           shrunk.is_minimal ? "; it passes without any one of these:"
-                             : ", which is the limit (SeedOptions::most_tries); these are left:"),
+      text("shrunk to ", repeat.keep->size(), " of ", count(n_all, "decision", "decisions"), " in ",
+           count(n_tries, "try", "tries"), also,
+           best.shrunk.is_minimal
+               ? "; it passes without any one of these:"
+               : ", which is the limit (SeedOptions::most_tries); these are left:"),
       options.name);
 }
 
@@ -113,8 +141,8 @@ struct Running {
   const Program& program;
   const SeedOptions& options;
   std::uint64_t seed;
+  std::uint64_t end;  // of the seeds that may be tried; the seed itself: it is not shrunk
   Trial& trial;
-  bool shrinks;
 };
 const Running* running = nullptr;
 std::array<char, 4096> crash_line{};  // written by the handler of a crash
@@ -125,11 +153,11 @@ void on_check() {
   if (const Running* const run = std::exchange(running, nullptr)) {
     const Outcome found = outcome_so_far(check_failure, run->trial);
     const Repeat repeat{run->seed, run->trial.keep};
-    std::fprintf(
-        stderr, "%s\n",
-        (run->shrinks ? explain(run->program, run->seed, found, run->options)
+    std::fprintf(stderr, "%s\n",
+                 (run->seed != run->end
+                      ? explain(run->program, run->seed, run->end, found, run->options)
                       : report_of(repeat, found, "with these decisions:", run->options.name))
-            .c_str());
+                     .c_str());
     std::fflush(nullptr);
   }
   if (abort_before != nullptr) abort_before();
@@ -169,24 +197,30 @@ class Watch {
 };
 
 Outcome run_watched(const Program& program, const SeedOptions& options, std::uint64_t seed,
-                    Trial& trial, bool shrinks) {
-  const Running run{program, options, seed, trial, shrinks};
+                    std::uint64_t end, Trial& trial) {
+  const Running run{program, options, seed, end, trial};
   const Watch watch(run);
   return run_here(program, seed, trial);
+}
+
+void note(std::uint64_t seed, const char* what) {
+  std::fprintf(stderr, "tessera: TESS_TEST_REPEAT: seed %llu %s\n",
+               static_cast<unsigned long long>(seed), what);
 }
 
 void run_repeat(std::uint64_t first, std::uint64_t end, const Repeat& repeat,
                 const Program& program, const SeedOptions& options) {
   if (repeat.seed < first || repeat.seed >= end) {
-    std::fprintf(stderr, "tessera: TESS_TEST_REPEAT: seed %llu is none of this test\n",
-                 static_cast<unsigned long long>(repeat.seed));
+    note(repeat.seed, "is none of this test, which is skipped");
     return;
   }
   Trial trial{.keep = repeat.keep, .in_words = repeat.keep.has_value()};
-  const Outcome outcome = run_watched(program, options, repeat.seed, trial, !repeat.keep);
-  if (outcome.failure.empty()) return;
-  throw Failure(repeat.keep ? report_of(repeat, outcome, "with these decisions:", options.name)
-                            : explain(program, repeat.seed, outcome, options));
+  const std::uint64_t last = repeat.keep ? repeat.seed : repeat.seed + 1;
+  const Outcome outcome = run_watched(program, options, repeat.seed, last, trial);
+  if (!outcome.failure.empty())
+    throw Failure(repeat.keep ? report_of(repeat, outcome, "with these decisions:", options.name)
+                              : explain(program, repeat.seed, last, outcome, options));
+  note(repeat.seed, "passes");
 }
 
 }  // namespace
@@ -201,8 +235,8 @@ void for_seeds(std::uint64_t first, std::uint64_t end, const Program& program,
     return run_repeat(first, end, *repeat, program, options);
   for (std::uint64_t seed = first; seed < end; ++seed) {
     Trial trial;
-    const Outcome outcome = run_watched(program, options, seed, trial, true);
-    if (!outcome.failure.empty()) throw Failure(explain(program, seed, outcome, options));
+    const Outcome outcome = run_watched(program, options, seed, end, trial);
+    if (!outcome.failure.empty()) throw Failure(explain(program, seed, end, outcome, options));
   }
 }
 

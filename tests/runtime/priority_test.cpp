@@ -180,8 +180,7 @@ tess::Task use_single(int& count, int& first_pe, int& last_pe, std::size_t& n_le
 void check_single(int n_pes, const auto& run_on_machine, bool moves_by_force) {
   int count = 0, first_pe = -1, last_pe = -1;
   std::size_t n_left = 9;
-  run_on_machine(
-      [&]() -> tess::Task { return use_single(count, first_pe, last_pe, n_left); });
+  run_on_machine([&]() -> tess::Task { return use_single(count, first_pe, last_pe, n_left); });
   REQUIRE(count == 100 + 2 * n_pes);
   if (!moves_by_force) {
     REQUIRE(first_pe == n_pes - 1);
