@@ -262,16 +262,25 @@ TEST_CASE("a crash ends the process with the seed", "[runtime][testing]") {
   CHECK(output.find("repeat with: TESS_TEST_REPEAT=seed=3 ") != std::string::npos);
 }
 
-TEST_CASE("a failure that another one follows is reported as it was found", "[runtime][testing]") {
-  static bool crashes = false;  // in the child processes of the search
-  const std::string failure = failure_of(1000, [](std::uint64_t seed) {
-    int n = 0;
-    const test::Machine machine{.pes = 4, .per_process = 1, .seed = seed, .migration = 0.1};
-    machine.run([&]() -> Task { return count_calls(n); }).require_success();
-    if (n == n_reporters * n_rounds) return;
-    if (std::exchange(crashes, true)) std::abort();
-    throw std::runtime_error("counted wrong");
-  });
-  INFO(failure);
-  CHECK(failure.find("it did not fail again in the same way") != std::string::npos);
+TEST_CASE("only the failure that was found is shrunk", "[runtime][testing]") {
+  const auto count_with_another_failure = [](const std::string& of_wrong,
+                                             const std::string& of_right) {
+    bool has_failed = false;  // so in the child processes of the search
+    return failure_of(1000, [&](std::uint64_t seed) -> std::string {
+      int n = 0;
+      const test::Machine machine{.pes = 4, .per_process = 1, .seed = seed, .migration = 0.1};
+      machine.run([&]() -> Task { return count_calls(n); }).require_success();
+      const bool is_wrong = n != n_reporters * n_rounds;
+      if (has_failed) return is_wrong ? of_wrong : of_right;
+      has_failed = is_wrong;
+      return is_wrong ? "counted wrong" : "";
+    });
+  };
+  const std::string shrunk = count_with_another_failure("counted wrong", "another failure");
+  INFO(shrunk);
+  CHECK(shrunk.find(" fails: counted wrong\n  shrunk to 1 of ") != std::string::npos);
+  const std::string once = count_with_another_failure("another failure", "");
+  INFO(once);
+  CHECK(once.find(" fails: counted wrong\n  it did not fail again in the same way") !=
+        std::string::npos);
 }
