@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <span>
 #include <sys/wait.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -51,7 +52,7 @@ void leave_child_on_check() {
 }
 
 std::string signal_failure(int signal) {
-  return text("it ended by signal ", signal, " (", ::strsignal(signal), ")");
+  return text("it ended by signal ", signal, " (", ::sigdescr_np(signal), ")");
 }
 
 /// After a crash what is known may be lost: a second crash, or a lock that is never released, ends
@@ -74,7 +75,7 @@ void leave_child_on_crash(int signal) {
 }
 
 [[noreturn]] void refuse(const char* call) {
-  fail(ErrorCode::environment, call, ": ", std::strerror(errno),
+  fail(ErrorCode::environment, call, ": ", std::generic_category().message(errno),
        "; tests that fail are repeated in child processes");
 }
 

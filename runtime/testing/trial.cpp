@@ -61,6 +61,7 @@ std::string repeat_text(const Repeat& repeat) {
 }
 
 std::optional<Repeat> requested_repeat() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): called between runs, which have one thread
   const char* requested = std::getenv("TESS_TEST_REPEAT");
   if (requested == nullptr || *requested == '\0') return std::nullopt;
   return parse_repeat(requested);
