@@ -3,6 +3,8 @@
 #include "runtime/collections/balance_record.hpp"
 #include "runtime/collections/sections.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/hash.hpp"
+#include "runtime/scheduler/element_mover.hpp"
 
 namespace tess::detail {
 
@@ -272,7 +274,9 @@ std::uint64_t Collection::packed_bytes(Element& /*element*/) const {
 
 void ElementScope::force_migration() {
   if (!element_.collection_->migratable()) return;
-  const PeId to = pe_.forced_migration();
+  const Collection& of = *element_.collection_;
+  const std::uint64_t key = mix(of.id().value) ^ of.key_of(element_);
+  const PeId to = pe_.forced_migration({element_, key, pe_.id(), context_.action});
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 

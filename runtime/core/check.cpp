@@ -13,8 +13,8 @@ std::atomic<CheckAbort> end_of_job{nullptr};
 void set_check_context(CheckContext describe) noexcept {
   context_of_thread = describe;
 }
-void set_check_abort(CheckAbort end) noexcept {
-  end_of_job = end;
+CheckAbort set_check_abort(CheckAbort end) noexcept {
+  return end_of_job.exchange(end);
 }
 
 void check_failed(const char* condition, const char* file, int line, const std::string& message) {

@@ -17,8 +17,9 @@ using CheckContext = std::string (*)();
 void set_check_context(CheckContext describe) noexcept;
 
 /// Ends the job after the text has been printed. A machine of many processes installs its abort.
+/// Returns the former one.
 using CheckAbort = void (*)();
-void set_check_abort(CheckAbort end) noexcept;
+CheckAbort set_check_abort(CheckAbort end) noexcept;
 
 }  // namespace tess
 

@@ -169,6 +169,9 @@ class Machine {
   /// Advances the virtual clock of a running PE; does nothing on real machines.
   virtual void charge(PeId /*pe*/, Time /*work*/) {}
 
+  /// Why run() returned although stop() was not called; empty if nothing was left to do.
+  [[nodiscard]] virtual std::string gave_up() const { return {}; }
+
   /// One line that describes the machine and the placement of its PEs.
   [[nodiscard]] virtual std::string describe() const = 0;
 

@@ -4,11 +4,11 @@
 #include "runtime/core/cpu_clock.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/machine/adversary.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 #include <queue>
 
@@ -50,7 +50,7 @@ class SimulatedMachine final : public Machine {
     n_processes_ = options.n_pes / pes_per_process_;
     for (double& factor : slowness_) {
       constexpr std::array<double, 5> choices{1, 1, 1, 20, 200};
-      factor = options.seed ? choices[random_.below(5)] : 1;
+      factor = draws() ? choices[random_.below(5)] : 1;
     }
   }
   ~SimulatedMachine() override {
@@ -60,11 +60,13 @@ class SimulatedMachine final : public Machine {
   SimulatedMachine& operator=(const SimulatedMachine&) = delete;
 
   [[nodiscard]] std::int32_t n_pes_here() const override { return options_.n_pes; }
-  [[nodiscard]] bool intercepts_local() const override { return options_.seed.has_value(); }
+  [[nodiscard]] bool intercepts_local() const override {
+    return options_.seed.has_value() || options_.adversary != nullptr;
+  }
   [[nodiscard]] unsigned patience() const override { return 1; }
 
   void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) override {
-    push(arrival(from, bytes, traffic), to.value, message, nullptr);
+    push(arrival({from, to, message, {}}, bytes, traffic), to.value, message, nullptr);
   }
   void hand_in(PeId to, Link* message) override {
     auto* outside = new Outside;
@@ -73,21 +75,28 @@ class SimulatedMachine final : public Machine {
     outside_.push(outside);
   }
   [[nodiscard]] bool post_after(PeId to, Link* message, Time delay) override {
-    // With a seed it is late by the time that a message to itself takes.
-    const std::int64_t late =
-        options_.seed ? arrival(to, 0, Traffic::user) - now(to).count() : std::int64_t{0};
-    push(now(to).count() + delay.count() + late, to.value, message, nullptr);
+    std::int64_t time = now(to).count() + delay.count();
+    if (options_.adversary != nullptr) {
+      time += options_.adversary->delay({to, to, message, {}, Time(time)}).count();
+    } else if (options_.seed) {  // it is late by the time that a message to itself takes
+      time += arrival({to, to, message, {}}, 0, Traffic::user) - now(to).count();
+    }
+    push(time, to.value, message, nullptr);
     return true;
   }
   void send(PeId from, ProcessId to, Buffer&& bytes) override {
-    const std::int64_t time = arrival(from, bytes.size(), Traffic::user);
-    push(time, to.value * pes_per_process_, nullptr, new Parcel{std::move(bytes), {}, {}});
+    const PeId taker{to.value * pes_per_process_};
+    const std::int64_t time =
+        arrival({from, taker, nullptr, {bytes.data(), bytes.size()}}, bytes.size(), Traffic::user);
+    push(time, taker.value, nullptr, new Parcel{std::move(bytes), {}, {}});
   }
   void send(PeId from, ProcessId to, Parcel&& parcel) override {
     std::size_t n_bytes = parcel.head.size();
     for (const auto part : parcel.parts) n_bytes += part.size();
-    const std::int64_t time = arrival(from, n_bytes, Traffic::user);
-    push(time, to.value * pes_per_process_, nullptr, new Parcel(std::move(parcel)));
+    const PeId taker{to.value * pes_per_process_};
+    const std::int64_t time = arrival(
+        {from, taker, nullptr, {parcel.head.data(), parcel.head.size()}}, n_bytes, Traffic::user);
+    push(time, taker.value, nullptr, new Parcel(std::move(parcel)));
   }
 
   void run(Program& program) override;
@@ -103,6 +112,7 @@ class SimulatedMachine final : public Machine {
   void charge(PeId pe, Time work) override {
     clocks_[static_cast<std::size_t>(pe.value)].now += work.count();
   }
+  [[nodiscard]] std::string gave_up() const override { return gave_up_; }
   [[nodiscard]] std::string describe() const override {
     return text("simulated: ", options_.n_pes, " PEs in ", n_processes_, " processes, latency ",
                 options_.latency.count(), " ns, ", options_.bandwidth / 1e9, " GB/s",
@@ -117,17 +127,23 @@ class SimulatedMachine final : public Machine {
 
   void push(std::int64_t time, std::int32_t pe, Link* message, Parcel* parcel) {
     ++n_posted_;
-    events_.push(Event{time, intercepts_local() ? random_() : n_posted_, pe, message, parcel});
+    events_.push(Event{time, draws() ? random_() : n_posted_, pe, message, parcel});
   }
-  std::int64_t arrival(PeId from, std::size_t bytes, Traffic traffic) {
+  /// The disorder is drawn from the seed here.
+  [[nodiscard]] bool draws() const {
+    return options_.seed.has_value() && options_.adversary == nullptr;
+  }
+  std::int64_t arrival(Sending sending, std::size_t bytes, Traffic traffic) {
     auto delay = static_cast<double>(options_.latency.count()) +
                  static_cast<double>(bytes) * 1e9 / options_.bandwidth;
-    if (options_.seed) {
+    if (draws()) {
       const double u = random_.unit();
       const double spread = u < 0.8 ? 4 : u < 0.95 ? 50 : 500;
       delay *= random_.unit() * spread * slowness_[static_cast<std::size_t>(traffic)];
     }
-    return now(from).count() + static_cast<std::int64_t>(delay);
+    sending.due = now(sending.from) + Time(static_cast<std::int64_t>(delay));
+    if (options_.adversary != nullptr) sending.due += options_.adversary->delay(sending);
+    return sending.due.count();
   }
   [[nodiscard]] std::int64_t elapsed() const {
     return options_.cost ? 0 : thread_cpu_nanoseconds() - step_began_;
@@ -141,6 +157,7 @@ class SimulatedMachine final : public Machine {
 
   static void deliver(Program& program, PeId pe, const Parcel& parcel);
   void take_outside(Program& program);
+  [[nodiscard]] bool gives_up(std::uint64_t n_events);
 
   const SimulatedOptions options_;
   Random random_;
@@ -152,6 +169,7 @@ class SimulatedMachine final : public Machine {
   std::int32_t running_ = -1;
   std::int64_t step_began_ = 0;  // CPU time of this thread, in ns
   bool stopped_ = false;
+  std::string gave_up_;
 };
 
 void SimulatedMachine::run(Program& program) {
@@ -162,12 +180,7 @@ void SimulatedMachine::run(Program& program) {
   }
   std::uint64_t n_events = 0;
   while (!stopped_ && !events_.empty()) {
-    if (options_.most_events != 0 && ++n_events > options_.most_events) {
-      std::fprintf(stderr,
-                   "tessera: the simulated run needs more than %llu events: is it a livelock?\n",
-                   static_cast<unsigned long long>(options_.most_events));
-      break;
-    }
+    if (gives_up(++n_events)) break;
     if (!outside_.empty()) [[unlikely]]
       take_outside(program);
     const Event event = events_.top();
@@ -184,7 +197,7 @@ void SimulatedMachine::run(Program& program) {
       look(event.pe);
     } else {
       clock.looks = false;
-      if (options_.seed && random_.chance(0.1)) program.idle(pe);
+      if (draws() && random_.chance(0.1)) program.idle(pe);
       running_ = event.pe;
       if (!options_.cost) step_began_ = thread_cpu_nanoseconds();
       const std::size_t ran = program.step(pe, 1);
@@ -209,6 +222,18 @@ void SimulatedMachine::run(Program& program) {
     program.accept(PeId{event.pe}, event.message);
   }
   for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
+}
+
+bool SimulatedMachine::gives_up(std::uint64_t n_events) {
+  if (options_.most_events != 0 && n_events > options_.most_events) {
+    gave_up_ = text("more than ", options_.most_events, " events");
+  } else if (options_.most_time.count() != 0 && events_.top().time > options_.most_time.count()) {
+    gave_up_ = text("more than ", seconds(options_.most_time), " s of virtual time");
+  } else {
+    return false;
+  }
+  gave_up_ = text("the simulated run needs ", gave_up_, ": is it a livelock?");
+  return true;
 }
 
 void SimulatedMachine::take_outside(Program& program) {

@@ -5,7 +5,7 @@
 //
 // With a seed the machine is adversarial: messages arrive in any order, some kinds of traffic are
 // slow throughout, and a PE is asked to report its counters in the middle of its work. Every choice
-// is drawn from the seed, so a failure repeats.
+// is drawn from the seed, so a failure repeats. A test may bring an adversary of its own.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
@@ -17,6 +17,8 @@
 
 namespace tess::detail {
 
+class Adversary;
+
 struct SimulatedOptions {
   std::int32_t n_pes = 4;
   std::int32_t pes_per_process = 0;  ///< 0: one process, or drawn from the seed if there is one
@@ -26,7 +28,11 @@ struct SimulatedOptions {
   std::optional<std::uint64_t> seed;  ///< if present: adversarial order
   /// After each message; absent: 0, or drawn from the seed.
   std::optional<double> migration_chance;
-  std::uint64_t most_events = 0;  ///< 0: no bound; a run that needs more is stopped as a livelock
+  // A run that needs more is stopped as a livelock. 0: no bound.
+  std::uint64_t most_events = 0;
+  Time most_time{};  ///< virtual
+  /// If present: it chooses the disorder, and the seed only the processes. Not owned.
+  Adversary* adversary = nullptr;
 };
 
 /// "pes=8,latency=2us,bandwidth=10GB/s,cost=100ns,per-process=2,migrate=0.1,seed=7". Throws Error

@@ -3,6 +3,7 @@
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/scheduler/block.hpp"
+#include "runtime/scheduler/element_mover.hpp"
 #include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -422,7 +423,8 @@ std::vector<HostedCollection*> Pe::collections() const {
   return all;
 }
 
-PeId Pe::forced_migration() {
+PeId Pe::forced_migration(const AfterMessage& after) {
+  if (mover_ != nullptr) return mover_->move(after);
   if (migration_chance_ == 0 || !random_.chance(migration_chance_)) return id_;
   return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
 }

@@ -32,8 +32,10 @@ namespace tess::detail {
 
 class TessElement;
 using Element = TessElement;
+class ElementMover;
 class Outbox;
 class Runtime;
+struct AfterMessage;
 struct MessageOptions;
 
 /// The context of running code: its element, its epoch, and the broadcast of the element's
@@ -216,8 +218,11 @@ class Pe {
 
   /// On a simulated machine that forces migrations: the PE that an element must move to now, or
   /// this PE.
-  [[nodiscard]] PeId forced_migration();
-  void set_migration_chance(double chance) { migration_chance_ = chance; }
+  [[nodiscard]] PeId forced_migration(const AfterMessage& after);
+  void set_forced_migrations(double chance, ElementMover* mover) {
+    migration_chance_ = chance;
+    mover_ = mover;
+  }
 
   /// The futures that were made on this PE, by number. A result for a destroyed future is an error.
   std::uint64_t enter_future(void* future);
@@ -346,6 +351,7 @@ class Pe {
   std::unique_ptr<Meter> meter_;
   std::unique_ptr<Trace> trace_;
   double migration_chance_ = 0;
+  ElementMover* mover_ = nullptr;
   unsigned idle_calls_ = 0;
   IdleTime idle_time_;
   std::size_t messages_since_report_ = 0;

@@ -88,7 +88,7 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, ElementText na
     pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i}, *this, machine,
                                         pools_.emplace_back(), options.seed, options.messages));
     Pe& pe = *pes_.back();
-    pe.set_migration_chance(options.migration_chance);
+    pe.set_forced_migrations(options.migration_chance, options.mover);
     if (options.statistics) pe.start_meter();
     if (!options.trace.empty()) pe.start_trace(most_trace_records);
   }
@@ -118,8 +118,12 @@ int Runtime::run() {
   write_traces();
   if (left_) return exit_code_;
   // Only a simulated machine can notice that no message is under way any more.
+  const std::string gave_up = machine_.gave_up();
   std::string report =
-      "tessera: no message is under way, but the run has not ended: this is a bug of the runtime";
+      gave_up.empty()
+          ? "tessera: no message is under way, but the run has not ended: this is a bug of the "
+            "runtime"
+          : "tessera: " + gave_up;
   for (const std::string& line : still_) report += "\n  " + line;
   error_line(report);
   return 3;

@@ -9,6 +9,8 @@
 
 namespace tess::detail {
 
+class ElementMover;
+
 /// Options of messages between processes.
 struct MessageOptions {
   std::size_t attach_bytes = std::size_t{16}
@@ -28,7 +30,8 @@ struct MonitorOptions {
 struct RuntimeOptions {
   std::uint64_t seed = 0;
   double migration_chance = 0;  ///< probability of a forced migration after a message, for testing
-  bool statistics = false;      ///< print the counters of each PE
+  ElementMover* mover = nullptr;  ///< if present: it chooses the forced migrations. Not owned.
+  bool statistics = false;        ///< print the counters of each PE
   MessageOptions messages;
   std::optional<MonitorOptions> monitor;
   std::string trace;  ///< the file of the trace; empty: no trace

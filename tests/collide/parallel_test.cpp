@@ -4,10 +4,12 @@
 // move between them.
 #include "collide/collider.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -384,10 +386,7 @@ Problem problem_of(std::uint64_t seed) {
   return problem;
 }
 
-void check_reports(const std::string& option, std::uint64_t seed) {
-  Problem problem = problem_of(seed);
-  CAPTURE(option, seed);
-  REQUIRE(run_with(option, problem, &collide_rounds) == 0);
+void check_reports(Problem problem) {
   REQUIRE(problem.rounds.size() == kRounds);
   REQUIRE(problem.n_left == 0);
   for (std::int32_t round = 0; round < kRounds; ++round) {
@@ -400,52 +399,57 @@ void check_reports(const std::string& option, std::uint64_t seed) {
   }
 }
 
-std::string simulated(std::uint64_t seed) {
-  const std::uint64_t pes = std::array<std::uint64_t, 5>{1, 2, 3, 4, 8}[seed % 5];
-  // Every other machine has a PE per process, so that all messages are packed.
-  return fmt::format("--sim=pes={},cost=100ns,migrate=0.1,seed={}{}", pes, seed,
-                     seed / 5 % 2 == 0 ? ",per-process=1" : "");
+/// Runs the program of each seed on a simulated machine, then `judge`.
+void on_many_schedules(std::uint64_t n_seeds, Task (*program)(Problem&),
+                       const std::function<void(Problem)>& judge) {
+  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+    // Every other machine has a PE per process, so that all messages are packed.
+    const test::Machine machine{.pes = std::array{1, 2, 3, 4, 8}[seed % 5],
+                                .per_process = seed / 5 % 2 == 0 ? 1 : 0,
+                                .seed = seed,
+                                .migration = 0.1};
+    Problem problem = problem_of(seed);
+    machine.run([&]() -> Task { return program(problem); }).require_success();
+    judge(std::move(problem));
+  });
 }
 
 }  // namespace
 
 TEST_CASE("each pair is reported once to each owner in any order of delivery and under migration",
           "[collide][parallel]") {
-  for (std::uint64_t seed = 1; seed <= 250; ++seed) check_reports(simulated(seed), seed);
+  on_many_schedules(250, &collide_rounds, &check_reports);
 }
 
 TEST_CASE("each pair is reported once to each owner on threads", "[collide][parallel]") {
   for (const int pes : {1, 2, 4})
-    for (std::uint64_t seed = 1; seed <= 8; ++seed)
-      check_reports(fmt::format("--pes={}", pes), seed);
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      Problem problem = problem_of(seed);
+      CAPTURE(pes, seed);
+      REQUIRE(run_with(fmt::format("--pes={}", pes), problem, &collide_rounds) == 0);
+      check_reports(std::move(problem));
+    }
 }
 
 TEST_CASE("collisions of two colliders, and of one, may overlap", "[collide][parallel]") {
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    Problem problem = problem_of(seed);
-    problem.scene.round = 0;
-    CAPTURE(seed);
-    REQUIRE(run_with(simulated(seed), problem, &collide_overlapping) == 0);
+  on_many_schedules(60, &collide_overlapping, [](Problem problem) {
     const Reports once = oracle(problem.scene, problem.options.rules, problem.only);
     Reports expected;
     for (int i = 0; i < 2; ++i) expected.insert(expected.end(), once.begin(), once.end());
     REQUIRE((problem.rounds.front() == in_order(std::move(expected))));
-  }
+  });
 }
 
 TEST_CASE("collisions of one collider overlap when the objects of the one before are taken",
           "[collide][parallel]") {
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    Problem problem = problem_of(seed);
-    CAPTURE(seed);
-    REQUIRE(run_with(simulated(seed), problem, &collide_in_a_row) == 0);
+  on_many_schedules(60, &collide_in_a_row, [](Problem problem) {
     Reports expected;
     for (problem.scene.round = 0; problem.scene.round < kOverlapping; ++problem.scene.round) {
       const Reports round = oracle(problem.scene, problem.options.rules, problem.only);
       expected.insert(expected.end(), round.begin(), round.end());
     }
     REQUIRE((problem.rounds.front() == in_order(std::move(expected))));
-  }
+  });
 }
 
 TEST_CASE("owners may be elements of arrays of two and three dimensions, and members of groups",

@@ -55,6 +55,8 @@ for component in "${components[@]}"; do
   fi
 done
 
+[[ " ${components[*]} " != *" runtime "* ]] || prints "20 seeds pass" "$scratch/build/uses_testing"
+
 # The project of README.md, with hello as its main.cpp.
 if [[ $way == installed ]]; then
   cp -r "$here/small" "$scratch/small"

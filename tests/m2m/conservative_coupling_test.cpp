@@ -4,7 +4,7 @@
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
 #include "runtime/core/error.hpp"
-#include "tests/support/adversarial.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -165,9 +165,9 @@ Task transfers(Cut c, Transferred& found) {
 }
 
 Transferred transferred(const Cut& c, std::uint64_t seed) {
-  Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 5), seed);
+  const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
   Transferred found;
-  REQUIRE(run(setup, [&]() -> Task { return transfers(c, found); }) == 0);
+  machine.run([&]() -> Task { return transfers(c, found); }).require_success();
   return found;
 }
 
@@ -198,8 +198,8 @@ TEST_CASE("own chares transfer conservatively with the same bits however they ar
   for (const double reach : {1.0, 0.55}) {
     const Transferred one = transferred({1, 1, 0, reach}, 1);
     CHECK(one.rounds == 3 + 5);
-    for (std::uint64_t seed = 2; seed <= last_seed; ++seed) {
-      INFO("reach " << reach << ", seed " << seed);
+    INFO("reach " << reach);
+    test::for_seeds(2, last_seed + 1, [&](std::uint64_t seed) {
       const auto n_source = static_cast<std::int32_t>(1 + seed % 4);
       const auto n_target = static_cast<std::int32_t>(1 + seed % 6);
       const Transferred found = transferred({n_source, n_target, 1 + (seed % 2 == 0), reach}, seed);
@@ -208,8 +208,8 @@ TEST_CASE("own chares transfer conservatively with the same bits however they ar
                         found.tally.counts == one.tally.counts;
       REQUIRE(same);
       // Pieces that nothing overlaps take no part in rounds that source pieces start.
-      if (reach == 1) CHECK(found.rounds == n_target * (3 + 5));
-    }
+      if (reach == 1) REQUIRE(found.rounds == n_target * (3 + 5));
+    });
   }
 }
 

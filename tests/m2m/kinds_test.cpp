@@ -1,7 +1,7 @@
 // Kinds of transfer through chares: the same bits for any number of parts, and their orders.
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
-#include "tests/support/adversarial.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -54,10 +54,10 @@ struct KindResult {
 };
 
 KindResult result_of(const KindCase& c, std::uint64_t seed) {
-  Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 4), seed);
+  const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   KindResult result;
-  REQUIRE(run(setup, [&]() -> Task { return transfer_twice(c, result.values, result.error); }) ==
-          0);
+  machine.run([&]() -> Task { return transfer_twice(c, result.values, result.error); })
+      .require_success();
   return result;
 }
 
@@ -67,12 +67,10 @@ TEST_CASE("each kind gives the same bits for any number of parts and any schedul
           "[m2m][kinds]") {
   for (const TransferKind kind : all_transfer_kinds) {
     const KindResult one = result_of({kind}, 1);
-    for (std::uint64_t seed = 2; seed <= 10; ++seed) {
-      INFO(name_of(kind) << ", seed " << seed);
-      const bool same =
-          result_of({kind, 4, static_cast<std::int32_t>(seed % 9) + 1}, seed).values == one.values;
-      REQUIRE(same);
-    }
+    test::for_seeds(2, 11, [&](std::uint64_t seed) {
+      const KindCase c{kind, 4, static_cast<std::int32_t>(seed % 9) + 1};
+      test::expect(result_of(c, seed).values == one.values, name_of(kind), " gives other bits");
+    });
   }
 }
 

@@ -6,7 +6,7 @@
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/simulated.hpp"
-#include "tests/support/adversarial.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -129,18 +129,18 @@ void check_on_schedules(const LocatedCase& c, std::uint64_t n_seeds = 12) {
 #ifdef __SANITIZE_THREAD__
   n_seeds = 2;  // the simulated machine is one thread
 #endif
-  for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
-    Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 4), seed);
+  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+    const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
     const auto n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
-    INFO("seed " << seed << ", " << n_parts << " parts");
+    INFO(n_parts << " parts");
     Located got;
-    REQUIRE(run(setup, [&]() -> Task { return transfer_case(c, n_parts, got); }) == 0);
+    machine.run([&]() -> Task { return transfer_case(c, n_parts, got); }).require_success();
     const bool same_status = got.status == want.status, same_worst = got.worst == want.worst;
     REQUIRE(same_status);
     REQUIRE(same_worst);
     const bool same = got == want;
     REQUIRE(same);
-  }
+  });
 }
 
 TetMesh placed(TetMesh mesh, double scale, double offset) {

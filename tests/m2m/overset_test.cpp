@@ -5,7 +5,7 @@
 #include "apps/overset/body.hpp"
 #include "m2m/interpolate/orientation.hpp"
 #include "m2m/kuhn.hpp"
-#include "tests/support/adversarial.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -52,9 +52,9 @@ std::pair<Problem, Triangles> random_problem(std::mt19937& random) {
 
 Assembly assembled(Problem problem, std::uint64_t seed) {
   problem.n_parts = 1 + static_cast<std::int32_t>(seed % 5);
-  Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 4), seed);
+  const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   Assembly out;
-  REQUIRE(run(setup, [&]() -> Task { return overset::assemble(problem, out); }) == 0);
+  machine.run([&]() -> Task { return overset::assemble(problem, out); }).require_success();
   return out;
 }
 

@@ -4,9 +4,9 @@
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/threads.hpp"
+#include "runtime/testing.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/serial_transfer.hpp"
-#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -86,10 +86,10 @@ Task run_case(const Case& c, Result& result) {
   }
 }
 
-void check_same(const Case& c, const Result& want, Setup setup) {
+/// `run_on_machine` runs a main function on some machine, and requires that it ends well.
+void check_same(const Case& c, const Result& want, const auto& run_on_machine) {
   Result got;
-  const int code = run(setup, [&]() -> Task { return run_case(c, got); });
-  REQUIRE(code == 0);
+  run_on_machine([&]() -> Task { return run_case(c, got); });
   const bool same_status = got.status == want.status;  // so that a failure does not print the lists
   REQUIRE(same_status);
   for (std::size_t f = 0; f < 2; ++f)
@@ -113,16 +113,17 @@ void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
 #ifdef __SANITIZE_THREAD__
   n_seeds = 2;  // the simulated machine is one thread
 #endif
-  for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
-    const int n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
+  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+    const test::Machine machine{.pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6], .seed = seed};
     c.n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
     c.voxel.fill(seed % 3 == 0 ? a_voxel(c.source) : 0);
-    INFO("--sim pes=" << n_pes << ",cost=100ns,seed=" << seed << " with " << c.n_parts << " parts");
-    check_same(c, want, tess::test::adversarial(n_pes, seed));
-  }
+    INFO(c.n_parts << " parts");
+    check_same(c, want, [&](const auto& main) { machine.run(main).require_success(); });
+  });
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    check_same(c, want, {make_threads_machine(pes), {}});
+    Setup threads{make_threads_machine(pes), {}};
+    check_same(c, want, [&](const auto& main) { REQUIRE(run(threads, main) == 0); });
   }
 }
 

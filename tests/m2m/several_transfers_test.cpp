@@ -3,8 +3,8 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/machine/threads.hpp"
+#include "runtime/testing.hpp"
 #include "tests/m2m/serial_transfer.hpp"
-#include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -169,26 +169,26 @@ struct Scenario {
 /// Runs a scenario on many schedules of the simulated machine, which also migrates Workers, and on
 /// threads, with several numbers of parts.
 void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts)>& make) {
-  const auto run_one = [&](Setup setup, Parts n) {
+  const auto check_one = [&](Parts n, const auto& run_on_machine) {
     const Scenario check = make(n);
     HeldBoth held;
-    REQUIRE(run(setup, [&]() -> Task { return check.program(&held); }) == 0);
+    run_on_machine([&]() -> Task { return check.program(&held); });
     check.judge(held);
   };
 #ifdef __SANITIZE_THREAD__
   n_seeds = 2;  // the simulated machine is one thread
 #endif
-  for (std::uint64_t seed = 1; seed <= n_seeds; ++seed) {
-    const int n_pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6];
+  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+    const test::Machine machine{.pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6], .seed = seed};
     const Parts n{static_cast<std::int32_t>(2 + seed * 5 % 7),
                   static_cast<std::int32_t>(1 + seed * 3 % 8)};
-    INFO("--sim pes=" << n_pes << ",cost=100ns,seed=" << seed << " with " << n.a << " and " << n.b
-                      << " parts");
-    run_one(tess::test::adversarial(n_pes, seed), n);
-  }
+    INFO(n.a << " and " << n.b << " parts");
+    check_one(n, [&](const auto& main) { machine.run(main).require_success(); });
+  });
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    run_one({make_threads_machine(pes), {}}, {5, 3});
+    Setup threads{make_threads_machine(pes), {}};
+    check_one({5, 3}, [&](const auto& main) { REQUIRE(run(threads, main) == 0); });
   }
 }
 

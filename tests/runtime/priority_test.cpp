@@ -2,7 +2,7 @@
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
-#include "tests/support/adversarial.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <string>
@@ -177,28 +177,29 @@ tess::Task use_single(int& count, int& first_pe, int& last_pe, std::size_t& n_le
   n_left = tess::n_collections();
 }
 
-void check_single(tess::Setup setup, bool moves_by_force) {
-  const int n_pes = setup.machine->n_pes();
+void check_single(int n_pes, const auto& run_on_machine, bool moves_by_force) {
   int count = 0, first_pe = -1, last_pe = -1;
   std::size_t n_left = 9;
-  REQUIRE(tess::run(setup, [&]() -> tess::Task {
-            return use_single(count, first_pe, last_pe, n_left);
-          }) == 0);
-  CHECK(count == 100 + 2 * n_pes);
+  run_on_machine([&]() -> tess::Task { return use_single(count, first_pe, last_pe, n_left); });
+  REQUIRE(count == 100 + 2 * n_pes);
   if (!moves_by_force) {
-    CHECK(first_pe == n_pes - 1);
-    CHECK(last_pe == 0);
+    REQUIRE(first_pe == n_pes - 1);
+    REQUIRE(last_pe == 0);
   }
-  CHECK(n_left == 0);
+  REQUIRE(n_left == 0);
 }
 
 }  // namespace
 
 TEST_CASE("a single chare is made where it is asked for, moves, and ends", "[runtime][single]") {
-  check_single({tess::make_threads_machine(1), {}}, false);
-  check_single({tess::make_threads_machine(3), {}}, false);
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    INFO("seed " << seed);
-    check_single(tess::test::adversarial(1 + static_cast<int>(seed % 5), seed), true);
+  for (const int n_pes : {1, 3}) {
+    tess::Setup setup{tess::make_threads_machine(n_pes), {}};
+    check_single(
+        n_pes, [&](const auto& main) { REQUIRE(tess::run(setup, main) == 0); }, false);
   }
+  tess::test::for_seeds(0, 100, [](std::uint64_t seed) {
+    const tess::test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
+    check_single(
+        machine.pes, [&](const auto& main) { machine.run(main).require_success(); }, true);
+  });
 }

@@ -2,7 +2,7 @@
 #include "m2m/coupling.hpp"
 
 #include "runtime/machine/threads.hpp"
-#include "tests/support/adversarial.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <array>
@@ -184,15 +184,15 @@ Task program(Findings& found) {
   co_await epoch([&] { to_solid.destroy(); });
 }
 
-void check_run(Setup& setup) {
+void check_run(const auto& run_on_machine) {
   Findings found;
-  REQUIRE(run(setup, [&]() -> Task { return program(found); }) == 0);
-  CHECK(found.error < 1e-13);
-  CHECK(found.moved_error < 1e-13);
-  CHECK(found.alone_error < 1e-13);
-  CHECK(found.outside == 10 * (1 + 3) * 25);        // planes with x > 2 of two pieces
-  CHECK(found.tally.count(Status::outside) == 50);  // x = -0.25 and x = 2.25
-  CHECK(found.rounds == 4 * (10 + 1 + 20));
+  run_on_machine([&]() -> Task { return program(found); });
+  REQUIRE(found.error < 1e-13);
+  REQUIRE(found.moved_error < 1e-13);
+  REQUIRE(found.alone_error < 1e-13);
+  REQUIRE(found.outside == 10 * (1 + 3) * 25);        // planes with x > 2 of two pieces
+  REQUIRE(found.tally.count(Status::outside) == 50);  // x = -0.25 and x = 2.25
+  REQUIRE(found.rounds == 4 * (10 + 1 + 20));
 }
 
 }  // namespace
@@ -200,13 +200,12 @@ void check_run(Setup& setup) {
 TEST_CASE("the sample of m2m/coupling.hpp moves a linear field exactly between own chares",
           "[m2m][sample]") {
   Setup threads{make_threads_machine(2), {}};
-  check_run(threads);
+  check_run([&](const auto& main) { REQUIRE(run(threads, main) == 0); });
 }
 
 TEST_CASE("own chares may migrate while they are coupled", "[m2m]") {
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    INFO("seed " << seed);
-    Setup setup = tess::test::adversarial(1 + static_cast<int>(seed % 5), seed);
-    check_run(setup);
-  }
+  test::for_seeds(1, 41, [](std::uint64_t seed) {
+    const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
+    check_run([&](const auto& main) { machine.run(main).require_success(); });
+  });
 }
