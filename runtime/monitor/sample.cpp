@@ -1,7 +1,5 @@
 #include "runtime/monitor/sample.hpp"
 
-#include "runtime/report/waiting.hpp"
-
 #include <cstdio>
 #include <memory>
 #include <unistd.h>
@@ -33,10 +31,7 @@ PeSample sample_of(Pe& pe, bool with_census) {
   for (const HostedCollection* collection : pe.collections())
     sample.collections.push_back({collection->id(), collection->name(), collection->n_local()});
   sample.has_census = with_census;
-  if (with_census) {
-    for (WaitLine& line : pe.census_of_running().lines)
-      sample.census.push_back(std::move(line.text));
-  }
+  if (with_census) sample.census = pe.census_of_running();
   return sample;
 }
 
