@@ -171,6 +171,11 @@ class Array final : public ArrayOf<typename C::Index> {
       return Base::position_of(element);
     }
   }
+  [[nodiscard]] std::string state_of(const Element& element) const override {
+    if constexpr (requires(const C& c) { c.describe_state(); })
+      return static_cast<const C&>(element).describe_state();
+    return Base::state_of(element);
+  }
   [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override {
     Writer count{std::span<std::byte>()};
     pack_element(static_cast<C&>(element), count);
@@ -290,7 +295,7 @@ class ElementProxy {
   [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
     static_assert(detail::check_ask<C, F, Args...>());
     Pe& pe = current_pe();
-    Ask<C, F> reply(index_);
+    Ask<C, F> reply(collection_, index_);
     post_message(pe, detail::AskCall<C, F>::make(pe, collection_, index_, reply.place(),
                                                  std::forward<Args>(args)...));
     return reply;

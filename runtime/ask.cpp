@@ -1,6 +1,7 @@
 #include "runtime/ask.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/scheduler/runtime.hpp"
 
 namespace tess::detail {
 
@@ -32,6 +33,12 @@ AskBase* AskBase::take(Pe& pe, std::uint64_t id) {
   return ask;
 }
 
+WaitReason AskBase::reply_of(CollectionId of, std::uint64_t hash, std::string name) {
+  WaitReason reason("the reply of " + name);
+  reason.asked.push_back({reply_key(of, hash), std::move(name)});
+  return reason;
+}
+
 void AskBase::set_deadline(Time limit) {
   if (id_ == 0) return;  // the reply is there
   limit_ = limit;
@@ -44,7 +51,7 @@ void AskBase::set_deadline(Time limit) {
 void AskBase::expire() {
   timer_ = 0;
   failure_ = Failure{ErrorCode::environment,
-                     text(waits_for(), " did not come within ",
+                     text(waits_for().text, " did not come within ",
                           std::chrono::duration<double, std::milli>(limit_).count(),
                           " ms: allow more time, or catch this error")};
   done();

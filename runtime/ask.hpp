@@ -70,7 +70,7 @@ class AskBase {
   void wait(Waiter& waiter);
   void withdraw() { waiting_ = nullptr; }
   /// "the reply of Cell[5].f"
-  [[nodiscard]] virtual std::string waits_for() const = 0;
+  [[nodiscard]] virtual WaitReason waits_for() const = 0;
 
   /// Takes the reply's place; null, and counted, if its asker waits no longer.
   [[nodiscard]] static AskBase* take(Pe& pe, std::uint64_t id);
@@ -80,6 +80,7 @@ class AskBase {
   AskBase(AskBase&& other) noexcept;
 
   void set_deadline(Time limit);
+  [[nodiscard]] static WaitReason reply_of(CollectionId of, std::uint64_t hash, std::string name);
   void done() {
     leave();
     if (waiting_ != nullptr) std::exchange(waiting_, nullptr)->wake();
@@ -240,7 +241,7 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
  public:
   using Index = typename C::Index;
 
-  explicit Ask(const Index& index) : index_(index) {}
+  Ask(CollectionId collection, const Index& index) : collection_(collection), index_(index) {}
 
   /// If no reply has come after this time from now, the asker gets an Error that names the element,
   /// the function and the time. A reply that comes later is dropped and counted.
@@ -253,11 +254,13 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
     if (this->failure_) throw Error(this->failure_->code, this->failure_->message);
     if constexpr (!std::is_same_v<Value, NoValue>) return std::move(*this->value_);
   }
-  [[nodiscard]] std::string waits_for() const override {
-    return "the reply of " + detail::AskCall<C, F>::name(index_);
+  [[nodiscard]] detail::WaitReason waits_for() const override {
+    return this->reply_of(collection_, IndexHash<Index>()(index_),
+                          detail::AskCall<C, F>::name(index_));
   }
 
  private:
+  CollectionId collection_;
   Index index_;
 };
 

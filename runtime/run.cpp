@@ -71,6 +71,18 @@ MonitorOptions monitor_options(std::string_view value, std::string_view token) {
   return options;
 }
 
+/// "2.5": a time above 0.
+std::chrono::nanoseconds number_of_seconds(std::string_view option, std::string_view value) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  constexpr double least = 1e-6, most = 1e9;
+  if (error != std::errc() || end != value.data() + value.size() ||
+      !(number >= least && number <= most))
+    fail(ErrorCode::bad_argument, option, ": ", value,
+         " is not a number of seconds of 0.000001 to 1000000000");
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(number * 1e9));
+}
+
 void print_error(const char* program, const Error& error) {
   const char* slash = std::strrchr(program, '/');
   std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program,
@@ -123,6 +135,13 @@ std::string options_help() {
          "              most bytes of messages under way from one process to another (default "
          "32MiB);\n"
          "              later messages wait at their sender\n"
+         "  --hang-report SECONDS\n"
+         "              report what waits when no entry method has begun for so long, and which "
+         "entry methods\n"
+         "              take so long; SIGUSR1 asks for the report at any time\n"
+         "  --audit     count the messages between PEs at both ends, and name those that were lost "
+         "or arrived\n"
+         "              twice\n"
          "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
          "chares\n"
          "  --monitor [ADDRESS:]PORT\n"
@@ -170,6 +189,10 @@ Setup take_options(int& argc, char** argv) {
       monitor = value;
     } else if (takes_value("--monitor-token")) {
       token = value;
+    } else if (takes_value("--hang-report")) {
+      setup.options.hang_report = number_of_seconds("--hang-report", value);
+    } else if (option == "--audit") {
+      setup.options.audit = true;
     } else if (option == "--stats") {
       setup.options.statistics = true;
     } else {
@@ -178,6 +201,9 @@ Setup take_options(int& argc, char** argv) {
   }
   argc = kept;
   if (monitor) setup.options.monitor = monitor_options(*monitor, token);
+  if (setup.options.audit && !setup.options.trace.empty())
+    fail(ErrorCode::bad_argument, "--audit --trace ", setup.options.trace,
+         ": both number the messages; run the program once with each");
   if (simulates) {
     const SimulatedOptions options = parse_simulated(simulated);
     setup.machine = make_simulated_machine(options);
@@ -193,7 +219,9 @@ Setup take_options(int& argc, char** argv) {
 
 int run_on(Setup& setup, std::function<void()> main) {
   setup.started = true;
-  detail::Runtime runtime(*setup.machine, setup.options, &detail::element_text, std::move(main));
+  detail::Runtime runtime(*setup.machine, setup.options,
+                          {&detail::element_text, &detail::element_key, &detail::element_state},
+                          std::move(main));
   detail::Service service(runtime, setup.options.signals);
   runtime.serve(service);
   std::optional<detail::Monitor> monitor;

@@ -11,6 +11,8 @@
 //                             that was given to the process)
 //     --sim KEYS              the simulated machine: pes=8,latency=2us,bandwidth=10GB/s,cost=100ns
 //     --message-memory SIZE   most bytes under way from one process to another (default 32MiB)
+//     --hang-report SECONDS   report what waits when no entry method has begun for so long
+//     --audit                 count the messages between PEs at both ends, and name lost ones
 //     --stats                 print the counters of each PE at the end
 //     --trace FILE            write what each PE ran, as JSON for Perfetto
 //

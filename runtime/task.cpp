@@ -2,6 +2,7 @@
 
 #include "runtime/collections/collection.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 namespace tess {
@@ -24,6 +25,7 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
   if (context.element == nullptr) {
     account.release();
     pe.context() = context;
+    const WatchedMain watched(pe.watch(), pe.running());
     task.resume();
     return;
   }
@@ -64,7 +66,7 @@ Task::promise_type::promise_type() {
   account.context = account.pe->context();
 }
 
-void suspend(Task::Handle task, std::function<std::string()> waits_for) {
+void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for) {
   detail::TaskAccount& account = task.promise().account;
   account.hold();
   account.entry = {account.context.element, account.context.action, account.context.epoch,

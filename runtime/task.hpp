@@ -89,7 +89,7 @@ class [[nodiscard]] Task {
 
 /// For awaitables: suspends a coroutine and records what it waits for. The awaitable resumes it
 /// through resume_later().
-void suspend(Task::Handle task, std::function<std::string()> waits_for);
+void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for);
 
 namespace detail {
 /// A suspended coroutine, and the number of results that it waits for before it continues: one; all

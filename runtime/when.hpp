@@ -99,8 +99,8 @@ AwaitedValue<A> result_of(A& of) {
   }
 }
 
-inline void add_reason(std::string& all, const char* word, const std::string& one) {
-  all += (all.empty() ? "" : word) + one;
+inline void add_reason(WaitReason& all, const char* word, const WaitReason& one) {
+  all.text += (all.text.empty() ? "" : word) + one.text;
 }
 
 /// Several awaitables: all or the first. Each calls a function with every part.
@@ -175,9 +175,12 @@ class [[nodiscard]] WhenAll {
     });
     waiter_.start(task, n);
     suspend(task, [this] {
-      std::string all;
+      WaitReason all("");
       parts_.each([&all](auto& part) {
-        if (!part.await_ready()) add_reason(all, " and ", part.waits_for());
+        if (part.await_ready()) return;
+        const WaitReason one = part.waits_for();
+        add_reason(all, " and ", one);
+        all.asked.insert(all.asked.end(), one.asked.begin(), one.asked.end());
       });
       return all;
     });
@@ -199,7 +202,7 @@ class [[nodiscard]] WhenAny {
     waiter_.start(task, 1);
     parts_.each([this](auto& part) { part.wait(waiter_); });
     suspend(task, [this] {
-      std::string all;
+      WaitReason all("");  // it needs no one of the elements that it asks
       parts_.each([&all](auto& part) { add_reason(all, " or ", part.waits_for()); });
       return all;
     });

@@ -5,11 +5,20 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/scheduler/element_mover.hpp"
+#include "runtime/scheduler/runtime.hpp"
 
 namespace tess::detail {
 
 std::string element_text(const Element& element) {
   return element.collection_->name() + element.collection_->index_text_of(element);
+}
+
+std::string element_key(const Element& element) {
+  return reply_key(Collection::of(element).id(), Collection::of(element).key_of(element));
+}
+
+std::string element_state(const Element& element) {
+  return Collection::of(element).state_of(element);
 }
 
 void Element::after_construction(const char* what, std::function<void()> call) {
@@ -266,6 +275,10 @@ std::uint64_t Collection::key_of(const Element& /*element*/) const {
 
 std::optional<std::array<double, 3>> Collection::position_of(const Element& /*element*/) const {
   return std::nullopt;
+}
+
+std::string Collection::state_of(const Element& /*element*/) const {
+  return {};
 }
 
 std::uint64_t Collection::packed_bytes(Element& /*element*/) const {

@@ -50,6 +50,7 @@ class Collection : public HostedCollection {
   Collection& operator=(const Collection&) = delete;
   ~Collection() override;
 
+  [[nodiscard]] static Collection& of(const Element& element) { return *element.collection_; }
   [[nodiscard]] Pe& pe() { return pe_; }
   /// The PE that numbers broadcasts and completes reductions.
   [[nodiscard]] PeId root() const { return root_of(id(), pe_.n_pes()); }
@@ -146,6 +147,8 @@ class Collection : public HostedCollection {
   /// The result of its balance_position(), if it has one.
   [[nodiscard]] virtual std::optional<std::array<double, 3>> position_of(
       const Element& element) const;
+  /// The result of its describe_state(), if it has one.
+  [[nodiscard]] virtual std::string state_of(const Element& element) const;
   /// The number of bytes that a migration to another process would send.
   [[nodiscard]] virtual std::uint64_t packed_bytes(Element& element) const;
 

@@ -89,5 +89,9 @@ using Element = TessElement;
 
 /// "Block[3,4]".
 [[nodiscard]] std::string element_text(const Element& element);
+/// Its reply_key().
+[[nodiscard]] std::string element_key(const Element& element);
+/// The result of its describe_state(), if it has one.
+[[nodiscard]] std::string element_state(const Element& element);
 
 }  // namespace tess::detail

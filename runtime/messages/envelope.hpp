@@ -33,11 +33,13 @@ struct Envelope : Link {
   PeId target{};
   bool counted = true;       ///< in epoch 0; false for messages that measure or end the run
   bool prioritised = false;  ///< its action gives its priority, which is not 0
-  std::uint32_t trace = 0;   ///< the number of its send on the source PE, if a trace is kept
+  /// The number of its send on the source PE, if a trace is kept; with an audit the number of its
+  /// hop (report/audit.hpp).
+  std::uint32_t trace = 0;
   /// Credit that the PE that runs it owes to `sender`, which packed it for this hop (outbox.hpp); 0
   /// within a process.
   std::uint32_t charge = 0;
-  PeId sender{};
+  PeId sender{};  ///< also the PE that sent this hop, with an audit
 };
 
 /// The action of an envelope when its turn comes. One static object for each kind of message.

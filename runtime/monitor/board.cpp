@@ -107,7 +107,7 @@ std::vector<Event> Board::take_events(double seconds,
     takes_census_ = false;
     events.push_back({"census", quoted(census_.empty() ? "nothing waits"
                                                        : list_of_waiting(std::move(census_)))});
-    census_.clear();
+    census_ = Waits();
   }
   return events;
 }
@@ -121,12 +121,12 @@ std::vector<Event> Board::past() const {
 void Board::begin_census() {
   takes_census_ = true;
   census_from_.clear();
-  census_.clear();
+  census_ = Waits();
 }
 
 void Board::collect_census(PeSample& sample) {
   if (!takes_census_ || !sample.has_census || !census_from_.insert(sample.pe.value).second) return;
-  std::move(sample.census.begin(), sample.census.end(), std::back_inserter(census_));
+  census_.merge(std::move(sample.census));
 }
 
 std::string Board::frame(double seconds, const std::function<std::string(PeId)>& runs) {

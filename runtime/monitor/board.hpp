@@ -71,7 +71,7 @@ class Board {
   std::deque<Event> past_;
   bool takes_census_ = false;
   std::set<std::int32_t> census_from_;
-  std::vector<std::string> census_;
+  Waits census_;
 };
 
 /// The text as a JSON string, with its quotation marks.

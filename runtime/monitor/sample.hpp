@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
+#include "runtime/report/waiting.hpp"
 #include "runtime/scheduler/pe.hpp"
 
 #include <cstdint>
@@ -31,7 +32,7 @@ struct PeSample {
   std::uint64_t process_bytes = 0;  ///< memory of the process; only from the first PE of each
   std::vector<CollectionSample> collections;
   bool has_census = false;
-  std::vector<std::string> census;  ///< what waits on this PE, if it was asked
+  Waits census;  ///< what waits on this PE, if it was asked
 
   template <class Ar>
   void serialize(Ar& ar) {

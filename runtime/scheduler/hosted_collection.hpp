@@ -42,7 +42,4 @@ class HostedCollection {
   const std::string name_;
 };
 
-/// "Block[3,4]": the text for an element. The layer that defines elements provides this function.
-using ElementText = std::string (*)(const Element& element);
-
 }  // namespace tess::detail

@@ -1,7 +1,9 @@
 #include "runtime/scheduler/meter.hpp"
 
 #include "runtime/core/cpu_clock.hpp"
+#include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/load_record.hpp"
+#include "runtime/scheduler/pe.hpp"
 
 #include <algorithm>
 
@@ -25,6 +27,14 @@ Meter::Meter(Machine& machine, PeId pe)
       step_began_(made_),
       quantum_ticks_(ticks(quantum_seconds)),
       gap_ticks_(ticks(gap_seconds)) {}
+
+void Meter::watch_enters(const Action* action) {
+  watched_->watch()->enters(watched_->context().element, action);
+}
+
+void Meter::watch_leaves() {
+  watched_->watch()->leaves();
+}
 
 std::uint64_t Meter::pass() {
   const std::uint64_t at = now();

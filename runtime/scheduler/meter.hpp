@@ -23,6 +23,7 @@
 
 namespace tess::detail {
 
+class Pe;
 struct Action;
 struct LoadRecord;
 
@@ -49,6 +50,7 @@ class Meter {
   /// Begins a scope; returns the one that it interrupts, for leave().
   [[nodiscard]] Scope enter(Scope scope) {
     pass();
+    if (watched_ != nullptr) watch_enters(scope.action);
     if (entered_ == nullptr) entered_ = scope.action;
     return std::exchange(scope_, scope);
   }
@@ -57,6 +59,7 @@ class Meter {
   void forget_entered() { entered_ = nullptr; }
   void leave(Scope outer) {
     const std::uint64_t at = pass();
+    if (watched_ != nullptr) watch_leaves();
     const Scope ended = std::exchange(scope_, outer);
     if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
       ring(at);
@@ -71,6 +74,9 @@ class Meter {
     if (scope_.record == record) scope_.record = nullptr;
     if (longest_.record == record) longest_ = {};
   }
+
+  /// From now on each scope is shown to the watch of this PE, with the element of its context.
+  void show_to(Pe& pe) { watched_ = &pe; }
 
   // The PE calls these.
   void step_begins();
@@ -90,6 +96,8 @@ class Meter {
   void remove_alarms(const void* owner);
 
  private:
+  void watch_enters(const Action* action);
+  void watch_leaves();
   /// Adds the time since the last change of scope to the running scope; returns the present time.
   std::uint64_t pass();
   void ring(std::uint64_t at);
@@ -121,6 +129,7 @@ class Meter {
     const void* owner = nullptr;
     std::function<void()> ring;
   };
+  Pe* watched_ = nullptr;
   std::vector<Alarm> alarms_;
   std::uint64_t alarm_at_ = ~std::uint64_t{0};  // the earliest alarm
 };

@@ -95,6 +95,11 @@ class Outbox {
   bool go_on_one(ProcessId process);
   [[nodiscard]] bool awaited(ProcessId process) const { return !lane(process).producers.empty(); }
 
+  /// The number of messages that wait for credit.
+  [[nodiscard]] std::size_t n_waiting(ProcessId process) const {
+    return lane(process).waiting.size();
+  }
+
   /// Frees the messages that wait.
   void drop_all();
 

@@ -2,6 +2,9 @@
 
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
+#include "runtime/report/pe_watch.hpp"
+#include "runtime/report/waiting.hpp"
+#include "runtime/scheduler/auditing.hpp"
 #include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/element_mover.hpp"
 #include "runtime/scheduler/outbox.hpp"
@@ -86,8 +89,7 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
 
 Pe::~Pe() = default;
 
-void Pe::route(PeId to, Envelope* message) {
-  message->target = to;
+void Pe::carry(PeId to, Envelope* message) {
   if (to == id_ && !intercepts_) {
     enqueue(message);
   } else if (static_cast<std::uint32_t>(to.value - first_here_) <
@@ -99,6 +101,13 @@ void Pe::route(PeId to, Envelope* message) {
     outbox_->put(message);
     if (outbox_->holds()) hold();
   }
+}
+
+void Pe::route(PeId to, Envelope* message) {
+  message->target = to;
+  if (audit_ && !audit_departure(to, message)) [[unlikely]]
+    return;
+  carry(to, message);
 }
 
 void Pe::post_after(Time delay, Envelope* message) {
@@ -133,6 +142,10 @@ void Pe::post(Bundle*& bundle, PeId to) {
 }
 
 void Pe::accept(Bundle* bundle) {
+  if (audit_) [[unlikely]] {
+    for (std::uint32_t i = 0; i < bundle->n; ++i)
+      audit_arrival(static_cast<Envelope*>(bundle->messages[i]));
+  }
   if (bundle->prioritised) [[unlikely]] {
     for (std::uint32_t i = 0; i < bundle->n; ++i)
       enqueue(static_cast<Envelope*>(bundle->messages[i]));
@@ -429,39 +442,57 @@ PeId Pe::forced_migration(const AfterMessage& after) {
   return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
 }
 
-std::vector<std::string> Pe::census() const {
-  std::vector<std::string> lines;
+Waits Pe::census() const {
+  Waits waits;
+  const ElementWords& words = runtime_.element_words();
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
-    lines.push_back(text(
-        one.element != nullptr ? runtime_.element_text(*one.element) : text("the main program"),
-        " on ", id_, ": ",
-        one.action != nullptr ? plain_name(one.action->name()) : std::string("run()"),
-        " waits for ", one.waits_for()));
+    NamedElement who{"main", "the main program"};
+    std::string state, code = "run()";
+    if (one.element != nullptr) {
+      who = {words.key(*one.element), words.text(*one.element)};
+      state = words.state(*one.element);
+      if (one.action != nullptr) code = plain_name(one.action->name());
+    }
+    WaitReason reason = one.waits_for();
+    waits.add(WaitRank::coroutine, text(who.text, " on ", id_, state.empty() ? "" : ", ", state,
+                                        ": ", code, " waits for ", reason.text));
+    for (NamedElement& asked : reason.asked) waits.add_need({who, std::move(asked)});
   }
+  std::vector<std::string> lines;
   for (const auto& [id, collection] : tables_->collections) collection->describe_waiting(lines);
+  for (std::string& line : lines) waits.add(WaitRank::collective, std::move(line));
   for (const Ending& one : ending_)
-    lines.push_back(text(one.collection->name(), " on ", id_,
-                         " was destroyed, but coroutines of its elements wait"));
+    waits.add(WaitRank::collective, text(one.collection->name(), " on ", id_,
+                                         " was destroyed, but coroutines of its elements wait"));
   for (const auto& [id, messages] : tables_->early)
-    lines.push_back(
-        text(messages.size(), " messages on ", id_, " wait for ", id, ", which was never created"));
+    waits.add(WaitRank::message, text(messages.size(), " messages on ", id_, " wait for ", id,
+                                      ", which was never created"));
+  lines.clear();
   completion_.describe_open(lines);
-  return lines;
+  for (std::string& line : lines) waits.add(WaitRank::epoch, std::move(line));
+  return waits;
 }
 
-std::vector<std::string> Pe::census_of_running() const {
-  std::vector<std::string> lines = census();
+Waits Pe::census_of_running() const {
+  Waits waits = census();
   std::size_t n_ready = 0;  // without those that end the run or ask for this census
   ready_.for_each(
       [&](const Link* one) { n_ready += static_cast<const Envelope*>(one)->counted ? 1U : 0U; });
   if (n_ready != 0)
-    lines.push_back(text(id_,
-                         n_ready == 1 ? ": 1 message is" : text(": ", n_ready, " messages are"),
-                         " ready to run"));
+    waits.add(WaitRank::queue,
+              text(id_, n_ready == 1 ? ": 1 message is" : text(": ", n_ready, " messages are"),
+                   " ready to run"));
+  for (std::int32_t process = 0; process < machine_.n_processes(); ++process) {
+    if (const std::size_t n = outbox_->n_waiting(ProcessId{process}); n != 0)
+      waits.add(WaitRank::queue,
+                text(id_, n == 1 ? ": 1 message waits" : text(": ", n, " messages wait"),
+                     " for room to ", ProcessId{process}));
+  }
   if (const std::size_t n = timers_.n_waiting(); n != 0)
-    lines.push_back(text(id_, n == 1 ? ": 1 timer is" : text(": ", n, " timers are"), " set"));
-  return lines;
+    waits.add(WaitRank::queue,
+              text(id_, n == 1 ? ": 1 timer is" : text(": ", n, " timers are"), " set"));
+  return waits;
 }
 
 }  // namespace tess::detail

@@ -34,8 +34,12 @@ class TessElement;
 using Element = TessElement;
 class ElementMover;
 class Outbox;
+class PeWatch;
 class Runtime;
 struct AfterMessage;
+struct AuditRow;
+struct MessageFault;
+struct Waits;
 struct MessageOptions;
 
 /// The context of running code: its element, its epoch, and the broadcast of the element's
@@ -92,6 +96,14 @@ class Pe {
     if (!meter_) meter_ = std::make_unique<Meter>(machine_, id_);
     return *meter_;
   }
+
+  /// What this PE runs, for a watching thread; null if nothing watches. With it the PE has a meter.
+  [[nodiscard]] PeWatch* watch() { return watch_.get(); }
+  void start_watch();
+  /// Starts counting the messages to and from other PEs. A trace cannot be kept beside.
+  void start_audit(const MessageFault& fault);
+  /// What was counted; empty without an audit.
+  [[nodiscard]] std::vector<AuditRow> audit_rows() const;
 
   /// Marks a new message as sent by this PE in the current epoch.
   template <class M>
@@ -172,6 +184,8 @@ class Pe {
   // The machine calls these through the runtime.
 
   void accept(Link* first) {
+    if (audit_) [[unlikely]]
+      audit_arrivals(first);
     for (Link* next = nullptr; first != nullptr; first = next) {
       next = first->next;
       enqueue(static_cast<Envelope*>(first));
@@ -202,10 +216,10 @@ class Pe {
   /// True if the run is over and suspended coroutines are being freed.
   [[nodiscard]] bool dropping() const { return dropping_; }
 
-  /// One line for each object on this PE that waits for something from elsewhere.
-  [[nodiscard]] std::vector<std::string> census() const;
+  /// What waits on this PE for something from elsewhere.
+  [[nodiscard]] Waits census() const;
   /// The same while the run goes on: also what is about to run.
-  [[nodiscard]] std::vector<std::string> census_of_running() const;
+  [[nodiscard]] Waits census_of_running() const;
   /// The action that runs now; null if none does. Any thread.
   [[nodiscard]] const Action* running() {
     // Partner: begins(). It points to a static object.
@@ -318,6 +332,11 @@ class Pe {
   void run(Envelope* message);
   void repay(PeId sender, std::uint32_t charge);
   void run_traced(Envelope* message);
+  /// Counts a message that leaves for another PE. Returns false if a fault has taken the message.
+  [[nodiscard]] bool audit_departure(PeId to, Envelope* message);
+  void audit_arrival(Envelope* message);
+  void audit_arrivals(Link* first);
+  void carry(PeId to, Envelope* message);
   void exception(const char* what, int exit_code);
   HostedCollection* find_slow(CollectionId id);
 
@@ -373,6 +392,9 @@ class Pe {
   EndedCollections ended_;
   std::vector<Ending> ending_;
   Timers timers_{*this};
+  struct Auditing;
+  std::unique_ptr<Auditing> audit_;
+  std::unique_ptr<PeWatch> watch_;
 };
 
 inline thread_local Pe* the_current_pe = nullptr;

@@ -5,10 +5,9 @@
 #include "runtime/core/ids.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/report/waiting.hpp"
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 namespace tess::detail {
 
@@ -21,11 +20,9 @@ class ProcessService {
 
   /// Posts a message to a PE of this process once the delay is over; takes ownership. Any PE thread.
   virtual void post_after(PeId to, Envelope* message, Time delay) = 0;
-  /// Takes the census of a PE, which the service has asked for in this round. On the PE's thread.
-  virtual void take_census(std::uint64_t round, PeId pe, std::vector<std::string> lines) = 0;
-  /// The run ends by a signal that another process may have received; `lines` is the census of a PE
+  /// The run ends by a signal that another process may have received; `waits` is the census of a PE
   /// of this process. Called on the thread of each PE before it leaves the run.
-  virtual void ends_by_signal(int signal, PeId pe, std::vector<std::string> lines) = 0;
+  virtual void ends_by_signal(int signal, PeId pe, Waits waits) = 0;
   /// The PEs of this process leave the run: nothing is posted to them any more. Any PE thread.
   virtual void close() = 0;
 };

@@ -42,10 +42,8 @@ Envelope* unpack(Pe& pe, PeId sender, const PackedHeader& header, Reader& body,
   message->counted = (header.trace_and_flags & PackedHeader::counted) != 0;
   message->prioritised = (header.trace_and_flags & PackedHeader::prioritised) != 0;
   message->trace = header.trace_and_flags >> PackedHeader::n_flags;
-  if ((header.trace_and_flags & PackedHeader::charged) != 0) {
-    message->charge = credit_of(n_bytes);
-    message->sender = sender;
-  }
+  message->sender = sender;
+  if ((header.trace_and_flags & PackedHeader::charged) != 0) message->charge = credit_of(n_bytes);
   return message;
 }
 
@@ -82,6 +80,8 @@ Envelope* Pe::place(std::span<const std::byte> head, std::span<const std::uint64
 
 void Pe::hand_over(Envelope* message, std::size_t n_bytes) {
   if (message->target == id_) {
+    if (audit_) [[unlikely]]
+      audit_arrival(message);
     enqueue(message);
   } else {
     pass(message->target, message, n_bytes);

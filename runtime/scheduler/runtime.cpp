@@ -1,6 +1,7 @@
 #include "runtime/scheduler/runtime.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/critical_path.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
@@ -65,20 +66,11 @@ std::string context_of_this_thread() {
 
 }  // namespace
 
-std::string list_of_waiting(std::vector<std::string> lines) {
-  constexpr std::size_t most = 40;
-  std::sort(lines.begin(), lines.end());
-  std::string list = text(lines.size(), " wait:");
-  for (std::size_t i = 0; i < std::min(most, lines.size()); ++i) list += "\n  " + lines[i];
-  if (lines.size() > most) list += text("\n  … and ", lines.size() - most, " more");
-  return list;
-}
-
-Runtime::Runtime(Machine& machine, const RuntimeOptions& options, ElementText name_of,
+Runtime::Runtime(Machine& machine, const RuntimeOptions& options, const ElementWords& words,
                  std::function<void()> main)
     : machine_(machine),
       options_(options),
-      element_text_(name_of),
+      element_words_(words),
       main_(std::move(main)),
       first_{machine.process().value * machine.pes_per_process()},
       reserve_(std::make_unique_for_overwrite<std::byte[]>(reserve_bytes)) {
@@ -91,6 +83,8 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, ElementText na
     pe.set_forced_migrations(options.migration_chance, options.mover);
     if (options.statistics) pe.start_meter();
     if (!options.trace.empty()) pe.start_trace(most_trace_records);
+    if (options.hang_report.count() != 0) pe.start_watch();
+    if (options.audit) pe.start_audit(options.fault);
   }
   set_check_context(&context_of_this_thread);
 }
@@ -124,8 +118,8 @@ int Runtime::run() {
           ? "tessera: no message is under way, but the run has not ended: this is a bug of the "
             "runtime"
           : "tessera: " + gave_up;
-  for (const std::string& line : still_) report += "\n  " + line;
-  error_line(report);
+  if (!still_.empty()) report += "; " + list_of_waiting(std::move(still_));
+  error_line(report + audit_text(still_counted_, [](PeId) { return true; }));
   return 3;
 }
 
@@ -134,9 +128,11 @@ void Runtime::start(PeId id) {
   Pe& pe0 = pe(id);
   const RunsOn here(pe0);
   send_system<&main_arrives>(pe0, id, Nothing{});
+  if (options_.hang_report.count() != 0 && machine_.virtual_time()) start_virtual_watch(pe0);
 }
 
-void Runtime::run_main(Pe& /*pe*/) {
+void Runtime::run_main(Pe& pe) {
+  const WatchedMain watched(pe.watch(), pe.running());
   main_();
 }
 
@@ -149,7 +145,9 @@ void Runtime::finish(PeId id) {
   const RunsOn here(pe(id));
   if (options_.statistics) print_statistics(id);
   if (!left_) {
-    for (std::string& line : pe(id).census()) still_.push_back(std::move(line));
+    still_.merge(pe(id).census());
+    const std::vector<AuditRow> rows = pe(id).audit_rows();
+    still_counted_.insert(still_counted_.end(), rows.begin(), rows.end());
   }
   pe(id).drop_all();
 }
@@ -204,7 +202,7 @@ std::string Runtime::describe(Pe& pe) const {
   if (pe.constructed_index() != nullptr)
     return out + text(", ", pe.constructing_collection()->constructed_text(pe.constructed_index()),
                       ", in the constructor");
-  if (context.element != nullptr) out += text(", ", element_text(*context.element));
+  if (context.element != nullptr) out += text(", ", element_words_.text(*context.element));
   if (context.action != nullptr) out += text(", in ", plain_name(context.action->name()));
   if (context.epoch.value != 0) out += text(", epoch ", context.epoch.value >> 24U);
   return out;
@@ -288,12 +286,13 @@ void Runtime::on_census_asked(Pe& pe) {
   send_uncounted<&census_arrives>(
       pe, PeId{0},
       Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
-             pe.timers().freeze(), pe.completion().run_sent()});
+             pe.timers().freeze(), pe.completion().run_sent(), pe.audit_rows()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
   if (stopping_) return;  // exit() was called meanwhile; it counts its own answers
-  census_.lines.insert(census_.lines.end(), census.lines.begin(), census.lines.end());
+  census_.waits.merge(std::move(census.waits));
+  census_.audit.insert(census_.audit.end(), census.audit.begin(), census.audit.end());
   census_.dead_letters += census.dead_letters;
   for (EmptyArray& array : census.empty)
     if (++empty_on_[array.id] == pe.n_pes()) census_.empty.push_back(std::move(array));
@@ -315,9 +314,10 @@ void Runtime::end_with_census(Pe& pe) {
   if (census_.dead_letters != 0)
     error_line(text("tessera: ", census_.dead_letters,
                     " messages to elements that had been destroyed were not delivered"));
-  if (!census_.lines.empty()) {
+  const bool all_arrived = report_audit();
+  if (!census_.waits.empty()) {
     std::string report = "tessera: deadlock: nothing runs and nothing is under way, but " +
-                         list_of_waiting(std::move(census_.lines));
+                         list_of_waiting(std::move(census_.waits));
     // A waiter for such a result does not know the array that it comes from.
     for (const EmptyArray& array : census_.empty)
       report += text("\n  note: ", array.name, " has no elements: its reductions have no result");
@@ -325,7 +325,7 @@ void Runtime::end_with_census(Pe& pe) {
     end_with(pe, 1);
     return;
   }
-  end_with(pe, 0);
+  end_with(pe, all_arrived ? 0 : 1);
 }
 
 }  // namespace tess::detail

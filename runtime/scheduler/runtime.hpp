@@ -16,6 +16,8 @@
 #pragma once
 
 #include "runtime/machine/machine.hpp"
+#include "runtime/report/audit.hpp"
+#include "runtime/report/waiting.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/process_monitor.hpp"
 #include "runtime/scheduler/process_service.hpp"
@@ -28,16 +30,30 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace tess::detail {
 
-/// "3 wait:" and a line for each, sorted; the last ones of very many are left out.
-[[nodiscard]] std::string list_of_waiting(std::vector<std::string> lines);
+/// "12 s", with three digits.
+[[nodiscard]] std::string seconds_text(double seconds);
+/// The beginning of a report of a hang.
+[[nodiscard]] std::string hang_heading(Time idle);
+
+/// The words for an element in reports. The layer that defines elements provides the functions.
+struct ElementWords {
+  std::string (*text)(const Element& element);  ///< "Block[3,4]"
+  std::string (*key)(const Element& element);   ///< unique in the job: reply_key()
+  /// What its describe_state() returns, if it has one: "at step 16".
+  std::string (*state)(const Element& element);
+};
+
+/// The key of an element in reports, from its collection and the hash of its index.
+[[nodiscard]] std::string reply_key(CollectionId id, std::uint64_t index_hash);
 
 class Runtime final : public Program {
  public:
-  Runtime(Machine& machine, const RuntimeOptions& options, ElementText name_of,
+  Runtime(Machine& machine, const RuntimeOptions& options, const ElementWords& words,
           std::function<void()> main);
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
@@ -57,6 +73,7 @@ class Runtime final : public Program {
   int run();
 
   [[nodiscard]] Machine& machine() { return machine_; }
+  [[nodiscard]] const Machine& machine() const { return machine_; }
   [[nodiscard]] Pe& pe(PeId id) { return *pes_[static_cast<std::size_t>(id.value - first_.value)]; }
 
   /// The program, or a signal, requests the end of the run; the greatest exit code wins.
@@ -66,9 +83,21 @@ class Runtime final : public Program {
   /// Memory is exhausted: prints one line per process, however many PEs notice it; the exit code is
   /// 2.
   void out_of_memory(Pe& pe, const std::string& place);
-  [[nodiscard]] std::string element_text(const Element& element) const {
-    return element_text_(element);
-  }
+  [[nodiscard]] const ElementWords& element_words() const { return element_words_; }
+  [[nodiscard]] const RuntimeOptions& options() const { return options_; }
+  /// What a PE of this process runs, if --hang-report watches it: "Cell[3] on PE 2 has been in
+  /// Cell::step for 12 s". On one thread at a time.
+  struct Running {
+    std::string text;
+    double seconds = 0;
+  };
+  [[nodiscard]] std::optional<Running> watched(PeId id);
+  /// The same text, or without --hang-report "it runs Cell::step".
+  [[nodiscard]] std::string running_text(PeId id);
+  /// What an audit found so far, as lines for a report; empty without one. `rows` and `answered` are
+  /// of the PEs that have reported.
+  [[nodiscard]] std::string audit_text(const std::vector<AuditRow>& rows,
+                                       const std::function<bool(PeId)>& answered) const;
   /// Describes what a PE runs: "Block[3], Block::step on PE 2".
   [[nodiscard]] std::string describe(Pe& pe) const;
   /// Prints whole lines to standard error, never mixed with lines of another thread.
@@ -95,12 +124,13 @@ class Runtime final : public Program {
     std::string name;
   };
   struct Census {
-    std::vector<std::string> lines;
+    Waits waits;
     std::uint64_t dead_letters = 0;
     std::vector<EmptyArray> empty;  // arrays without elements on this PE that got a broadcast
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
     std::uint64_t n_periodic = 0;  // periodic timers on this PE, which are frozen now
     std::uint64_t n_sent = 0;      // messages of epoch 0 that this PE has sent
+    std::vector<AuditRow> audit;
   };
   void run_main(Pe& pe);
   void on_exit_asked(Pe& pe, int code, int signal);
@@ -109,11 +139,16 @@ class Runtime final : public Program {
   void on_leave(int code);
   void on_census_asked(Pe& pe);
   void on_census(Pe& pe, Census&& census);
+  void on_virtual_tick(Pe& pe, std::uint64_t n_before, std::int64_t since_ns, std::uint32_t n_late);
 
  private:
+  void start_virtual_watch(Pe& pe);
+  void report_virtual_hang(Time now, Time idle);
   void end_with(Pe& pe, int code, int signal = 0);
   /// Reports what waits at the end of the run, and ends it.
   void end_with_census(Pe& pe);
+  /// Prints the result of the audit of a quiescent run; false if it found a difference.
+  [[nodiscard]] bool report_audit();
   void print_statistics(PeId id);
   [[nodiscard]] std::string trace_path() const;
   void write_traces();
@@ -122,7 +157,7 @@ class Runtime final : public Program {
   ProcessService* service_ = nullptr;
   ProcessMonitor* monitor_ = nullptr;
   const RuntimeOptions options_;
-  const ElementText element_text_;
+  const ElementWords element_words_;
   const std::function<void()> main_;
   const PeId first_;
   std::unique_ptr<std::byte[]> reserve_;  // released when memory is exhausted
@@ -132,7 +167,8 @@ class Runtime final : public Program {
   std::atomic<int> exit_code_{0};
   std::atomic<bool> left_{false};
   std::atomic<bool> out_of_memory_{false};
-  std::vector<std::string> still_;  // simulated machine: what waits if nothing can run
+  Waits still_;  // simulated machine: what waits if nothing can run
+  std::vector<AuditRow> still_counted_;
 
   // Only on PE 0.
   bool stopping_ = false;

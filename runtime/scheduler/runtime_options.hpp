@@ -1,6 +1,8 @@
 // Options of a run that the program, the command line or a test sets.
 #pragma once
 
+#include "runtime/core/duration.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -27,6 +29,13 @@ struct MonitorOptions {
   std::int64_t period_ms = 500;
 };
 
+/// For tests of the audit: something that goes wrong with one message that a PE sends to another.
+struct MessageFault {
+  enum class Kind : std::uint8_t { none, lost, twice };
+  Kind kind = Kind::none;
+  std::uint64_t nth = 0;  ///< of the users' messages that PE 0 sends to other PEs, from 1
+};
+
 struct RuntimeOptions {
   std::uint64_t seed = 0;
   double migration_chance = 0;  ///< probability of a forced migration after a message, for testing
@@ -35,6 +44,11 @@ struct RuntimeOptions {
   MessageOptions messages;
   std::optional<MonitorOptions> monitor;
   std::string trace;  ///< the file of the trace; empty: no trace
+  /// Reports what waits when no entry method has begun for this time; 0: never. Virtual time on the
+  /// simulated machine.
+  std::chrono::nanoseconds hang_report{0};
+  bool audit = false;  ///< count the messages between PEs at both ends and compare
+  MessageFault fault;  ///< needs `audit`
   /// Takes SIGINT, SIGTERM and SIGUSR1, where the program has left them to the system.
   bool signals = true;
   /// Receives the lines of reports (deadlock, exception, statistics); if empty, they go to standard
@@ -46,6 +60,7 @@ struct RuntimeOptions {
 
 namespace tess {
 
+using detail::MessageFault;
 using detail::MessageOptions;
 using detail::MonitorOptions;
 using detail::RuntimeOptions;

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
+#include "runtime/report/wait_reason.hpp"
 
 #include <functional>
-#include <string>
 
 namespace tess::detail {
 
@@ -19,7 +19,7 @@ struct Suspended {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
-  std::function<std::string()> waits_for;
+  std::function<WaitReason()> waits_for;
   void* frame = nullptr;
   const bool* detached = nullptr;  ///< points into the frame: true if no Task holds the coroutine
   Suspended* before = nullptr;

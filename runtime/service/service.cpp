@@ -2,6 +2,8 @@
 
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/scheduler/runtime.hpp"
+#include "runtime/service/hang_watch.hpp"
+#include "runtime/service/job_report.hpp"
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -26,6 +28,8 @@ using Clock = std::chrono::steady_clock;
 /// The time in which a PE answers, and after which the job is aborted, both since the signal.
 constexpr auto answer_time = 300ms;
 constexpr auto abort_time = 700ms;
+/// The time in which the other processes report to process 0, and in which it confirms.
+constexpr auto job_time = 1s;
 
 constexpr std::array taken_signals{SIGINT, SIGTERM, SIGUSR1};
 
@@ -44,28 +48,51 @@ const char* name_of_signal(int signal) {
   return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGUSR1";
 }
 
+/// In place of a signal: no entry method has begun for the time of --hang-report.
+constexpr int hang = 0;
+
 struct CensusAsked {
   std::uint64_t round = 0;
 };
 struct SignalExit {
   int signal = 0;
 };
-void census_is_asked(Pe& pe, CensusAsked&& asked) {
-  pe.runtime().service().take_census(asked.round, pe.id(), pe.census_of_running());
+/// Process 0 asks the other processes.
+struct JobAsk {
+  std::uint64_t round = 0;
+  int signal = 0;
+};
+struct Fetch {
+  std::uint8_t none = 0;
+};
+Service::Loop& loop_of(Pe& pe) {
+  return static_cast<Service&>(pe.runtime().service()).loop();
 }
+void census_is_asked(Pe& pe, CensusAsked&& asked);
 void signal_exit_arrives(Pe& pe, SignalExit&& exit) {
   pe.runtime().exit(pe, 128 + exit.signal, exit.signal);
 }
+void job_is_asked(Pe& pe, JobAsk&& ask);
+void job_ask_is_sent(Pe& pe, JobAsk&& ask);
+void report_is_fetched(Pe& pe, Fetch&& fetch);
+void report_arrives(Pe& pe, ProcessReport&& report);
+void report_is_confirmed(Pe& pe, Fetch&& fetch);
 
 }  // namespace
 
 class Service::Loop {
  public:
   Loop(Runtime& runtime, bool signals) : runtime_(runtime), machine_(runtime.machine()) {
-    if (!signals) return;
-    for (const int signal : taken_signals) take_signal(signals_, signal);
-    wait_for_signal();
-    start();
+    const Time limit = runtime.options().hang_report;
+    if (limit.count() != 0 && !machine_.virtual_time()) {
+      watch_.emplace(runtime, limit);
+      look_later();
+    }
+    if (signals) {
+      for (const int signal : taken_signals) take_signal(signals_, signal);
+      wait_for_signal();
+    }
+    if (signals || watch_) start();
   }
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
@@ -88,24 +115,32 @@ class Service::Loop {
   }
 
   /// A PE answers; `round` 0: to whatever census ends the run.
-  void take(std::uint64_t round, PeId pe, std::vector<std::string> lines) {
+  void take(std::uint64_t round, PeId pe, Waits waits, std::vector<AuditRow> counted) {
     const std::lock_guard lock(mutex_);
     if (!census_ || (round != 0 && round != census_->round)) return;
     auto& answer = census_->answers.at(static_cast<std::size_t>(pe.value - first_pe().value));
     if (answer) return;
-    answer = std::move(lines);
-    if (--census_->n_missing == 0) report();
+    answer = std::move(waits);
+    census_->counted.insert(census_->counted.end(), counted.begin(), counted.end());
+    if (--census_->n_missing != 0) return;
+    if (ending_) return report();
+    boost::asio::post(io_, [this, of = census_->round] { close_census(of); });
   }
 
-  void ends_by_signal(int signal, PeId pe, std::vector<std::string> lines) {
+  void ends_by_signal(int signal, PeId pe, Waits waits) {
     {
       const std::lock_guard lock(mutex_);
       if (!ending_) {  // another process received the signal
         ending_ = true;
-        begin_census(signal);
+        new_census(signal);
+        if (thread_.joinable())
+          boost::asio::post(io_, [this] {
+            const std::lock_guard here(mutex_);
+            limit_census();
+          });
       }
     }
-    take(0, pe, std::move(lines));
+    take(0, pe, std::move(waits), {});
   }
 
   void close() {
@@ -113,11 +148,52 @@ class Service::Loop {
     closed_ = true;
   }
 
+  // For the report of the job. On the threads of PEs.
+
+  /// True for the first PE of process 0 that asks the other processes in this round.
+  [[nodiscard]] bool asks_first(std::uint64_t round) {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(asked_others_in_, round) != round;
+  }
+  /// Process 0 asks this process.
+  void asked(const JobAsk& ask) {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || ending_ || !thread_.joinable() || ask.round <= last_asked_) return;
+    last_asked_ = ask.round;
+    boost::asio::post(io_, [this, ask] { answer(ask); });
+  }
+  /// This process's report, for the first PE that fetches it.
+  [[nodiscard]] std::optional<ProcessReport> fetch() {
+    const std::lock_guard lock(mutex_);
+    if (fetched_ || !outgoing_) return std::nullopt;
+    fetched_ = true;
+    return outgoing_;
+  }
+  void confirmed() {
+    const std::lock_guard lock(mutex_);
+    outgoing_.reset();
+  }
+  /// Process 0 receives the report of another process.
+  void take_report(ProcessReport&& report) {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || !thread_.joinable()) return;
+    boost::asio::post(io_, [this, report = std::move(report)]() mutable {
+      const std::lock_guard here(mutex_);
+      if (closed_ || ending_) return;
+      if (!job_ && report.job_round == 0 && Clock::now() - job_printed_ > job_time)
+        begin_job(SIGUSR1);  // another process got the signal
+      if (!job_ || (report.job_round != 0 && report.job_round != job_->round())) return;
+      take_part(std::move(report));
+    });
+  }
+
  private:
   struct Census {
     int signal = 0;
     std::uint64_t round = 0;
-    std::vector<std::optional<std::vector<std::string>>> answers;  // by PE of this process
+    std::uint64_t job_round = 0;
+    std::vector<std::optional<Waits>> answers;  // by PE of this process
+    std::vector<AuditRow> counted;
     std::size_t n_missing = 0;
     bool reported = false;
   };
@@ -130,6 +206,11 @@ class Service::Loop {
   [[nodiscard]] PeId first_pe() const {
     return PeId{machine_.process().value * machine_.pes_per_process()};
   }
+  /// The processes of the job in different memories.
+  [[nodiscard]] std::int32_t n_processes() const {
+    return machine_.n_pes_here() == machine_.n_pes() ? 1 : machine_.n_processes();
+  }
+  [[nodiscard]] bool leads() const { return machine_.process().value == 0; }
   template <auto Handler>
   void send_to_pes(const typename PeAction<Handler>::Payload& payload) {
     if (closed_) return;
@@ -137,6 +218,15 @@ class Service::Loop {
       const PeId to{first_pe().value + i};
       machine_.hand_in(to, make_outside<Handler>(to, payload));
     }
+  }
+  /// Calls `run` under the lock after a time.
+  template <class Run>
+  void after(boost::asio::steady_timer& timer, Time delay, Run run) {
+    timer.expires_after(delay);
+    timer.async_wait([this, run](const boost::system::error_code& error) {
+      const std::lock_guard here(mutex_);
+      if (!error && !closed_) run();
+    });
   }
 
   /// Waits for the timer that is due first.
@@ -148,39 +238,92 @@ class Service::Loop {
     });
   }
 
-  void begin_census(int signal) {
-    const auto n = static_cast<std::size_t>(machine_.n_pes_here());
-    census_ = Census{signal, ++n_rounds_, {}, n, false};
-    census_->answers.resize(n);
+  void new_census(int signal, std::uint64_t job_round = 0) {
+    census_.emplace();
+    census_->signal = signal;
+    census_->round = ++n_rounds_;
+    census_->job_round = job_round;
+    census_->n_missing = static_cast<std::size_t>(machine_.n_pes_here());
+    census_->answers.resize(census_->n_missing);
+  }
+  void begin_census(int signal, std::uint64_t job_round = 0) {
+    new_census(signal, job_round);
+    send_to_pes<&census_is_asked>(CensusAsked{census_->round});
+    limit_census();
+  }
+  void limit_census() {
+    after(answers_due_, answer_time, [this, round = census_->round] {
+      if (census_->round == round) report();
+    });
+  }
+  void begin_job(int signal) {
+    if (job_) return;
+    job_signal_ = signal;
+    job_.emplace(++n_jobs_, heading(signal), n_processes());
+    after(job_due_, answer_time + job_time, [this] {
+      if (job_ && !ending_) print_job();
+    });
+    if (n_processes() > 1) send_to_pes<&job_ask_is_sent>(JobAsk{n_jobs_, signal});
+    begin_census(signal, n_jobs_);
+  }
+  void take_part(ProcessReport&& report) {
+    job_->take(std::move(report));
+    if (job_->complete()) print_job();
+  }
+  void print_job();
+  /// Has a PE send the report to process 0; prints it here if process 0 does not confirm it.
+  void send_report(ProcessReport&& report) {
+    outgoing_ = std::move(report);
+    fetched_ = false;
+    send_to_pes<&report_is_fetched>(Fetch{});
+    after(confirmed_due_, job_time, [this] {
+      if (!outgoing_ || outgoing_->active || ending_) return;
+      Waits& waits = outgoing_->waits;
+      runtime_.error_line(text(
+          "tessera: ", machine_.process(), " reports itself, since process 0 has not answered: ",
+          waits.empty() ? "nothing waits" : list_of_waiting(std::move(waits))));
+      outgoing_.reset();
+    });
   }
 
-  /// Prints the census, and says what the PEs run that have not answered.
-  void report() {
-    if (std::exchange(census_->reported, true)) return;
-    std::vector<std::string> lines;
-    for (std::size_t i = 0; i < census_->answers.size(); ++i) {
-      if (auto& answer = census_->answers[i]; answer) {
-        lines.insert(lines.end(), answer->begin(), answer->end());
-        continue;
-      }
-      const PeId pe{first_pe().value + static_cast<std::int32_t>(i)};
-      const Action* action = runtime_.pe(pe).running();
-      lines.push_back(
-          text(pe, " has not answered within ", answer_time.count(), " ms: it runs ",
-               action != nullptr ? plain_name(action->name()) : std::string("nothing")));
-    }
-    const std::string where =
-        machine_.n_processes() > 1 && machine_.n_pes_here() != machine_.n_pes()
-            ? text("on ", machine_.process(), ", ")
-            : std::string();
-    runtime_.error_line(text("tessera: ", name_of_signal(census_->signal),
-                             ending_ ? " ends the run; " : ": ", where,
-                             lines.empty() ? "nothing waits" : list_of_waiting(std::move(lines))));
-    if (ending_) send_to_pes<&signal_exit_arrives>(SignalExit{census_->signal});
+  [[nodiscard]] std::string heading(int signal) const {
+    if (signal == hang) return hang_heading(watch_->idle(Clock::now()));
+    return text("tessera: ", name_of_signal(signal), ": ");
   }
+
+  /// Ends the census of this process, and says what the PEs run that have not answered.
+  void report();
 
   // On the thread of the service.
 
+  void close_census(std::uint64_t round) {
+    const std::lock_guard lock(mutex_);
+    if (!closed_ && !ending_ && census_->round == round) report();
+  }
+  void answer(const JobAsk& ask) {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || ending_) return;
+    if (ask.signal == hang && watch_ && watch_->idle(Clock::now()) < watch_->limit() * 3 / 4) {
+      ProcessReport busy;
+      busy.process = machine_.process();
+      busy.job_round = ask.round;
+      busy.active = true;
+      send_report(std::move(busy));
+    } else if (census_ && !census_->reported) {
+      census_->job_round = ask.round;  // the signal came here, too
+    } else {
+      begin_census(ask.signal, ask.round);
+    }
+  }
+  void look_later() {
+    after(look_due_, watch_->period(), [this] {
+      const auto now = Clock::now();
+      for (const std::string& line : watch_->look(now))
+        runtime_.error_line("tessera: hang: " + line);
+      if (leads() && !ending_ && !job_ && watch_->due(now)) begin_job(hang);
+      look_later();
+    });
+  }
   void wait_for_signal() {
     signals_.async_wait([this](const boost::system::error_code& error, int signal) {
       if (error) return;
@@ -207,55 +350,122 @@ class Service::Loop {
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> keeps_running_{
       io_.get_executor()};
   boost::asio::signal_set signals_{io_};
-  boost::asio::steady_timer timer_{io_}, answers_due_{io_}, abort_due_{io_};
+  boost::asio::steady_timer timer_{io_}, answers_due_{io_}, abort_due_{io_}, job_due_{io_},
+      confirmed_due_{io_}, look_due_{io_};
   std::mutex mutex_;  // guards what follows
   std::multimap<Clock::time_point, std::pair<PeId, Envelope*>> later_;
+  std::optional<HangWatch> watch_;
   std::optional<Census> census_;
   std::uint64_t n_rounds_ = 0;
+  std::optional<JobReport> job_;  // process 0 collects the report of the job
+  int job_signal_ = 0;
+  std::uint64_t n_jobs_ = 0, asked_others_in_ = 0;
+  Clock::time_point job_printed_{};
+  std::optional<ProcessReport> outgoing_;  // other processes: not yet confirmed by process 0
+  bool fetched_ = false;
+  std::uint64_t last_asked_ = 0;
   bool signalled_ = false;  // a signal that ends the run has come to this process
   bool ending_ = false;     // or to another one
   bool closed_ = false;
   std::thread thread_;
 };
 
+void Service::Loop::report() {
+  if (std::exchange(census_->reported, true)) return;
+  ProcessReport of;
+  of.process = machine_.process();
+  of.job_round = census_->job_round;
+  for (std::size_t i = 0; i < census_->answers.size(); ++i) {
+    if (auto& answer = census_->answers[i]; answer) {
+      of.waits.merge(std::move(*answer));
+      continue;
+    }
+    const PeId pe{first_pe().value + static_cast<std::int32_t>(i)};
+    of.silent.push_back(pe);
+    of.waits.add(WaitRank::handler, text(pe, " has not answered within ", answer_time.count(),
+                                         " ms: ", runtime_.running_text(pe)));
+  }
+  of.audit = std::move(census_->counted);
+  if (ending_) {
+    const std::string where = n_processes() > 1 ? text("on ", machine_.process(), ", ") : "";
+    runtime_.error_line(
+        text("tessera: ", name_of_signal(census_->signal), " ends the run; ", where,
+             of.waits.empty() ? "nothing waits" : list_of_waiting(std::move(of.waits))));
+    send_to_pes<&signal_exit_arrives>(SignalExit{census_->signal});
+  } else if (!leads()) {
+    send_report(std::move(of));
+  } else if (job_) {
+    take_part(std::move(of));
+  }
+}
+
+void Service::Loop::print_job() {
+  JobReport done = std::move(*job_);
+  job_.reset();
+  if (job_signal_ == hang && done.active()) return watch_->ask_later(Clock::now());
+  if (job_signal_ == hang) watch_->reported();
+  runtime_.error_line(done.finish(runtime_));
+  job_printed_ = Clock::now();
+}
+
 void Service::Loop::on_signal(int signal) {
   const std::lock_guard lock(mutex_);
   if (closed_) return;  // the run ends anyway
-  const bool ends = signal != SIGUSR1;
-  if (ends && signalled_) machine_.abort(128 + signal);
-  signalled_ = signalled_ || ends;
-  if (!ending_) {
-    ending_ = ends;
-    begin_census(signal);
-    const std::uint64_t round = census_->round;
-    send_to_pes<&census_is_asked>(CensusAsked{round});
-    answers_due_.expires_after(answer_time);
-    answers_due_.async_wait([this, round](const boost::system::error_code& error) {
-      const std::lock_guard here(mutex_);
-      if (!error && census_->round == round) report();
-    });
+  if (signal == SIGUSR1) {
+    if (ending_) return;
+    if (leads())
+      begin_job(signal);
+    else
+      begin_census(signal);
+    return;
   }
-  if (!ends) return;
-  abort_due_.expires_after(abort_time);
-  abort_due_.async_wait([this, signal](const boost::system::error_code& error) {
-    const std::lock_guard here(mutex_);
-    if (!error && !closed_) machine_.abort(128 + signal);
-  });
+  if (signalled_) machine_.abort(128 + signal);
+  signalled_ = true;
+  if (!ending_) {
+    ending_ = true;
+    begin_census(signal);
+  }
+  after(abort_due_, abort_time, [this, signal] { machine_.abort(128 + signal); });
 }
+
+namespace {
+
+void census_is_asked(Pe& pe, CensusAsked&& asked) {
+  loop_of(pe).take(asked.round, pe.id(), pe.census_of_running(), pe.audit_rows());
+}
+void job_ask_is_sent(Pe& pe, JobAsk&& ask) {
+  if (!loop_of(pe).asks_first(ask.round)) return;
+  for (std::int32_t to = pe.machine().pes_per_process(); to < pe.n_pes(); ++to)
+    send_uncounted<&job_is_asked>(pe, PeId{to}, ask);
+}
+void job_is_asked(Pe& pe, JobAsk&& ask) {
+  loop_of(pe).asked(ask);
+}
+void report_is_fetched(Pe& pe, Fetch&& /*fetch*/) {
+  if (auto report = loop_of(pe).fetch())
+    send_uncounted<&report_arrives>(pe, PeId{0}, std::move(*report));
+}
+void report_arrives(Pe& pe, ProcessReport&& report) {
+  const PeId from{report.process.value * pe.machine().pes_per_process()};
+  loop_of(pe).take_report(std::move(report));
+  for (std::int32_t i = 0; i < pe.machine().pes_per_process(); ++i)
+    send_uncounted<&report_is_confirmed>(pe, PeId{from.value + i}, Fetch{});
+}
+void report_is_confirmed(Pe& pe, Fetch&& /*fetch*/) {
+  loop_of(pe).confirmed();
+}
+
+}  // namespace
 
 Service::Service(Runtime& runtime, bool signals)
     : loop_(std::make_unique<Loop>(runtime, signals)) {}
 Service::~Service() = default;
 
-void Service::take_census(std::uint64_t round, PeId pe, std::vector<std::string> lines) {
-  loop_->take(round, pe, std::move(lines));
-}
-
 void Service::post_after(PeId to, Envelope* message, Time delay) {
   loop_->post_after(to, message, delay);
 }
-void Service::ends_by_signal(int signal, PeId pe, std::vector<std::string> lines) {
-  loop_->ends_by_signal(signal, pe, std::move(lines));
+void Service::ends_by_signal(int signal, PeId pe, Waits waits) {
+  loop_->ends_by_signal(signal, pe, std::move(waits));
 }
 void Service::close() {
   loop_->close();

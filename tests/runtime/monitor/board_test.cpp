@@ -113,7 +113,7 @@ TEST_CASE("the census is complete once every PE has answered", "[runtime][monito
   board.begin_census();
   PeSample one = sample(0, 1, 0, 0), other = sample(1, 1, 0, 0);
   one.has_census = other.has_census = true;
-  other.census = {"Cell[3] waits for ghost(17)"};
+  other.census.add(tess::detail::WaitRank::coroutine, "Cell[3] waits for ghost(17)");
   board.arrived(one);
   CHECK(board.take_events(1, &nothing).back().kind == "frame");
   board.arrived(sample(1, 2, 0, 0));  // taken before it was asked

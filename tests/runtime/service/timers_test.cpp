@@ -177,9 +177,9 @@ TEST_CASE("a signal ends a run with its number and a census", "[runtime][signals
     co_await never;
   });
   CHECK(ending.exit_code == 128 + SIGTERM);
-  CHECK(ending.report.find(
-            "SIGTERM ends the run; 2 wait:\n  PE 0: 1 timer is set\n  the main program") !=
+  CHECK(ending.report.find("SIGTERM ends the run; 2 wait:\n  the main program on PE 0: ") !=
         std::string::npos);
+  CHECK(ending.report.find("\n  PE 0: 1 timer is set\n") != std::string::npos);
   struct sigaction now {};
   ::sigaction(SIGTERM, nullptr, &now);
   CHECK(now.sa_handler == SIG_DFL);
