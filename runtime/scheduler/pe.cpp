@@ -429,10 +429,11 @@ PeId Pe::forced_migration(const AfterMessage& after) {
   return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
 }
 
-std::vector<std::string> Pe::census() const {
+std::vector<std::string> Pe::census(std::span<void* const> except) const {
   std::vector<std::string> lines;
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
+    if (std::find(except.begin(), except.end(), one.frame) != except.end()) continue;
     lines.push_back(text(
         one.element != nullptr ? runtime_.element_text(*one.element) : text("the main program"),
         " on ", id_, ": ",

@@ -168,6 +168,9 @@ class Pe {
     return collection_numbers_.next(id_, late);
   }
   [[nodiscard]] std::vector<HostedCollection*> collections() const;
+  /// For checkpoints: the ids that this PE has given, and, after a restart, ids of ended collections.
+  [[nodiscard]] CollectionNumbers& collection_numbers() { return collection_numbers_; }
+  void had_ended(CollectionId id) { ended_.add(id); }
 
   // The machine calls these through the runtime.
 
@@ -203,7 +206,8 @@ class Pe {
   [[nodiscard]] bool dropping() const { return dropping_; }
 
   /// One line for each object on this PE that waits for something from elsewhere.
-  [[nodiscard]] std::vector<std::string> census() const;
+  /// Coroutines with these frames are left out.
+  [[nodiscard]] std::vector<std::string> census(std::span<void* const> except = {}) const;
   /// The same while the run goes on: also what is about to run.
   [[nodiscard]] std::vector<std::string> census_of_running() const;
   /// The action that runs now; null if none does. Any thread.
