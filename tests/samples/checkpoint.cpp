@@ -1,6 +1,7 @@
 // The sample of runtime/checkpoint.hpp and runtime/README.md, compiled and run.
 // tests/samples/check.py compares the text.
 #include "runtime/checkpoint.hpp"
+
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"

@@ -1,6 +1,7 @@
 // Checkpoints on one number of PEs and restarts on another, under any schedule.
 #include "runtime/checkpoint.hpp"
 
+#include "runtime/machine/threads.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
@@ -16,7 +17,7 @@ constexpr std::int32_t n_steps = 9;
 tess::Setup quiet_machine(int n_pes, std::uint64_t seed) {
   auto setup = tess::test::adversarial(n_pes, seed);
   setup.options.report = [](const std::string& line) {
-    if (line.find("were not delivered") == std::string::npos) FAIL(line);
+    if (line.find("were not delivered") == std::string::npos) FAIL_CHECK(line);
   };
   return setup;
 }
@@ -102,5 +103,24 @@ TEST_CASE("a run goes on after a checkpoint as if there had been none", "[runtim
     };
     REQUIRE(tess::run(setup, [&] { return Run::main(folder, log); }) == 0);
     REQUIRE(log == reference());
+  }
+}
+
+TEST_CASE("a run restarts on other threads", "[runtime][checkpoint]") {
+  const std::uint64_t expected = reference();
+  const auto threads = [](int n_pes) {
+    tess::Setup setup{tess::make_threads_machine(n_pes), {}};
+    setup.options.report = quiet_machine(1, 1).options.report;
+    return setup;
+  };
+  for (int i = 0; i < 6; ++i) {
+    const tess::test::Scratch scratch;
+    const std::string folder = scratch.path("saved");
+    auto setup = threads(1 + i % 4);
+    REQUIRE(tess::run(setup, [&] { return run_to(folder, 2 + i); }) == 0);
+    std::uint64_t log = 0;
+    auto next = threads(4 - i % 3);
+    REQUIRE(tess::run(next, [&] { return continue_from(folder, n_steps, log); }) == 0);
+    CHECK(log == expected);
   }
 }
