@@ -18,7 +18,7 @@ want=$(log_of)
 logs 0 "$job" "$scratch/saved" 4 --pes 4
 logs 4 "${mpirun[@]}" -n 2 "$job" "$scratch/saved" 6 --pes 1
 logs 6 "${mpirun[@]}" -n 3 "$job" "$scratch/saved" 8 --pes 2
-logs 8 "$job" "$scratch/saved" 10 --sim pes=7,per-process=2,cost=100ns,seed=4
+logs 8 "$job" "$scratch/saved" 10 --sim pes=8,per-process=2,cost=100ns,seed=4
 logs 10 "$job" "$scratch/saved" 12 --pes 1
 logs 12 "${mpirun[@]}" -n 2 "$job" "$scratch/saved" 14 --pes 2
 logs 14 "$job" "$scratch/saved" 16 --pes 3
