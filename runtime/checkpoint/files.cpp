@@ -8,10 +8,11 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
-#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/core.h>
+#include <string_view>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -33,7 +34,7 @@ struct Header {
 static_assert(sizeof(Header) == 32);
 
 [[noreturn]] void refuse(const std::string& path, const char* what) {
-  fail(ErrorCode::environment, path, ": ", what, ": ", std::strerror(errno));
+  fail(ErrorCode::environment, path, ": ", what, ": ", std::generic_category().message(errno));
 }
 
 /// An open file or folder.

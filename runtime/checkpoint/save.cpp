@@ -7,6 +7,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <coroutine>
 #include <exception>
 
@@ -34,7 +35,7 @@ struct OwnFrame {
     return false;
   }
   [[nodiscard]] std::uint64_t await_resume() const noexcept {
-    return reinterpret_cast<std::uint64_t>(frame);
+    return std::bit_cast<std::uint64_t>(frame);
   }
 };
 
@@ -47,7 +48,7 @@ struct CensusQuestion {
 std::vector<std::string> take_census(Pe& pe, const CensusQuestion& question) {
   std::vector<void*> frames;
   if (pe.id() == question.main) {
-    for (auto at = Task::Handle::from_address(reinterpret_cast<void*>(question.frame)); at;
+    for (auto at = Task::Handle::from_address(std::bit_cast<void*>(question.frame)); at;
          at = at.promise().parent)
       frames.push_back(at.address());
   }
