@@ -46,8 +46,7 @@ namespace tess {
 
 /// Saves the run in `folder`, which all processes can reach. Only in the main coroutine, outside of
 /// epochs. Throws Error if the run is not quiet or the files cannot be written; then the run can go
-/// on. Each PE packs all its elements at once, so it needs their memory once more meanwhile. The
-/// options are given a name first: g++ 12 fails on an aggregate in a `co_await` expression.
+/// on. The options are given a name first: g++ 12 fails on an aggregate in a `co_await` expression.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
                               const CheckpointOptions& options) {

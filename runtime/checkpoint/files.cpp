@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/core.h>
@@ -73,6 +74,9 @@ class Open {
     }
     return all;
   }
+  void write_at_begin(const void* data, std::size_t n) {
+    if (::pwrite(file_, data, n, 0) != static_cast<ssize_t>(n)) refuse(path_, "cannot be written");
+  }
   void sync() {
     if (::fsync(file_) != 0) refuse(path_, "cannot be made durable");
   }
@@ -86,32 +90,90 @@ void sync_folder(const std::string& path) {
   Open(path, O_RDONLY | O_DIRECTORY, "cannot be opened").sync();
 }
 
-/// Writes the parts under another name, then gives the file its name.
-void write_durably(const std::string& folder, const std::string& name,
-                   std::initializer_list<std::span<const std::byte>> parts) {
-  const std::string path = folder + "/" + name, beside = path + ".part";
-  {
-    Open file(beside, O_WRONLY | O_CREAT | O_TRUNC, "cannot be written");
-    for (const auto part : parts) file.write(part.data(), part.size());
-    file.sync();
-  }
+/// Gives a file that was written beside its name.
+void rename_beside(const std::string& path) {
+  const std::string beside = path + ".part";
   if (std::rename(beside.c_str(), path.c_str()) != 0) refuse(beside, "cannot be renamed");
+}
+
+/// The hash of a file goes on from block to block; only the last block may be shorter.
+constexpr std::size_t block_bytes = std::size_t{1} << 20U;
+std::uint64_t next_hash(std::uint64_t hash, std::span<const std::byte> block) {
+  return mix(hash ^ hash_bytes(block.data(), block.size()));
+}
+std::uint64_t hash_of(std::span<const std::byte> bytes) {
+  std::uint64_t hash = 0;
+  for (std::size_t done = 0; done < bytes.size(); done += block_bytes)
+    hash = next_hash(hash, bytes.subspan(done, std::min(block_bytes, bytes.size() - done)));
+  return hash;
 }
 
 }  // namespace
 
+class FileWriter::File {
+ public:
+  explicit File(std::string path)
+      : path_(std::move(path)),
+        open_(path_ + ".part", O_WRONLY | O_CREAT | O_TRUNC, "cannot be written") {}
+  Open& open() { return open_; }
+  void finish() {
+    open_.sync();
+    rename_beside(path_);
+  }
+
+ private:
+  const std::string path_;
+  Open open_;
+};
+
+FileWriter::FileWriter(const std::string& folder, const std::string& name)
+    : file_(std::make_unique<File>(folder + "/" + name)), sum_{name, 0, 0} {
+  const Header header;
+  file_->open().write(&header, sizeof header);
+}
+
+FileWriter::~FileWriter() = default;
+
+void FileWriter::write_block(std::span<const std::byte> bytes) {
+  sum_.n_bytes += bytes.size();
+  sum_.hash = next_hash(sum_.hash, bytes);
+  file_->open().write(bytes.data(), bytes.size());
+}
+
+void FileWriter::write_some(Buffer& bytes) {
+  std::size_t done = 0;
+  for (; bytes.size() - done >= block_bytes; done += block_bytes)
+    write_block({bytes.data() + done, block_bytes});
+  if (done == 0) return;
+  std::memmove(bytes.data(), bytes.data() + done, bytes.size() - done);
+  bytes.resize(bytes.size() - done);
+}
+
+FileSum FileWriter::finish(std::span<const std::byte> bytes) {
+  for (std::size_t done = 0; done < bytes.size(); done += block_bytes)
+    write_block(bytes.subspan(done, std::min(block_bytes, bytes.size() - done)));
+  Header header;
+  header.n_bytes = sum_.n_bytes;
+  header.hash = sum_.hash;
+  file_->open().write_at_begin(&header, sizeof header);
+  file_->finish();
+  return sum_;
+}
+
 FileSum write_file(const std::string& folder, const std::string& name,
                    std::span<const std::byte> bytes) {
-  Header header;
-  header.n_bytes = bytes.size();
-  header.hash = hash_bytes(bytes.data(), bytes.size());
-  write_durably(folder, name, {std::as_bytes(std::span(&header, 1)), bytes});
-  return {name, header.n_bytes, header.hash};
+  return FileWriter(folder, name).finish(bytes);
 }
 
 void write_last(const std::string& folder, const std::string& name, const std::string& text) {
   sync_folder(folder);
-  write_durably(folder, name, {std::as_bytes(std::span(text))});
+  const std::string path = folder + "/" + name;
+  {
+    Open file(path + ".part", O_WRONLY | O_CREAT | O_TRUNC, "cannot be written");
+    file.write(text.data(), text.size());
+    file.sync();
+  }
+  rename_beside(path);
   sync_folder(folder);
 }
 
@@ -144,7 +206,7 @@ Buffer read_file(const std::string& folder, const FileSum& sum) {
   Buffer bytes(sum.n_bytes);
   const std::size_t n = file.read(bytes.data(), bytes.size());
   if (n != sum.n_bytes || header.n_bytes != sum.n_bytes || header.hash != sum.hash ||
-      header.zero != 0 || hash_bytes(bytes.data(), bytes.size()) != sum.hash)
+      header.zero != 0 || hash_of({bytes.data(), bytes.size()}) != sum.hash)
     fail(ErrorCode::bad_file, path, " is damaged: its checksum is not that of the manifest");
   return bytes;
 }

@@ -12,13 +12,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace tess::detail {
 
-/// What the manifest says of a file.
+/// What the manifest says of a file. The hash goes on from block to block of 1 MiB.
 struct FileSum {
   std::string name;
   std::uint64_t n_bytes = 0;  ///< behind the header
@@ -27,7 +28,28 @@ struct FileSum {
 
 inline constexpr std::uint32_t checkpoint_version = 1;
 
-/// Writes a file; its contents are durable. All of these throw Error with the name of the file and what is wrong.
+/// Writes a file piece by piece. All of these throw Error with the name of the file and what is wrong.
+class FileWriter {
+ public:
+  FileWriter(const std::string& folder, const std::string& name);
+  FileWriter(const FileWriter&) = delete;
+  FileWriter& operator=(const FileWriter&) = delete;
+  ~FileWriter();
+
+  /// Writes the bytes if they are many, and removes from `bytes` what was written.
+  void write_some(Buffer& bytes);
+  /// Writes the last bytes, makes the file durable, and gives it its name.
+  [[nodiscard]] FileSum finish(std::span<const std::byte> bytes);
+
+ private:
+  class File;
+  void write_block(std::span<const std::byte> bytes);
+
+  const std::unique_ptr<File> file_;
+  FileSum sum_;
+};
+
+/// Writes a file at once.
 [[nodiscard]] FileSum write_file(const std::string& folder, const std::string& name,
                                  std::span<const std::byte> bytes);
 /// Writes a file of text: it is there after a crash only if all that was written before is.

@@ -76,8 +76,7 @@ std::string restore_here(Pe& pe, const ReadQuestion& question) {
     Reader ar(std::span<const std::byte>(bytes.data(), bytes.size()));
     for (auto n = ar.take<std::uint64_t>(); n > 0; --n) {
       Collection& collection = *find_collection(pe, ar.take<CollectionId>());
-      Reader elements = ar.part(ar.take<std::uint64_t>());
-      collection.restore(elements);
+      collection.restore(ar);
       Reader sections = ar.part(ar.take<std::uint64_t>());
       if (sections.remaining() > sizeof(std::uint64_t)) collection.restore_sections(sections);
     }

@@ -87,13 +87,16 @@ struct SaveAnswer {
   }
 };
 
-/// Returns the sections whose root is this PE.
-std::vector<SectionId> pack_all(const std::vector<Collection*>& collections, Writer& ar) {
+/// Writes the collections; returns the sections whose root is this PE. The bytes of one element after
+/// the other leave the buffer, so a checkpoint needs little memory.
+std::vector<SectionId> pack_all(const std::vector<Collection*>& collections, Buffer& bytes,
+                                FileWriter& file) {
   std::vector<SectionId> sections;
+  Writer ar(bytes);
   ar(static_cast<std::uint64_t>(collections.size()));
   for (Collection* collection : collections) {
     ar(collection->id());
-    pack_framed(ar, [collection](Writer& body) { collection->save(body); });
+    collection->save(ar, [&] { file.write_some(bytes); });
     pack_framed(ar, [&](Writer& body) {
       const std::vector<SectionId> saved = collection->save_sections(body);
       sections.insert(sections.end(), saved.begin(), saved.end());
@@ -109,14 +112,11 @@ SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
   for (const Collection* collection : collections)
     answer.collections.push_back(
         {collection->id(), collection->has_sections(), collection->n_local()});
-  Writer count{std::span<std::byte>()};
-  (void)pack_all(collections, count);
-  Buffer bytes(count.n_bytes());
-  Writer ar{std::span(bytes.data(), bytes.size())};
-  answer.sections = pack_all(collections, ar);
   try {
-    answer.file =
-        write_file(question.folder, text("pe-", pe.id().value), {bytes.data(), bytes.size()});
+    FileWriter file(question.folder, text("pe-", pe.id().value));
+    Buffer bytes;
+    answer.sections = pack_all(collections, bytes, file);
+    answer.file = file.finish({bytes.data(), bytes.size()});
   } catch (const Error& error) {
     answer.error = error.what();
   }

@@ -173,8 +173,9 @@ class Collection : public HostedCollection {
   [[nodiscard]] const Range& range() const { return range_; }
   /// Appends a line for each element here that waits at its balancer's barrier: it cannot be saved.
   void describe_unsaved(std::vector<std::string>& lines) const;
-  /// Writes the elements that are here.
-  void save(Writer& ar);
+  /// Writes the elements that are here. Calls written() after each: what was written may be taken
+  /// out of the writer's buffer then.
+  void save(Writer& ar, const std::function<void()>& written);
   /// Reads what save() wrote on some PE, and sends each element to its new home.
   void restore(Reader& ar);
   /// An element has arrived at its home, or that the last one of its index was destroyed.

@@ -29,15 +29,15 @@ void saved_arrives(Collection& collection, Saved&& saved) {
 
 }  // namespace
 
-void Collection::save(Writer& ar) {
-  const std::size_t at = ar.position();
-  ar(std::uint64_t{0});
-  const std::uint64_t n_destroyed = save_destroyed(ar);
+void Collection::save(Writer& ar, const std::function<void()>& written) {
+  Writer count{std::span<std::byte>()};
+  ar(save_destroyed(count) + n_local());
+  (void)save_destroyed(ar);
   for (Element* element : elements_) {
     ar(element->state_.version.incarnation, true);
     pack_framed(ar, [this, element](Writer& body) { save_element(*element, body); });
+    written();
   }
-  ar.patch(at, n_destroyed + n_local());
 }
 
 void Collection::restore(Reader& ar) {
