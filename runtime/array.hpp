@@ -14,6 +14,7 @@
 #include "runtime/collections/call.hpp"
 #include "runtime/collections/moving.hpp"
 #include "runtime/collections/routing.hpp"
+#include "runtime/collections/saving.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/priority.hpp"
 #include "runtime/scheduler/pe_action.hpp"
@@ -30,6 +31,14 @@ namespace detail {
 /// A member of a group.
 template <class C>
 concept OnePerPe = requires { C::one_per_pe; };
+
+/// A class that a checkpoint leaves out: `static constexpr bool in_checkpoints = false;`.
+template <class C>
+concept NotSaved = requires { requires !C::in_checkpoints; };
+
+/// After a restart on another number of PEs a member of a group takes over the state of another one.
+template <class C>
+concept Absorbs = requires(C& member, C& other) { member.absorb(std::move(other)); };
 
 /// The priority of a message is that which its class gives the entry method.
 struct OfEntry {};
@@ -99,23 +108,11 @@ class Array final : public ArrayOf<typename C::Index> {
         const std::span<const std::byte> state(arrival.state.data(), arrival.state.size());
         Reader ar(state);
         const auto index = ar.template take<Index>();
-        {
-          const Pe::Construction construction(this->pe_, &index, this);
-          arrival.element = make_chare<C>();
-          // The first construction has already done what the constructor asks for.
-          this->drop_after_construction();
-          own(*arrival.element).migrate_to_ = PeId{-1};
-          own(*arrival.element).destroy_requested_ = false;
-        }
+        arrival.element = construct_again(index);
         ar(own(*arrival.element).state_);
         this->unpack_record(*arrival.element, ar);
         [[maybe_unused]] const auto sent = state.last(ar.remaining());
-        read_all(
-            ar, [&] { return this->name() + index_text(index); },
-            [&arrival](Reader& rest) {
-              arrival.element->serialize(rest);
-              return true;
-            });
+        read_members(*arrival.element, ar);
 #ifdef TESS_CHECKS_ALL
         const std::string difference = difference_from_bytes(sent, *arrival.element);
         TESS_CHECK(difference.empty(), index_text(index), " of ", difference);
@@ -183,6 +180,27 @@ class Array final : public ArrayOf<typename C::Index> {
   }
 
   [[nodiscard]] bool migratable() const override { return Migratable<C> && !OnePerPe<C>; }
+  [[nodiscard]] const CollectionKind& kind() const override { return kind_; }
+
+  void take_saved(std::uint32_t incarnation, bool alive, Reader& ar) override {
+    auto index = ar.template take<Index>();
+    if (!alive) return this->restore_destroyed(index, incarnation);
+    if constexpr (Migratable<C>) {
+      if constexpr (OnePerPe<C>) index = Index{this->pe_.id().value};
+      std::unique_ptr<C> element(construct_again(index));
+      read_members(*element, ar);
+      if (!OnePerPe<C> || this->n_local() == 0)
+        return this->add_restored(*element.release(), incarnation);
+      own(*element).collection_ = this;
+      if constexpr (Absorbs<C>)
+        static_cast<C&>(*this->elements().front()).absorb(std::move(*element));
+    }
+  }
+  void restored() override {
+    if constexpr (OnePerPe<C> && Migratable<C>)
+      if (this->n_local() == 0)
+        this->construct(Index{this->pe_.id().value}, Version{1, 1}, [] { return make_chare<C>(); });
+  }
 
   void end() override {
     if constexpr (requires(C& member) { member.group_ends(); })
@@ -225,6 +243,15 @@ class Array final : public ArrayOf<typename C::Index> {
 #endif
     pe.send(to, arrival);
   }
+  void save_element(Element& element, Writer& ar) override {
+    if constexpr (Migratable<C>) {
+      ar(own(static_cast<C&>(element)).index_);
+      static_cast<C&>(element).serialize(ar);
+    }
+  }
+  [[nodiscard]] PeId home_of_saved(Reader ar) const override {
+    return OnePerPe<C> ? this->pe_.id() : home(ar.template take<Index>());
+  }
   [[nodiscard]] DeadLetters dead_letters() const override {
     if constexpr (requires { C::dead_letters; }) {
       return C::dead_letters;
@@ -232,6 +259,37 @@ class Array final : public ArrayOf<typename C::Index> {
       return DeadLetters::report;
     }
   }
+
+ private:
+  /// Constructs an element that is to be read from bytes.
+  C* construct_again(const Index& index) {
+    const Pe::Construction construction(this->pe_, &index, this);
+    C* const element = make_chare<C>();
+    // The first construction has already done what the constructor asks for.
+    this->drop_after_construction();
+    own(*element).migrate_to_ = PeId{-1};
+    own(*element).destroy_requested_ = false;
+    return element;
+  }
+  void read_members(C& element, Reader& ar) {
+    read_all(
+        ar, [&] { return this->name() + index_text(own(element).index_); },
+        [&element](Reader& rest) {
+          element.serialize(rest);
+          return true;
+        });
+  }
+  static std::unique_ptr<Collection> make(Pe& pe, CollectionId id, const Range& range) {
+    return std::make_unique<Array>(pe, id, range);
+  }
+  static inline const CollectionKind kind_{naming::name_of<C>(),
+                                           NotSaved<C>     ? Saving::skipped
+                                           : Migratable<C> ? Saving::elements
+                                                           : Saving::impossible,
+                                           !OnePerPe<C> ? CollectionKind::Members::of_array
+                                           : Absorbs<C> ? CollectionKind::Members::absorbed
+                                                        : CollectionKind::Members::fixed,
+                                           &make};
 };
 
 template <class C>

@@ -1,12 +1,17 @@
 // A Jacobi stencil over a two-dimensional array of blocks. A step is one coroutine: send the edges,
 // await the neighbours', relax, contribute the change; the reduction's result starts the next step.
 // Blocks may migrate between any two steps. The program prints the time and the distance of the
-// values from the exact iterate.
+// values from the exact iterate. With --checkpoint the main coroutine pauses the blocks and saves
+// them; with --restart it continues from there.
+#include "apps/checkpoints.hpp"
 #include "apps/command_line.hpp"
+#include "apps/plot/write_file.hpp"
 #include "apps/stencil/grid.hpp"
+#include "runtime/checkpoint.hpp"
 #include "runtime/monitor.hpp"
 #include "runtime/runtime.hpp"
 
+#include <algorithm>
 #include <fmt/core.h>
 
 namespace stencil {
@@ -21,8 +26,14 @@ struct Edge {
 class Block : public tess::Chare<Block, tess::Index2> {
  public:
   Block() = default;
-  Block(const Grid& grid, tess::Callback<Outcome> result)
-      : grid_(grid), tile_(grid.tile(index())), result_(std::move(result)) {}
+  explicit Block(const Grid& grid) : grid_(grid), tile_(grid.tile(index())) {}
+
+  /// Runs on until `until` steps are done; `paused` receives the last change.
+  void run(std::int32_t until, const tess::Callback<double>& paused) {
+    until_ = until;
+    paused_ = paused;
+    array()[index()].send<&Block::step>(step_);
+  }
 
   tess::Task step(std::int32_t step) {
     const auto links = grid_.links(index());
@@ -37,17 +48,20 @@ class Block : public tess::Chare<Block, tess::Index2> {
   }
   void receive(Edge edge) { edges_.put(std::move(edge)); }
 
-  void decide(double /*change*/) {
-    if (++step_ < grid_.n_steps) {
+  void decide(double change) {
+    if (++step_ < until_) {
       array()[index()].send<&Block::step>(step_);
     } else {
-      contribute(Combine(), tile_.compare(step_), result_);
+      contribute(tess::max, change, paused_);
     }
+  }
+  void compare(const tess::Callback<Outcome>& result) {
+    contribute(Combine(), tile_.compare(step_), result);
   }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(grid_, tile_, edges_, step_, result_);
+    ar(grid_, tile_, edges_, step_, until_, paused_);
   }
 
  private:
@@ -64,26 +78,92 @@ class Block : public tess::Chare<Block, tess::Index2> {
   Grid grid_;
   Tile tile_;
   tess::Mailbox<&Edge::step> edges_;
-  std::int32_t step_ = 0;
-  tess::Callback<Outcome> result_;
+  std::int32_t step_ = 0, until_ = 0;
+  tess::Callback<double> paused_;
 };
 
-tess::Task relax(Grid grid) {
-  tess::Future<Outcome> result;
-  const auto blocks =
-      tess::create<Block>(tess::range(grid.n_blocks, grid.n_blocks), grid, result.callback());
+/// The state of the main coroutine, as a checkpoint saves it.
+struct State {
+  Grid grid;
+  tess::ArrayProxy<Block> blocks;
+  std::int32_t step = 0;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(grid, blocks, step);
+  }
+};
+
+struct Options {
+  Grid grid{{64}, 4, 10'000};
+  bool size_given = false, blocks_given = false;
+  std::string json;
+  apps::Checkpoints checkpoints;
+};
+
+/// The grid of a checkpoint, for this many steps in all.
+Grid continued(const Options& options, const State& saved) {
+  const auto refuse = [](const char* option, std::int32_t given, std::int32_t was) {
+    tess::fail(tess::ErrorCode::bad_argument, option, ": ", given, ", but the checkpoint has ", was,
+               ": leave the option out");
+  };
+  if (options.size_given && options.grid.problem.size != saved.grid.problem.size)
+    refuse("--size", options.grid.problem.size, saved.grid.problem.size);
+  if (options.blocks_given && options.grid.n_blocks != saved.grid.n_blocks)
+    refuse("--blocks", options.grid.n_blocks, saved.grid.n_blocks);
+  if (options.grid.n_steps < saved.step)
+    tess::fail(tess::ErrorCode::bad_argument, "--steps: ", options.grid.n_steps,
+               ", but the checkpoint has done ", saved.step);
+  Grid grid = saved.grid;
+  grid.n_steps = options.grid.n_steps;
+  return grid;
+}
+
+tess::Task relax(Options options) {
+  State state;
+  if (options.checkpoints.restarts()) {
+    state = co_await tess::restart<State>(options.checkpoints.restart_folder());
+    state.grid = continued(options, state);
+    tess::print("continues after step ", state.step, "\n");
+  } else {
+    state.grid = options.grid;
+    state.blocks =
+        tess::create<Block>(tess::range(state.grid.n_blocks, state.grid.n_blocks), state.grid);
+  }
+  const Grid& grid = state.grid;
+  const std::int32_t first = state.step;
   const tess::Time begin = tess::now();
-  blocks.broadcast<&Block::step>(0);
-  const Outcome outcome = co_await result;
+  while (state.step < grid.n_steps) {
+    const std::int32_t until = options.checkpoints.pause_after(state.step, grid.n_steps);
+    tess::Future<double> paused;
+    state.blocks.broadcast<&Block::run>(until, paused.callback());
+    co_await paused;
+    state.step = until;
+    if (options.checkpoints.is_due(state.step, grid.n_steps)) {
+      tess::CheckpointOptions how;
+      how.note = fmt::format("stencil --size {} --blocks {}, after step {}", grid.problem.size,
+                             grid.n_blocks, state.step);
+      co_await tess::checkpoint(options.checkpoints.folder(), state, how);
+    }
+  }
   const double seconds = tess::seconds(tess::now() - begin);
+  tess::Future<Outcome> result;
+  state.blocks.broadcast<&Block::compare>(result.callback());
+  const Outcome outcome = co_await result;
   tess::print(fmt::format(
       "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us per block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",
       grid.problem.size, grid.n_blocks, grid.n_steps, seconds,
-      seconds * 1e6 / grid.n_steps / grid.n_blocks / grid.n_blocks, outcome.from_iterate,
-      outcome.from_solution, outcome.hash));
+      seconds * 1e6 / std::max(1, grid.n_steps - first) / grid.n_blocks / grid.n_blocks,
+      outcome.from_iterate, outcome.from_solution, outcome.hash));
   TESS_CHECK(outcome.from_iterate < 1e-12, "the values are ", outcome.from_iterate,
              " away from the Jacobi iterate");
+  if (!options.json.empty())
+    plot::write_file(
+        options.json,
+        fmt::format("{{\"program\": \"stencil\", \"size\": {}, \"blocks\": {}, \"steps\": {}, "
+                    "\"from_iterate\": {:.3e}, \"result_hash\": \"{:016x}\"}}\n",
+                    grid.problem.size, grid.n_blocks, grid.n_steps, outcome.from_iterate,
+                    outcome.hash));
 }
 
 }  // namespace
@@ -91,16 +171,25 @@ tess::Task relax(Grid grid) {
 
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
-    stencil::Grid grid{{64}, 4, 10'000};
+    stencil::Options options;
+    stencil::Grid& grid = options.grid;
     apps::CommandLine line("A two-dimensional Jacobi stencil on chares.");
-    line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
-    line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
+    const auto blocks = line.option("--blocks", grid.n_blocks, "blocks on each axis");
+    apps::Option(blocks).between(1, 4096);
+    const auto size = line.option("--size", grid.problem.size, "grid points on each axis");
+    apps::Option(size).between(1, 65536);
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
+    line.option("--json", options.json, "write the result as JSON");
+    options.checkpoints.add_options(line);
     if (!line.parse(argc, argv)) return 0;
+    options.checkpoints.check();
+    options.blocks_given = blocks.is_given();
+    options.size_given = size.is_given();
+    plot::require_writable("--json", options.json);
     if (grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,
                  " blocks on an axis of ", grid.problem.size,
                  " points: give at most one per point");
-    return tess::run(setup, [&] { return stencil::relax(grid); });
+    return tess::run(setup, [&] { return stencil::relax(options); });
   });
 }

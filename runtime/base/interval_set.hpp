@@ -4,8 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
-#include <map>
+#include <map>  // also std::prev: <iterator> would bring those of streams into every program
 
 namespace tess::detail {
 

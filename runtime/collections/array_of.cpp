@@ -2,6 +2,7 @@
 
 #include "runtime/collections/moving.hpp"
 #include "runtime/collections/routing.hpp"
+#include "runtime/collections/saving.hpp"
 
 namespace tess::detail {
 

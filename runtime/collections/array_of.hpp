@@ -89,15 +89,11 @@ class ArrayOf : public Collection {
   using CallMessage = ElementMessage<Index>;
 
   ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
-      : Collection(pe, id, std::move(name)),
-        range_(range),
-        block_map_(range, pe.n_pes()),
-        table_(range) {}
+      : Collection(pe, id, std::move(name), range), block_map_(range, pe.n_pes()), table_(range) {}
   ArrayOf(const ArrayOf&) = delete;
   ArrayOf& operator=(const ArrayOf&) = delete;
   ~ArrayOf() override;
 
-  [[nodiscard]] const Range& range() const { return range_; }
   [[nodiscard]] const BlockMap& block_map() const { return block_map_; }
   [[nodiscard]] virtual PeId home(const Index& index) const = 0;
 
@@ -193,6 +189,7 @@ class ArrayOf : public Collection {
     return IndexHash<Index>()(static_cast<const Indexed&>(element).index_);
   }
 
+  void restore_sections(Reader& ar) override;
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;
   [[nodiscard]] std::string constructed_text(const void* index) const override {
@@ -274,6 +271,10 @@ class ArrayOf : public Collection {
   void add_arrived(Indexed* element, PeId from, Memberships&& memberships);
 
   void destroy_all();
+  /// Adds an element that was read from a checkpoint.
+  void add_restored(Indexed& element, std::uint32_t incarnation);
+  void restore_destroyed(const Index& index, std::uint32_t incarnation);
+  std::uint64_t save_destroyed(Writer& ar) const override;
 
  private:
   using Record = IndexRecord<Indexed>;
@@ -320,7 +321,6 @@ class ArrayOf : public Collection {
   void on_destroy_report(const DestroyReport& report);
   void on_destroy_noted(const DestroyNoted& noted);
 
-  const Range range_;
   const BlockMap block_map_;
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;

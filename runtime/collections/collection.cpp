@@ -28,9 +28,10 @@ void Element::after_construction(const char* what, std::function<void()> call) {
   collection->after_construction(std::move(call));
 }
 
-Collection::Collection(Pe& pe, CollectionId id, std::string name)
+Collection::Collection(Pe& pe, CollectionId id, std::string name, const Range& range)
     : HostedCollection(id, std::move(name)),
       pe_(pe),
+      range_(range),
       broadcasts_(broadcast_host_, pe.completion(), pe.id(), root(), pe.n_pes()),
       reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
                   {this->name() + ": reduction",

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/collections/collection_hosts.hpp"
+#include "runtime/collections/collection_kind.hpp"
 #include "runtime/collections/element.hpp"
 #include "runtime/collections/membership.hpp"
 #include "runtime/scheduler/pe.hpp"
@@ -45,7 +46,7 @@ class ElementWatcher {
 
 class Collection : public HostedCollection {
  public:
-  Collection(Pe& pe, CollectionId id, std::string name);
+  Collection(Pe& pe, CollectionId id, std::string name, const Range& range);
   Collection(const Collection&) = delete;
   Collection& operator=(const Collection&) = delete;
   ~Collection() override;
@@ -168,6 +169,29 @@ class Collection : public HostedCollection {
   virtual void end();
   [[nodiscard]] bool ended() const { return ended_; }
 
+  // For checkpoints, which are made while nothing runs and nothing is under way.
+
+  /// How collections of this class are saved and made anew.
+  [[nodiscard]] virtual const CollectionKind& kind() const = 0;
+  [[nodiscard]] const Range& range() const { return range_; }
+  /// Appends a line for each element here that waits at its balancer's barrier: it cannot be saved.
+  void describe_unsaved(std::vector<std::string>& lines) const;
+  /// Writes the elements that are here. Calls written() after each: what was written may be taken
+  /// out of the writer's buffer then.
+  void save(Writer& ar, const std::function<void()>& written);
+  /// Reads what save() wrote on some PE, and sends each element to its new home.
+  void restore(Reader& ar);
+  /// An element has arrived at its home, or that the last one of its index was destroyed.
+  virtual void take_saved(std::uint32_t incarnation, bool alive, Reader& ar) = 0;
+  /// All elements have arrived.
+  virtual void restored() {}
+  [[nodiscard]] bool has_sections() const { return sections_ != nullptr; }
+  /// Writes the sections whose root is this PE, and returns their ids.
+  std::vector<SectionId> save_sections(Writer& ar) const;
+  virtual void restore_sections(Reader& ar) = 0;
+  /// After a restart: the section had ended before the checkpoint.
+  void section_had_ended(SectionId id);
+
   /// True if elements can be packed and rebuilt elsewhere.
   [[nodiscard]] virtual bool migratable() const = 0;
   [[nodiscard]] virtual std::string index_text_of(const Element& element) const = 0;
@@ -178,6 +202,11 @@ class Collection : public HostedCollection {
   [[nodiscard]] std::string elements_before(std::uint32_t number) const;
 
  protected:
+  /// Writes the index and the user's members.
+  virtual void save_element(Element& element, Writer& ar) = 0;
+  /// Writes the indices with this home whose elements were destroyed; returns their number.
+  virtual std::uint64_t save_destroyed(Writer& ar) const = 0;
+  [[nodiscard]] virtual PeId home_of_saved(Reader ar) const = 0;
   void list(Element& element);
   void unlist(Element& element);
   void count_departure(const Element& element) { n_away_ += known(element) ? 0 : 1; }
@@ -213,6 +242,7 @@ class Collection : public HostedCollection {
     return {element.state_.seen_broadcast, context.element == &element ? context.led_by : 0};
   }
 
+  const Range range_;
   std::vector<Element*> elements_;
   std::vector<std::function<void()>> after_construction_;
   std::int64_t n_away_ = 0;

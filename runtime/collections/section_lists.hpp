@@ -86,7 +86,15 @@ class SectionListsOf final : public SectionLists {
   void gone(SectionId section, std::uint32_t ordinal, std::uint32_t next) override;
   void end(SectionId section) override;
   void end_all() override;
+  std::vector<SectionId> save(Writer& ar) const override;
+  void restore(Reader& ar) override;
   void describe_waiting(std::vector<std::string>& lines) const override;
+
+  [[nodiscard]] static SectionListsOf& of(Array& array) {
+    auto& lists = array.sections().lists();
+    if (!lists) lists = std::make_unique<SectionListsOf>(array);
+    return static_cast<SectionListsOf&>(*lists);
+  }
 
  private:
   struct Entry {
@@ -202,11 +210,6 @@ class SectionListsOf final : public SectionLists {
 
   static constexpr std::size_t most_stale = 16;  // one of so many members
 
-  [[nodiscard]] static SectionListsOf& of(Array& array) {
-    auto& lists = array.sections().lists();
-    if (!lists) lists = std::make_unique<SectionListsOf>(array);
-    return static_cast<SectionListsOf&>(*lists);
-  }
   [[nodiscard]] Sections& sections() { return array_.sections(); }
   [[nodiscard]] Completion& completion() { return array_.pe().completion(); }
   /// The lists of a section; null once it has ended here.
@@ -548,6 +551,30 @@ void SectionListsOf<Index>::end(SectionId section) {
 template <class Index>
 void SectionListsOf<Index>::end_all() {
   while (!lists_.empty()) end(SectionId{lists_.begin()->first});
+}
+
+template <class Index>
+std::vector<SectionId> SectionListsOf<Index>::save(Writer& ar) const {
+  std::vector<SectionId> ids;
+  for (const auto& [id, of] : lists_)
+    if (of.root.created) ids.push_back(SectionId{id});
+  ar(static_cast<std::uint64_t>(ids.size()));
+  for (const SectionId id : ids) {
+    std::vector<Index> indices;
+    for (const RootMember& member : lists_.at(id.value).root.members)
+      if (member.state != State::gone) indices.push_back(member.index);
+    ar(id, indices);
+  }
+  return ids;
+}
+
+template <class Index>
+void SectionListsOf<Index>::restore(Reader& ar) {
+  for (auto n = ar.take<std::uint64_t>(); n > 0; --n) {
+    const auto id = ar.take<SectionId>();
+    send_to_collection<&create_arrives>(array_, sections().root(id),
+                                        Create{id, EpochId{}, ar.take<std::vector<Index>>()});
+  }
 }
 
 template <class Index>

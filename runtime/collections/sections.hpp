@@ -39,6 +39,9 @@ class SectionLists {
   /// The section ends here: what waits for it is dropped.
   virtual void end(SectionId section) = 0;
   virtual void end_all() = 0;
+  // For checkpoints: the sections whose root is this PE, with the indices of their members.
+  virtual std::vector<SectionId> save(Writer& ar) const = 0;
+  virtual void restore(Reader& ar) = 0;
   virtual void describe_waiting(std::vector<std::string>& lines) const = 0;
 };
 
@@ -141,6 +144,8 @@ class Sections {
 
   /// The section ends on this PE.
   void end(SectionId id);
+  /// After a restart: the section had ended before the checkpoint.
+  void had_ended(SectionId id) { ended_.add(CollectionId{id.value}); }
   /// The collection ends on this PE.
   void end_all();
 

@@ -153,6 +153,8 @@ class Completion {
 
   /// The messages of epoch 0 that this PE has sent.
   [[nodiscard]] std::uint64_t run_sent() const { return run_.own.sent; }
+  /// The messages of epoch 0 that this PE has processed.
+  [[nodiscard]] std::uint64_t run_processed() const { return run_.own.processed; }
   /// On PE 0: the messages of epoch 0 that all PEs had sent when it was found to be done.
   [[nodiscard]] std::uint64_t run_sent_by_all() const;
   /// On PE 0: epoch 0 was found to be done, but messages were sent since.

@@ -7,6 +7,9 @@
 #include "runtime/base/interval_set.hpp"
 #include "runtime/core/ids.hpp"
 
+#include <array>
+#include <cstdint>
+
 namespace tess::detail {
 
 /// What happens to a message to a collection that has ended: it is dropped, and
@@ -29,9 +32,14 @@ class CollectionNumbers {
     return (id.value & ignored_bit) != 0 ? LateMessages::ignored : LateMessages::counted;
   }
 
+  /// The numbers given so far: how many of each kind. A restart continues after them.
+  using Made = std::array<std::uint64_t, 2>;
+  [[nodiscard]] const Made& made() const { return n_made_; }
+  void continue_after(const Made& made) { n_made_ = made; }
+
  private:
   static constexpr std::uint64_t ignored_bit = std::uint64_t{1} << 63U;
-  std::uint64_t n_made_[2] = {0, 0};
+  Made n_made_{};
 };
 
 class EndedCollections {

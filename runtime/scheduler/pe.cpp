@@ -442,11 +442,12 @@ PeId Pe::forced_migration(const AfterMessage& after) {
   return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
 }
 
-Waits Pe::census() const {
+Waits Pe::census(std::span<void* const> except) const {
   Waits waits;
   const ElementWords& words = runtime_.element_words();
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
+    if (std::find(except.begin(), except.end(), one.frame) != except.end()) continue;
     NamedElement who{"main", "the main program"};
     std::string state, code = "run()";
     if (one.element != nullptr) {

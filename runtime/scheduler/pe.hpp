@@ -180,6 +180,9 @@ class Pe {
     return collection_numbers_.next(id_, late);
   }
   [[nodiscard]] std::vector<HostedCollection*> collections() const;
+  /// For checkpoints: the ids that this PE has given, and, after a restart, ids of ended collections.
+  [[nodiscard]] CollectionNumbers& collection_numbers() { return collection_numbers_; }
+  void had_ended(CollectionId id) { ended_.add(id); }
 
   // The machine calls these through the runtime.
 
@@ -216,8 +219,8 @@ class Pe {
   /// True if the run is over and suspended coroutines are being freed.
   [[nodiscard]] bool dropping() const { return dropping_; }
 
-  /// What waits on this PE for something from elsewhere.
-  [[nodiscard]] Waits census() const;
+  /// What waits on this PE for something from elsewhere. Coroutines with these frames are left out.
+  [[nodiscard]] Waits census(std::span<void* const> except = {}) const;
   /// The same while the run goes on: also what is about to run.
   [[nodiscard]] Waits census_of_running() const;
   /// The action that runs now; null if none does. Any thread.

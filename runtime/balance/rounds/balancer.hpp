@@ -28,6 +28,8 @@ namespace tess::balance {
 class Balancer final : public Group<Balancer>, private ElementWatcher {
  public:
   static constexpr LateMessages late_messages = LateMessages::ignored;
+  static constexpr bool in_checkpoints =
+      false;  // start_balancing() is called again after a restart
 
   /// The options that every member needs.
   struct Plan {

@@ -39,6 +39,7 @@ enum class DistributedStrategy : std::uint8_t { none, diffusion, gossip };
 class Exchange final : public Group<Exchange> {
  public:
   static constexpr LateMessages late_messages = LateMessages::ignored;
+  static constexpr bool in_checkpoints = false;
 
   /// Sets this PE's elements as reported; called before run().
   void hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes);

@@ -1,0 +1,60 @@
+#include "apps/checkpoints.hpp"
+
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+namespace apps {
+
+void Checkpoints::add_options(CommandLine& line) {
+  line.option("--checkpoint", folder_, "write checkpoints into this folder; the last two are kept");
+  line.option("--checkpoint-every", every_, "steps (20) or seconds (30s) between checkpoints");
+  line.option("--restart", restart_, "continue from the last good checkpoint in this folder");
+}
+
+void Checkpoints::check() {
+  const bool by_time = every_.ends_with('s');
+  const char* const end = every_.data() + every_.size() - (by_time ? 1 : 0);
+  double number = 0;
+  const auto [read_to, wrong] = std::from_chars(every_.data(), end, number);
+  constexpr double most = 1e9;
+  const bool whole =
+      number == static_cast<double>(static_cast<std::int64_t>(std::clamp(number, 0.0, most)));
+  if (wrong != std::errc() || read_to != end || !(number > 0) || number > most ||
+      (!by_time && !whole))
+    tess::fail(tess::ErrorCode::bad_argument, "--checkpoint-every: ", every_,
+               " is neither a number of steps, as 20, nor of seconds, as 30s");
+  if (by_time) {
+    period_ = std::chrono::duration<double>(number);
+  } else {
+    steps_ = static_cast<std::int32_t>(number);
+  }
+}
+
+std::int32_t Checkpoints::pause_after(std::int32_t step, std::int32_t last) {
+  if (folder_.empty()) return last;
+  if (steps_ != 0) {
+    const std::int64_t next = (static_cast<std::int64_t>(step) / steps_ + 1) * steps_;
+    return static_cast<std::int32_t>(std::min<std::int64_t>(next, last));
+  }
+  // About ten pauses per period, so that a checkpoint is at most a tenth late.
+  const auto now = Clock::now();
+  const std::chrono::duration<double> took = now - paused_;
+  length_ = length_ == 0          ? 1
+            : took < period_ / 20 ? std::min(2 * length_, std::int32_t{1} << 28)
+            : took > period_ / 10 ? std::max(length_ / 2, 1)
+                                  : length_;
+  paused_ = now;
+  return length_ < last - step ? step + length_ : last;
+}
+
+bool Checkpoints::is_due(std::int32_t step, std::int32_t last) {
+  if (folder_.empty() || step >= last) return false;
+  if (steps_ != 0) return step % steps_ == 0;
+  if (Clock::now() - written_ < period_) return false;
+  written_ = Clock::now();
+  return true;
+}
+
+}  // namespace apps

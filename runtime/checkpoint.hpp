@@ -1,0 +1,92 @@
+// Checkpoints: the state of a run in files, and a later run that continues from them, on any number
+// of PEs and processes and on any kind of machine.
+//
+// Sample: tests/samples/checkpoint.cpp
+//
+//     State state;
+//     if (restarts) {
+//       state = co_await tess::restart<State>(folder);
+//     } else {
+//       state.cells = tess::create<Cell>(tess::range(8));
+//     }
+//     while (state.step < last) {
+//       tess::Future<int> sum;
+//       state.cells.broadcast<&Cell::step>(sum.callback());
+//       const int of_all = co_await sum;
+//       state.total += of_all;
+//       if (++state.step % 10 == 0) co_await tess::checkpoint(folder, state);
+//     }
+//
+// Saved are the elements of all arrays, groups, single chares and sections, wherever they are, and
+// the state object of the main coroutine, with the proxies in it. Elements need a default constructor
+// and serialize(), as for migration. After a restart they are on the homes of their indices.
+//
+// A checkpoint is made at a quiet point: checkpoint() waits until no message is under way, and throws
+// an Error that names what waits if something does: a coroutine of a chare, an unfinished reduction,
+// a message to an element that does not exist, a timer.
+//
+// Not saved: futures and callbacks to them, timers, balancers (call start_balancing() again).
+// Process groups and read-only data cannot be saved; destroy() them before.
+#pragma once
+
+#include "runtime/checkpoint/restore.hpp"
+#include "runtime/checkpoint/save.hpp"
+#include "runtime/checkpoint_options.hpp"
+#include "runtime/core/serialize.hpp"
+#include "runtime/core/type_name.hpp"
+#include "runtime/task.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tess {
+
+/// Saves the run in `folder`, which all processes can reach. Only in the main coroutine, outside of
+/// epochs. Throws Error if the run is not quiet or the files cannot be written; then the run can go
+/// on. The options are given a name first: g++ 12 fails on an aggregate in a `co_await` expression.
+template <class State>
+[[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
+                              const CheckpointOptions& options) {
+  return detail::write_checkpoint(folder, std::string(name_of_type<State>), to_bytes(state),
+                                  options);
+}
+template <class State>
+[[nodiscard]] Task checkpoint(const std::string& folder, const State& state) {
+  return checkpoint(folder, state, CheckpointOptions());
+}
+
+/// The result of restart(): `co_await` gives the state object.
+template <class State>
+class [[nodiscard]] Restart {
+ public:
+  explicit Restart(const std::string& folder)
+      : bytes_(std::make_unique<std::vector<std::byte>>()),
+        task_(detail::read_checkpoint(folder, std::string(name_of_type<State>), *bytes_)) {}
+
+  [[nodiscard]] bool await_ready() const noexcept { return task_.await_ready(); }
+  void await_suspend(Task::Handle parent) { task_.await_suspend(parent); }
+  State await_resume() {
+    task_.await_resume();
+    return from_bytes<State>(*bytes_);
+  }
+
+ private:
+  std::unique_ptr<std::vector<std::byte>> bytes_;  // before the task, which writes to it
+  Task task_;
+};
+
+/// Restores the latest good checkpoint of the folder. A damaged one is reported on standard error,
+/// and the one before is used. Called before anything else in the main coroutine. Throws Error if
+/// there is none that this program can restore on this many PEs. A group that was saved on another
+/// number of PEs needs a member function absorb(Member&&): member p of the checkpoint goes to PE p
+/// modulo the number of PEs, where the first becomes the member and absorbs the others; a PE
+/// without one gets a member from the default constructor.
+template <class State>
+Restart<State> restart(const std::string& folder) {
+  return Restart<State>(folder);
+}
+
+}  // namespace tess

@@ -1,0 +1,57 @@
+// The manifest of a checkpoint, a file of JSON for programs and people, and the contents of the file
+// "main": what all PEs have to know before elements are restored.
+#pragma once
+
+#include "runtime/checkpoint/files.hpp"
+#include "runtime/collections/membership.hpp"
+#include "runtime/core/ids.hpp"
+#include "runtime/core/index.hpp"
+#include "runtime/scheduler/ended_collections.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tess::detail {
+
+struct SavedCollection {
+  CollectionId id;
+  Range range;
+  std::string key;   ///< CollectionKind::key()
+  std::string name;  ///< for people
+  bool has_sections = false;
+  std::uint64_t n_elements = 0;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id, range, key, name, has_sections, n_elements);
+  }
+};
+
+/// The contents of "main".
+struct MainPart {
+  std::vector<SavedCollection> collections;
+  std::vector<CollectionNumbers::Made> numbers;  ///< by PE
+  std::vector<SectionId> sections;
+  std::string state_type;
+  std::vector<std::byte> state;  ///< the main coroutine's
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(collections, numbers, sections, state_type, state);
+  }
+};
+
+struct Manifest {
+  std::uint64_t number = 0;
+  std::int32_t n_pes = 0;
+  std::int32_t n_processes = 0;
+  std::uint64_t program = 0;   ///< Registry::fingerprint()
+  std::string note;            ///< CheckpointOptions::note
+  std::vector<FileSum> files;  ///< of PE 0, 1, …, and at last "main"
+};
+
+/// Writes the manifest, with a list of the classes for people.
+void write_manifest(const std::string& folder, const Manifest& manifest, const MainPart& main);
+/// Throws Error for a manifest that is missing, damaged, or of another version.
+[[nodiscard]] Manifest read_manifest(const std::string& folder);
+
+}  // namespace tess::detail

@@ -1,0 +1,23 @@
+// Restores the latest good checkpoint of a folder. All steps are led by the main coroutine on PE 0:
+//
+//     choose    the files of the latest checkpoint are read and compared with its manifest; if one
+//               is damaged, that is reported and the checkpoint before is tried
+//     plan      the program has all the classes, and groups fit the number of PEs
+//     create    every PE makes the collections, empty, with the ids that they had
+//     restore   the PEs read the files and send each element to its home
+//     finish    ids continue after those that were given; ended collections have ended
+#pragma once
+
+#include "runtime/task.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tess::detail {
+
+/// Writes the bytes of the main coroutine's state to `state`, which outlives the task.
+[[nodiscard]] Task read_checkpoint(std::string folder, std::string state_type,
+                                   std::vector<std::byte>& state);
+
+}  // namespace tess::detail

@@ -1,0 +1,269 @@
+// Runs that cannot be saved, and programs that cannot restore: each is an error with a name.
+#include "runtime/balance.hpp"
+#include "runtime/checkpoint.hpp"
+#include "runtime/process_group.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/adversarial.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+namespace {
+
+class Cell : public tess::Chare<Cell> {
+ public:
+  void add(int value) { sum_ += value; }
+  void sum(tess::Callback<int> target) { contribute(tess::sum, sum_, target); }
+  tess::Task wait(tess::ElementProxy<Cell, tess::Index1> /*for_it*/) {
+    tess::Future<int> never;
+    co_await never;
+  }
+  void sync() { at_sync(); }
+  void resume_from_sync() {}
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(sum_);
+  }
+
+ private:
+  int sum_ = 0;
+};
+
+/// It cannot migrate.
+class Rock : public tess::Chare<Rock> {
+ public:
+  explicit Rock(int weight) : weight_(weight) {}
+  void add(int value) { weight_ += value; }
+
+ private:
+  int weight_;
+};
+
+/// Its members cannot absorb each other.
+class Table : public tess::Group<Table> {
+ public:
+  void put(int value) { value_ = value; }
+  void sum(tess::Callback<int> target) { contribute(tess::sum, value_, target); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(value_);
+  }
+
+ private:
+  int value_ = 7;
+};
+
+struct State {
+  tess::ArrayProxy<Cell> cells;
+  tess::GroupProxy<Table> tables;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(cells, tables);
+  }
+};
+
+using Prepare = void (*)(const State&);
+
+/// The error of a checkpoint after prepare(); the run goes on and ends well if it can.
+tess::Task try_to_save(std::string folder, Prepare prepare, std::string& error) {
+  State state;
+  state.cells = tess::create<Cell>(tess::range(6));
+  state.tables = tess::create_group<Table>();
+  prepare(state);
+  try {
+    co_await tess::checkpoint(folder, state);
+  } catch (const tess::Error& wrong) {
+    error = wrong.what();
+  }
+  tess::exit(0);
+}
+
+std::string error_after(Prepare prepare) {
+  const tess::test::Scratch scratch;
+  std::string error;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    std::string found;
+    auto setup = tess::test::adversarial(3, seed);
+    CHECK(tess::run(setup, [&] { return try_to_save(scratch.path("saved"), prepare, found); }) ==
+          0);
+    if (seed == 0) error = found;
+    CHECK(found.substr(0, 40) == error.substr(0, 40));
+  }
+  return error;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint waits for messages that are under way", "[runtime][checkpoint]") {
+  CHECK(error_after([](const State& state) {
+          for (int i = 0; i < 100; ++i) state.cells[{i % 6}].send<&Cell::add>(i);
+        }).empty());
+}
+
+TEST_CASE("a checkpoint names the coroutine that waits", "[runtime][checkpoint]") {
+  const std::string error =
+      error_after([](const State& state) { state.cells[{4}].send<&Cell::wait>(state.cells[{1}]); });
+  INFO(error);
+  CHECK(has(error, "no checkpoint can be made here"));
+  CHECK(has(error, "Cell[4]"));
+  CHECK(has(error, "waits for a future of int"));
+  CHECK(!has(error, "the main program"));
+}
+
+TEST_CASE("a checkpoint names the reduction that is not complete", "[runtime][checkpoint]") {
+  const std::string error = error_after([](const State& state) {
+    state.cells[{4}].send<&Cell::sum>(state.cells[{0}].target<&Cell::add>());
+  });
+  INFO(error);
+  CHECK(has(error, "Cell: reduction 0"));
+}
+
+TEST_CASE("a checkpoint names the element that a message waits for", "[runtime][checkpoint]") {
+  const std::string error =
+      error_after([](const State& state) { state.cells[{77}].send<&Cell::add>(1); });
+  INFO(error);
+  CHECK(has(error, "Cell[77], which does not exist"));
+}
+
+TEST_CASE("a checkpoint names the element that waits at its barrier", "[runtime][checkpoint]") {
+  const std::string error =
+      error_after([](const State& state) { state.cells[{2}].send<&Cell::sync>(); });
+  INFO(error);
+  CHECK(has(error, "Cell[2] waits at at_sync()"));
+}
+
+TEST_CASE("a checkpoint names the PE of a timer", "[runtime][checkpoint]") {
+  const std::string error = error_after([](const State& state) {
+    state.cells[{2}].send_after<&Cell::add>(std::chrono::hours(1), 3);
+  });
+  INFO(error);
+  CHECK(has(error, "1 timer is set on PE 0"));
+}
+
+TEST_CASE("a checkpoint names the class that cannot be saved", "[runtime][checkpoint]") {
+  const std::string rock =
+      error_after([](const State& /*state*/) { (void)tess::create<Rock>(tess::range(3), 5); });
+  INFO(rock);
+  CHECK(has(rock, "Rock cannot be saved: give it a default constructor and serialize()"));
+  const std::string data = error_after(
+      [](const State& /*state*/) { (void)tess::create_read_only(std::vector<int>(4)); });
+  INFO(data);
+  CHECK(has(data, "ReadOnlyPart"));
+  CHECK(has(data, "destroy() it before the checkpoint"));
+}
+
+namespace {
+
+struct Restarting {
+  static tess::Task save(const std::string& folder) {
+    State state;
+    state.cells = tess::create<Cell>(tess::range(6));
+    state.tables = tess::create_group<Table>();
+    co_await tess::checkpoint(folder, state);
+  }
+  static tess::Task restart(const std::string& folder, int& sum) {
+    const auto state = co_await tess::restart<State>(folder);
+    tess::Future<int> total;
+    state.tables.broadcast<&Table::sum>(total.callback());
+    const int found = co_await total;
+    sum = found;
+  }
+  static tess::Task restart_late(const std::string& folder) {
+    (void)tess::create<Cell>(tess::range(2));
+    (void)co_await tess::restart<State>(folder);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a group restarts on the same number of PEs, or its class says how",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  auto setup = tess::test::adversarial(3, 1);
+  REQUIRE(tess::run(setup, [&] { return Restarting::save(folder); }) == 0);
+  int sum = 0;
+  auto same = tess::test::adversarial(3, 2);
+  CHECK(tess::run(same, [&] { return Restarting::restart(folder, sum); }) == 0);
+  CHECK(sum == 21);
+  std::string report;
+  for (const int n_pes : {2, 4}) {
+    auto other = tess::test::adversarial(n_pes, 3);
+    other.options.report = [&report](const std::string& line) { report = line; };
+    CHECK(tess::run(other, [&] { return Restarting::restart(folder, sum); }) == 2);
+    INFO(report);
+    CHECK(has(report, "Table"));
+    CHECK(has(report, "has 3 members, but this run has"));
+    CHECK(has(report, "absorb("));
+  }
+  auto late = tess::test::adversarial(3, 3);
+  late.options.report = [&report](const std::string& line) { report = line; };
+  CHECK(tess::run(late, [&] { return Restarting::restart_late(folder); }) == 2);
+  CHECK(has(report, "restart() comes first, but this run has already made"));
+}
+
+namespace {
+
+class Beat : public tess::Chare<Beat> {
+ public:
+  void phase() {
+    ++n_phases_;
+    at_sync();
+  }
+  void resume_from_sync() { contribute(tess::sum, n_phases_, target_); }
+  void start(tess::Callback<int> target) {
+    target_ = target;
+    phase();
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_phases_, target_);
+  }
+
+ private:
+  int n_phases_ = 0;
+  tess::Callback<int> target_;
+};
+
+struct Balanced {
+  static tess::Task phases(const tess::ArrayProxy<Beat>& beats, int n, int& sum) {
+    for (int i = 0; i < n; ++i) {
+      tess::Future<int> total;
+      beats.broadcast<&Beat::start>(total.callback());
+      const int found = co_await total;
+      sum = found;
+    }
+  }
+  static tess::Task save(std::string folder, int& sum) {
+    const auto beats = tess::create<Beat>(tess::range(9));
+    const tess::BalanceOptions options{.strategy = "rotate"};
+    co_await tess::epoch([&] { tess::start_balancing(beats, options); });
+    co_await phases(beats, 3, sum);
+    co_await tess::checkpoint(folder, beats);
+  }
+  static tess::Task restart(std::string folder, int& sum) {
+    const auto beats = co_await tess::restart<tess::ArrayProxy<Beat>>(folder);
+    const tess::BalanceOptions options{.strategy = "rotate"};
+    co_await tess::epoch([&] { tess::start_balancing(beats, options); });
+    co_await phases(beats, 2, sum);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an array that is balanced restarts with a new balancer", "[runtime][checkpoint]") {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    INFO("seed " << seed);
+    const tess::test::Scratch scratch;
+    int sum = 0;
+    auto setup = tess::test::adversarial(3, seed);
+    REQUIRE(tess::run(setup, [&] { return Balanced::save(scratch.path("saved"), sum); }) == 0);
+    CHECK(sum == 27);
+    auto other = tess::test::adversarial(5, seed);
+    REQUIRE(tess::run(other, [&] { return Balanced::restart(scratch.path("saved"), sum); }) == 0);
+    CHECK(sum == 45);
+  }
+}
