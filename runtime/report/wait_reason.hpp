@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tess::detail {
@@ -17,7 +16,7 @@ struct NamedElement {
 /// What a suspended coroutine waits for.
 struct WaitReason {
   // Implicit: most reasons are a text only.
-  WaitReason(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor)
+  WaitReason(std::string words);  // NOLINT(google-explicit-constructor)
 
   std::string text;
   std::vector<NamedElement> asked;  ///< elements whose replies are all needed

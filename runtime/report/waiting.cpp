@@ -77,6 +77,8 @@ class Cycles {
 
 }  // namespace
 
+WaitReason::WaitReason(std::string words) : text(std::move(words)) {}
+
 void Waits::add(WaitRank rank, std::string words) {
   if (n_of_rank[static_cast<std::size_t>(rank)]++ < most_kept)
     lines.push_back({rank, std::move(words)});
