@@ -18,7 +18,7 @@ namespace tess {
 /// Marks this moment on this PE.
 inline void mark(std::string_view name) {
   Pe& pe = current_pe();
-  if (detail::Trace* trace = pe.trace_to_write()) {
+  if (detail::Trace* trace = pe.trace()) {
     const std::uint64_t now = pe.meter()->now();
     trace->event(std::string(name), now, now);
   }
@@ -29,14 +29,14 @@ inline void mark(std::string_view name) {
 class Span {
  public:
   explicit Span(std::string_view name) : pe_(current_pe()) {
-    if (pe_.trace_to_write() == nullptr) return;
+    if (pe_.trace() == nullptr) return;
     name_ = name;
     began_ = pe_.meter()->now();
   }
   Span(const Span&) = delete;
   Span& operator=(const Span&) = delete;
   ~Span() {
-    if (began_ != 0) pe_.trace_to_write()->event(std::move(name_), began_, pe_.meter()->now());
+    if (began_ != 0) pe_.trace()->event(std::move(name_), began_, pe_.meter()->now());
   }
 
  private:

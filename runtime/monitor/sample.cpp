@@ -1,5 +1,7 @@
 #include "runtime/monitor/sample.hpp"
 
+#include "runtime/scheduler/idle_time.hpp"
+
 #include <cstdio>
 #include <memory>
 #include <unistd.h>
@@ -22,7 +24,7 @@ PeSample sample_of(Pe& pe, bool with_census) {
   PeSample sample;
   sample.pe = pe.id();
   sample.at_ns = pe.now().count();
-  sample.idle_ns = pe.idle_time().total().count();
+  sample.idle_ns = pe.idle_time()->total().count();
   sample.counts = pe.statistics();
   sample.n_ready = pe.n_ready();
   sample.n_epochs = pe.completion().n_epochs();

@@ -11,9 +11,6 @@
 namespace tess::detail {
 namespace {
 
-/// A PE that begins a slice so many seconds after another was idle: it waited for the message.
-constexpr double idle_from = 1e-6;
-
 /// A slice by its PE (the place in the list) and its number there.
 struct At {
   std::size_t pe = 0, slice = 0;
@@ -80,7 +77,7 @@ class Walk {
     if (at.slice > 0) {
       const At last{at.pe, at.slice - 1};
       before = {last, std::min(time(last, slice(last).end), begin)};
-      if (begin - before.time <= idle_from) return before;
+      if (begin - before.time <= pes_[at.pe].pause) return before;
     }
     const Cause sent = sender_of(slice(at));
     return sent.slice ? sent : before;

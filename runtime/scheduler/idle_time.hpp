@@ -1,5 +1,4 @@
-// How long a PE has been idle, for the monitor. Without one it costs a test of a flag whenever the
-// PE becomes idle or busy, and none per message.
+// How long a PE has been idle, for the monitor: without one the PE has none.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
@@ -8,9 +7,6 @@ namespace tess::detail {
 
 class IdleTime {
  public:
-  /// From now on the time is measured.
-  void start() { measured_ = true; }
-  [[nodiscard]] bool measured() const { return measured_; }
   [[nodiscard]] bool idle() const { return idle_; }
   /// The PE has nothing to do.
   void begin(Time now) {
@@ -27,7 +23,6 @@ class IdleTime {
   [[nodiscard]] Time total() const { return total_; }
 
  private:
-  bool measured_ = false;
   bool idle_ = false;
   Time since_{0}, total_{0};
 };

@@ -7,6 +7,7 @@
 #include "runtime/scheduler/auditing.hpp"
 #include "runtime/scheduler/block.hpp"
 #include "runtime/scheduler/element_mover.hpp"
+#include "runtime/scheduler/idle_time.hpp"
 #include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -277,8 +278,8 @@ void Pe::exception(const char* what, int exit_code) {
 
 std::size_t Pe::step(std::size_t most) {
   if (ready_.empty()) return 0;
-  if (idle_time_.idle()) [[unlikely]]
-    idle_time_.end(now());
+  if (idle_time_ && idle_time_->idle()) [[unlikely]]
+    idle_time_->end(now());
   const RunsOn here(*this);
   std::size_t n = 0;
   if (meter_) [[unlikely]]
@@ -310,6 +311,10 @@ std::size_t Pe::step(std::size_t most) {
   return n;
 }
 
+void Pe::start_idle_time() {
+  idle_time_ = std::make_unique<IdleTime>();
+}
+
 bool Pe::idle() {
   const RunsOn here(*this);
   if (meter_) [[unlikely]]
@@ -328,8 +333,8 @@ bool Pe::idle() {
     pool_.flush();
   }
   const bool works = flush() || busy || !ready_.empty();
-  if (idle_time_.measured() && !works) [[unlikely]]
-    idle_time_.begin(now());
+  if (idle_time_ && !works) [[unlikely]]
+    idle_time_->begin(now());
   return works;
 }
 

@@ -11,7 +11,6 @@
 #include "runtime/scheduler/completion_messages.hpp"
 #include "runtime/scheduler/ended_collections.hpp"
 #include "runtime/scheduler/hosted_collection.hpp"
-#include "runtime/scheduler/idle_time.hpp"
 #include "runtime/scheduler/meter.hpp"
 #include "runtime/scheduler/ready_queue.hpp"
 #include "runtime/scheduler/suspended.hpp"
@@ -33,6 +32,7 @@ namespace tess::detail {
 class TessElement;
 using Element = TessElement;
 class ElementMover;
+class IdleTime;
 class Outbox;
 class PeWatch;
 class Runtime;
@@ -82,7 +82,9 @@ class Pe {
   /// replaced.
   Context* enter(Context* context) { return std::exchange(context_, context); }
   [[nodiscard]] PeStatistics& statistics() { return statistics_; }
-  [[nodiscard]] IdleTime& idle_time() { return idle_time_; }
+  /// How long this PE has been idle; null unless the run is monitored.
+  [[nodiscard]] IdleTime* idle_time() { return idle_time_.get(); }
+  void start_idle_time();
   /// The number of messages in the queue of this PE.
   [[nodiscard]] std::size_t n_ready() const { return ready_.size(); }
   [[nodiscard]] SuspendedList& suspended() { return suspended_; }
@@ -120,9 +122,8 @@ class Pe {
     start_meter();
     trace_ = std::make_unique<Trace>(most_records);
   }
-  [[nodiscard]] const Trace* trace() const { return trace_.get(); }
   /// Null without a trace.
-  [[nodiscard]] Trace* trace_to_write() { return trace_.get(); }
+  [[nodiscard]] Trace* trace() const { return trace_.get(); }
 
   // Sending and forwarding of stamped messages. All functions take ownership.
 
@@ -375,7 +376,7 @@ class Pe {
   double migration_chance_ = 0;
   ElementMover* mover_ = nullptr;
   unsigned idle_calls_ = 0;
-  IdleTime idle_time_;
+  std::unique_ptr<IdleTime> idle_time_;
   std::size_t messages_since_report_ = 0;
 
   const std::unique_ptr<Outbox> outbox_;  // messages to other processes

@@ -93,7 +93,7 @@ Runtime::~Runtime() = default;
 
 void Runtime::watch(ProcessMonitor& monitor) {
   monitor_ = &monitor;
-  for (const auto& pe : pes_) pe->idle_time().start();
+  for (const auto& pe : pes_) pe->start_idle_time();
 }
 
 int Runtime::run() {
@@ -171,7 +171,7 @@ void Runtime::write_traces() {
   std::vector<TraceOfPe> all;
   for (const auto& pe : pes_)
     all.push_back({pe->id(), pe->trace(), pe->meter()->seconds(1'000'000'000) * 1e-9,
-                   pes_.front()->meter()->made()});
+                   pes_.front()->meter()->made(), 1e-6 + 2 * seconds(machine_.message_cost())});
   write_trace(trace_path(), machine_.process(), all);
   if (machine_.n_pes_here() != machine_.n_pes()) return;  // the path goes through other processes
   const bool complete = std::all_of(all.begin(), all.end(),

@@ -68,6 +68,7 @@ struct TraceOfPe {
   const Trace* trace = nullptr;
   double seconds_per_tick = 0;
   std::uint64_t origin = 0;  ///< the reading at time 0
+  double pause = 0;  ///< seconds: a longer one between two slices means that the PE was idle
 };
 
 /// Throws Error if the file cannot be written. Called before a run, not after it.
