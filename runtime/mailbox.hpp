@@ -26,11 +26,13 @@ struct KeyTraits<K T::*> {
 };
 }  // namespace detail
 
-template <auto KeyMember>
+/// The second parameter tells messages of the same name apart that are local to two files: g++ 12
+/// gives both files one Mailbox<&Local::key> otherwise.
+template <auto KeyMember, class Message = typename detail::KeyTraits<decltype(KeyMember)>::Value>
 class Mailbox {
  public:
   using Key = typename detail::KeyTraits<decltype(KeyMember)>::Key;
-  using Value = typename detail::KeyTraits<decltype(KeyMember)>::Value;
+  using Value = Message;
 
   /// Passes a message to the coroutine that has waited longest for its key; if there is none, keeps
   /// it. Messages of one key are taken in the order in which they were put.
