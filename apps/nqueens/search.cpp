@@ -120,7 +120,7 @@ void Searcher::search_serially(const Board& board) {
 
 }  // namespace
 
-tess::Task search(const Problem& problem, Outcome& outcome) {
+tess::Task search(Problem problem, Outcome& outcome) {
   tess::GroupProxy<Searcher> searchers;
   tess::ArrayProxy<Branch> branches;
   co_await tess::epoch([&] {

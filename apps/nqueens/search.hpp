@@ -40,6 +40,6 @@ struct Outcome {
 };
 
 /// Searches on all PEs. Called on one PE, in the main coroutine.
-tess::Task search(const Problem& problem, Outcome& outcome);
+tess::Task search(Problem problem, Outcome& outcome);
 
 }  // namespace nqueens
