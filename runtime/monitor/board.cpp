@@ -24,7 +24,7 @@ std::string hexadecimal(const std::vector<float>& values, float least, float mos
   const float scale = most > least ? 255.0F / (most - least) : 0.0F;
   for (const float value : values) {
     const auto level =
-        std::isfinite(value) ? static_cast<unsigned>((value - least) * scale + 0.5F) : 0U;
+        std::isfinite(value) ? static_cast<unsigned>(std::lround((value - least) * scale)) : 0U;
     constexpr const char* digits = "0123456789abcdef";
     out += digits[level >> 4U & 15U];
     out += digits[level & 15U];
@@ -141,7 +141,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
     const auto idle = static_cast<double>(now.idle_ns - of.before.idle_ns);
     if (of.is_new && passed > 0) {
       const auto ran = static_cast<double>(now.counts.messages - of.before.counts.messages);
-      of.percent = static_cast<int>(std::clamp(100 * (1 - idle / passed), 0.0, 100.0) + 0.5);
+      of.percent = static_cast<int>(std::lround(std::clamp(100 * (1 - idle / passed), 0.0, 100.0)));
       of.rate = std::min(ran * 1e9 / passed, 2e9);
     }
     if (!of.is_new) {  // perhaps it runs something long

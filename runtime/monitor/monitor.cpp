@@ -85,15 +85,14 @@ class Monitor::Loop {
     closed_ = true;
   }
   void answered(Pe& pe, PeSample sample) {
-    const bool here = is_on_process_0(pe);
     {
       const std::lock_guard lock(mutex_);
       OfPe& of = of_pe(pe.id());
       of.asked = false;
       of.parts.clear();
-      if (here) board_->arrived(std::move(sample));
     }
-    if (!here) send_uncounted<&sample_arrives>(pe, PeId{0}, std::move(sample));
+    if (is_on_process_0(pe)) return arrived(std::move(sample));
+    send_uncounted<&sample_arrives>(pe, PeId{0}, std::move(sample));
   }
   void arrived(PeSample sample) {
     const std::lock_guard lock(mutex_);

@@ -239,7 +239,7 @@ class Service::Loop {
   }
 
   void new_census(int signal, std::uint64_t job_round = 0) {
-    census_.emplace();
+    census_ = Census{};
     census_->signal = signal;
     census_->round = ++n_rounds_;
     census_->job_round = job_round;
