@@ -24,7 +24,10 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
   const Context context = account.context;
   if (context.element == nullptr) {
     account.release();
-    pe.context() = context;
+    pe.begins(context.action);  // other threads look at it
+    pe.context().element = nullptr;
+    pe.context().epoch = context.epoch;
+    pe.context().led_by = context.led_by;
     const WatchedMain watched(pe.watch(), pe.running());
     task.resume();
     return;
