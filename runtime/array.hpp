@@ -568,6 +568,18 @@ class ElementProxy {
   Index index_{};
 };
 
+namespace detail {
+/// Calls entry method F of all elements with the value of a callback, which may be no value.
+template <auto F, class Proxy, class T>
+void broadcast_value(const Proxy& all, T&& value) {
+  if constexpr (std::is_same_v<T, NoValue>) {
+    all.template broadcast<F>();
+  } else {
+    all.template broadcast<F>(std::forward<T>(value));
+  }
+}
+}  // namespace detail
+
 /// The proxy of a whole array.
 template <class C>
 class ArrayProxy {
@@ -651,10 +663,8 @@ class ArrayProxy {
 
   template <auto F, class Of, class... Args>
   void broadcast_as(Of of, Args&&... args) const {
-    static_assert(detail::check_entry<C, F, Args...>());
+    static_assert(detail::check_broadcast<C, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
-    static_assert(std::is_copy_constructible_v<Arguments>,
-                  "each element gets a copy of a broadcast's arguments, so they can be copied");
     auto arguments = detail::as_parameters<Arguments>(std::forward<Args>(args)...);
     if constexpr (std::is_same_v<Of, Priority>) {
       detail::start_broadcast(id_, detail::SharedCall(new detail::PrioritisedCallOfAll<C, F>(
@@ -667,12 +677,8 @@ class ArrayProxy {
 
   template <auto F, class T>
   static void call_target(const Callback<T>& callback, T&& value) {
-    const ArrayProxy all(from_bytes<CollectionId>(callback.where()));
-    if constexpr (std::is_same_v<T, NoValue>) {
-      all.template broadcast<F>();
-    } else {
-      all.template broadcast<F>(std::forward<T>(value));
-    }
+    detail::broadcast_value<F>(ArrayProxy(from_bytes<CollectionId>(callback.where())),
+                               std::forward<T>(value));
   }
   template <auto F, class T>
   static std::string describe_target(const Callback<T>& /*callback*/) {

@@ -32,10 +32,8 @@ class SectionProxy {
   /// receive the multicasts of a section in one order.
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
-    static_assert(detail::check_entry<C, F, Args...>());
+    static_assert(detail::check_broadcast<C, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
-    static_assert(std::is_copy_constructible_v<Arguments>,
-                  "each element gets a copy of a broadcast's arguments, so they can be copied");
     using Lists = detail::SectionListsOf<typename C::Index>;
     TESS_CHECK(array_ != CollectionId{}, "a broadcast to an empty SectionProxy<", name_of_type<C>,
                ">: assign create_section() to it first");
@@ -78,12 +76,7 @@ class SectionProxy {
   static void call_target(const Callback<T>& callback, T&& value) {
     const auto [array, id] =
         from_bytes<std::tuple<CollectionId, detail::SectionId>>(callback.where());
-    const SectionProxy all(array, id);
-    if constexpr (std::is_same_v<T, NoValue>) {
-      all.template broadcast<F>();
-    } else {
-      all.template broadcast<F>(std::forward<T>(value));
-    }
+    detail::broadcast_value<F>(SectionProxy(array, id), std::forward<T>(value));
   }
   template <auto F, class T>
   static std::string describe_target(const Callback<T>& /*callback*/) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <sys/resource.h>
@@ -51,6 +53,15 @@ double usable_memory() {
     there = std::min(there, static_cast<double>(limit.rlim_cur));
   std::ifstream groups("/proc/self/cgroup");
   return std::min(there, control_group_limit(groups, "/sys/fs/cgroup"));
+}
+
+std::uint64_t resident_memory() {
+  // Not a stream: the number is read often, and a stream allocates.
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"),
+                                                             &std::fclose);
+  unsigned long long all = 0, resident = 0;
+  if (!file || std::fscanf(file.get(), "%llu %llu", &all, &resident) != 2) return 0;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace tess::detail

@@ -133,6 +133,14 @@ consteval bool check_entry() {
   return check_call<C, F, Args...>();
 }
 
+/// The same for a broadcast to elements.
+template <class C, auto F, class... Args>
+consteval bool check_broadcast() {
+  static_assert(std::is_copy_constructible_v<typename EntryTraits<F>::Arguments>,
+                "each element gets a copy of a broadcast's arguments, so they can be copied");
+  return check_entry<C, F, Args...>();
+}
+
 /// Checks that F is a member function of C whose reply can be awaited.
 template <class C, auto F, class... Args>
 consteval bool check_ask() {

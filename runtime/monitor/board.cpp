@@ -1,5 +1,6 @@
 #include "runtime/monitor/board.hpp"
 
+#include "runtime/base/json_string.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
 #include <algorithm>
@@ -34,23 +35,6 @@ std::string hexadecimal(const std::vector<float>& values, float least, float mos
 
 }  // namespace
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
 Board::Board(const Machine& machine)
     : n_pes_(machine.n_pes()),
       n_processes_(machine.n_processes()),
@@ -69,7 +53,7 @@ void Board::arrived(PeSample sample) {
 void Board::note(const BalanceNote& note) {
   new_rounds_.push_back(
       fmt::format(R"({{"t":{:.3f},"text":{},"before":{:.4g},"predicted":{:.4g}}})", seconds_,
-                  quoted(note.text), note.before, note.predicted));
+                  json_string(note.text), note.before, note.predicted));
 }
 
 void Board::draw(const PicturePart& part) {
@@ -105,8 +89,9 @@ std::vector<Event> Board::take_events(double seconds,
   }
   if (takes_census_ && census_from_.size() == pes_.size()) {
     takes_census_ = false;
-    events.push_back({"census", quoted(census_.empty() ? "nothing waits"
-                                                       : list_of_waiting(std::move(census_)))});
+    events.push_back(
+        {"census",
+         json_string(census_.empty() ? "nothing waits" : list_of_waiting(std::move(census_)))});
     census_ = Waits();
   }
   return events;
@@ -149,7 +134,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
       if (const std::string action = runs(PeId{index}); !action.empty()) {
         of.percent = 100;
         of.rate = 0;
-        late += fmt::format("{}[{},{}]", late.empty() ? "" : ",", index, quoted(action));
+        late += fmt::format("{}[{},{}]", late.empty() ? "" : ",", index, json_string(action));
       }
     }
     of.is_new = false;
@@ -192,7 +177,7 @@ std::string Board::collections() const {
   std::string out;
   for (const auto& [id, sum] : sums)
     out += fmt::format(R"({}{{"id":"{:x}","name":{},"n":{},"least":{},"most":{}}})",
-                       out.empty() ? "" : ",", id.value, quoted(sum.name), sum.all,
+                       out.empty() ? "" : ",", id.value, json_string(sum.name), sum.all,
                        sum.n_pes < pes_.size() ? 0 : sum.least, sum.most);
   return out;
 }
@@ -208,7 +193,7 @@ Event Board::event_of(const std::string& name, const Picture& picture) {
   return {"picture",
           fmt::format(
               R"({{"name":{},"width":{},"height":{},"least":{:.6g},"most":{:.6g},"values":"{}"}})",
-              quoted(name), picture.width, picture.height, least, most,
+              json_string(name), picture.width, picture.height, least, most,
               hexadecimal(picture.values, least, most))};
 }
 

@@ -3,7 +3,7 @@
 //     frame    utilisation, rates, queues of each PE since the last frame; memory; chares; epochs
 //     round    a balance round
 //     picture  what the program draws
-//     census   what waits, after someone asked
+//     census   what waits, after a browser asked
 //
 // It keeps the frames and rounds of the last minutes and the last picture of each name, for a
 // browser that comes late. Not for several threads at once.
@@ -73,8 +73,5 @@ class Board {
   std::set<std::int32_t> census_from_;
   Waits census_;
 };
-
-/// The text as a JSON string, with its quotation marks.
-[[nodiscard]] std::string quoted(const std::string& text);
 
 }  // namespace tess::detail

@@ -29,34 +29,16 @@ struct SampleAsked {
 };
 struct CensusWanted {};
 
-Monitor& monitor_of(Pe& pe) {
-  return static_cast<Monitor&>(*pe.runtime().monitor());
-}
 bool is_on_process_0(Pe& pe) {
   return pe.machine().process().value == 0;
 }
 
-void census_is_wanted(Pe& pe, CensusWanted&& /*wanted*/) {
-  monitor_of(pe).want_census();
-}
-void sample_arrives(Pe& pe, PeSample&& sample) {
-  monitor_of(pe).arrived(std::move(sample));
-}
-void part_arrives(Pe& pe, PicturePart&& part) {
-  monitor_of(pe).draw(part);
-}
-void note_arrives(Pe& pe, BalanceNote&& note) {
-  monitor_of(pe).note(note);
-}
-void sample_is_asked(Pe& pe, SampleAsked&& asked) {
-  if (pe.stopped()) return;
-  if (asked.with_census && pe.id().value == 0) {  // the other processes hear of it from PE 0
-    for (std::int32_t first = pe.machine().n_pes_here(); first < pe.n_pes();
-         first += pe.machine().pes_per_process())
-      send_uncounted<&census_is_wanted>(pe, PeId{first}, CensusWanted{});
-  }
-  monitor_of(pe).answered(pe, sample_of(pe, asked.with_census));
-}
+// The messages of the monitor; they call its loop, which is below.
+void census_is_wanted(Pe& pe, CensusWanted&& wanted);
+void sample_is_asked(Pe& pe, SampleAsked&& asked);
+void sample_arrives(Pe& pe, PeSample&& sample);
+void part_arrives(Pe& pe, PicturePart&& part);
+void note_arrives(Pe& pe, BalanceNote&& note);
 
 }  // namespace
 
@@ -84,6 +66,7 @@ class Monitor::Loop {
     const std::lock_guard lock(mutex_);
     closed_ = true;
   }
+  /// A PE of this process has taken its sample.
   void answered(Pe& pe, PeSample sample) {
     {
       const std::lock_guard lock(mutex_);
@@ -94,10 +77,12 @@ class Monitor::Loop {
     if (is_on_process_0(pe)) return arrived(std::move(sample));
     send_uncounted<&sample_arrives>(pe, PeId{0}, std::move(sample));
   }
+  /// On process 0, as draw() and note().
   void arrived(PeSample sample) {
     const std::lock_guard lock(mutex_);
     board_->arrived(std::move(sample));
   }
+  /// The next samples of this process say what waits.
   void want_census() {
     const std::lock_guard lock(mutex_);
     wants_census_ = true;
@@ -198,6 +183,36 @@ class Monitor::Loop {
   std::thread thread_;
 };
 
+namespace {
+
+Monitor::Loop& loop_of(Pe& pe) {
+  return static_cast<Monitor&>(*pe.runtime().monitor()).loop();
+}
+
+void census_is_wanted(Pe& pe, CensusWanted&& /*wanted*/) {
+  loop_of(pe).want_census();
+}
+void sample_is_asked(Pe& pe, SampleAsked&& asked) {
+  if (pe.stopped()) return;
+  if (asked.with_census && pe.id().value == 0) {  // the other processes hear of it from PE 0
+    for (std::int32_t first = pe.machine().n_pes_here(); first < pe.n_pes();
+         first += pe.machine().pes_per_process())
+      send_uncounted<&census_is_wanted>(pe, PeId{first}, CensusWanted{});
+  }
+  loop_of(pe).answered(pe, sample_of(pe, asked.with_census));
+}
+void sample_arrives(Pe& pe, PeSample&& sample) {
+  loop_of(pe).arrived(std::move(sample));
+}
+void part_arrives(Pe& pe, PicturePart&& part) {
+  loop_of(pe).draw(part);
+}
+void note_arrives(Pe& pe, BalanceNote&& note) {
+  loop_of(pe).note(note);
+}
+
+}  // namespace
+
 Monitor::Monitor(Runtime& runtime, const MonitorOptions& options)
     : loop_(std::make_unique<Loop>(runtime, options)) {
   runtime.watch(*this);
@@ -211,27 +226,12 @@ void Monitor::balanced(Pe& pe, BalanceNote note) {
 void Monitor::close() {
   loop_->close();
 }
-void Monitor::answered(Pe& pe, PeSample sample) {
-  loop_->answered(pe, std::move(sample));
-}
-void Monitor::arrived(PeSample sample) {
-  loop_->arrived(std::move(sample));
-}
-void Monitor::want_census() {
-  loop_->want_census();
-}
 bool Monitor::wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
   return loop_->wants_part(pe, name, part);
 }
-void Monitor::draw(const PicturePart& part) {
-  loop_->draw(part);
-}
-void Monitor::note(const BalanceNote& note) {
-  loop_->note(note);
-}
 
 void send_part(Pe& pe, PicturePart part) {
-  if (is_on_process_0(pe)) return monitor_of(pe).draw(part);
+  if (is_on_process_0(pe)) return loop_of(pe).draw(part);
   send_uncounted<&part_arrives>(pe, PeId{0}, std::move(part));
 }
 

@@ -51,22 +51,14 @@ class Monitor final : public ProcessMonitor {
   void balanced(Pe& pe, BalanceNote note) override;
   void close() override;
 
-  // On the threads of PEs.
-
-  /// A PE of this process has taken its sample.
-  void answered(Pe& pe, PeSample sample);
-  /// On process 0: the sample of a PE of another process.
-  void arrived(PeSample sample);
-  /// Someone wants to know what waits: the next samples of this process say it.
-  void want_census();
   /// True if this part of a picture is wanted: once between two samples of the PE.
   [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part);
-  /// On process 0.
-  void draw(const PicturePart& part);
-  void note(const BalanceNote& note);
+
+  /// The thread and its state. Handlers of its messages on the PEs call it.
+  class Loop;
+  [[nodiscard]] Loop& loop() { return *loop_; }
 
  private:
-  class Loop;
   std::unique_ptr<Loop> loop_;
 };
 

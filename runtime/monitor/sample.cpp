@@ -1,25 +1,9 @@
 #include "runtime/monitor/sample.hpp"
 
+#include "runtime/base/usable_memory.hpp"
 #include "runtime/scheduler/idle_time.hpp"
 
-#include <cstdio>
-#include <memory>
-#include <unistd.h>
-
 namespace tess::detail {
-namespace {
-
-/// The memory that is resident for this process, in bytes; 0 if the system does not say.
-std::uint64_t resident_bytes() {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"),
-                                                             &std::fclose);
-  unsigned long long all = 0, resident = 0;
-  if (!file || std::fscanf(file.get(), "%llu %llu", &all, &resident) != 2) return 0;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
-}  // namespace
-
 PeSample sample_of(Pe& pe, bool with_census) {
   PeSample sample;
   sample.pe = pe.id();
@@ -29,7 +13,7 @@ PeSample sample_of(Pe& pe, bool with_census) {
   sample.n_ready = pe.n_ready();
   sample.n_epochs = pe.completion().n_epochs();
   const std::int32_t first = pe.machine().process().value * pe.machine().pes_per_process();
-  if (pe.id().value == first) sample.process_bytes = resident_bytes();
+  if (pe.id().value == first) sample.process_bytes = resident_memory();
   for (const HostedCollection* collection : pe.collections())
     sample.collections.push_back({collection->id(), collection->name(), collection->n_local()});
   sample.has_census = with_census;

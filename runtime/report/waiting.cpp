@@ -19,8 +19,8 @@ class Cycles {
  public:
   explicit Cycles(const std::vector<Need>& needs) {
     for (const Need& need : needs) {
-      edges_[need.who.key].insert({need.asked.key, need.asked.text});
-      names_[need.who.key] = need.who.text;
+      edges_[need.asker.key].insert({need.asked.key, need.asked.text});
+      names_[need.asker.key] = need.asker.text;
     }
   }
   [[nodiscard]] std::vector<std::string> find() {

@@ -31,7 +31,7 @@ struct WaitLine {
 
 /// An element (or the main program) that needs the reply of another.
 struct Need {
-  NamedElement who;
+  NamedElement asker;
   NamedElement asked;
 };
 

@@ -453,17 +453,17 @@ Waits Pe::census(std::span<void* const> except) const {
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
     if (std::find(except.begin(), except.end(), one.frame) != except.end()) continue;
-    NamedElement who{"main", "the main program"};
+    NamedElement asker{"main", "the main program"};
     std::string state, code = "run()";
     if (one.element != nullptr) {
-      who = {words.key(*one.element), words.text(*one.element)};
+      asker = {words.key(*one.element), words.text(*one.element)};
       state = words.state(*one.element);
       if (one.action != nullptr) code = plain_name(one.action->name());
     }
     WaitReason reason = one.waits_for();
-    waits.add(WaitRank::coroutine, text(who.text, " on ", id_, state.empty() ? "" : ", ", state,
+    waits.add(WaitRank::coroutine, text(asker.text, " on ", id_, state.empty() ? "" : ", ", state,
                                         ": ", code, " waits for ", reason.text));
-    for (NamedElement& asked : reason.asked) waits.add_need({who, std::move(asked)});
+    for (NamedElement& asked : reason.asked) waits.add_need({asker, std::move(asked)});
   }
   std::vector<std::string> lines;
   for (const auto& [id, collection] : tables_->collections) collection->describe_waiting(lines);

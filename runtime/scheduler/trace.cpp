@@ -1,5 +1,6 @@
 #include "runtime/scheduler/trace.hpp"
 
+#include "runtime/base/json_string.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/messages/envelope.hpp"
 
@@ -12,16 +13,6 @@ namespace tess::detail {
 namespace {
 
 constexpr std::uint32_t most_numbers = 0x7fffffff;  // 31 bits travel between processes
-
-/// The readable name of a message as the content of a JSON string.
-std::string escaped(const std::string& name) {
-  std::string out;
-  for (const char c : name) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out;
-}
 
 /// The number of an arrow, unique in the job.
 std::uint64_t arrow(PeId source, std::uint32_t number) {
@@ -47,7 +38,7 @@ class TraceWriter {
                     process_.value, of.pe.value, of.pe.value));
     for (const Trace::Slice& slice : of.trace->slices()) {
       const double begin = micros(of, slice.begin);
-      event("X", escaped(plain_name(slice.action->name())), of.pe, begin,
+      event("X", plain_name(slice.action->name()), of.pe, begin,
             fmt::format(",\"dur\":{:.3f}", micros(of, slice.end) - begin));
       if (slice.number != 0)
         event("f", "message", of.pe, begin,
@@ -59,9 +50,9 @@ class TraceWriter {
     for (const Trace::Event& one : of.trace->events()) {
       const double begin = micros(of, one.begin);
       if (one.begin == one.end) {
-        event("i", escaped(one.name), of.pe, begin, R"(,"s":"t")");
+        event("i", one.name, of.pe, begin, R"(,"s":"t")");
       } else {
-        event("X", escaped(one.name), of.pe, begin,
+        event("X", one.name, of.pe, begin,
               fmt::format(",\"dur\":{:.3f}", micros(of, one.end) - begin));
       }
     }
@@ -83,8 +74,8 @@ class TraceWriter {
   }
   void event(const char* phase, const std::string& name, PeId pe, double at,
              const std::string& more) {
-    put(fmt::format(",\n{{\"ph\":\"{}\",\"name\":\"{}\",\"pid\":{},\"tid\":{},\"ts\":{:.3f}{}}}",
-                    phase, name, process_.value, pe.value, at, more));
+    put(fmt::format(",\n{{\"ph\":\"{}\",\"name\":{},\"pid\":{},\"tid\":{},\"ts\":{:.3f}{}}}", phase,
+                    json_string(name), process_.value, pe.value, at, more));
   }
   void put(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size())

@@ -4,8 +4,8 @@
 //     SIGUSR1          process 0 prints what waits on all PEs of the job, and the run goes on
 //     --hang-report    the same, when no entry method has begun for that time; and a line for each
 //                      entry method that takes as long
-//     SIGINT, SIGTERM  each process prints what waits on its PEs, then the run ends on all processes with exit code 128 + signal;
-//                      a second one ends the job at once
+//     SIGINT, SIGTERM  each process prints what waits on its PEs, then the run ends on all processes
+//                      with exit code 128 + signal; a second one ends the job at once
 //
 //     signal -> a message to each PE here -> its census -> all here, or time is up: report
 //            -> a message to each PE here -> Runtime::exit -> Stop to all PEs, each with its census

@@ -3,20 +3,6 @@
 source "$(dirname "$0")/../support/checks.sh"
 bin=$1/nqueens
 
-# exits CODE TEXT COMMAND…: requires this exit code, and the text on either output; errors of the command line are one line.
-exits() {
-  local want_code=$1 want=$2
-  shift 2
-  timeout 60 "$@" >"$scratch/out" 2>"$scratch/err" </dev/null
-  local code=$?
-  if [[ $code -eq $want_code ]] && cat "$scratch/out" "$scratch/err" | grep -q -- "$want" &&
-    { [[ $want_code -ne 2 ]] || [[ $(wc -l <"$scratch/err") -eq 1 ]]; }; then
-    pass
-  else
-    fail "(exit $code, wanted $want_code and \"$want\"): $*"
-    tail -3 "$scratch/out" "$scratch/err"
-  fi
-}
 for n in {1..13} 15; do exits 0 "path" "$bin" "$n" --pes 2; done
 
 hash_of() { grep -o '"result_hash": "[0-9a-f]*"' "$1"; }

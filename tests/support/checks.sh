@@ -3,6 +3,7 @@
 #
 #     pass          counts a check that passed
 #     fail WORDS…   counts a check that failed, and prints what failed
+#     exits …       runs a command and checks its exit code and what it says; see below
 #     finish        prints the counts; succeeds if checks have passed and none has failed
 set -uo pipefail
 scratch=$(mktemp -d)
@@ -16,6 +17,22 @@ pass() { passed=$((passed + 1)); }
 fail() {
   failed=$((failed + 1))
   echo "FAILED: $*"
+}
+# exits CODE TEXT COMMAND…: requires this exit code within $limit s, and the text on either output; errors of the command
+# line are one line.
+limit=60
+exits() {
+  local want_code=$1 want=$2
+  shift 2
+  timeout "$limit" "$@" >"$scratch/out" 2>"$scratch/err" </dev/null
+  local code=$?
+  if [[ $code -eq $want_code ]] && cat "$scratch/out" "$scratch/err" | grep -q -- "$want" &&
+    { [[ $want_code -ne 2 ]] || [[ $(wc -l <"$scratch/err") -eq 1 ]]; }; then
+    pass
+  else
+    fail "(exit $code, wanted $want_code and \"$want\"): $*"
+    tail -3 "$scratch/out" "$scratch/err"
+  fi
 }
 finish() {
   echo "$passed passed, $failed failed"

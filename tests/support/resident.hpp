@@ -3,18 +3,11 @@
 // have freed would hide what a loop leaves behind.
 #pragma once
 
+#include "runtime/base/usable_memory.hpp"
+
 #include <cstdint>
-#include <fstream>
-#include <unistd.h>
 
 namespace tess::test {
-
-[[nodiscard]] inline std::int64_t resident_bytes() {
-  std::ifstream file("/proc/self/statm");
-  std::int64_t total_pages = 0, resident_pages = 0;
-  file >> total_pages >> resident_pages;
-  return resident_pages * sysconf(_SC_PAGESIZE);
-}
 
 class Growth {
  public:
@@ -23,8 +16,8 @@ class Growth {
   [[nodiscard]] int n_rounds() const { return n_rounds_; }
   /// After each round, counted from 1.
   void after(int round) {
-    if (round == n_rounds_ / 4) at_quarter_ = resident_bytes();
-    if (round == n_rounds_) at_end_ = resident_bytes();
+    if (round == n_rounds_ / 4) at_quarter_ = static_cast<std::int64_t>(detail::resident_memory());
+    if (round == n_rounds_) at_end_ = static_cast<std::int64_t>(detail::resident_memory());
   }
   /// Bytes; −1 if the loop did not come to its end.
   [[nodiscard]] std::int64_t bytes() const {

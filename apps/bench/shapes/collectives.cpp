@@ -72,28 +72,30 @@ class Registrar : public tess::Group<Registrar> {
   }
 };
 
-template <class Index>
-tess::Task hold_votes(const Bench& bench, tess::ArrayProxy<Voter<Index>> voters,
-                      std::int32_t n_elements, Samples& samples) {
+/// `begin` sends the rounds to the element that conducts them.
+template <class Begin>
+tess::Task hold_votes(const Bench& bench, Begin begin, std::int32_t n_voters, Samples& samples) {
   std::int32_t n_rounds = 2;
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
     tess::Future<std::int32_t> done;
     const Stopwatch watch;
-    voters[Index{}].template send<&Voter<Index>::begin>(
-        Rounds{n_rounds, n_elements, done.callback()});
+    begin(Rounds{n_rounds, n_voters, done.callback()});
     const std::int32_t last = co_await done;
     const double nanoseconds = watch.nanoseconds() / n_rounds;
     TESS_CHECK(last == n_rounds, last, " rounds were held, not ", n_rounds);
     if (turn == 0)
       n_rounds = static_cast<std::int32_t>(times_in_sample(nanoseconds, bench.size(200, 3)));
     else
-      samples.add(nanoseconds / n_elements);
+      samples.add(nanoseconds / n_voters);
   }
 }
 
 tess::Task measure_dense(const Bench& bench, std::int32_t n_elements, Samples& samples) {
   const DenseVoters voters = tess::create<Voter<tess::Index1>>(tess::range(n_elements));
-  co_await hold_votes(bench, voters, n_elements, samples);
+  const auto begin = [voters](Rounds rounds) {
+    voters[{0}].send<&Voter<tess::Index1>::begin>(std::move(rounds));
+  };
+  co_await hold_votes(bench, begin, n_elements, samples);
 }
 
 tess::Task measure_sparse(const Bench& bench, std::int32_t n_elements, Samples& samples) {
@@ -101,7 +103,10 @@ tess::Task measure_sparse(const Bench& bench, std::int32_t n_elements, Samples& 
   const auto registrar = tess::create_group<Registrar>();
   const auto fill = [&] { registrar.broadcast<&Registrar::fill>(voters, n_elements); };
   co_await tess::epoch(fill);
-  co_await hold_votes(bench, voters, n_elements, samples);
+  const auto begin = [voters](Rounds rounds) {
+    voters[{0, 0, 0}].send<&Voter<tess::Index3>::begin>(std::move(rounds));
+  };
+  co_await hold_votes(bench, begin, n_elements, samples);
 }
 
 /// The members of a section hold the votes.
@@ -145,19 +150,8 @@ tess::Task measure_section(const Bench& bench, std::int32_t n_elements, Samples&
     all.broadcast<&Chorister::join>(section);
   };
   co_await tess::epoch(make);
-  std::int32_t n_rounds = 2;
-  for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
-    tess::Future<std::int32_t> done;
-    const Stopwatch watch;
-    all[{0}].send<&Chorister::begin>(Rounds{n_rounds, n_members, done.callback()});
-    const std::int32_t last = co_await done;
-    const double nanoseconds = watch.nanoseconds() / n_rounds;
-    TESS_CHECK(last == n_rounds, last, " rounds were held, not ", n_rounds);
-    if (turn == 0)
-      n_rounds = static_cast<std::int32_t>(times_in_sample(nanoseconds, bench.size(200, 3)));
-    else
-      samples.add(nanoseconds / n_members);
-  }
+  const auto begin = [all](Rounds rounds) { all[{0}].send<&Chorister::begin>(std::move(rounds)); };
+  co_await hold_votes(bench, begin, n_members, samples);
 }
 
 int run_collectives(Bench& bench) {

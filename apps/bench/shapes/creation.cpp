@@ -2,11 +2,10 @@
 // 10⁶ indices, of which each PE sends to its share inside an epoch, all from one entry method or
 // paced. Then plain messages to all of them.
 #include "apps/bench/shapes/shapes.hpp"
+#include "runtime/base/usable_memory.hpp"
 #include "runtime/runtime.hpp"
 
-#include <cstdio>
 #include <malloc.h>
-#include <unistd.h>
 
 namespace bench {
 namespace {
@@ -37,15 +36,6 @@ struct Share {
   }
 };
 
-/// Resident bytes of this process.
-double resident_bytes() {
-  long pages = 0;
-  std::FILE* const file = std::fopen("/proc/self/statm", "r");
-  TESS_CHECK(file != nullptr && std::fscanf(file, "%*d %ld", &pages) == 1, "no /proc/self/statm");
-  std::fclose(file);
-  return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
 class Toucher : public tess::Group<Toucher> {
  public:
   /// `share` of the whole: this PE sends to its part of it.
@@ -73,7 +63,8 @@ class Toucher : public tess::Group<Toucher> {
     const bool speaks =
         pe().value == 0 || (!machine.virtual_time() && pe().value % machine.pes_per_process() == 0);
     if (speaks) malloc_trim(0);
-    contribute(tess::sum, speaks ? resident_bytes() : 0.0, std::move(sum));
+    contribute(tess::sum, speaks ? static_cast<double>(tess::detail::resident_memory()) : 0.0,
+               std::move(sum));
   }
 };
 

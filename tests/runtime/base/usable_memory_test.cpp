@@ -3,8 +3,10 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace {
@@ -51,6 +53,20 @@ TEST_CASE("memory is limited by the least of a process's control groups and thos
 TEST_CASE("some memory can be used", "[runtime]") {
   CHECK(tess::detail::usable_memory() > 1e7);
   CHECK(tess::detail::usable_memory() < 1e16);
+}
+
+TEST_CASE("resident memory grows by the pages that are written", "[runtime]") {
+  constexpr std::size_t n_bytes = 64U << 20U;
+  // Not from the heap, which may have pages left from earlier tests.
+  void* const pages =
+      mmap(nullptr, n_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  REQUIRE(pages != MAP_FAILED);
+  const std::uint64_t before = tess::detail::resident_memory();
+  std::memset(pages, 1, n_bytes);
+  const std::uint64_t with = tess::detail::resident_memory();
+  munmap(pages, n_bytes);
+  CHECK(with > before + n_bytes / 2);
+  CHECK(with < before + 4 * n_bytes);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ using tess::detail::Need;
 using tess::detail::WaitRank;
 using tess::detail::Waits;
 
-Need need(const std::string& who, const std::string& asked) {
-  return {{who, "<" + who + ">"}, {asked, "<" + asked + ">.f"}};
+Need need(const std::string& asker, const std::string& asked) {
+  return {{asker, "<" + asker + ">"}, {asked, "<" + asked + ">.f"}};
 }
 
 std::size_t count(const std::string& text, const std::string& part) {

@@ -3,27 +3,8 @@
 # 128 + signal; SIGUSR1 prints the census and the run goes on.
 #
 #     signals.sh PROGRAM [MPIEXEC]
-set -uo pipefail
-program=$1
-mpirun=()
-[[ -n ${2:-} ]] && mpirun=("$2" --allow-run-as-root --oversubscribe -n 2)
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-failed=0
-passed=0
+source "$(dirname "$0")/../../support/running_job.sh"
 
-check() {  # check WHAT CONDITION…
-  local what=$1
-  shift
-  if "$@"; then
-    passed=$((passed + 1))
-  else
-    failed=$((failed + 1))
-    echo "FAILED: $what"
-    grep -v "^PE .* pid" "$scratch/out" | head -20
-  fi
-}
-says() { grep -q -- "$1" "$scratch/out"; }
 pids() { sed -n 's/^PE .* pid //p' "$scratch/out" | sort -u; }
 # A process that has ended may wait for mpirun to take note of it.
 gone() {
@@ -35,19 +16,9 @@ gone() {
   return 0
 }
 
-# starts N_PES ARGUMENTS…: the job runs, and N_PES PEs have announced themselves.
-starts() {
-  local n=$1 i
-  shift
-  : >"$scratch/out"
-  "${mpirun[@]}" "$program" "$@" >"$scratch/out" 2>&1 </dev/null &
-  job=$!
-  for ((i = 0; i < 300; ++i)); do
-    (($(grep -c '^PE .* pid' "$scratch/out") >= n)) && break
-    sleep 0.1
-  done
-  what="$* ${mpirun[*]:+(2 processes)}"
-  # Until the PEs wait for what they have asked for.
+# begins N ARGUMENTS…: starts the job, and gives the PEs time to wait for what they have asked for.
+begins() {
+  starts "$@"
   sleep 0.3
 }
 # mpirun takes a second to pass the signal on.
@@ -71,22 +42,22 @@ ends() {  # ends EXIT_CODE [TENTHS_OF_SECONDS]
 if ((${#mpirun[@]} == 0)); then
   waiting="Waiter\[PE 1\] on PE 1: Waiter::wait waits for a message of key 7"
   for pair in TERM:143 INT:130; do
-    starts 2 wait --pes 2
+    begins 2 wait --pes 2
     kill -"${pair%:*}" $job
     ends "${pair#*:}"
     check "$what: says what ended it" says "SIG${pair%:*} ends the run; 3 wait:"
     check "$what: says what waits" says "$waiting"
     check "$what: says that a timer is set" says "PE 0: 1 timer is set"
   done
-  starts 2 busy --pes 2
+  begins 2 busy --pes 2
   kill -TERM $job
   ends 143
-  starts 2 stuck --pes 2
+  begins 2 stuck --pes 2
   kill -TERM $job
   ends 143
   check "$what: names what runs" says "PE 1 has not answered within 300 ms: it runs Waiter::get_stuck"
 
-  starts 2 wait --pes 2
+  begins 2 wait --pes 2
   for n in 1 2; do
     kill -USR1 $job
     for ((i = 0; i < 50; ++i)); do
@@ -99,7 +70,7 @@ if ((${#mpirun[@]} == 0)); then
   kill -TERM $job
   ends 143
 
-  starts 2 ignore --pes 2
+  begins 2 ignore --pes 2
   kill -TERM $job
   sleep 0.5
   check "$what: a signal that the program ignores is left alone" kill -0 $job
@@ -107,25 +78,25 @@ if ((${#mpirun[@]} == 0)); then
   ends 130
 else
   # mpirun passes SIGTERM on after a second, kills its processes after another, and returns 1.
-  starts 4 wait --pes 2
+  begins 4 wait --pes 2
   kill -TERM $job
   ends 1 29
   check "$what: census of process 0" says "on process 0, 3 wait:"
   check "$what: census of process 1" says "on process 1, 2 wait:"
   check "$what: says what waits" says "Waiter\[PE 3\] on PE 3: Waiter::wait waits for a message of key 7"
-  starts 4 stuck --pes 2
+  begins 4 stuck --pes 2
   kill -TERM $job
   ends 1 29
   check "$what: names what runs" says "PE 3 has not answered within 300 ms: it runs Waiter::get_stuck"
 
   # One process alone receives the signal: all report, and mpirun returns its exit code.
-  starts 2 wait --pes 1
+  begins 2 wait --pes 1
   kill -TERM "$(sed -n 's/^PE 1 pid //p' "$scratch/out")"
   ends 143
   check "$what: census of process 0" says "on process 0, 2 wait:"
   check "$what: census of process 1" says "on process 1, 1 wait:"
 
-  starts 2 wait --pes 1
+  begins 2 wait --pes 1
   kill -USR1 $job
   for ((i = 0; i < 50; ++i)); do
     says "SIGUSR1: 3 wait:" && break
@@ -138,7 +109,7 @@ else
   ends 1 29
 
   # An idle process with two PEs, over 5 s, in ticks of 10 ms of processor time: less than 2 %.
-  starts 4 wait --pes 2
+  begins 4 wait --pes 2
   sleep 1
   ticks() { awk '{ sub(/.*\) /, ""); n += $12 + $13 } END { print n }' "/proc/$1/stat"; }
   declare -A before
@@ -153,5 +124,4 @@ else
   ends 1 29
 fi
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+finish
