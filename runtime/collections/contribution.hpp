@@ -52,7 +52,7 @@ struct ToSection {
   Sections::Seat seat;
 
   [[nodiscard]] Partial* open_sum(const PartialKind& kind) const {
-    return sections.open_sum(seat, kind);
+    return sections.open_sum(seat, kind, sections.collection().pe().context().epoch);
   }
   void contributed() const { sections.contributed(seat); }
   void contribute(std::unique_ptr<Partial> value) const {

@@ -93,15 +93,6 @@ void SectionReduction::advance() {
   }
 }
 
-void SectionReduction::added(std::uint32_t number) {
-  completion_.sent(current_->shares.front().epoch);
-  ++current_->shares.front().n;
-  ++current_->n;
-  leave(number);
-  enter(number + 1);
-  if (passed(next_report_)) advance();
-}
-
 void SectionReduction::contribute(std::uint32_t number, EpochId epoch,
                                   std::unique_ptr<Partial> value) {
   completion_.sent(epoch);

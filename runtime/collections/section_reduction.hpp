@@ -83,7 +83,14 @@ class SectionReduction {
       return nullptr;
     return current_->value.held.get();
   }
-  void added(std::uint32_t number);
+  void added(std::uint32_t number) {
+    completion_.sent(current_->shares.front().epoch);
+    ++current_->shares.front().n;
+    ++current_->n;
+    leave(number);
+    enter(number + 1);
+    if (passed(next_report_)) advance();
+  }
 
   /// Attaches, reports or detaches as far as that is possible now.
   void advance();

@@ -117,8 +117,7 @@ void SectionPart::deliver_complete() {
 
 Sections::~Sections() = default;
 
-SectionPart* Sections::part(SectionId id) {
-  if (last_ != nullptr && last_->id == id) return last_;
+SectionPart* Sections::find_part(SectionId id) {
   const auto at = parts_.find(id.value);
   if (at != parts_.end()) return last_ = at->second.get();
   if (all_ended_ || ended_.contains(CollectionId{id.value})) return nullptr;
@@ -252,21 +251,13 @@ void Sections::deliver_listed(SectionPart& part, const SectionCall& call) {
   }
 }
 
-Sections::Seat Sections::contributor(Element& element, SectionId id) {
-  SectionPart* const of = part(id);
-  if (of == nullptr) return {};
-  if (of->current < of->members.size() && of->members[of->current].element == &element) [[likely]]
-    return {of, of->current};
-  const Seat seat = find(element, id);
+Sections::Seat Sections::find_contributor(SectionPart& part, Element& element) {
+  const Seat seat = find(element, part.id);
   if (seat.part != nullptr) return seat;
   ++element.n_suspended_;  // it stays here until Join has reached it
-  const Seat added = add(*of, element, SectionPart::Member{});
-  of->reduction.advance();
+  const Seat added = add(part, element, SectionPart::Member{});
+  part.reduction.advance();
   return added;
-}
-
-Partial* Sections::open_sum(const Seat& seat, const PartialKind& kind) {
-  return seat.part->reduction.open_sum(seat.member().next, kind, collection_.pe().context().epoch);
 }
 
 void Sections::contribute(const Seat& seat, std::unique_ptr<Partial> value) {

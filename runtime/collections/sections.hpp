@@ -91,7 +91,9 @@ class Sections {
   [[nodiscard]] std::unique_ptr<SectionLists>& lists() { return lists_; }
 
   /// The part of a section here, made if it is new; null once the section has ended here.
-  [[nodiscard]] SectionPart* part(SectionId id);
+  [[nodiscard]] SectionPart* part(SectionId id) {
+    return last_ != nullptr && last_->id == id ? last_ : find_part(id);
+  }
   /// The root of a section.
   [[nodiscard]] PeId root(SectionId id) const;
 
@@ -130,8 +132,16 @@ class Sections {
   // Contributions.
 
   /// The seat of an element that contributes; an element that has not joined yet gets one.
-  [[nodiscard]] Seat contributor(Element& element, SectionId id);
-  [[nodiscard]] Partial* open_sum(const Seat& seat, const PartialKind& kind);
+  [[nodiscard]] Seat contributor(Element& element, SectionId id) {
+    SectionPart* const of = part(id);
+    if (of == nullptr) return {};
+    if (of->current < of->members.size() && of->members[of->current].element == &element) [[likely]]
+      return {of, of->current};
+    return find_contributor(*of, element);
+  }
+  [[nodiscard]] Partial* open_sum(const Seat& seat, const PartialKind& kind, EpochId epoch) {
+    return seat.part->reduction.open_sum(seat.member().next, kind, epoch);
+  }
   void contributed(const Seat& seat) { seat.part->reduction.added(seat.member().next++); }
   void contribute(const Seat& seat, std::unique_ptr<Partial> value);
 
@@ -153,6 +163,8 @@ class Sections {
 
  private:
   friend class SectionPart;
+  [[nodiscard]] SectionPart* find_part(SectionId id);
+  [[nodiscard]] Seat find_contributor(SectionPart& part, Element& element);
   Seat add(SectionPart& part, Element& element, SectionPart::Member&& member);
   /// Frees a member's slot. Its element's list of seats is unchanged.
   [[nodiscard]] SectionPart::Member remove(SectionPart& part, std::uint32_t slot);
