@@ -54,7 +54,7 @@ void AskBase::expire() {
                      text(waits_for().text, " did not come within ",
                           std::chrono::duration<double, std::milli>(limit_).count(),
                           " ms: allow more time, or catch this error")};
-  done();
+  if (Waiter* waiter = done(); waiter != nullptr) waiter->wake();
 }
 
 void AskBase::leave() {

@@ -81,9 +81,10 @@ class AskBase {
 
   void set_deadline(Time limit);
   [[nodiscard]] static WaitReason reply_of(CollectionId of, std::uint64_t hash, std::string name);
-  void done() {
+  /// The reply is there. Returns the waiter that is to be woken, or null.
+  [[nodiscard]] Waiter* done() {
     leave();
-    if (waiting_ != nullptr) std::exchange(waiting_, nullptr)->wake();
+    return std::exchange(waiting_, nullptr);
   }
   std::optional<Failure> failure_;
 
@@ -131,12 +132,14 @@ class AskOf : public AskBase {
  private:
   static void arrives(Pe& pe, Reply&& reply) {
     const EpochId epoch = pe.context().epoch;
+    Waiter* waiter = nullptr;
     if (auto* ask = static_cast<AskOf*>(AskBase::take(pe, reply.id)); ask != nullptr) {
       ask->value_ = std::move(reply.value);
       ask->failure_ = std::move(reply.failure);
-      ask->done();
+      waiter = ask->done();
     }
     pe.completion().processed(epoch);
+    if (waiter != nullptr) waiter->wake_at_end();
   }
 };
 

@@ -18,8 +18,9 @@ struct Resumption {
   }
 };
 
-void run_resumption(Pe& pe, Resumption&& resumption) {
-  const auto task = Task::Handle::from_address(resumption.frame);
+/// Nothing else of the program runs on this PE; the message under way ends with it.
+void resume(Task::Handle task) {
+  Pe& pe = *task.promise().account.pe;
   TaskAccount& account = task.promise().account;
   const Context context = account.context;
   if (context.element == nullptr) {
@@ -36,6 +37,10 @@ void run_resumption(Pe& pe, Resumption&& resumption) {
   const ElementScope scope(pe, *context.element, context.action, context.epoch, context.led_by);
   account.release();
   task.resume();
+}
+
+void run_resumption(Pe& /*pe*/, Resumption&& resumption) {
+  resume(Task::Handle::from_address(resumption.frame));
 }
 
 }  // namespace
@@ -88,6 +93,9 @@ void resume_later(Task::Handle task) {
 
 void detail::Waiter::wake() {
   if (--n_left_ == 0) resume_later(task_);
+}
+void detail::Waiter::wake_at_end() {
+  if (--n_left_ == 0) resume(task_);
 }
 
 void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type> self) noexcept {

@@ -102,6 +102,8 @@ class Waiter {
   }
   /// A result is there.
   void wake();
+  /// The same at the end of a message of the runtime: without a message of its own.
+  void wake_at_end();
 
  private:
   Task::Handle task_;
