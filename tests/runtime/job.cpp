@@ -1,7 +1,9 @@
 // A job that ends as its argument says, while messages travel round all PEs and would do so for
 // ever; run under mpirun by job_ends.sh.
 //
-//     test_job throw | fail | memory | check | exit | codes=A,B | forget | wait
+//     test_job throw | fail | memory | check | exit | codes=A,B | move | forget | wait
+//
+// It prints when it begins to end, as milliseconds of the system's clock.
 #include "runtime/runtime.hpp"
 
 #include <chrono>
@@ -15,6 +17,14 @@ namespace {
 
 constexpr int n_balls = 100;  // of each PE
 
+void print_time() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  std::printf(
+      "ends at %lld\n",
+      static_cast<long long>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count()));
+  std::fflush(stdout);
+}
+
 /// Keeps every PE busy.
 class Crowd : public tess::Group<Crowd> {
  public:
@@ -27,7 +37,10 @@ class Crowd : public tess::Group<Crowd> {
     const tess::PeId next{(pe().value + 1) % tess::n_pes()};
     group()[next].send<&Crowd::pass>(ball);
   }
-  void give(int code) { tess::exit(code); }
+  void give(int code) {
+    print_time();
+    tess::exit(code);
+  }
 #ifdef OTHER_PROGRAM
   void only_here() {}
   void begin_other() { group()[pe()].send<&Crowd::only_here>(); }
@@ -43,6 +56,7 @@ class Actor : public tess::Chare<Actor, tess::Index1> {
       array()[index()].send<&Actor::act>(std::move(ending));
       return;
     }
+    print_time();
     if (ending == "throw") throw std::runtime_error("the bridge is out");
     if (ending == "fail") tess::fail(tess::ErrorCode::bad_value, "the dose is -1: give more");
     if (ending == "memory") throw std::bad_alloc();
@@ -52,6 +66,26 @@ class Actor : public tess::Chare<Actor, tess::Index1> {
 
  private:
   int delay_ = 1000;
+};
+
+/// Goes round all PEs without end, with some weight; one of them ends the job on its way.
+class Wanderer : public tess::Chare<Wanderer, tess::Index1> {
+ public:
+  void go(int n_moves) {
+    if (n_moves == 0 && index().x == 0) {
+      print_time();
+      tess::exit(7);
+    }
+    array()[index()].send<&Wanderer::go>(n_moves - 1);
+    migrate_to(tess::PeId{(tess::current_pe().id().value + 1) % tess::n_pes()});
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(load_);
+  }
+
+ private:
+  std::vector<double> load_ = std::vector<double>(10'000);
 };
 
 /// Moves, and reads a member into nowhere: builds with TESS_CHECKS=all refuse it.
@@ -79,6 +113,7 @@ void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
   crowd[tess::PeId{pe.n_pes() - 1}].send<&Crowd::give>(last);
   pe.flush();
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  print_time();
   tess::exit(first);
 }
 
@@ -91,6 +126,10 @@ int job(int argc, char** argv) {
       give_codes(crowd, 3, 9);
     } else if (ending == "codes=9,3") {
       give_codes(crowd, 9, 3);
+    } else if (ending == "codes=0,7") {
+      give_codes(crowd, 0, 7);
+    } else if (ending == "move") {
+      tess::create<Wanderer>(tess::range(200)).broadcast<&Wanderer::go>(50);
     } else if (ending == "forget") {
       const auto forgetful = tess::create<Forgetful>(tess::range(1));
       forgetful[{0}].send<&Forgetful::go>();

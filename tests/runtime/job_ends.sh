@@ -9,6 +9,7 @@ other=$3
 # Generous: what is not found by itself never ends.
 limit=30
 
+slowest=0  # milliseconds from the ending to mpirun's return
 verdict() {
   local what=$1 code=$2 want=$3 word=$4
   if [[ $code =~ ^($want)$ ]] && { [[ -z $word ]] || grep -q -- "$word" "$scratch/err"; }; then
@@ -25,7 +26,10 @@ ends() {
   local want=$1 word=$2
   shift 2
   timeout -k 5 $limit "${mpirun[@]}" "$@" >"$scratch/out" 2>"$scratch/err" </dev/null
-  verdict "${*##*/}" $? "$want" "$word"
+  local code=$? begun
+  begun=$(sed -n 's/^ends at //p' "$scratch/out" | sort -n | tail -1)
+  [[ -z $begun ]] || slowest=$(($(date +%s%3N) - begun > slowest ? $(date +%s%3N) - begun : slowest))
+  verdict "${*##*/}" $code "$want" "$word"
 }
 
 # once WORD: standard error has one line with WORD.
@@ -52,6 +56,9 @@ ends 5 "" -n 2 "$job" exit --pes 1
 ends 5 "" -n 2 "$job" exit --pes 2
 ends 9 "" -n 2 "$job" codes=3,9 --pes 1
 ends 9 "" -n 2 "$job" codes=9,3 --pes 1
+ends 7 "" -n 2 "$job" codes=0,7 --pes 2
+ends 7 "" -n 2 "$job" move --pes 1
+ends 7 "" -n 2 "$job" move --pes 2
 ends 2 "different programs" -n 1 "$job" exit --pes 1 : -n 1 "$other" exit --pes 1
 once "different programs"
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
@@ -77,4 +84,5 @@ kill -KILL "$(sed -n 's/^PE 1 pid //p' "$scratch/out")"
 wait $run
 verdict "process 1 is killed" $? "137" "rank 1 .* signal 9"
 
+echo "the slowest ended within $slowest ms"
 finish
