@@ -14,9 +14,9 @@ namespace bench {
 namespace {
 
 const std::vector<Shape>& all_shapes() {
-  static const std::vector<Shape> all{message_shape(),   creation_shape(),      collectives_shape(),
-                                      migration_shape(), one_way_shape(),       work_shape(),
-                                      balance_shape(),   balance_round_shape(), measuring_shape()};
+  static const std::vector<Shape> all{
+      message_shape(), creation_shape(), collectives_shape(),   migration_shape(), one_way_shape(),
+      work_shape(),    balance_shape(),  balance_round_shape(), measuring_shape(), timers_shape()};
   return all;
 }
 

@@ -14,5 +14,6 @@ Shape work_shape();
 Shape balance_shape();
 Shape balance_round_shape();
 Shape measuring_shape();
+Shape timers_shape();
 
 }  // namespace bench
