@@ -351,6 +351,7 @@ void Pe::drop_all() {
     Pool::release(std::exchange(bundle, nullptr), &pool_);
   }
   outbox_->drop_all();
+  timers_.drop_all();
   dropping_ = true;
   end_all(suspended_);
 }

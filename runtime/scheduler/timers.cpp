@@ -10,6 +10,12 @@
 namespace tess::detail {
 namespace {
 
+/// A later timer gets more than one: the machine adds the delay to a clock of its own.
+constexpr Time longest_alarm = std::chrono::hours(24 * 365);
+
+struct Alarm {
+  std::int64_t at_ns = 0;
+};
 struct Due {
   std::uint64_t timer = 0;
 };
@@ -20,6 +26,9 @@ struct Cancel {
   std::uint64_t timer = 0;
 };
 
+void alarm_rings(Pe& pe, Alarm&& alarm) {
+  pe.timers().on_alarm(Time(alarm.at_ns));
+}
 void timer_is_due(Pe& pe, Due&& due) {
   pe.timers().on_due(due.timer);
 }
@@ -30,17 +39,61 @@ void timer_is_cancelled(Pe& pe, Cancel&& cancel) {
   pe.timers().cancel(cancel.timer);
 }
 
+/// The end of a delay from now; the clock's last time for one that is longer.
+Time after_now(Pe& pe, Time delay) {
+  const Time now = pe.now();
+  return delay < Time::max() - now ? now + delay : Time::max();
+}
+
 }  // namespace
+
+void Timers::drop_all() {
+  for (const auto& [key, message] : waiting_) discard(message);
+  waiting_.clear();
+}
+
+void Timers::wait(std::uint64_t timer, Time due, Envelope* message) {
+  message->counted = false;
+  waiting_.emplace(std::pair(due, timer), message);
+  set_alarm();
+}
+
+void Timers::stop_waiting(std::uint64_t timer, Time due) {
+  const auto at = waiting_.find({due, timer});
+  if (at == waiting_.end()) return;  // its message is in the queue
+  discard(at->second);
+  waiting_.erase(at);
+}
+
+void Timers::set_alarm() {
+  if (waiting_.empty()) return;
+  const Time due = waiting_.begin()->first.first;
+  if (!alarms_.empty() && alarms_.back() <= due) return;
+  alarms_.push_back(due);
+  auto* const message = make_message<&alarm_rings>(pe_, Alarm{due.count()});
+  message->source = pe_.id();
+  message->counted = false;
+  pe_.post_after(std::clamp(due - pe_.now(), Time(0), longest_alarm), message);
+}
+
+void Timers::on_alarm(Time at) {
+  alarms_.erase(std::find(alarms_.begin(), alarms_.end(), at));
+  if (pe_.stopped()) return;
+  while (!waiting_.empty() && waiting_.begin()->first.first <= pe_.now()) {
+    const auto timer = waiting_.extract(waiting_.begin());
+    pe_.send_uncounted(pe_.id(), timer.mapped());
+  }
+  set_alarm();
+}
 
 std::uint64_t Timers::after(Time delay, Call call) {
   TESS_CHECK(delay >= Time(0), "a timer cannot wait for ", delay.count(), " ns");
   const EpochId epoch = pe_.context().epoch;
-  once_.emplace(++n_made_, Once{epoch, std::move(call)});
+  const Time due = after_now(pe_, delay);
+  once_.emplace(++n_made_, Once{epoch, due, std::move(call)});
   pe_.completion().sent(epoch);
   pe_.completion().hop_sent();
-  auto* const message = pe_.stamp(make_message<&timer_is_due>(pe_, Due{n_made_}));
-  message->counted = false;
-  pe_.post_after(delay, message);
+  wait(n_made_, due, pe_.stamp(make_message<&timer_is_due>(pe_, Due{n_made_})));
   return n_made_;
 }
 
@@ -58,15 +111,17 @@ void Timers::cancel(std::uint64_t timer) {
   if (const auto at = once_.find(timer); at != once_.end()) {
     pe_.completion().processed(at->second.epoch);
     pe_.completion().hop_processed();
+    stop_waiting(timer, at->second.due);
     once_.erase(at);
-  } else {
-    periodic_.erase(timer);
+  } else if (const auto tick = periodic_.find(timer); tick != periodic_.end()) {
+    stop_waiting(timer, tick->second.due);
+    periodic_.erase(tick);
   }
 }
 
 std::uint64_t Timers::every(Time period, Call call) {
   TESS_CHECK(period > Time(0), "a timer cannot have a period of ", period.count(), " ns");
-  const Time due = pe_.now() + period;
+  const Time due = after_now(pe_, period);
   periodic_.emplace(++n_made_, Periodic{period, due, std::move(call)});
   set_tick(n_made_, due);
   return n_made_;
@@ -75,8 +130,7 @@ std::uint64_t Timers::every(Time period, Call call) {
 void Timers::set_tick(std::uint64_t timer, Time due) {
   auto* const message = make_message<&timer_ticks>(pe_, Tick{timer});
   message->source = pe_.id();
-  message->counted = false;
-  pe_.post_after(std::max(Time(0), due - pe_.now()), message);
+  wait(timer, due, message);
 }
 
 void Timers::on_tick(std::uint64_t timer) {

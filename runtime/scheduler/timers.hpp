@@ -1,6 +1,11 @@
 // The timers of one PE. A timer that runs once counts as a message of its epoch: it is sent when the
 // timer is set and processed when it has run or is cancelled, so its epoch and the run wait for it.
-// The message that wakes it is not counted; that of a cancelled timer finds none.
+//
+// The timers wait here, each with the message that runs it once it is due. Only an alarm for the
+// earliest of them is with the machine, and so a timer that is cancelled leaves nothing behind:
+//
+//     after, every   waiting_ += timer; if it is earlier than all alarms: one more alarm
+//     alarm          the messages of all that are due go into the queue of this PE
 //
 // A periodic timer belongs to no epoch, and neither epochs nor the run wait for its next tick. What
 // a tick sends is counted in epoch 0. So that the run does not end while such a message is under
@@ -17,18 +22,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace tess::detail {
 
 class Pe;
+struct Envelope;
 
 class Timers {
  public:
   using Call = std::function<void()>;
 
   explicit Timers(Pe& pe) : pe_(pe) {}
+  Timers(const Timers&) = delete;
+  Timers& operator=(const Timers&) = delete;
+  ~Timers() { drop_all(); }
 
   /// Calls `call` on this PE after the delay, in the current epoch, unless the timer is cancelled
   /// before; returns its number.
@@ -45,13 +56,17 @@ class Timers {
   /// The number of timers that run once and have not run yet.
   [[nodiscard]] std::size_t n_waiting() const { return once_.size(); }
 
+  void drop_all();
+
   // Handlers of the messages.
+  void on_alarm(Time at);
   void on_due(std::uint64_t timer);
   void on_tick(std::uint64_t timer);
 
  private:
   struct Once {
     EpochId epoch;
+    Time due{0};
     Call call;
   };
   struct Periodic {
@@ -60,8 +75,13 @@ class Timers {
     Call call;
   };
   void set_tick(std::uint64_t timer, Time due);
+  void wait(std::uint64_t timer, Time due, Envelope* message);
+  void stop_waiting(std::uint64_t timer, Time due);
+  void set_alarm();
 
   Pe& pe_;
+  std::map<std::pair<Time, std::uint64_t>, Envelope*> waiting_;
+  std::vector<Time> alarms_;  // under way, the earliest last
   std::uint64_t n_made_ = 0;
   std::unordered_map<std::uint64_t, Once> once_;
   std::unordered_map<std::uint64_t, Periodic> periodic_;
