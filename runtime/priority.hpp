@@ -24,6 +24,8 @@ template <class C>
 class ArrayProxy;
 template <class C, class IndexType>
 class ElementProxy;
+template <class C, auto F>
+class Ask;
 
 /// An element, or a group's member, and the priority of what is sent to it: element.with(priority).
 template <class C, class IndexType>
@@ -36,6 +38,12 @@ class PrioritisedElement {
   template <auto F, class... Args>
   void send(Args&&... args) const {
     element_.template send_as<F>(priority_, std::forward<Args>(args)...);
+  }
+  /// The call has the priority; the reply has none.
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
+    return element_.template ask_from<F>(detail::PrioritisedPlace{{}, priority_.value},
+                                         std::forward<Args>(args)...);
   }
   template <auto F, class... Args>
   void send_or_create_here(Args&&... args) const {
