@@ -12,7 +12,8 @@
 //     class Circle : public tess::Chare<Circle>, public Shape {
 //     // …
 //     const std::vector<tess::InterfaceProxy<Shape>> shapes{circles[{0}], squares[{0}], circles[{1}]};
-//     for (const auto& shape : shapes) shape.send<&Shape::grow>(2.0);
+//     // …
+//       for (const auto& shape : shapes) shape.send<&Shape::grow>(2.0);
 //
 // The elements are in arrays of their own classes, whose type of index is the same. A proxy of an
 // element becomes one of its interface, which can be stored, sent and used on every PE. A message
@@ -167,6 +168,9 @@ class InterfaceCallOfAll final : public BroadcastCall {
 
 }  // namespace detail
 
+template <class I, class IndexType>
+class PrioritisedInterface;
+
 /// The proxy of an element by an interface of its class: a value that can be stored and sent. I may
 /// be any class with virtual functions; a priority in its EntryAttributes holds for its messages.
 template <class I, class IndexType = Index1>
@@ -191,37 +195,23 @@ class InterfaceProxy {
   void send(Args&&... args) const {
     send_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
   }
-  /// The same with a priority.
+  /// As ElementProxy::send_after().
   template <auto F, class... Args>
-  void send_with(Priority priority, Args&&... args) const {
+  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
     static_assert(detail::check_entry<I, F, Args...>());
-    static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
-                  "an interface creates no element: its class is not known");
-    Pe& pe = current_pe();
-    auto* message = [&]<class... P>(std::tuple<P...>*) {
-      return detail::InterfaceCall<I, IndexType, F>::make(
-          pe, collection(), index_, face_, priority.value,
-          detail::as_parameter<P>(std::forward<Args>(args))...);
-    }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
-    if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
-        [[unlikely]]
-      meter->sent({collection_, IndexHash<Index>()(index_)},
-                  detail::payload_bytes(message->arguments));
-    post(pe, message);
+    return after(delay, [to = *this, arguments = typename detail::EntryTraits<F>::Arguments(
+                                         std::forward<Args>(args)...)] {
+      std::apply([&to](const auto&... argument) { to.template send<F>(argument...); }, arguments);
+    });
   }
   /// As ElementProxy::ask().
   template <auto F, class... Args>
   [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask(Args&&... args) const {
-    static_assert(detail::check_ask<I, F, Args...>());
-    Pe& pe = current_pe();
-    Ask<detail::Implements<I, IndexType>, F> reply(collection(), index_);
-    detail::InterfacePlace<I> place;
-    static_cast<detail::ReplyPlace&>(place) = reply.place();
-    place.face = face_;
-    place.priority = detail::entry_rule<I, F>.priority;
-    using Call = detail::AskCall<detail::Implements<I, IndexType>, detail::InterfacePlace<I>, F>;
-    post(pe, Call::make(pe, collection_, index_, place, std::forward<Args>(args)...));
-    return reply;
+    return ask_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
+  }
+  /// The same element for messages with a priority.
+  [[nodiscard]] PrioritisedInterface<I, IndexType> with(Priority priority) const {
+    return {*this, priority};
   }
   /// A target for results: member function F of the interface.
   template <auto F>
@@ -242,6 +232,39 @@ class InterfaceProxy {
   }
 
  private:
+  friend class PrioritisedInterface<I, IndexType>;
+
+  template <auto F, class... Args>
+  void send_with(Priority priority, Args&&... args) const {
+    static_assert(detail::check_entry<I, F, Args...>());
+    static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
+                  "an interface creates no element: its class is not known");
+    Pe& pe = current_pe();
+    auto* message = [&]<class... P>(std::tuple<P...>*) {
+      return detail::InterfaceCall<I, IndexType, F>::make(
+          pe, collection(), index_, face_, priority.value,
+          detail::as_parameter<P>(std::forward<Args>(args))...);
+    }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
+    if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
+        [[unlikely]]
+      meter->sent({collection_, IndexHash<Index>()(index_)},
+                  detail::payload_bytes(message->arguments));
+    post(pe, message);
+  }
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask_with(Priority priority,
+                                                                  Args&&... args) const {
+    static_assert(detail::check_ask<I, F, Args...>());
+    Pe& pe = current_pe();
+    Ask<detail::Implements<I, IndexType>, F> reply(collection(), index_);
+    detail::InterfacePlace<I> place;
+    static_cast<detail::ReplyPlace&>(place) = reply.place();
+    place.face = face_;
+    place.priority = priority.value;
+    using Call = detail::AskCall<detail::Implements<I, IndexType>, detail::InterfacePlace<I>, F>;
+    post(pe, Call::make(pe, collection_, index_, place, std::forward<Args>(args)...));
+    return reply;
+  }
   [[nodiscard]] CollectionId collection() const {
     TESS_CHECK(!face_.empty(), "a message to an empty InterfaceProxy<", name_of_type<I>,
                ">: assign array[index] to it first");
@@ -278,6 +301,28 @@ class InterfaceProxy {
   CollectionId collection_{};
   Index index_{};
   detail::FacePointer<I> face_;
+};
+
+/// An element by its interface, and the priority of what is sent to it: shape.with(priority).
+template <class I, class IndexType>
+class PrioritisedInterface {
+ public:
+  PrioritisedInterface(const InterfaceProxy<I, IndexType>& element, Priority priority)
+      : element_(element), priority_(priority) {}
+
+  // As those of InterfaceProxy.
+  template <auto F, class... Args>
+  void send(Args&&... args) const {
+    element_.template send_with<F>(priority_, std::forward<Args>(args)...);
+  }
+  template <auto F, class... Args>
+  [[nodiscard]] auto ask(Args&&... args) const {
+    return element_.template ask_with<F>(priority_, std::forward<Args>(args)...);
+  }
+
+ private:
+  InterfaceProxy<I, IndexType> element_;
+  Priority priority_;
 };
 
 /// The proxy of an array by an interface of its elements' class.

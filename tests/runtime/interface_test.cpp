@@ -124,7 +124,7 @@ tess::Task bank(Statement& found) {
                              debts[{1}],   last,       savings[{2}]};
   found.equal =
       all[0] == Any(savings[{0}]) && !(all[0] == Any(savings[{1}])) && !(all[0] == Any(debts[{0}]));
-  banks.broadcast<&Bank::open>(all);
+  co_await tess::epoch([&] { banks.broadcast<&Bank::open>(all); });
   co_await tess::epoch([&] { banks.broadcast<&Bank::pay_all>(5); });
   co_await tess::epoch([&] {
     for (int i = 0; i < 6; ++i) all[static_cast<std::size_t>(i)].send<&Account::pay_twice>(i);
@@ -162,6 +162,25 @@ void check_statement(const Statement& found) {
   tess::test::expect(found.equal, "equal proxies");
 }
 
+/// Both calls are ready before one of them runs.
+tess::Task send_with_priorities(std::vector<std::int64_t>& balances) {
+  const auto debt = tess::create_one_on<Debt>(tess::PeId{0}, std::int64_t{50});
+  const Any account = debt;
+  (void)co_await account.ask<&Account::balance>();
+  auto after = account.ask<&Account::balance>();
+  auto between = account.with(tess::Priority{-2}).ask<&Account::balance>();
+  account.send<&Account::pay_twice>(5);  // its priority is -3
+  account.with(tess::expedited).send<&Account::pay>(1000);
+  auto before = account.with(tess::expedited).ask<&Account::balance>();
+  account.send<&Account::pay>(100);
+  account.send_after<&Account::pay>(std::chrono::milliseconds(1), 7);
+  balances.push_back(co_await before);
+  balances.push_back(co_await between);
+  balances.push_back(co_await after);
+  co_await tess::sleep(std::chrono::milliseconds(2));
+  balances.push_back(co_await account.ask<&Account::balance>());
+}
+
 tess::Task wait_for_ever() {
   const auto savings = tess::create<Savings>(tess::range(2));
   tess::Future<std::string> closed;
@@ -196,6 +215,13 @@ TEST_CASE("an interface calls elements on the machine of threads",
   tess::Setup setup{tess::make_threads_machine(3), {}};
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return bank(found); }) == 0);
   check_statement(found);
+}
+
+TEST_CASE("messages through an interface have priorities", "[runtime][interface]") {
+  std::vector<std::int64_t> balances;
+  const tess::test::Machine machine{.pes = 2, .reordering = 0, .migration = 0.0};
+  machine.run([&]() -> tess::Task { return send_with_priorities(balances); }).require_success();
+  CHECK(balances == std::vector<std::int64_t>{950, 960, 960, 1067});
 }
 
 TEST_CASE("reports of an ask through an interface name the interface and the element",

@@ -22,7 +22,8 @@ class Clerk : public tess::Chare<Clerk> {
     ++n_filed_;
     if (n_left > 0) array()[{(index().x + 1) % 4}].send<&Clerk::pass>(n_left - 1);
   }
-  tess::Task pause() { co_await tess::sleep(1ms); }
+  tess::Task wait_for_paper() { (void)co_await papers_.take(9); }
+  void give_paper() { papers_.put({9}); }
   [[nodiscard]] int n_filed() const { return n_filed_; }
   /// An epoch's body gives what is awaited with it.
   tess::Task read_own(tess::Callback<int> target) {
@@ -62,15 +63,14 @@ tess::Task join(Joined& found) {
   }
   // An epoch that takes longer than a deadline goes on.
   const auto first = co_await tess::when_any(
-      tess::epoch([&] { clerks.broadcast<&Clerk::pause>(); }), tess::sleep(1us));
+      tess::epoch([&] { clerks.broadcast<&Clerk::wait_for_paper>(); }), tess::sleep(1us));
   found.first = first.index();
+  co_await tess::epoch([&] { clerks.broadcast<&Clerk::give_paper>(); });
   const auto second = co_await tess::when_any(
       tess::sleep(1h), tess::epoch([&] { clerks[{3}].send<&Clerk::pass>(0); }));
   found.after_first = static_cast<int>(second.index());
   tess::Future<int> there;
-  there.callback()(5);
-  co_await tess::epoch([] {});
-  co_await tess::sleep(1ms);
+  co_await tess::epoch([&] { there.callback()(5); });
   const auto at_once = co_await tess::when_any(there, tess::epoch([&] { found.ran = true; }));
   found.at_once = at_once.index();
   try {
