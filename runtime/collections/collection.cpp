@@ -166,6 +166,7 @@ void Collection::apply(const NumberedCall& call) {
 }
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
+  if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
   settle_join(element);
   reductions_.contribute(element.state_.next_reduction++, pe_.context().epoch, std::move(value),
                          cause_of(element));

@@ -28,20 +28,20 @@ class Clerk : public tess::Chare<Clerk> {
   /// An epoch's body gives what is awaited with it.
   tess::Task read_own(tess::Callback<int> target) {
     const auto both =
-        co_await tess::when_all(tess::epoch([this] { papers_.put({1}); }), papers_.take(1));
+        co_await tess::when_all(tess::epoch([this] { notes_.put({1}); }), notes_.take(1));
     const auto first =
-        co_await tess::when_any(tess::epoch([this] { papers_.put({2}); }), papers_.take(2));
-    const int left = static_cast<int>(papers_.size());
+        co_await tess::when_any(tess::epoch([this] { notes_.put({2}); }), notes_.take(2));
+    const int left = static_cast<int>(notes_.size());
     target(std::get<1>(both).key + (first.index() == 1 ? 10 : 20) + left);
   }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n_filed_, papers_);
+    ar(n_filed_, papers_, notes_);
   }
 
  private:
   int n_filed_ = 0;
-  tess::Mailbox<&Paper::key> papers_;
+  tess::Mailbox<&Paper::key> papers_, notes_;
 };
 
 struct Joined {

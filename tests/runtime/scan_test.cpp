@@ -218,9 +218,26 @@ class Leaf : public tess::Chare<Leaf> {
       contribute(tess::inclusive_scan(tess::sum), index().x, self().target<&Leaf::take>());
   }
   void take(int /*sum*/) {}
+  void nothing() {}
+  /// The array ends meanwhile.
+  tess::Task give_late() {
+    co_await tess::sleep(std::chrono::microseconds(20));
+    contribute(tess::inclusive_scan(tess::sum), index().x, self().target<&Leaf::take>());
+    contribute(tess::sum, 1, array().target<&Leaf::take>());
+  }
   template <class Ar>
   void serialize(Ar& /*ar*/) {}
 };
+
+tess::Task contribute_after_the_end(bool& over) {
+  const auto leaves = tess::create<Leaf>(tess::range(6));
+  co_await tess::epoch([&] { leaves.broadcast<&Leaf::nothing>(); });
+  co_await tess::epoch([&] {
+    for (int x = 0; x < 6; x += 2) leaves[{x}].send<&Leaf::give_late>();
+    leaves.destroy();
+  });
+  over = true;
+}
 
 tess::Task end_in_a_scan(bool all, bool& over) {
   const auto leaves = tess::create<Leaf>(tess::range(9));
@@ -296,6 +313,17 @@ TEST_CASE("an array that ends in the middle of a scan leaves no epoch open", "[r
       CHECK(result.exit_code == 0);
       CHECK(over);
     }
+  }
+}
+
+TEST_CASE("a contribution to an array that has ended leaves no epoch open", "[runtime][scan]") {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    INFO("seed " << seed);
+    bool over = false;
+    const tess::test::Machine machine{.pes = 3, .seed = seed};
+    const auto result = machine.run([&]() -> tess::Task { return contribute_after_the_end(over); });
+    CHECK(result.exit_code == 0);
+    CHECK(over);
   }
 }
 
