@@ -40,18 +40,13 @@ struct ReplyPlace {
   [[nodiscard]] C& called(Element& element) const {
     return static_cast<C&>(element);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id, pe);
-  }
 };
 /// The same, and the priority of the call.
 struct PrioritisedPlace : ReplyPlace {
   std::int64_t priority = 0;
   template <class Ar>
   void serialize(Ar& ar) {
-    ReplyPlace::serialize(ar);
-    ar(priority);
+    ar(id, pe, priority);
   }
 };
 
@@ -59,10 +54,6 @@ struct PrioritisedPlace : ReplyPlace {
 struct Failure {
   ErrorCode code{};
   std::string message;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(code, message);
-  }
 };
 
 /// The part of an ask that does not depend on the type of the reply. It stays on its PE.
@@ -170,10 +161,6 @@ struct WithPlace<Place, std::tuple<P...>> {
   using Type = std::tuple<Place, P...>;
 };
 
-/// The name of the class of elements that are asked.
-template <class C>
-inline constexpr std::string_view asked_class = name_of_type<C>;
-
 /// A call of member function F of an element of C that replies. Its first argument is a Place: a
 /// ReplyPlace, or what derives from it.
 template <class C, class Place, auto F>
@@ -224,7 +211,7 @@ struct AskCall final
   [[nodiscard]] static std::string name(const Index& index) {
     const std::string entry = plain_name(naming::value<F>());
     const auto colons = entry.rfind("::");
-    return text(plain_name(asked_class<C>), index_text(index), ".",
+    return text(plain_name(name_of_type<C>), index_text(index), ".",
                 colons == std::string::npos ? entry : entry.substr(colons + 2));
   }
   static std::int64_t priority_of(const Envelope& envelope)

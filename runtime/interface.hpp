@@ -35,6 +35,17 @@
 namespace tess {
 
 namespace detail {
+/// For messages: elements with this type of index that implement I.
+template <class I, class IndexType>
+struct Implements {
+  using Index = IndexType;
+};
+}  // namespace detail
+/// Reports name the interface.
+template <class I, class IndexType>
+inline constexpr std::string_view name_of_type<detail::Implements<I, IndexType>> = name_of_type<I>;
+
+namespace detail {
 
 /// How an element is seen as an interface; one static object for each pair of interface and class.
 template <class I>
@@ -84,14 +95,6 @@ consteval bool check_interface() {
                 "the elements have another type of index: name it, InterfaceProxy<I, Index2>");
   return true;
 }
-
-/// For messages: elements with this type of index that implement I.
-template <class I, class IndexType>
-struct Implements {
-  using Index = IndexType;
-};
-template <class I, class IndexType>
-inline constexpr std::string_view asked_class<Implements<I, IndexType>> = name_of_type<I>;
 
 /// A call of member function F of the interface of an element.
 template <class I, class IndexType, auto F>

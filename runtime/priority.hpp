@@ -24,8 +24,6 @@ template <class C>
 class ArrayProxy;
 template <class C, class IndexType>
 class ElementProxy;
-template <class C, auto F>
-class Ask;
 
 /// An element, or a group's member, and the priority of what is sent to it: element.with(priority).
 template <class C, class IndexType>
@@ -41,7 +39,7 @@ class PrioritisedElement {
   }
   /// The call has the priority; the reply has none.
   template <auto F, class... Args>
-  [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
+  [[nodiscard]] auto ask(Args&&... args) const {
     return element_.template ask_from<F>(detail::PrioritisedPlace{{}, priority_.value},
                                          std::forward<Args>(args)...);
   }
