@@ -43,6 +43,14 @@ concept Absorbs = requires(C& member, C& other) { member.absorb(std::move(other)
 /// The priority of a message is that which its class gives the entry method.
 struct OfEntry {};
 
+/// Indices spread over all PEs.
+template <class Index>
+[[nodiscard]] PeId home_by_hash(const Index& index, std::int32_t n_pes) {
+  // The high bits: hash tables use the low ones for the slot, which would cluster.
+  return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) %
+                                        static_cast<std::uint64_t>(n_pes))};
+}
+
 template <class C>
 class Array final : public ArrayOf<typename C::Index> {
  public:
@@ -57,6 +65,8 @@ class Array final : public ArrayOf<typename C::Index> {
   ~Array() override { this->destroy_all(); }
 
   [[nodiscard]] PeId home(const Index& index) const override {
+    if (this->index_map() != nullptr) [[unlikely]]
+      return this->mapped_home(&index);
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
       const PeId at = C::place(index, this->pe_.n_pes());
       TESS_CHECK(at.value >= 0 && at.value < this->pe_.n_pes(), "place() of ", this->name(),
@@ -68,9 +78,7 @@ class Array final : public ArrayOf<typename C::Index> {
         if (const std::int64_t rank = rank_in(this->range(), index); rank >= 0)
           return this->block_map().home(rank);
       }
-      // The high bits: hash tables use the low ones for the slot, which would cluster.
-      return PeId{static_cast<std::int32_t>((IndexHash<Index>()(index) >> 32U) %
-                                            static_cast<std::uint64_t>(this->pe_.n_pes()))};
+      return home_by_hash(index, this->pe_.n_pes());
     }
   }
 
@@ -83,7 +91,7 @@ class Array final : public ArrayOf<typename C::Index> {
       if constexpr (OnePerPe<C>) {
         first = this->pe_.id().value;
         last = first + 1;
-      } else if constexpr (!requires(Index i) { C::place(i, 1); }) {
+      } else if (!requires(Index i) { C::place(i, 1); } && this->index_map() == nullptr) {
         const auto rank = static_cast<std::int64_t>(this->pe_.id().value);
         const std::int64_t n_pes = this->pe_.n_pes();
         first = (rank * size + n_pes - 1) / n_pes;
@@ -351,12 +359,7 @@ class ElementProxy {
   /// the call waits at the home of the index.
   template <auto F, class... Args>
   [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
-    static_assert(detail::check_ask<C, F, Args...>());
-    Pe& pe = current_pe();
-    Ask<C, F> reply(collection_, index_);
-    post_message(pe, detail::AskCall<C, F>::make(pe, collection_, index_, reply.place(),
-                                                 std::forward<Args>(args)...));
-    return reply;
+    return ask_from<F>(detail::ReplyPlace(), std::forward<Args>(args)...);
   }
   /// Sends a message. If there is no element, it is created on this PE; of several PEs that demand
   /// it at once exactly one creates it.
@@ -400,6 +403,8 @@ class ElementProxy {
     system<detail::Relocation<C>>(pe);
   }
 
+  [[nodiscard]] ArrayProxy<C> array() const { return ArrayProxy<C>(collection_); }
+  [[nodiscard]] const Index& index() const { return index_; }
   /// The PE to which a message for the element is sent from this PE.
   [[nodiscard]] PeId next_pe() const { return branch(current_pe()).next_pe(index_); }
 
@@ -432,6 +437,17 @@ class ElementProxy {
   }
 
   friend class PrioritisedElement<C, Index>;
+
+  template <auto F, class Place, class... Args>
+  [[nodiscard]] Ask<C, F> ask_from(Place place, Args&&... args) const {
+    static_assert(detail::check_ask<C, F, Args...>());
+    Pe& pe = current_pe();
+    Ask<C, F> reply(collection_, index_);
+    static_cast<detail::ReplyPlace&>(place) = reply.place();
+    post_message(pe, detail::AskCall<C, Place, F>::make(pe, collection_, index_, place,
+                                                        std::forward<Args>(args)...));
+    return reply;
+  }
 
   // `Of` is OfEntry, or the Priority that the sender gave.
 
@@ -707,13 +723,20 @@ struct CreateArray {
   }
 };
 
+/// Makes the part of an array on this PE, with its initial elements.
 template <class C, class... Args>
-void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
+void make_array(Pe& pe, const CreateArray<C, Args...>& m,
+                std::shared_ptr<const IndexMap> map = nullptr) {
   auto made = std::make_unique<Array<C>>(pe, m.id, m.range);
   Array<C>& array = *made;
+  array.set_index_map(std::move(map));
   pe.add(std::move(made));
   std::apply([&array](const Args&... args) { array.make_initial(args...); }, m.args);
   pe.completion().processed(m.epoch);
+}
+template <class C, class... Args>
+void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
+  make_array(pe, m);
 }
 
 /// What happens to messages to an ended collection of C: they count as dead letters, unless the
@@ -727,28 +750,29 @@ constexpr LateMessages late_messages_of() {
   }
 }
 
+/// Passes the message to its handler on all PEs; here at once, so that the proxy is valid from now on.
+template <auto handler, class Message>
+void create_on_all(Pe& pe, Message message) {
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
+    pe.completion().sent(pe.context().epoch);
+    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
+  }
+  handler(pe, std::move(message));
+}
+
 template <class C, class... Args>
 CollectionId create_collection(const Range& range, Args&&... args) {
   Pe& pe = current_pe();
   using Create = CreateArray<C, std::decay_t<Args>...>;
   const CollectionId id = pe.new_collection_id(late_messages_of<C>());
-  Create message{id, range, pe.context().epoch, {std::forward<Args>(args)...}};
-  constexpr auto handler = &create_arrives<C, std::decay_t<Args>...>;
-  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
-    pe.completion().sent(message.epoch);
-    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
-  }
-  handler(pe, std::move(message));  // locally at once, so that the proxy is valid from now on
+  create_on_all<&create_arrives<C, std::decay_t<Args>...>>(
+      pe, Create{id, range, pe.context().epoch, {std::forward<Args>(args)...}});
   return id;
 }
 
-}  // namespace detail
-
-/// Creates an array on all PEs. Each element of the range is constructed with these arguments on
-/// the home PE of its index. Returns immediately: messages wait on PEs that do not know the array
-/// yet.
+/// Checks the arguments of create().
 template <class C, class... Args>
-ArrayProxy<C> create(const Range& range, Args&&... args) {
+void check_creation(const Range& range) {
   // Without coordinates there are no initial elements, and insert() has its own arguments.
   static_assert(
       (!Coordinates<typename C::Index> && sizeof...(Args) == 0) ||
@@ -761,6 +785,16 @@ ArrayProxy<C> create(const Range& range, Args&&... args) {
     TESS_CHECK(range.n_axes == 0,
                "an array with this type of index starts sparse: create<C>(tess::sparse)");
   }
+}
+
+}  // namespace detail
+
+/// Creates an array on all PEs. Each element of the range is constructed with these arguments on
+/// the home PE of its index. Returns immediately: messages wait on PEs that do not know the array
+/// yet.
+template <class C, class... Args>
+ArrayProxy<C> create(const Range& range, Args&&... args) {
+  detail::check_creation<C, Args...>(range);
   return ArrayProxy<C>(detail::create_collection<C>(range, std::forward<Args>(args)...));
 }
 

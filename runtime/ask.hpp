@@ -35,9 +35,18 @@ namespace detail {
 struct ReplyPlace {
   std::uint64_t id = 0;
   PeId pe{};
+  /// The object whose member function is called.
+  template <class C>
+  [[nodiscard]] C& called(Element& element) const {
+    return static_cast<C&>(element);
+  }
+};
+/// The same, and the priority of the call.
+struct PrioritisedPlace : ReplyPlace {
+  std::int64_t priority = 0;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(id, pe);
+    ar(id, pe, priority);
   }
 };
 
@@ -45,10 +54,6 @@ struct ReplyPlace {
 struct Failure {
   ErrorCode code{};
   std::string message;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(code, message);
-  }
 };
 
 /// The part of an ask that does not depend on the type of the reply. It stays on its PE.
@@ -156,14 +161,14 @@ struct WithPlace<Place, std::tuple<P...>> {
   using Type = std::tuple<Place, P...>;
 };
 
-/// A call of member function F of an element of C that replies.
-template <class C, auto F>
+/// A call of member function F of an element of C that replies. Its first argument is a Place: a
+/// ReplyPlace, or what derives from it.
+template <class C, class Place, auto F>
 struct AskCall final
-    : TypedMessage<AskCall<C, F>, C,
-                   typename WithPlace<ReplyPlace, typename EntryTraits<F>::Arguments>::Type> {
+    : TypedMessage<AskCall<C, Place, F>, C,
+                   typename WithPlace<Place, typename EntryTraits<F>::Arguments>::Type> {
   using Base =
-      TypedMessage<AskCall, C,
-                   typename WithPlace<ReplyPlace, typename EntryTraits<F>::Arguments>::Type>;
+      TypedMessage<AskCall, C, typename WithPlace<Place, typename EntryTraits<F>::Arguments>::Type>;
   using Index = typename C::Index;
   using Value = ReplyValue<F>;
   using Result = typename EntryTraits<F>::Result;
@@ -171,9 +176,9 @@ struct AskCall final
 
   static void invoke(Element& element, ElementMessage<Index>& envelope) {
     auto& message = static_cast<AskCall&>(envelope);
-    C& chare = static_cast<C&>(element);
     std::apply(
-        [&](const ReplyPlace& to, auto&... argument) {
+        [&](const Place& to, auto&... argument) {
+          auto& chare = to.template called<C>(element);
           if constexpr (std::is_same_v<Result, Task>) {
             (void)serve(&chare, to, std::move(argument)...);
           } else {
@@ -209,6 +214,11 @@ struct AskCall final
     return text(plain_name(name_of_type<C>), index_text(index), ".",
                 colons == std::string::npos ? entry : entry.substr(colons + 2));
   }
+  static std::int64_t priority_of(const Envelope& envelope)
+    requires std::is_base_of_v<PrioritisedPlace, Place>
+  {
+    return std::get<0>(static_cast<const AskCall&>(envelope).arguments).priority;
+  }
   static inline const ElementAction<Index> entry{std::type_identity<AskCall>{}, &AskCall::invoke,
                                                  nullptr, Traffic::user, &AskCall::undelivered};
 
@@ -218,8 +228,8 @@ struct AskCall final
     AskOf<Value>::answer(current_pe(), epoch, to, std::move(value), std::move(failure));
   }
   /// Runs a coroutine of the element, and replies once it is done.
-  template <class... P>
-  static Task serve(C* chare, ReplyPlace to, P... argument) {
+  template <class Called, class... P>
+  static Task serve(Called* chare, ReplyPlace to, P... argument) {
     const EpochId epoch = current_pe().context().epoch;
     std::optional<Failure> failure;
     try {
@@ -259,7 +269,7 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
   }
   [[nodiscard]] detail::WaitReason waits_for() const override {
     return this->reply_of(collection_, IndexHash<Index>()(index_),
-                          detail::AskCall<C, F>::name(index_));
+                          detail::AskCall<C, detail::ReplyPlace, F>::name(index_));
   }
 
  private:

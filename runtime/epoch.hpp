@@ -23,10 +23,21 @@ class [[nodiscard]] EpochAwait {
 
   [[nodiscard]] bool await_ready() const noexcept { return false; }
   void await_suspend(Task::Handle task) {
+    suspend(task, [this] { return waits_for(); });
+    begin([task] { resume_later(task); });
+  }
+  void await_resume() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+  [[nodiscard]] std::string waits_for() const {
+    return text("epoch ", id_.value >> 24U, " that it opened");
+  }
+  /// Runs the body; calls `done` on this PE once all its consequences are done.
+  template <class Done>
+  void begin(const Done& done) {
     Pe& pe = current_pe();
     const EpochId outer = pe.context().epoch;
-    const EpochId epoch = pe.completion().open(outer, [task] { resume_later(task); });
-    suspend(task, [epoch] { return text("epoch ", epoch.value >> 24U, " that it opened"); });
+    const EpochId epoch = id_ = pe.completion().open(outer, done);
     pe.context().epoch = epoch;
     try {
       body_();
@@ -36,12 +47,10 @@ class [[nodiscard]] EpochAwait {
     pe.context().epoch = outer;
     pe.completion().close(epoch);
   }
-  void await_resume() const {
-    if (error_) std::rethrow_exception(error_);
-  }
 
  private:
   Body body_;
+  EpochId id_{};
   std::exception_ptr error_;
 };
 

@@ -37,6 +37,12 @@ class PrioritisedElement {
   void send(Args&&... args) const {
     element_.template send_as<F>(priority_, std::forward<Args>(args)...);
   }
+  /// The call has the priority; the reply has none.
+  template <auto F, class... Args>
+  [[nodiscard]] auto ask(Args&&... args) const {
+    return element_.template ask_from<F>(detail::PrioritisedPlace{{}, priority_.value},
+                                         std::forward<Args>(args)...);
+  }
   template <auto F, class... Args>
   void send_or_create_here(Args&&... args) const {
     element_.template send_on_demand<F>(priority_, detail::Demand::here,

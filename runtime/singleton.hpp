@@ -29,6 +29,16 @@ class ChareProxy {
   void send(Args&&... args) const {
     element().template send<F>(std::forward<Args>(args)...);
   }
+  /// As ElementProxy::send_after().
+  template <auto F, class... Args>
+  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
+    return element().template send_after<F>(delay, std::forward<Args>(args)...);
+  }
+  /// As ElementProxy::ask().
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
+    return element().template ask<F>(std::forward<Args>(args)...);
+  }
   /// The same chare for messages with a priority.
   [[nodiscard]] auto with(Priority priority) const { return element().with(priority); }
   /// A target for results: entry method F.

@@ -1,5 +1,5 @@
-// Waiting for several results at once: asks, futures, messages of mailboxes, and times. Not part of
-// runtime.hpp.
+// Waiting for several results at once: asks, futures, epochs, messages of mailboxes, and times. Not
+// part of runtime.hpp.
 //
 // Sample: tests/samples/ask.cpp
 //
@@ -10,10 +10,12 @@
 //     if (first.index() == 0) found.in_time = std::get<0>(first);
 //
 // What is given as a variable stays usable: a future that comes second in when_any keeps its result.
-// An ask that is made in the call is cancelled, and a mailbox keeps its message.
+// An ask that is made in the call is cancelled, a mailbox keeps its message, and an epoch goes on (its
+// body does not run if another result is there already).
 #pragma once
 
 #include "runtime/callback.hpp"
+#include "runtime/epoch.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/task.hpp"
 
@@ -99,6 +101,44 @@ AwaitedValue<A> result_of(A& of) {
   }
 }
 
+/// An epoch that is awaited with others. It begins when they are awaited.
+template <class Body>
+class JoinedEpoch {
+ public:
+  JoinedEpoch(EpochAwait<Body>&& epoch) : epoch_(std::move(epoch)) {}
+
+  [[nodiscard]] bool await_ready() const { return state_ && state_->done; }
+  void await_resume() const { epoch_.await_resume(); }
+  void wait(Waiter& waiter) {
+    state_ = std::make_shared<State>(State{&waiter});
+    epoch_.begin([state = state_] {
+      state->done = true;
+      if (state->waiting != nullptr) state->waiting->wake();
+    });
+  }
+  void withdraw() {
+    if (state_) state_->waiting = nullptr;
+  }
+  [[nodiscard]] std::string waits_for() const { return epoch_.waits_for(); }
+
+ private:
+  struct State {
+    Waiter* waiting = nullptr;
+    bool done = false;
+  };
+  EpochAwait<Body> epoch_;
+  std::shared_ptr<State> state_;  // null until it begins
+};
+/// What when_all and when_any keep of an argument.
+template <class A>
+struct JoinAs : std::type_identity<A> {};
+template <class Body>
+struct JoinAs<EpochAwait<Body>> : std::type_identity<JoinedEpoch<Body>> {};
+template <class... A>
+class Parts;
+template <class... A>
+using PartsOf = Parts<typename JoinAs<A>::type...>;
+
 inline void add_reason(WaitReason& all, const char* word, const WaitReason& one) {
   all.text += (all.text.empty() ? "" : word) + one.text;
 }
@@ -168,11 +208,7 @@ class [[nodiscard]] WhenAll {
   }
   void await_suspend(Task::Handle task) {
     std::ptrdiff_t n = 0;
-    parts_.each([&](auto& part) {
-      if (part.await_ready()) return;
-      part.wait(waiter_);
-      ++n;
-    });
+    parts_.each([&n](auto& part) { n += part.await_ready() ? 0 : 1; });
     waiter_.start(task, n);
     suspend(task, [this] {
       WaitReason all("");
@@ -184,6 +220,14 @@ class [[nodiscard]] WhenAll {
       });
       return all;
     });
+    // An epoch begins now: what it does may be what another part waits for.
+    std::ptrdiff_t n_waiting = 0;
+    parts_.each([&](auto& part) {
+      if (part.await_ready()) return;
+      part.wait(waiter_);
+      ++n_waiting;
+    });
+    for (; n_waiting < n; ++n_waiting) waiter_.wake();
   }
   typename P::All await_resume() { return parts_.all(); }
 
@@ -200,11 +244,20 @@ class [[nodiscard]] WhenAny {
   void await_suspend(Task::Handle task) {
     waits_ = true;
     waiter_.start(task, 1);
-    parts_.each([this](auto& part) { part.wait(waiter_); });
     suspend(task, [this] {
       WaitReason all("");  // it needs no one of the elements that it asks
       parts_.each([&all](auto& part) { add_reason(all, " or ", part.waits_for()); });
       return all;
+    });
+    bool ready = false;  // by the body of an epoch that began before it
+    parts_.each([&](auto& part) {
+      if (ready) return;
+      ready = part.await_ready();
+      if (ready) {
+        waiter_.wake();
+      } else {
+        part.wait(waiter_);
+      }
     });
   }
   typename P::First await_resume() {
@@ -236,8 +289,9 @@ class [[nodiscard]] WhenAny {
 
 template <class... A>
 consteval bool check_joined() {
-  static_assert((Joinable<A> && ...),
-                "when_all and when_any take asks, futures, mailbox.take(…) and tess::sleep(…)");
+  static_assert(
+      (Joinable<typename JoinAs<A>::type> && ...),
+      "when_all and when_any take asks, futures, epochs, mailbox.take(…) and tess::sleep(…)");
   return true;
 }
 
@@ -248,7 +302,7 @@ consteval bool check_joined() {
 template <class... A>
 [[nodiscard]] auto when_all(A&&... a) {
   static_assert(detail::check_joined<A...>());
-  return detail::WhenAll<detail::Parts<A...>>(detail::Parts<A...>(std::forward<A>(a)...));
+  return detail::WhenAll<detail::PartsOf<A...>>(detail::PartsOf<A...>(std::forward<A>(a)...));
 }
 /// The same of a vector: gives a vector.
 template <class A>
@@ -261,7 +315,7 @@ template <class A>
 template <class... A>
 [[nodiscard]] auto when_any(A&&... a) {
   static_assert(detail::check_joined<A...>());
-  return detail::WhenAny<detail::Parts<A...>>(detail::Parts<A...>(std::forward<A>(a)...));
+  return detail::WhenAny<detail::PartsOf<A...>>(detail::PartsOf<A...>(std::forward<A>(a)...));
 }
 /// The same of a vector: gives {which, value}.
 template <class A>

@@ -21,9 +21,10 @@ struct SavedCollection {
   std::string name;  ///< for people
   bool has_sections = false;
   std::uint64_t n_elements = 0;
+  std::vector<std::byte> map;  ///< to_saved() of the map that it was created with
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(id, range, key, name, has_sections, n_elements);
+    ar(id, range, key, name, has_sections, n_elements, map);
   }
 };
 

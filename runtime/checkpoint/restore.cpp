@@ -5,6 +5,7 @@
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/checkpoint/save.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/collections/index_map.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -65,7 +66,9 @@ Nothing create_here(Pe& pe, const CreateQuestion& question) {
   for (const SavedCollection& saved : question.collections) {
     const CollectionKind& kind = *CollectionKind::find(saved.key);
     const bool group = kind.members != CollectionKind::Members::of_array;
-    pe.add(kind.make(pe, saved.id, group ? range(pe.n_pes()) : saved.range));
+    auto made = kind.make(pe, saved.id, group ? range(pe.n_pes()) : saved.range);
+    made->set_index_map(from_saved(saved.map));
+    pe.add(std::move(made));
   }
   return {};
 }

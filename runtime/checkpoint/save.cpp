@@ -4,6 +4,7 @@
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/collections/collection.hpp"
+#include "runtime/collections/index_map.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/report/waiting.hpp"
 
@@ -169,8 +170,8 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
   make_folder(here);
   for (const Collection* collection : saved_collections(pe))
     main.collections.push_back({collection->id(), collection->range(),
-                                std::string(collection->kind().key()), collection->name(), false,
-                                0});
+                                std::string(collection->kind().key()), collection->name(), false, 0,
+                                to_saved(collection->index_map())});
 
   AskAll<&save_here> saved(SaveQuestion{here});
   for (SaveAnswer& answer : co_await saved) {

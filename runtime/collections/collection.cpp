@@ -1,6 +1,8 @@
 #include "runtime/collections/collection.hpp"
 
 #include "runtime/collections/balance_record.hpp"
+#include "runtime/collections/index_map.hpp"
+#include "runtime/collections/kept_scans.hpp"
 #include "runtime/collections/sections.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
@@ -46,6 +48,15 @@ ReductionTree& Collection::tree(Track track) {
 Sections& Collection::sections() {
   if (!sections_) sections_ = std::make_unique<Sections>(*this);
   return *sections_;
+}
+
+PeId Collection::mapped_home(const void* index) const {
+  return index_map_->home(index, range_, pe_.n_pes());
+}
+
+KeptScans& Collection::kept_scans() {
+  if (!scans_) scans_ = std::make_unique<KeptScans>();
+  return *scans_;
 }
 
 Memberships Collection::leave_sections(Element& element) {
@@ -155,6 +166,7 @@ void Collection::apply(const NumberedCall& call) {
 }
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
+  if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
   settle_join(element);
   reductions_.contribute(element.state_.next_reduction++, pe_.context().epoch, std::move(value),
                          cause_of(element));
@@ -241,6 +253,7 @@ void Collection::end() {
   broadcasts_.end();
   reductions_.end();
   if (second_tree_ != nullptr) second_tree_->end();
+  if (scans_) scans_->drop(pe_.completion());
 }
 
 void Collection::end_wait(Element& element) {

@@ -18,6 +18,8 @@
 namespace tess::detail {
 
 struct LoadRecord;
+class IndexMap;
+class KeptScans;
 class Sections;
 
 /// The PE that numbers the broadcasts and completes the reductions of a collection.
@@ -61,8 +63,14 @@ class Collection : public HostedCollection {
   [[nodiscard]] ReductionTree& tree(Track track);
   /// Its sections on this PE; made by the first call.
   [[nodiscard]] Sections& sections();
+  /// The contributions to scans that wait on this PE; made by the first call.
+  [[nodiscard]] KeptScans& kept_scans();
   /// Sets a library's tree, to which messages of the second track go; the library owns it.
   void set_second_tree(ReductionTree& tree) { second_tree_ = &tree; }
+
+  /// The map that the array was created with; null for none.
+  [[nodiscard]] const IndexMap* index_map() const { return index_map_.get(); }
+  void set_index_map(std::shared_ptr<const IndexMap> map) { index_map_ = std::move(map); }
 
   /// Local elements; a slot may be null while elements leave in the middle of a broadcast.
   [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
@@ -202,6 +210,8 @@ class Collection : public HostedCollection {
   [[nodiscard]] std::string elements_before(std::uint32_t number) const;
 
  protected:
+  /// The home of an index, which has the array's type, by the map that the array was created with.
+  [[nodiscard]] PeId mapped_home(const void* index) const;
   /// Writes the index and the user's members.
   virtual void save_element(Element& element, Writer& ar) = 0;
   /// Writes the indices with this home whose elements were destroyed; returns their number.
@@ -243,6 +253,7 @@ class Collection : public HostedCollection {
   }
 
   const Range range_;
+  std::shared_ptr<const IndexMap> index_map_;
   std::vector<Element*> elements_;
   std::vector<std::function<void()>> after_construction_;
   std::int64_t n_away_ = 0;
@@ -256,6 +267,7 @@ class Collection : public HostedCollection {
   BroadcastLog broadcasts_;
   ReductionTree reductions_;
   std::unique_ptr<Sections> sections_;  // null until a section has members or messages here
+  std::unique_ptr<KeptScans> scans_;    // null until the first scan
 };
 
 /// Marks that code of an element runs: the element is the context's element, and it neither leaves

@@ -69,6 +69,7 @@ void BroadcastHostOfCollection::apply(const NumberedCall& call) {
 }
 
 void ReductionHostOfCollection::send(PeId to, ReductionReport&& report) {
+  if (report.value.held) report.value.held->leave();
   if (track_ == Track::own) {
     send_to_collection<&report_arrives<Track::own>>(collection_, to, std::move(report));
   } else {

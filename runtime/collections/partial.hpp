@@ -34,6 +34,8 @@ class Partial {
   /// Merges another partial result of the same kind; a different kind is misuse.
   virtual void merge(Partial&& other) = 0;
   virtual void pack(Writer& ar) const = 0;
+  /// It is about to be sent to another PE.
+  virtual void leave() {}
   /// Sends the complete result to the target; runs on this PE.
   virtual void complete(Pe& pe) = 0;
 };

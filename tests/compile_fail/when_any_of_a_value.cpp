@@ -1,4 +1,4 @@
-// expect: when_all and when_any take asks, futures, mailbox.take(…) and tess::sleep(…)
+// expect: when_all and when_any take asks, futures, epochs, mailbox.take(…) and tess::sleep(…)
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
 

@@ -2,6 +2,7 @@
 // misuse.sh.
 //
 //     test_misuse NAME_OF_THE_MISUSE
+#include "runtime/index_map.hpp"
 #include "runtime/runtime.hpp"
 
 #include <map>
@@ -55,6 +56,11 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void move(PeId pe) { migrate_to(pe); }
   template <class Ar>
   void serialize(Ar& /*ar*/) {}
+};
+
+/// A map that does not ask how many PEs there are.
+struct ToItsNumber {
+  PeId operator()(const tess::Index1& index, std::int32_t /*n_pes*/) const { return {index.x}; }
 };
 
 /// Reads, where it arrives, another number of bytes than it wrote.
@@ -130,6 +136,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"member_99", [] { tess::create_group<Member>()[PeId{99}].send<&Member::nothing>(); }},
     {"member_-1", [] { tess::create_group<Member>()[PeId{-1}].send<&Member::nothing>(); }},
     {"insert_on_77", [] { blocks()[{3}].insert_on(PeId{77}); }},
+    {"map_too_far", [] { tess::create<Block>(tess::mapped(tess::range(4), ToItsNumber{})); }},
     {"migrate_to_-3", [] { blocks()[{0}].migrate_to(PeId{-3}); }},
     {"move_to_55", [] { blocks()[{1}].send<&Block::move>(PeId{55}); }},
     {"empty_callback", [] { blocks()[{2}].send<&Block::answer>(tess::Callback<int>()); }},

@@ -42,6 +42,7 @@ everywhere() {
 everywhere member_99 "there is no PE 99: the run has 2 PEs" "on PE 0"
 here member_-1 "there is no PE -1"
 everywhere insert_on_77 "there is no PE 77"
+everywhere map_too_far "the map .*ToItsNumber puts Block\[2\] on PE 2, but the run has PEs 0 … 1: compute the PE from the number of PEs"
 here migrate_to_-3 "there is no PE -3"
 here move_to_55 "there is no PE 55" "on PE 0, Block\[1\], in Block::move"
 everywhere empty_callback "an empty Callback<int> is called" "Block\[2\], in Block::answer"

@@ -1,0 +1,44 @@
+// The contributions to scans that wait on a PE for the values before theirs. Each collection has
+// such a list on each PE from its first scan on; runtime/scan.hpp says what is in it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+
+namespace tess::detail {
+
+class Completion;
+
+/// Contributions from one PE to one scan.
+class KeptScan {
+ public:
+  KeptScan() = default;
+  KeptScan(const KeptScan&) = delete;
+  KeptScan& operator=(const KeptScan&) = delete;
+  virtual ~KeptScan() = default;
+  /// The collection ends: counts the contributions as processed in their epochs.
+  virtual void drop(Completion& completion) const = 0;
+};
+
+class KeptScans {
+ public:
+  std::uint64_t add(std::unique_ptr<KeptScan> scan) {
+    kept_[++last_] = std::move(scan);
+    return last_;
+  }
+  /// Takes a scan out of the list; there must be one of this number.
+  [[nodiscard]] std::unique_ptr<KeptScan> take(std::uint64_t number) {
+    return std::move(kept_.extract(number).mapped());
+  }
+  void drop(Completion& completion) {
+    for (const auto& [number, scan] : kept_) scan->drop(completion);
+    kept_.clear();
+  }
+
+ private:
+  std::uint64_t last_ = 0;
+  std::map<std::uint64_t, std::unique_ptr<KeptScan>> kept_;
+};
+
+}  // namespace tess::detail

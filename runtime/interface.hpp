@@ -1,0 +1,376 @@
+// Interfaces: elements of different classes, called through a base class that they share. Not part
+// of runtime.hpp.
+//
+// Sample: tests/samples/interface.cpp
+//
+//     class Shape {
+//      public:
+//       virtual ~Shape() = default;
+//       virtual void grow(double by) = 0;
+//       [[nodiscard]] virtual double area() const = 0;
+//     };
+//     class Circle : public tess::Chare<Circle>, public Shape {
+//     // …
+//     const std::vector<tess::InterfaceProxy<Shape>> shapes{circles[{0}], squares[{0}], circles[{1}]};
+//     // …
+//       for (const auto& shape : shapes) shape.send<&Shape::grow>(2.0);
+//
+// The elements are in arrays of their own classes, whose type of index is the same. A proxy of an
+// element becomes one of its interface, which can be stored, sent and used on every PE. A message
+// carries the way from the element's class to the interface, so it needs no search by type; it finds
+// the element wherever that has migrated, and calls the function that its class overrides.
+// An array has an interface as well: InterfaceArray<Shape> broadcasts to all of its elements.
+#pragma once
+
+#include "runtime/array.hpp"
+#include "runtime/singleton.hpp"
+
+#include <concepts>
+#include <functional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace tess {
+
+namespace detail {
+/// For messages: elements with this type of index that implement I.
+template <class I, class IndexType>
+struct Implements {
+  using Index = IndexType;
+};
+}  // namespace detail
+/// Reports name the interface.
+template <class I, class IndexType>
+inline constexpr std::string_view name_of_type<detail::Implements<I, IndexType>> = name_of_type<I>;
+
+namespace detail {
+
+/// How an element is seen as an interface; one static object for each pair of interface and class.
+template <class I>
+struct Face : Registered {
+  using Cast = I& (*)(Element&);
+  Face(naming::Name name, Cast cast_) : Registered(name), cast(cast_) {}
+  Cast cast;
+};
+template <class I, class C>
+struct FaceOf {
+  static I& cast(Element& element) { return static_cast<C&>(element); }
+  static inline const Face<I> face{naming::name_of<FaceOf>(), &cast};
+};
+
+/// The same as a value in messages.
+template <class I>
+class FacePointer {
+ public:
+  FacePointer() = default;
+  explicit FacePointer(const Face<I>& face) : face_(&face) {}
+  [[nodiscard]] bool empty() const { return face_ == nullptr; }
+  [[nodiscard]] I& operator()(Element& element) const { return face_->cast(element); }
+
+  friend bool operator==(const FacePointer&, const FacePointer&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (Ar::is_reading) {
+      const auto id = ar.template take<std::uint32_t>();
+      face_ = id == ~0U ? nullptr : &static_cast<const Face<I>&>(Registry::at(id));
+    } else {
+      ar(face_ == nullptr ? ~0U : face_->id());
+    }
+  }
+
+ private:
+  const Face<I>* face_ = nullptr;
+};
+
+/// Checks that elements of C can be called through I.
+template <class C, class I, class IndexType>
+consteval bool check_interface() {
+  static_assert(std::is_base_of_v<I, C>,
+                "the class of these elements does not implement the interface");
+  static_assert(std::convertible_to<C*, I*>,
+                "a class derives from its interface publicly, and once");
+  static_assert(std::is_same_v<typename C::Index, IndexType>,
+                "the elements have another type of index: name it, InterfaceProxy<I, Index2>");
+  return true;
+}
+
+/// A call of member function F of the interface of an element.
+template <class I, class IndexType, auto F>
+struct InterfaceCall final
+    : TypedMessage<InterfaceCall<I, IndexType, F>, Implements<I, IndexType>,
+                   typename WithPlace<FacePointer<I>, typename WithPriority<typename EntryTraits<
+                                                          F>::Arguments>::type>::Type> {
+  using Base = TypedMessage<
+      InterfaceCall, Implements<I, IndexType>,
+      typename WithPlace<FacePointer<I>,
+                         typename WithPriority<typename EntryTraits<F>::Arguments>::type>::Type>;
+  using Base::Base;
+
+  static void invoke(Element& element, ElementMessage<IndexType>& envelope) {
+    std::apply([&element](const FacePointer<I>& face, std::int64_t /*priority*/,
+                          auto&... argument) { (void)(face(element).*F)(std::move(argument)...); },
+               static_cast<InterfaceCall&>(envelope).arguments);
+  }
+  static std::int64_t priority_of(const Envelope& envelope) {
+    return std::get<1>(static_cast<const InterfaceCall&>(envelope).arguments);
+  }
+  static inline const ElementAction<IndexType> entry{std::type_identity<InterfaceCall>{},
+                                                     &InterfaceCall::invoke};
+};
+
+/// An ask through an interface.
+template <class I>
+struct InterfacePlace : PrioritisedPlace {
+  FacePointer<I> face;
+  template <class>
+  [[nodiscard]] I& called(Element& element) const {
+    return face(element);
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    PrioritisedPlace::serialize(ar);
+    ar(face);
+  }
+};
+
+/// A call of member function F of the interfaces of all elements.
+template <class I, auto F>
+class InterfaceCallOfAll final : public BroadcastCall {
+ public:
+  using Arguments = typename EntryTraits<F>::Arguments;
+
+  InterfaceCallOfAll(FacePointer<I> face, std::int64_t priority, Arguments arguments)
+      : face_(face), priority_(priority), arguments_(std::move(arguments)) {}
+
+  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
+  [[nodiscard]] const Action& action() const override { return action_; }
+  [[nodiscard]] std::int64_t priority() const override { return priority_; }
+  void invoke(Element& element) const override {
+    std::apply([&](const auto&... argument) { (void)(face_(element).*F)(argument...); },
+               arguments_);
+  }
+  void pack(Writer& ar) const override { ar(face_, priority_, arguments_); }
+
+ private:
+  static SharedCall unpack(Reader& ar) {
+    const auto face = ar.take<FacePointer<I>>();
+    const auto priority = ar.take<std::int64_t>();
+    return SharedCall(new InterfaceCallOfAll(face, priority, ar.take<Arguments>()));
+  }
+  static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
+  static inline const BroadcastKind kind_{naming::name_of<InterfaceCallOfAll>(), &unpack};
+  static inline const Action action_{
+      naming::name_of<InterfaceCallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
+
+  FacePointer<I> face_;
+  std::int64_t priority_;
+  Arguments arguments_;
+};
+
+}  // namespace detail
+
+template <class I, class IndexType>
+class PrioritisedInterface;
+
+/// The proxy of an element by an interface of its class: a value that can be stored and sent. I may
+/// be any class with virtual functions; a priority in its EntryAttributes holds for its messages.
+template <class I, class IndexType = Index1>
+class InterfaceProxy {
+ public:
+  using Index = IndexType;
+
+  /// Of no element: it can only be assigned to.
+  InterfaceProxy() = default;
+  /// The element as it is seen by its interface.
+  template <class C>
+  InterfaceProxy(const ElementProxy<C, IndexType>& element)
+      : collection_(element.array().id()), index_(element.index()) {
+    if constexpr (detail::check_interface<C, I, IndexType>())
+      face_ = detail::FacePointer<I>(detail::FaceOf<I, C>::face);
+  }
+  template <class C>
+  InterfaceProxy(const ChareProxy<C>& chare) : InterfaceProxy(chare.element()) {}
+
+  /// As ElementProxy::send(); F is a member function of the interface.
+  template <auto F, class... Args>
+  void send(Args&&... args) const {
+    send_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
+  }
+  /// As ElementProxy::send_after().
+  template <auto F, class... Args>
+  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
+    static_assert(detail::check_entry<I, F, Args...>());
+    return after(delay, [to = *this, arguments = typename detail::EntryTraits<F>::Arguments(
+                                         std::forward<Args>(args)...)] {
+      std::apply([&to](const auto&... argument) { to.template send<F>(argument...); }, arguments);
+    });
+  }
+  /// As ElementProxy::ask().
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask(Args&&... args) const {
+    return ask_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
+  }
+  /// The same element for messages with a priority.
+  [[nodiscard]] PrioritisedInterface<I, IndexType> with(Priority priority) const {
+    return {*this, priority};
+  }
+  /// A target for results: member function F of the interface.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    using T = typename decltype(detail::target_value<F, NoValue>())::type;
+    return detail::make_target<T>(target_kind<F, T>, to_bytes(*this));
+  }
+
+  [[nodiscard]] const Index& index() const { return index_; }
+
+  friend bool operator==(const InterfaceProxy&, const InterfaceProxy&) = default;
+  [[nodiscard]] std::size_t hash() const {
+    return static_cast<std::size_t>(mix(collection_.value ^ IndexHash<Index>()(index_)));
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(collection_, index_, face_);
+  }
+
+ private:
+  friend class PrioritisedInterface<I, IndexType>;
+
+  template <auto F, class... Args>
+  void send_with(Priority priority, Args&&... args) const {
+    static_assert(detail::check_entry<I, F, Args...>());
+    static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
+                  "an interface creates no element: its class is not known");
+    Pe& pe = current_pe();
+    auto* message = [&]<class... P>(std::tuple<P...>*) {
+      return detail::InterfaceCall<I, IndexType, F>::make(
+          pe, collection(), index_, face_, priority.value,
+          detail::as_parameter<P>(std::forward<Args>(args))...);
+    }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
+    if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
+        [[unlikely]]
+      meter->sent({collection_, IndexHash<Index>()(index_)},
+                  detail::payload_bytes(message->arguments));
+    post(pe, message);
+  }
+  template <auto F, class... Args>
+  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask_with(Priority priority,
+                                                                  Args&&... args) const {
+    static_assert(detail::check_ask<I, F, Args...>());
+    Pe& pe = current_pe();
+    Ask<detail::Implements<I, IndexType>, F> reply(collection(), index_);
+    detail::InterfacePlace<I> place;
+    static_cast<detail::ReplyPlace&>(place) = reply.place();
+    place.face = face_;
+    place.priority = priority.value;
+    using Call = detail::AskCall<detail::Implements<I, IndexType>, detail::InterfacePlace<I>, F>;
+    post(pe, Call::make(pe, collection_, index_, place, std::forward<Args>(args)...));
+    return reply;
+  }
+  [[nodiscard]] CollectionId collection() const {
+    TESS_CHECK(!face_.empty(), "a message to an empty InterfaceProxy<", name_of_type<I>,
+               ">: assign array[index] to it first");
+    return collection_;
+  }
+  static void post(Pe& pe, detail::ElementMessage<Index>* message) {
+    pe.completion().sent(message->epoch);
+    if (detail::Collection* array = detail::find_collection(pe, message->collection);
+        array != nullptr) {
+      static_cast<detail::ArrayOf<Index>*>(array)->post(message);
+    } else {
+      pe.send_here(message);  // it waits until the array is known here
+    }
+  }
+  template <auto F, class T>
+  static void call_target(const Callback<T>& callback, T&& value) {
+    const auto element = from_bytes<InterfaceProxy>(callback.where());
+    if constexpr (std::is_same_v<T, NoValue>) {
+      element.template send<F>();
+    } else {
+      element.template send<F>(std::forward<T>(value));
+    }
+  }
+  template <auto F, class T>
+  static std::string describe_target(const Callback<T>& callback) {
+    return text(plain_name(naming::value<F>()), " of ", plain_name(name_of_type<I>),
+                index_text(from_bytes<InterfaceProxy>(callback.where()).index_));
+  }
+  template <auto F, class T>
+  static inline const typename Callback<T>::Kind target_kind{
+      naming::name_of<&InterfaceProxy::call_target<F, T>>(), &InterfaceProxy::call_target<F, T>,
+      &InterfaceProxy::describe_target<F, T>};
+
+  CollectionId collection_{};
+  Index index_{};
+  detail::FacePointer<I> face_;
+};
+
+/// An element by its interface, and the priority of what is sent to it: shape.with(priority).
+template <class I, class IndexType>
+class PrioritisedInterface {
+ public:
+  PrioritisedInterface(const InterfaceProxy<I, IndexType>& element, Priority priority)
+      : element_(element), priority_(priority) {}
+
+  // As those of InterfaceProxy.
+  template <auto F, class... Args>
+  void send(Args&&... args) const {
+    element_.template send_with<F>(priority_, std::forward<Args>(args)...);
+  }
+  template <auto F, class... Args>
+  [[nodiscard]] auto ask(Args&&... args) const {
+    return element_.template ask_with<F>(priority_, std::forward<Args>(args)...);
+  }
+
+ private:
+  InterfaceProxy<I, IndexType> element_;
+  Priority priority_;
+};
+
+/// The proxy of an array by an interface of its elements' class.
+template <class I, class IndexType = Index1>
+class InterfaceArray {
+ public:
+  using Index = IndexType;
+
+  /// Of no array: it can only be assigned to.
+  InterfaceArray() = default;
+  template <class C>
+  InterfaceArray(const ArrayProxy<C>& array) : id_(array.id()) {
+    if constexpr (detail::check_interface<C, I, IndexType>())
+      face_ = detail::FacePointer<I>(detail::FaceOf<I, C>::face);
+  }
+
+  /// As ArrayProxy::broadcast(); F is a member function of the interface.
+  template <auto F, class... Args>
+  void broadcast(Args&&... args) const {
+    static_assert(detail::check_entry<I, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    static_assert(std::is_copy_constructible_v<Arguments>,
+                  "each element gets a copy of a broadcast's arguments, so they can be copied");
+    TESS_CHECK(!face_.empty(), "a broadcast to an empty InterfaceArray<", name_of_type<I>,
+               ">: assign an array to it first");
+    detail::start_broadcast(id_,
+                            detail::SharedCall(new detail::InterfaceCallOfAll<I, F>(
+                                face_, detail::entry_rule<I, F>.priority,
+                                detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
+  }
+
+  friend bool operator==(const InterfaceArray&, const InterfaceArray&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_, face_);
+  }
+
+ private:
+  CollectionId id_{};
+  detail::FacePointer<I> face_;
+};
+
+}  // namespace tess
+
+template <class I, class Index>
+struct std::hash<tess::InterfaceProxy<I, Index>> {
+  std::size_t operator()(const tess::InterfaceProxy<I, Index>& proxy) const { return proxy.hash(); }
+};

@@ -1,0 +1,161 @@
+// Epochs that are awaited with others, asks with a priority, and asks of single chares.
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+#include "runtime/testing.hpp"
+#include "runtime/when.hpp"
+#include "tests/support/catch.hpp"
+
+#include <string>
+
+using namespace std::chrono_literals;
+
+namespace {
+
+struct Paper {
+  int key = 0;
+};
+
+class Clerk : public tess::Chare<Clerk> {
+ public:
+  /// Files a paper and passes it on.
+  void pass(int n_left) {
+    ++n_filed_;
+    if (n_left > 0) array()[{(index().x + 1) % 4}].send<&Clerk::pass>(n_left - 1);
+  }
+  tess::Task wait_for_paper() { (void)co_await papers_.take(9); }
+  void give_paper() { papers_.put({9}); }
+  [[nodiscard]] int n_filed() const { return n_filed_; }
+  /// An epoch's body gives what is awaited with it.
+  tess::Task read_own(tess::Callback<int> target) {
+    const auto both =
+        co_await tess::when_all(tess::epoch([this] { notes_.put({1}); }), notes_.take(1));
+    const auto first =
+        co_await tess::when_any(tess::epoch([this] { notes_.put({2}); }), notes_.take(2));
+    const int left = static_cast<int>(notes_.size());
+    target(std::get<1>(both).key + (first.index() == 1 ? 10 : 20) + left);
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_filed_, papers_, notes_);
+  }
+
+ private:
+  int n_filed_ = 0;
+  tess::Mailbox<&Paper::key> papers_, notes_;
+};
+
+struct Joined {
+  int of_both = 0;
+  std::size_t first = 9, at_once = 9;
+  int after_first = 0, of_third = 0, own = 0;
+  bool ran = false;
+  std::string error;
+};
+
+tess::Task join(Joined& found) {
+  const auto clerks = tess::create<Clerk>(tess::range(4));
+  (void)co_await tess::when_all(tess::epoch([&] { clerks[{0}].send<&Clerk::pass>(11); }),
+                                tess::epoch([&] { clerks[{2}].send<&Clerk::pass>(7); }),
+                                clerks[{1}].ask<&Clerk::n_filed>());
+  for (int x = 0; x < 4; ++x) {
+    const int n = co_await clerks[{x}].ask<&Clerk::n_filed>();
+    found.of_both += n;
+  }
+  // An epoch that takes longer than a deadline goes on.
+  const auto first = co_await tess::when_any(
+      tess::epoch([&] { clerks.broadcast<&Clerk::wait_for_paper>(); }), tess::sleep(1us));
+  found.first = first.index();
+  co_await tess::epoch([&] { clerks.broadcast<&Clerk::give_paper>(); });
+  const auto second = co_await tess::when_any(
+      tess::sleep(1h), tess::epoch([&] { clerks[{3}].send<&Clerk::pass>(0); }));
+  found.after_first = static_cast<int>(second.index());
+  tess::Future<int> there;
+  co_await tess::epoch([&] { there.callback()(5); });
+  const auto at_once = co_await tess::when_any(there, tess::epoch([&] { found.ran = true; }));
+  found.at_once = at_once.index();
+  try {
+    (void)co_await tess::when_all(tess::epoch([] { tess::fail(tess::ErrorCode::bad_value, "no"); }),
+                                  tess::sleep(1us));
+  } catch (const tess::Error& error) {
+    found.error = error.what();
+  }
+  tess::Future<int> own;
+  clerks[{2}].send<&Clerk::read_own>(own.callback());
+  found.own = co_await own;
+}
+
+void check_joined(const Joined& found) {
+  tess::test::expect(found.of_both == 20, "filed ", found.of_both);
+  tess::test::expect(found.first == 1, "first ", found.first);
+  tess::test::expect(found.after_first == 1, "second ", found.after_first);
+  tess::test::expect(found.at_once == 0 && !found.ran, "at once ", found.at_once);
+  tess::test::expect(found.error == "no", found.error);
+  tess::test::expect(found.own == 11 || found.own == 22, "own ", found.own);
+}
+
+/// Collects the order in which its calls run.
+class Desk : public tess::Chare<Desk> {
+ public:
+  void add(int number) { order_.push_back(number); }
+  int note(int number) {
+    order_.push_back(number);
+    return number;
+  }
+  [[nodiscard]] std::vector<int> order() const { return order_; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(order_);
+  }
+
+ private:
+  std::vector<int> order_;
+};
+
+/// All calls are ready before the first runs: they are sent within one entry method.
+tess::Task ask_with_priorities(std::vector<int>& order, int& late) {
+  const auto desk = tess::create_one_on<Desk>(tess::PeId{0});
+  co_await tess::epoch([] {});
+  (void)co_await desk.ask<&Desk::order>();
+  auto third = desk.with(tess::Priority{3}).ask<&Desk::note>(3);
+  auto plain = desk.ask<&Desk::note>(0);
+  auto first = desk.with(tess::expedited).ask<&Desk::note>(-9);
+  auto second = desk.with(tess::Priority{-2}).ask<&Desk::note>(-2);
+  (void)co_await tess::when_all(std::move(third), std::move(plain), std::move(first),
+                                std::move(second));
+  order = co_await desk.ask<&Desk::order>();
+  const tess::Time began = tess::now();
+  desk.send_after<&Desk::add>(2ms, 77);
+  desk.send_after<&Desk::add>(1ms, 88).cancel();
+  co_await tess::sleep(3ms);
+  const std::vector<int> last = co_await desk.ask<&Desk::order>();
+  late = tess::now() - began >= 2ms ? last.back() : 0;
+}
+
+}  // namespace
+
+TEST_CASE("epochs are awaited together, and the first of several", "[runtime][when]") {
+  tess::test::for_seeds(0, 100, [](std::uint64_t seed) {
+    Joined found;
+    const tess::test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
+    machine.run([&]() -> tess::Task { return join(found); }).require_success();
+    check_joined(found);
+  });
+}
+
+TEST_CASE("epochs are awaited together on the machine of threads", "[runtime][when][threads]") {
+  Joined found;
+  tess::Setup setup{tess::make_threads_machine(2), {}};
+  REQUIRE(tess::run(setup, [&]() -> tess::Task { return join(found); }) == 0);
+  tess::test::expect(
+      found.of_both == 20 && found.own != 0 && found.error == "no" && found.at_once == 0,
+      "threads");
+}
+
+TEST_CASE("asks of a single chare run in the order of their priorities", "[runtime][ask]") {
+  std::vector<int> order;
+  int late = 0;
+  const tess::test::Machine machine{.pes = 2, .reordering = 0, .migration = 0.0};
+  machine.run([&]() -> tess::Task { return ask_with_priorities(order, late); }).require_success();
+  CHECK(order == std::vector<int>{-9, -2, 0, 3});
+  CHECK(late == 77);
+}
