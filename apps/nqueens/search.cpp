@@ -120,7 +120,19 @@ void Searcher::search_serially(const Board& board) {
 
 }  // namespace
 
-tess::Task search(Problem problem, Outcome& outcome) {
+void Outcome::add(const Outcome& part, bool first) {
+  count.n_solutions += part.count.n_solutions;
+  count.n_boards += part.count.n_boards;
+  n_tasks += part.n_tasks;
+  n_dropped += part.n_dropped;
+  seconds += part.seconds;
+  if (part.found) solution = part.solution;
+  found = found || part.found;
+  hash = first ? tess::hash_bytes(&solution, sizeof solution)
+               : tess::hash_bytes(&count, sizeof count);
+}
+
+tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) {
   tess::GroupProxy<Searcher> searchers;
   tess::ArrayProxy<Branch> branches;
   co_await tess::epoch([&] {
@@ -129,19 +141,23 @@ tess::Task search(Problem problem, Outcome& outcome) {
     searchers.broadcast<&Searcher::use>(branches);
   });
   const tess::Time begin = tess::now();
-  co_await tess::epoch([&] { searchers[tess::my_pe()].send<&Searcher::run>(Board()); });
+  co_await tess::epoch([&] {
+    for (const Board& board : boards) searchers[tess::my_pe()].send<&Searcher::run>(board);
+  });
   const double seconds = tess::seconds(tess::now() - begin);
   tess::Future<Tally> total;
   searchers.broadcast<&Searcher::report>(total.callback());
-  const Tally tally = co_await total;
-  outcome = tally.outcome;
-  outcome.seconds = seconds;
-  outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
-  outcome.solution = tally.found.queens;
-  outcome.hash = problem.first ? tess::hash_bytes(&outcome.solution, sizeof outcome.solution)
-                               : tess::hash_bytes(&outcome.count, sizeof outcome.count);
+  Tally tally = co_await total;
+  tally.outcome.seconds = seconds;
+  tally.outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
+  tally.outcome.solution = tally.found.queens;
+  outcome.add(tally.outcome, problem.first);
   searchers.destroy();
   branches.destroy();
+}
+
+tess::Task search(Problem problem, Outcome& outcome) {
+  return search(problem, outcome, std::vector<Board>(1));
 }
 
 }  // namespace nqueens
