@@ -128,8 +128,8 @@ void Outcome::add(const Outcome& part, bool first) {
   seconds += part.seconds;
   if (part.found) solution = part.solution;
   found = found || part.found;
-  hash = first ? tess::hash_bytes(&solution, sizeof solution)
-               : tess::hash_bytes(&count, sizeof count);
+  hash =
+      first ? tess::hash_bytes(&solution, sizeof solution) : tess::hash_bytes(&count, sizeof count);
 }
 
 tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) {
