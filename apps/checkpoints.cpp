@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <system_error>
 
 namespace apps {
 
@@ -17,11 +19,22 @@ void Checkpoints::add_options(CommandLine& line) {
 
 void Checkpoints::check(const CommandLine& line, const std::vector<std::string>& of_problem) {
   check_every();
+  check_folders();
   gives_steps_ = line.is_given("--steps");
   for (const std::string& name : of_problem) {
     problem_[name] = line.value(name);
     if (line.is_given(name)) given_[name] = problem_[name];
   }
+}
+
+void Checkpoints::check_folders() {
+  if (folder_.empty()) return;
+  std::error_code none;  // a folder that is missing holds nothing
+  if (restarts() && std::filesystem::equivalent(folder_, restart_, none)) return;
+  if (const std::string latest = tess::latest_checkpoint(folder_); !latest.empty())
+    tess::fail(tess::ErrorCode::bad_argument, "--checkpoint ", folder_, ": holds ", latest,
+               " of another run: continue that with --restart ", folder_,
+               ", or give an empty folder");
 }
 
 void Checkpoints::check_every() {

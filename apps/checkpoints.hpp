@@ -36,7 +36,8 @@ namespace apps {
 class Checkpoints {
  public:
   void add_options(CommandLine& line);
-  /// Throws tess::Error for values that cannot be used. `of_problem`: the options whose values a
+  /// Throws tess::Error for values that cannot be used, and for a folder with checkpoints of another
+  /// run. `of_problem`: the options whose values a
   /// restart cannot change. Called before the program changes the values of its options.
   void check(const CommandLine& line, const std::vector<std::string>& of_problem);
 
@@ -81,6 +82,7 @@ class Checkpoints {
     }
   };
 
+  void check_folders();
   void check_every();
   void take(Values saved, std::int32_t step, std::int32_t n_steps);
   [[nodiscard]] bool is_due(std::int32_t from, std::int32_t step, std::int32_t last);

@@ -65,7 +65,7 @@ says " 33 steps: "
 refuses "--atoms: 700, but the checkpoint has 600: leave the option out" "$bin/leanmd" --atoms 700 --pes 2 --restart "$folder"
 refuses "--cells: 3,3,3, but the checkpoint has 3,2,3" "$bin/leanmd" --cells 3,3,3 --pes 2 --restart "$folder"
 refuses "--steps: 5, but the checkpoint has done" "$bin/leanmd" --steps 5 --pes 2 --restart "$folder"
-refuses "not for --study" "$bin/leanmd" --study --checkpoint "$folder"
+refuses "not for --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
 refuses "was written by a program\|of the class" "$bin/amr" --pes 2 --restart "$folder"
 
 problem=(--cells 4 --max-level 4 --change-every 3)
@@ -74,7 +74,7 @@ balance="--balance greedy_refine" from_machine_to_machine amr 2 14 20 26 32 "${p
 balance="--balance rotate" from_machine_to_machine amr 1 14 20 26 32 "${problem[@]}" --balance hilbert
 refuses "--order: 3, but the checkpoint has 2" "$bin/amr" --order 3 --pes 2 --restart "$folder"
 refuses "--uncorrected: yes, but the checkpoint has no" "$bin/amr" --uncorrected --pes 2 --restart "$folder"
-refuses "not for --study" "$bin/amr" --stability --checkpoint "$folder"
+refuses "not for --study" "$bin/amr" --stability --checkpoint "$scratch/none"
 
 # The parts of nqueens are its steps. The first two runs are killed once they have written a checkpoint.
 latest() { ls -d "$folder"/*/manifest.json 2>/dev/null | tail -1; }
@@ -109,7 +109,7 @@ same "nqueens 8 --first in parts"
 runs "$bin/nqueens" --restart "$folder" --pes 1
 same "nqueens --first after a restart"
 refuses "N: 9, but the checkpoint has 8" "$bin/nqueens" 9 --pes 2 --restart "$folder"
-refuses "not for --study" "$bin/nqueens" 9 --study --checkpoint "$folder"
+refuses "not for --study" "$bin/nqueens" 9 --study --checkpoint "$scratch/none"
 
 # run_forever.sh starts a program that dies again, with all its options.
 cat >"$scratch/dies" <<END2
