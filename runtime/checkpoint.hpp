@@ -25,7 +25,8 @@
 // an Error that names what waits if something does: a coroutine of a chare, an unfinished reduction,
 // a message to an element that does not exist, a timer.
 //
-// Not saved: futures and callbacks to them, timers, balancers (call start_balancing() again).
+// Not saved: futures and callbacks to them, timers, balancers. Call start_balancing() again; the loads
+// of balanced elements are saved, and BalancerProxy::place_again() uses them.
 // Process groups and read-only data cannot be saved; destroy() them before.
 #pragma once
 

@@ -87,7 +87,7 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
     co_await plant(blocks, problem, outcome);
     outcome.mass_at_start = outcome.end.norms.mass;
   } else if (balancer) {
-    co_await balancer->begin_phase();
+    co_await balancer->place_again();
   }
   const std::int64_t cells_per_block =
       std::int64_t{problem.n_cells} * problem.n_cells * problem.n_cells;

@@ -115,7 +115,8 @@ tess::Task Simulation::run(std::vector<Atom> atoms) {
   co_await tess::epoch([&] {
     state_.computes.broadcast<&Compute::set_barrier>(has_barrier ? state_.problem.every : 0);
   });
-  if (balancer) co_await balancer->begin_phase();
+  if (balancer && restarts) co_await balancer->place_again();
+  if (balancer && !restarts) co_await balancer->begin_phase();
 
   Outcome& outcome = state_.outcome;
   if (!restarts) {
