@@ -27,12 +27,9 @@ struct Tally {
 };
 struct Join {
   Tally operator()(const Tally& a, const Tally& b) const {
-    Tally all = a.found.path <= b.found.path ? a : b;
-    const Outcome &x = a.outcome, &y = b.outcome;
-    all.outcome.count = {x.count.n_solutions + y.count.n_solutions,
-                         x.count.n_boards + y.count.n_boards};
-    all.outcome.n_tasks = x.n_tasks + y.n_tasks;
-    all.outcome.n_dropped = x.n_dropped + y.n_dropped;
+    Tally all = a;
+    all.outcome.add(b.outcome);
+    if (b.found.path < a.found.path) all.found = b.found;
     return all;
   }
 };
@@ -120,7 +117,7 @@ void Searcher::search_serially(const Board& board) {
 
 }  // namespace
 
-void Outcome::add(const Outcome& part, bool first) {
+void Outcome::add(const Outcome& part) {
   count.n_solutions += part.count.n_solutions;
   count.n_boards += part.count.n_boards;
   n_tasks += part.n_tasks;
@@ -128,8 +125,6 @@ void Outcome::add(const Outcome& part, bool first) {
   seconds += part.seconds;
   if (part.found) solution = part.solution;
   found = found || part.found;
-  hash =
-      first ? tess::hash_bytes(&solution, sizeof solution) : tess::hash_bytes(&count, sizeof count);
 }
 
 tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) {
@@ -151,7 +146,9 @@ tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) 
   tally.outcome.seconds = seconds;
   tally.outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
   tally.outcome.solution = tally.found.queens;
-  outcome.add(tally.outcome, problem.first);
+  outcome.add(tally.outcome);
+  outcome.hash = problem.first ? tess::hash_bytes(&outcome.solution, sizeof outcome.solution)
+                               : tess::hash_bytes(&outcome.count, sizeof outcome.count);
   searchers.destroy();
   branches.destroy();
 }

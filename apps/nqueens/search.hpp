@@ -39,8 +39,8 @@ struct Outcome {
   Solution solution{};
   double seconds = 0;
 
-  /// Adds what is known of another part of the tree.
-  void add(const Outcome& part, bool first);
+  /// Adds what is known of another part of the tree, but the hash.
+  void add(const Outcome& part);
 };
 
 /// Searches all below these boards on all PEs, by default below the empty one, and adds what it finds
