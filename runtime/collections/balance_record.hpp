@@ -40,7 +40,7 @@ struct BalanceRecord {
 
   LoadRecord load;
   SyncState sync;
-  PastLoad past;  ///< its second part: only after a restart, until a phase begins
+  PastLoad past;                   ///< its second part: only after a restart, until a phase begins
   std::uint64_t size_bytes = 0;    ///< packed size when last measured; 0: never
   std::size_t position = nowhere;  ///< position in its PE's report of this round; does not migrate
 

@@ -1,6 +1,7 @@
 // The measured loads of elements in checkpoints: after a restart on another number of PEs the first
 // round places the elements as well as rounds did before.
 #include "runtime/balance.hpp"
+
 #include "runtime/checkpoint.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
@@ -86,9 +87,8 @@ Rounds after_restart(int n_rounds, int n_more, bool places, int n_pes = 3,
   REQUIRE(tess::run(first, [&] { return save(scratch.path("saved"), n_rounds, n_more); }) == 0);
   Rounds rounds;
   auto second = machine(n_pes);
-  REQUIRE(tess::run(second, [&] {
-            return go_on(scratch.path("saved"), strategy, places, rounds);
-          }) == 0);
+  REQUIRE(tess::run(second,
+                    [&] { return go_on(scratch.path("saved"), strategy, places, rounds); }) == 0);
   return rounds;
 }
 
