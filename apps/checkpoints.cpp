@@ -1,9 +1,13 @@
 #include "apps/checkpoints.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/text.hpp"
+#include "runtime/runtime.hpp"
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <system_error>
 
 namespace apps {
 
@@ -13,7 +17,27 @@ void Checkpoints::add_options(CommandLine& line) {
   line.option("--restart", restart_, "continue from the last good checkpoint in this folder");
 }
 
-void Checkpoints::check() {
+void Checkpoints::check(const CommandLine& line, const std::vector<std::string>& of_problem) {
+  check_every();
+  check_folders();
+  gives_steps_ = line.is_given("--steps");
+  for (const std::string& name : of_problem) {
+    problem_[name] = line.value(name);
+    if (line.is_given(name)) given_[name] = problem_[name];
+  }
+}
+
+void Checkpoints::check_folders() {
+  if (folder_.empty()) return;
+  std::error_code none;  // a folder that is missing holds nothing
+  if (restarts() && std::filesystem::equivalent(folder_, restart_, none)) return;
+  if (const std::string latest = tess::latest_checkpoint(folder_); !latest.empty())
+    tess::fail(tess::ErrorCode::bad_argument, "--checkpoint ", folder_, ": holds ", latest,
+               " of another run: continue that with --restart ", folder_,
+               ", or give an empty folder");
+}
+
+void Checkpoints::check_every() {
   const bool by_time = every_.ends_with('s');
   const char* const end = every_.data() + every_.size() - (by_time ? 1 : 0);
   double number = 0;
@@ -49,12 +73,31 @@ std::int32_t Checkpoints::pause_after(std::int32_t step, std::int32_t last) {
   return length_ < last - step ? step + length_ : last;
 }
 
-bool Checkpoints::is_due(std::int32_t step, std::int32_t last) {
+bool Checkpoints::is_due(std::int32_t from, std::int32_t step, std::int32_t last) {
   if (folder_.empty() || step >= last) return false;
-  if (steps_ != 0) return step % steps_ == 0;
+  if (steps_ != 0) return step / steps_ > from / steps_;
   if (Clock::now() - written_ < period_) return false;
   written_ = Clock::now();
   return true;
+}
+
+void Checkpoints::take(Values saved, std::int32_t step, std::int32_t n_steps) {
+  for (const auto& [name, value] : given_)
+    if (const std::string& was = saved[name]; was != value)
+      tess::fail(tess::ErrorCode::bad_argument, name, ": ", value, ", but the checkpoint has ", was,
+                 ": leave the option out");
+  if (n_steps < step)
+    tess::fail(tess::ErrorCode::bad_argument, "--steps: ", n_steps,
+               ", but the checkpoint has done ", step);
+  problem_ = std::move(saved);
+  tess::print("continues after step ", step, "\n");
+}
+
+tess::CheckpointOptions Checkpoints::described(std::int32_t step) const {
+  tess::CheckpointOptions how;
+  how.note = tess::text("after step ", step);
+  for (const auto& [name, value] : problem_) how.note += tess::text(" ", name, " ", value);
+  return how;
 }
 
 }  // namespace apps

@@ -63,11 +63,27 @@ bool CommandLine::parse(int argc, char** argv, const std::string& footer) {
   return true;
 }
 
+bool CommandLine::is_given(const std::string& name) const {
+  const CLI::Option* const option = app_->get_option_no_throw(name);
+  return option != nullptr && option->count() != 0;
+}
+
+std::string CommandLine::value(const std::string& name) const {
+  CLI::Option* const option = app_->get_option(name);
+  if (option->get_items_expected_max() == 0) return is_given(name) ? "yes" : "no";  // a flag
+  option->capture_default_str();  // reads the variable
+  std::string text = option->get_default_str();
+  std::erase_if(text, [](char c) { return c == '[' || c == ']'; });  // around several values
+  return text;
+}
+
 template Option CommandLine::option(const std::string&, std::int32_t&, const std::string&);
 template Option CommandLine::option(const std::string&, std::uint64_t&, const std::string&);
 template Option CommandLine::option(const std::string&, double&, const std::string&);
 template Option CommandLine::option(const std::string&, std::string&, const std::string&);
 template Option CommandLine::option(const std::string&, std::optional<std::int32_t>&,
+                                    const std::string&);
+template Option CommandLine::option(const std::string&, std::optional<std::uint64_t>&,
                                     const std::string&);
 template Option CommandLine::option(const std::string&, std::vector<std::int32_t>&,
                                     const std::string&);

@@ -53,6 +53,11 @@ class CommandLine {
   /// bad options.
   [[nodiscard]] bool parse(int argc, char** argv, const std::string& footer = tess::options_help());
 
+  /// Known once the line is parsed. False for a name that is no option.
+  [[nodiscard]] bool is_given(const std::string& name) const;
+  /// The value of an option as text, whether it is given or the default: equal for equal values.
+  [[nodiscard]] std::string value(const std::string& name) const;
+
  private:
   std::unique_ptr<CLI::App> app_;
 };

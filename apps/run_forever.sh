@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# run_forever.sh FOLDER COMMAND…: runs a program that takes --checkpoint and --restart (apps/stencil) to its end. If it
-# dies, it is started again from the last good checkpoint in FOLDER:
+# run_forever.sh FOLDER COMMAND…: runs a program that takes --checkpoint and --restart (stencil, leanmd, amr, nqueens) to its
+# end. If it dies, it is started again from the last good checkpoint in FOLDER:
 #
 #     apps/run_forever.sh saved mpirun -n 4 build/release/bin/stencil --steps 1000000 --checkpoint-every 60s
 #

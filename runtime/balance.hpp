@@ -49,6 +49,11 @@ class BalancerProxy {
   /// called start_balancing().
   [[nodiscard]] Task begin_phase() const { return group_.local().begin_phase(); }
 
+  /// After a restart: a round by the loads that the checkpoint has of the elements, so that the first
+  /// phase is balanced as those before the checkpoint were. Awaited after start_balancing() while no
+  /// element of the array has work, in place of begin_phase(). Nothing moves if it has none.
+  [[nodiscard]] Task place_again() const { return group_.local().place_again(); }
+
   /// Runs a round (with `automatic` only if it pays off); awaited between two phases, while no
   /// element of the array has work. All moved elements have arrived when it returns. Only on the PE
   /// that called start_balancing(). It cannot be combined with at_sync() or periodic rounds.

@@ -25,7 +25,8 @@
 // an Error that names what waits if something does: a coroutine of a chare, an unfinished reduction,
 // a message to an element that does not exist, a timer.
 //
-// Not saved: futures and callbacks to them, timers, balancers (call start_balancing() again).
+// Not saved: futures and callbacks to them, timers, balancers. Call start_balancing() again; the loads
+// of balanced elements are saved, and BalancerProxy::place_again() uses them.
 // Process groups and read-only data cannot be saved; destroy() them before.
 #pragma once
 
@@ -45,8 +46,8 @@
 namespace tess {
 
 /// Saves the run in `folder`, which all processes can reach. Only in the main coroutine, outside of
-/// epochs. Throws Error if the run is not quiet or the files cannot be written; then the run can go
-/// on. The options are given a name first: g++ 12 fails on an aggregate in a `co_await` expression.
+/// epochs. Throws Error if the run is not quiet, if the files cannot be written, or if the folder has
+/// checkpoints of another run, from which this one did not restart; then the run can go on. The options are given a name first: g++ 12 fails on an aggregate in a `co_await` expression.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
                               const CheckpointOptions& options) {
@@ -56,6 +57,12 @@ template <class State>
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state) {
   return checkpoint(folder, state, CheckpointOptions());
+}
+
+/// The latest checkpoint in a folder that was finished, as its path; empty if there is none. A program
+/// that does not restart from there gives checkpoint() another folder.
+[[nodiscard]] inline std::string latest_checkpoint(const std::string& folder) {
+  return detail::latest_checkpoint(folder);
 }
 
 /// The result of restart(): `co_await` gives the state object.

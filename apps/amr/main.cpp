@@ -43,16 +43,16 @@ std::vector<Settings> runs_of(const Options& options) {
 
 tess::Task run_all(Options options, bool speaks) {
   apps::Progress progress(speaks ? stderr : nullptr);
-  const std::vector<Settings> runs = runs_of(options);
+  std::vector<Settings> runs = runs_of(options);
   std::vector<Row> rows;
   tess::print_text(tess::machine().describe() + "\n" + head());
-  for (const Settings& settings : runs) {
-    const auto n_steps = static_cast<std::uint32_t>(settings.problem.n_steps);
+  for (Settings& settings : runs) {
     progress.phase("planting the tree");
     Outcome outcome;
     co_await simulate(settings, outcome, [&](std::int32_t step) {
       progress.phase("steps");
-      progress.part(static_cast<std::uint32_t>(step) + 1, n_steps);
+      progress.part(static_cast<std::uint32_t>(step) + 1,
+                    static_cast<std::uint32_t>(settings.problem.n_steps));
     });
     progress.clear();
     rows.push_back({settings, outcome});
@@ -114,7 +114,11 @@ int start(tess::Setup& setup, int argc, char** argv) {
   line.flag("--stability", options.stability, "cases at the edge, each against what must hold");
   line.option("--json", options.json, "write the rows to this file");
   line.option("--plot", options.plot, "with --study: draw them to this SVG file");
+  settings.checkpoints.add_options(line);
   if (!line.parse(argc, argv)) return 0;
+  settings.checkpoints.check(
+      line, {"--max-level", "--least-level", "--cells", "--order", "--cfl", "--time", "--width",
+             "--velocity", "--centre", "--refine", "--change-every", "--uncorrected"});
   std::ranges::copy(velocity, problem.velocity.begin());
   std::ranges::copy(centre, problem.centre.begin());
   problem.corrected = !options.uncorrected;
@@ -132,6 +136,9 @@ int start(tess::Setup& setup, int argc, char** argv) {
   }
   if (options.study && options.stability)
     tess::fail(tess::ErrorCode::bad_argument, "--study and --stability: choose one");
+  if ((options.study || options.stability) && settings.checkpoints.are_used())
+    tess::fail(tess::ErrorCode::bad_argument,
+               "--checkpoint and --restart: not for --study and --stability");
   if (options.stability && !options.json.empty())
     tess::fail(tess::ErrorCode::bad_argument, "--json ", options.json,
                ": --stability prints its rows only");

@@ -10,6 +10,19 @@ namespace {
 
 using Blocks = tess::ArrayProxy<Block>;
 
+/// All that a checkpoint holds beside the blocks.
+struct State {
+  Problem problem;
+  std::int32_t change_every = 0;
+  Blocks blocks{};
+  std::int32_t step = 0;  // done
+  Outcome outcome;        // so far
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(problem, change_every, blocks, step, outcome);
+  }
+};
+
 /// Each leaf chooses its level, and the tree changes.
 tess::Task change_tree(Blocks blocks) {
   co_await tess::epoch([&] { blocks.broadcast<&Block::plan>(); });
@@ -55,32 +68,48 @@ double Outcome::l2() const {
   return std::sqrt(static_cast<double>(end.norms.l2) * 0x1p-60);
 }
 
-tess::Task simulate(const Settings& settings, Outcome& outcome,
-                    std::function<void(std::int32_t)> part) {
-  const Problem& problem = settings.problem;
-  const Blocks blocks = tess::create<Block>(tess::sparse);
+tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std::int32_t)> part) {
+  Problem& problem = settings.problem;
+  State state{.problem = problem, .change_every = settings.change_every, .outcome = {}};
+  const bool restarts = settings.checkpoints.restarts();
+  if (restarts) {
+    co_await settings.checkpoints.restart(state, problem.n_steps);
+    state.problem.n_steps = problem.n_steps;
+    problem = state.problem;
+  } else {
+    state.blocks = tess::create<Block>(tess::sparse);
+  }
+  const Blocks blocks = state.blocks;
+  outcome = state.outcome;
   std::optional<tess::BalancerProxy> balancer;
   if (settings.balance) balancer = tess::start_balancing(blocks, *settings.balance);
-  co_await plant(blocks, problem, outcome);
-  outcome.mass_at_start = outcome.end.norms.mass;
+  if (!restarts) {
+    co_await plant(blocks, problem, outcome);
+    outcome.mass_at_start = outcome.end.norms.mass;
+  } else if (balancer) {
+    co_await balancer->place_again();
+  }
   const std::int64_t cells_per_block =
       std::int64_t{problem.n_cells} * problem.n_cells * problem.n_cells;
-  const tess::Time begin = tess::now();
-  std::int32_t n = 0;
-  for (std::int32_t step = 0; step < problem.n_steps; step += n) {
-    n = std::min(settings.change_every, problem.n_steps - step);
-    if (part) part(step);
-    if (step > 0) {
+  while (state.step < problem.n_steps) {
+    const tess::Time begin = tess::now();
+    const std::int32_t from = state.step;
+    const std::int32_t n = std::min(state.change_every, problem.n_steps - from);
+    if (part) part(from);
+    if (from > 0) {
       co_await change_tree(blocks);
-      co_await take_census(blocks, step * problem.dt, outcome);
+      co_await take_census(blocks, from * problem.dt, outcome);
       if (balancer) {
         co_await balancer->round();
       }
     }
-    co_await tess::epoch([&] { blocks.broadcast<&Block::advance>(step, n); });
+    co_await tess::epoch([&] { blocks.broadcast<&Block::advance>(from, n); });
     outcome.cell_steps += outcome.end.n_blocks * cells_per_block * n;
+    outcome.seconds += tess::seconds(tess::now() - begin);
+    state.step = from + n;
+    state.outcome = outcome;
+    co_await settings.checkpoints.save_if_due(state, from, problem.n_steps);
   }
-  outcome.seconds = tess::seconds(tess::now() - begin);
   co_await take_census(blocks, problem.n_steps * problem.dt, outcome);
   if (balancer)
     for (const auto& round : balancer->history()) outcome.n_moved += round.n_moved;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/amr/block.hpp"
+#include "apps/checkpoints.hpp"
 #include "runtime/balance_options.hpp"
 
 #include <functional>
@@ -13,6 +14,7 @@ struct Settings {
   Problem problem;
   std::int32_t change_every = 4;  ///< steps between two changes of the tree
   std::optional<tess::BalanceOptions> balance;
+  apps::Checkpoints checkpoints;
 };
 
 struct Outcome {
@@ -28,8 +30,9 @@ struct Outcome {
   [[nodiscard]] double l2() const;
 };
 
-/// `part` is called with the number of steps that are done. Called in the main coroutine.
-tess::Task simulate(const Settings& settings, Outcome& outcome,
+/// `part` is called with the number of steps that are done. Called in the main coroutine. After a
+/// restart the problem of `settings` is that of the checkpoint.
+tess::Task simulate(Settings& settings, Outcome& outcome,
                     std::function<void(std::int32_t)> part = {});
 
 }  // namespace amr

@@ -23,7 +23,7 @@ Problem small(std::int32_t least_level, std::int32_t most_level) {
 /// Runs the problem; false if its mass changes.
 tess::Task run(Problem problem, Outcome& outcome, bool& kept) {
   problem.complete();
-  const Settings settings{.problem = problem, .balance = {}};
+  Settings settings{.problem = problem, .balance = {}, .checkpoints = {}};
   co_await simulate(settings, outcome);
   kept = outcome.end.norms.mass == outcome.mass_at_start;
 }

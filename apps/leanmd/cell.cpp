@@ -23,8 +23,7 @@ std::vector<tess::Index3> Cell::partners() const {
 void Cell::create_computes() {
   const LennardJones law(problem_.box.edge, problem_.cutoff);
   for (const tess::Index3& other : partners())
-    if (index() <= other)
-      all_computes_[pair_of(index(), other)].insert(law, problem_.balanced ? problem_.every : 0);
+    if (index() <= other) all_computes_[pair_of(index(), other)].insert(law);
 }
 
 void Cell::create_section() {

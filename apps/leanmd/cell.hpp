@@ -23,7 +23,6 @@ struct Problem {
   double skin = 0.4;                ///< an atom moves at most half of it between two exchanges
   std::int32_t exchange_every = 5;  ///< steps between exchanges of atoms
   std::int32_t every = 20;          ///< steps between reports, and between balance barriers
-  bool balanced = false;
 };
 
 /// Why a run cannot continue: the first reason is kept.

@@ -28,9 +28,10 @@ struct Coordinates {
 class Compute : public tess::Chare<Compute, tess::Index6> {
  public:
   Compute() = default;
-  /// sync_every: steps between balance barriers; 0: none.
-  Compute(const LennardJones& law, std::int32_t sync_every) : law_(law), sync_every_(sync_every) {}
+  explicit Compute(const LennardJones& law) : law_(law) {}
 
+  /// Steps between balance barriers; 0: none. Called before a run.
+  void set_barrier(std::int32_t every) { sync_every_ = every; }
   void take(Coordinates coordinates);
   void resume_from_sync();
 

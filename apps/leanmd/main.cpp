@@ -30,9 +30,11 @@ void end_with(const std::string& error) {
 
 tess::Task run_once(Settings s) {
   if (s.explain) tess::print(explain(s.options, s.state.n_atoms));
-  const Motion motion(s.options.problem.box.edge, s.options.problem.dt);
+  std::vector<Atom> atoms;
+  if (!s.options.checkpoints.restarts())
+    atoms = initial_atoms(s.state, Motion(s.options.problem.box.edge, s.options.problem.dt));
   Outcome outcome;
-  co_await simulate(s.options, initial_atoms(s.state, motion), outcome);
+  co_await simulate(s.options, std::move(atoms), outcome);
   s.options.progress->clear();
   tess::print(table(s.options, outcome));
   if (!s.json.empty() && outcome.error.empty()) plot::write_file(s.json, json(s.options, outcome));
@@ -87,11 +89,14 @@ void check(Settings& s) {
     refuse("--cells: a cell of edge ", p.box.least_cell_edge(),
            " is shorter than a quarter of --cutoff and --skin; give fewer cells");
   if (!s.balance.empty()) s.options.balance = tess::parse_balance(s.balance);
-  p.balanced = s.options.balance && s.options.balance->when != tess::BalanceWhen::periodic;
   if (s.study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
     refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
            ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
   if (s.study && s.stability) refuse("--study: cannot be combined with --stability");
+  if ((s.study || s.stability) && s.options.checkpoints.are_used())
+    refuse("--checkpoint and --restart: not for --study and --stability");
+  if (s.explain && s.options.checkpoints.restarts())
+    refuse("--explain: describes the options, but --restart takes the checkpoint's");
   if (!s.plot.empty() && !s.study) refuse("--plot ", s.plot, ": is for --study");
   plot::require_writable("--json", s.json);
   if (!s.plot.empty()) (void)plot::data_path(s.plot);
@@ -129,7 +134,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--plot", s.plot, "draw the study: FILE.svg");
   line.flag("--stability", s.stability, "stiff and extreme cases; exit code 1 if one fails");
   line.flag("--explain", s.explain, "print what this run does");
+  s.options.checkpoints.add_options(line);
   if (!line.parse(argc, argv)) return 0;
+  s.options.checkpoints.check(
+      line, {"--cells", "--atoms", "--dt", "--cutoff", "--density", "--gradient", "--temperature",
+             "--seed", "--exchange", "--skin", "--every"});
   check(s);
   apps::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
   s.options.progress = &progress;

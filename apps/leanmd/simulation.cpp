@@ -46,132 +46,171 @@ std::int64_t wrong_forces(const Problem& problem, const std::vector<Cell::AtomFo
   return n;
 }
 
+/// All that a checkpoint holds beside the elements.
+struct State {
+  Problem problem;
+  tess::ArrayProxy<Compute> computes;
+  tess::ArrayProxy<Cell> cells;
+  std::int32_t step = 0;  // done
+  std::int64_t n_atoms = 0;
+  Vector momentum{};  // at the start
+  Outcome outcome;    // so far
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(problem, computes, cells, step, n_atoms, momentum, outcome);
+  }
+};
+
 class Simulation {
  public:
-  Simulation(Options options, Outcome& outcome)
-      : options_(std::move(options)),
-        outcome_(outcome),
-        computes_(tess::create<Compute>(tess::sparse)),
-        cells_(tess::create<Cell>(tess::range(n(0), n(1), n(2)), options_.problem,
-                                  computes_.handle())) {}
+  explicit Simulation(Options& options) : options_(options) {}
 
   tess::Task run(std::vector<Atom> atoms);
+  Outcome end();
 
  private:
-  [[nodiscard]] std::int32_t n(std::size_t axis) const {
-    return options_.problem.box.n_cells[axis];
-  }
+  tess::Task create(const std::vector<Atom>& atoms);
   /// The steps up to `last`; stops early if something is wrong.
   tess::Task run_to(std::int32_t last);
+  /// The steps after the last one that is done, up to `to`.
+  tess::Task run_part(std::int32_t first, std::int32_t to);
   tess::Task return_to_start();
   tess::Task reverse();
   void examine(const Totals& totals);
   tess::Task compare_forces();
 
-  Options options_;
-  Outcome& outcome_;
-  tess::Scoped<tess::ArrayProxy<Compute>> computes_;
-  tess::Scoped<tess::ArrayProxy<Cell>> cells_;
-  std::int32_t next_ = 0;  // step
-  std::int64_t n_atoms_ = 0;
-  Vector momentum_{};  // at the start
+  Options& options_;
+  State state_;
 };
 
-tess::Task Simulation::run(std::vector<Atom> atoms) {
+tess::Task Simulation::create(const std::vector<Atom>& atoms) {
+  const Box& box = options_.problem.box;
+  state_.problem = options_.problem;
+  state_.computes = tess::create<Compute>(tess::sparse);
+  state_.cells = tess::create<Cell>(tess::range(box.n_cells[0], box.n_cells[1], box.n_cells[2]),
+                                    state_.problem, state_.computes);
   std::map<tess::Index3, std::vector<Atom>> by_cell;
   for (const Atom& atom : atoms) {
-    by_cell[options_.problem.box.cell_of(atom.at)].push_back(atom);
-    for (std::size_t k = 0; k < 3; ++k) momentum_[k] += atom.velocity[k];
+    by_cell[box.cell_of(atom.at)].push_back(atom);
+    for (std::size_t k = 0; k < 3; ++k) state_.momentum[k] += atom.velocity[k];
   }
-  n_atoms_ = static_cast<std::int64_t>(atoms.size());
+  state_.n_atoms = static_cast<std::int64_t>(atoms.size());
   co_await tess::epoch([&] {
-    for (auto& [cell, own] : by_cell) cells_[cell].send<&Cell::fill>(std::move(own));
-    cells_.broadcast<&Cell::create_computes>();
+    for (auto& [cell, own] : by_cell) state_.cells[cell].send<&Cell::fill>(std::move(own));
+    state_.cells.broadcast<&Cell::create_computes>();
   });
-  co_await tess::epoch([&] { cells_.broadcast<&Cell::create_section>(); });
+  co_await tess::epoch([&] { state_.cells.broadcast<&Cell::create_section>(); });
+}
+
+tess::Task Simulation::run(std::vector<Atom> atoms) {
+  const bool restarts = options_.checkpoints.restarts();
+  if (restarts)
+    co_await options_.checkpoints.restart(state_, options_.n_steps);
+  else
+    co_await create(atoms);
+  options_.problem = state_.problem;
   std::optional<tess::BalancerProxy> balancer;
-  if (options_.balance) {
-    balancer = tess::start_balancing(computes_.handle(), *options_.balance);
-    co_await balancer->begin_phase();
+  if (options_.balance) balancer = tess::start_balancing(state_.computes, *options_.balance);
+  const bool has_barrier = balancer && options_.balance->when != tess::BalanceWhen::periodic;
+  co_await tess::epoch([&] {
+    state_.computes.broadcast<&Compute::set_barrier>(has_barrier ? state_.problem.every : 0);
+  });
+  if (balancer && restarts) co_await balancer->place_again();
+  if (balancer && !restarts) co_await balancer->begin_phase();
+
+  Outcome& outcome = state_.outcome;
+  if (!restarts) {
+    co_await run_part(0, 0);
+    outcome.first_hash = outcome.hash;
+    if (options_.check) co_await compare_forces();
   }
-
-  const tess::Time begin = tess::now();
-  co_await run_to(0);
-  outcome_.first_hash = outcome_.hash;
-  if (options_.check) co_await compare_forces();
   co_await run_to(options_.n_steps);
-  outcome_.seconds = tess::seconds(tess::now() - begin);
   if (options_.check) co_await compare_forces();
-  if (balancer) outcome_.rounds = balancer->history();
-  if (!options_.reverse || !outcome_.error.empty()) co_return;
+  if (balancer) outcome.rounds = balancer->history();
+  if (options_.reverse && outcome.error.empty()) co_await return_to_start();
+}
 
-  co_await return_to_start();
+Outcome Simulation::end() {
+  state_.cells.destroy();
+  state_.computes.destroy();
+  return std::move(state_.outcome);
 }
 
 tess::Task Simulation::return_to_start() {
-  Outcome forth = outcome_;
+  Outcome forth = state_.outcome;
   co_await reverse();
   co_await run_to(2 * options_.n_steps);
   co_await reverse();
   tess::Future<std::vector<Cell::AtomForce>> shown;
-  cells_.broadcast<&Cell::show>(shown.callback());
+  state_.cells.broadcast<&Cell::show>(shown.callback());
   const auto all = co_await shown;
   std::uint64_t hash = 0;
   for (const auto& [atom, force] : all) hash += hash_of(atom);
-  forth.error = outcome_.error;
+  forth.error = state_.outcome.error;
   if (hash != forth.first_hash && forth.error.empty())
     forth.error = "with reversed velocities the run did not return to its start";
-  outcome_ = std::move(forth);
+  state_.outcome = std::move(forth);
 }
 
 tess::Task Simulation::reverse() {
-  for (std::int64_t& p : momentum_) p = -p;
-  co_await tess::epoch([&] { cells_.broadcast<&Cell::reverse>(); });
+  for (std::int64_t& p : state_.momentum) p = -p;
+  co_await tess::epoch([&] { state_.cells.broadcast<&Cell::reverse>(); });
 }
 
 tess::Task Simulation::run_to(std::int32_t last) {
-  while (next_ <= last && outcome_.error.empty()) {
-    const std::int32_t to = next_ == 0 ? 0 : std::min(last, next_ + options_.problem.every - 1);
-    tess::Future<Totals> done;
-    cells_.broadcast<&Cell::begin>(Run{next_, to, done.callback()});
-    const Totals totals = co_await done;
-    next_ = to + 1;
-    examine(totals);
-    if (options_.progress != nullptr)
-      options_.progress->part(static_cast<std::uint32_t>(next_),
-                              static_cast<std::uint32_t>(options_.n_steps + 1));
+  while (state_.step < last && state_.outcome.error.empty()) {
+    const std::int32_t from = state_.step, every = state_.problem.every;
+    const std::int32_t pause = options_.checkpoints.pause_after(from, last);
+    co_await run_part(from + 1, std::min(pause, (from / every + 1) * every));
+    if (state_.outcome.error.empty())
+      co_await options_.checkpoints.save_if_due(state_, from, options_.n_steps);
   }
 }
 
+tess::Task Simulation::run_part(std::int32_t first, std::int32_t to) {
+  const tess::Time begin = tess::now();
+  tess::Future<Totals> done;
+  state_.cells.broadcast<&Cell::begin>(Run{first, to, done.callback()});
+  const Totals totals = co_await done;
+  state_.step = to;
+  state_.outcome.seconds += tess::seconds(tess::now() - begin);
+  examine(totals);
+  if (options_.progress != nullptr)
+    options_.progress->part(static_cast<std::uint32_t>(to + 1),
+                            static_cast<std::uint32_t>(options_.n_steps + 1));
+}
+
 void Simulation::examine(const Totals& totals) {
-  std::ranges::copy(totals.energies, std::back_inserter(outcome_.energies));
-  outcome_.n_atoms = totals.n_atoms;
-  outcome_.hash = totals.hash;
+  Outcome& outcome = state_.outcome;
+  std::ranges::copy(totals.energies, std::back_inserter(outcome.energies));
+  outcome.n_atoms = totals.n_atoms;
+  outcome.hash = totals.hash;
   if (totals.trouble) {
-    outcome_.error = describe(totals.trouble, options_.problem);
-    outcome_.energies.resize(static_cast<std::size_t>(std::max(1, totals.trouble.step)));
-  } else if (totals.n_atoms != n_atoms_) {
-    outcome_.error = fmt::format("{} atoms of {} are there", totals.n_atoms, n_atoms_);
-  } else if (totals.momentum != momentum_) {
-    outcome_.error = "the total momentum has changed: a force was lost or doubled";
-  } else if (outcome_.drift() > unstable_share * outcome_.kinetic()) {
-    outcome_.error = fmt::format(
+    outcome.error = describe(totals.trouble, state_.problem);
+    outcome.energies.resize(static_cast<std::size_t>(std::max(1, totals.trouble.step)));
+  } else if (totals.n_atoms != state_.n_atoms) {
+    outcome.error = fmt::format("{} atoms of {} are there", totals.n_atoms, state_.n_atoms);
+  } else if (totals.momentum != state_.momentum) {
+    outcome.error = "the total momentum has changed: a force was lost or doubled";
+  } else if (outcome.drift() > unstable_share * outcome.kinetic()) {
+    outcome.error = fmt::format(
         "unstable until step {}: the total energy per atom changed by {:.3g}, the kinetic energy "
         "is "
         "{:.3g}; lower --dt {}",
-        next_ - 1, outcome_.drift(), outcome_.kinetic(), options_.problem.dt);
+        state_.step, outcome.drift(), outcome.kinetic(), state_.problem.dt);
   }
 }
 
 tess::Task Simulation::compare_forces() {
-  if (!outcome_.error.empty()) co_return;
+  Outcome& outcome = state_.outcome;
+  if (!outcome.error.empty()) co_return;
   tess::Future<std::vector<Cell::AtomForce>> shown;
-  cells_.broadcast<&Cell::show>(shown.callback());
+  state_.cells.broadcast<&Cell::show>(shown.callback());
   const auto all = co_await shown;
-  outcome_.wrong_forces =
-      std::max<std::int64_t>(0, outcome_.wrong_forces) + wrong_forces(options_.problem, all);
-  if (outcome_.wrong_forces != 0)
-    outcome_.error = fmt::format("{} forces differ from those of all pairs", outcome_.wrong_forces);
+  outcome.wrong_forces =
+      std::max<std::int64_t>(0, outcome.wrong_forces) + wrong_forces(state_.problem, all);
+  if (outcome.wrong_forces != 0)
+    outcome.error = fmt::format("{} forces differ from those of all pairs", outcome.wrong_forces);
 }
 
 }  // namespace
@@ -192,9 +231,10 @@ double Outcome::kinetic() const {
   return static_cast<double>(most) * energy_quantum / static_cast<double>(n_atoms);
 }
 
-tess::Task simulate(Options options, std::vector<Atom> atoms, Outcome& outcome) {
-  Simulation simulation(std::move(options), outcome);
+tess::Task simulate(Options& options, std::vector<Atom> atoms, Outcome& outcome) {
+  Simulation simulation(options);
   co_await simulation.run(std::move(atoms));
+  outcome = simulation.end();
 }
 
 }  // namespace leanmd

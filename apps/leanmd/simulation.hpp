@@ -1,6 +1,7 @@
 // A simulation on the machine: makes the arrays, runs all steps, and compares what can be compared.
 #pragma once
 
+#include "apps/checkpoints.hpp"
 #include "apps/leanmd/cell.hpp"
 #include "apps/progress.hpp"
 #include "runtime/balance.hpp"
@@ -20,6 +21,7 @@ struct Options {
   /// Afterwards reverses all velocities and runs back: the atoms return to their start, bit for bit.
   bool reverse = false;
   apps::Progress* progress = nullptr;
+  apps::Checkpoints checkpoints;
 };
 
 struct Outcome {
@@ -38,7 +40,8 @@ struct Outcome {
   [[nodiscard]] double kinetic() const;
 };
 
-/// Called on PE 0. The outcome is the same on every machine and for any cells.
-tess::Task simulate(Options options, std::vector<Atom> atoms, Outcome& outcome);
+/// Called on PE 0. The outcome is the same on every machine and for any cells. A restart needs no
+/// atoms; problem and steps of `options` become those of the checkpoint.
+tess::Task simulate(Options& options, std::vector<Atom> atoms, Outcome& outcome);
 
 }  // namespace leanmd

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdlib>
+#include <utility>
 
 namespace nqueens {
 namespace {
@@ -36,6 +37,19 @@ Board Board::with(std::uint32_t bit) const {
   if (row < most_path_rows)
     next.path |= std::int64_t{std::countr_zero(bit)} << (column_bits * (most_path_rows - 1 - row));
   return next;
+}
+
+std::vector<Board> boards_of_row(std::int32_t row, std::int32_t n, std::uint64_t& n_boards) {
+  std::vector<Board> boards{Board()};
+  for (; row > 0; --row) {
+    n_boards += boards.size();
+    std::vector<Board> next;
+    for (const Board& board : boards)
+      for (std::uint32_t free = board.free(n); free != 0; free &= free - 1)
+        next.push_back(board.with(free & -free));
+    boards = std::move(next);
+  }
+  return boards;
 }
 
 Count count_below(const Board& board, std::int32_t n) {

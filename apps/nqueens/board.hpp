@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace nqueens {
 
@@ -41,6 +42,10 @@ struct Count {
   std::uint64_t n_solutions = 0;
   std::uint64_t n_boards = 0;  ///< boards looked at, the first one included
 };
+
+/// The boards with so many queens, from left to right. All above them are added to `n_boards`.
+[[nodiscard]] std::vector<Board> boards_of_row(std::int32_t row, std::int32_t n,
+                                               std::uint64_t& n_boards);
 
 /// All solutions below a board.
 [[nodiscard]] Count count_below(const Board& board, std::int32_t n);

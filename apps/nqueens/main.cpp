@@ -1,6 +1,7 @@
 // nqueens: how many ways are there to put n queens on a board of n × n squares such that none attacks
 // another? A tree search in messages with priorities, checked against the known counts.
 #include "apps/command_line.hpp"
+#include "apps/nqueens/parts.hpp"
 #include "apps/nqueens/report.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/progress.hpp"
@@ -16,10 +17,11 @@ namespace {
 struct Options {
   Problem problem;
   std::optional<std::int32_t> grain;
-  std::uint64_t expected = 0;
+  std::optional<std::uint64_t> expected;
   std::string form = "group", priority = "path", json, plot;
   std::int32_t repeat = 1;
   bool study = false;
+  apps::Checkpoints checkpoints;
 };
 
 /// One problem, or with --study each grain in both forms; the first of a study is one task.
@@ -49,7 +51,10 @@ tess::Task measure(Options options, bool speaks) {
     Row row{.problem = problem, .outcome = {}};
     for (std::int32_t k = 0; k < options.repeat; ++k) {
       Outcome outcome;
-      co_await search(problem, outcome);
+      if (options.checkpoints.are_used())
+        co_await search_in_parts(row.problem, options.checkpoints, outcome);
+      else
+        co_await search(problem, outcome);
       if (k == 0 || outcome.seconds < row.outcome.seconds) row.outcome = outcome;
     }
     rows.push_back(row);
@@ -57,7 +62,8 @@ tess::Task measure(Options options, bool speaks) {
       rows.back().efficiency = rows.front().outcome.seconds / (tess::n_pes() * row.outcome.seconds);
     progress.clear();
     tess::print_text(line(rows.back()));
-    if (const std::string why = fault(row, options.expected); !why.empty()) {
+    const std::uint64_t expected = options.expected.value_or(known_count(row.problem.n));
+    if (const std::string why = fault(row, expected); !why.empty()) {
       std::fprintf(stderr, "nqueens: wrong answer: %s\n", why.c_str());
       tess::exit(1);
       co_return;
@@ -83,15 +89,18 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "path: boards on the left first, so depth first; none: as they come, breadth first")
       .one_of({"path", "none"});
   line.flag("--first", problem.first, "find the first solution only, in the order of columns");
-  const apps::Option expected =
-      line.option("--expect", options.expected,
-                  "exit with 1 unless there are so many solutions (default: the known number)");
+  line.option("--expect", options.expected,
+              "exit with 1 unless there are so many solutions (default: the known number)");
   line.option("--repeat", options.repeat, "runs, of which the fastest counts").between(1, 1000);
   line.flag("--study", options.study, "every grain in both forms: time, tasks, efficiency");
   line.option("--json", options.json, "write the rows to this file");
   line.option("--plot", options.plot, "with --study: draw them to this SVG file");
+  options.checkpoints.add_options(line);
   if (!line.parse(argc, argv)) return 0;
-  if (!expected.is_given()) options.expected = known_count(problem.n);
+  options.checkpoints.check(line, {"N", "--first"});
+  if (options.checkpoints.are_used() && (options.study || options.repeat > 1))
+    tess::fail(tess::ErrorCode::bad_argument,
+               "--checkpoint and --restart: not for --study and --repeat");
   problem.prioritised = options.priority == "path";
   problem.form = options.form == "group" ? Form::group : Form::chares;
   problem.grain = options.grain.value_or(std::max(problem.n - 4, 1));

@@ -27,12 +27,9 @@ struct Tally {
 };
 struct Join {
   Tally operator()(const Tally& a, const Tally& b) const {
-    Tally all = a.found.path <= b.found.path ? a : b;
-    const Outcome &x = a.outcome, &y = b.outcome;
-    all.outcome.count = {x.count.n_solutions + y.count.n_solutions,
-                         x.count.n_boards + y.count.n_boards};
-    all.outcome.n_tasks = x.n_tasks + y.n_tasks;
-    all.outcome.n_dropped = x.n_dropped + y.n_dropped;
+    Tally all = a;
+    all.outcome.add(b.outcome);
+    if (b.found.path < a.found.path) all.found = b.found;
     return all;
   }
 };
@@ -120,7 +117,17 @@ void Searcher::search_serially(const Board& board) {
 
 }  // namespace
 
-tess::Task search(Problem problem, Outcome& outcome) {
+void Outcome::add(const Outcome& part) {
+  count.n_solutions += part.count.n_solutions;
+  count.n_boards += part.count.n_boards;
+  n_tasks += part.n_tasks;
+  n_dropped += part.n_dropped;
+  seconds += part.seconds;
+  if (part.found) solution = part.solution;
+  found = found || part.found;
+}
+
+tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) {
   tess::GroupProxy<Searcher> searchers;
   tess::ArrayProxy<Branch> branches;
   co_await tess::epoch([&] {
@@ -129,19 +136,25 @@ tess::Task search(Problem problem, Outcome& outcome) {
     searchers.broadcast<&Searcher::use>(branches);
   });
   const tess::Time begin = tess::now();
-  co_await tess::epoch([&] { searchers[tess::my_pe()].send<&Searcher::run>(Board()); });
+  co_await tess::epoch([&] {
+    for (const Board& board : boards) searchers[tess::my_pe()].send<&Searcher::run>(board);
+  });
   const double seconds = tess::seconds(tess::now() - begin);
   tess::Future<Tally> total;
   searchers.broadcast<&Searcher::report>(total.callback());
-  const Tally tally = co_await total;
-  outcome = tally.outcome;
-  outcome.seconds = seconds;
-  outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
-  outcome.solution = tally.found.queens;
+  Tally tally = co_await total;
+  tally.outcome.seconds = seconds;
+  tally.outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
+  tally.outcome.solution = tally.found.queens;
+  outcome.add(tally.outcome);
   outcome.hash = problem.first ? tess::hash_bytes(&outcome.solution, sizeof outcome.solution)
                                : tess::hash_bytes(&outcome.count, sizeof outcome.count);
   searchers.destroy();
   branches.destroy();
+}
+
+tess::Task search(Problem problem, Outcome& outcome) {
+  return search(problem, outcome, std::vector<Board>(1));
 }
 
 }  // namespace nqueens

@@ -15,6 +15,7 @@
 #include "runtime/task.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace nqueens {
 
@@ -37,9 +38,14 @@ struct Outcome {
   bool found = false;      ///< with `first`: there is a solution
   Solution solution{};
   double seconds = 0;
+
+  /// Adds what is known of another part of the tree, but the hash.
+  void add(const Outcome& part);
 };
 
-/// Searches on all PEs. Called on one PE, in the main coroutine.
+/// Searches all below these boards on all PEs, by default below the empty one, and adds what it finds
+/// to `outcome`. Called on one PE, in the main coroutine.
+tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards);
 tess::Task search(Problem problem, Outcome& outcome);
 
 }  // namespace nqueens

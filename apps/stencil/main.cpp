@@ -7,7 +7,6 @@
 #include "apps/command_line.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/stencil/grid.hpp"
-#include "runtime/checkpoint.hpp"
 #include "runtime/monitor.hpp"
 #include "runtime/runtime.hpp"
 
@@ -95,35 +94,15 @@ struct State {
 
 struct Options {
   Grid grid{{64}, 4, 10'000};
-  bool size_given = false, blocks_given = false;
   std::string json;
   apps::Checkpoints checkpoints;
 };
 
-/// The grid of a checkpoint, for this many steps in all.
-Grid continued(const Options& options, const State& saved) {
-  const auto refuse = [](const char* option, std::int32_t given, std::int32_t was) {
-    tess::fail(tess::ErrorCode::bad_argument, option, ": ", given, ", but the checkpoint has ", was,
-               ": leave the option out");
-  };
-  if (options.size_given && options.grid.problem.size != saved.grid.problem.size)
-    refuse("--size", options.grid.problem.size, saved.grid.problem.size);
-  if (options.blocks_given && options.grid.n_blocks != saved.grid.n_blocks)
-    refuse("--blocks", options.grid.n_blocks, saved.grid.n_blocks);
-  if (options.grid.n_steps < saved.step)
-    tess::fail(tess::ErrorCode::bad_argument, "--steps: ", options.grid.n_steps,
-               ", but the checkpoint has done ", saved.step);
-  Grid grid = saved.grid;
-  grid.n_steps = options.grid.n_steps;
-  return grid;
-}
-
 tess::Task relax(Options options) {
   State state;
   if (options.checkpoints.restarts()) {
-    state = co_await tess::restart<State>(options.checkpoints.restart_folder());
-    state.grid = continued(options, state);
-    tess::print("continues after step ", state.step, "\n");
+    co_await options.checkpoints.restart(state, options.grid.n_steps);
+    state.grid.n_steps = options.grid.n_steps;
   } else {
     state.grid = options.grid;
     state.blocks =
@@ -133,17 +112,12 @@ tess::Task relax(Options options) {
   const std::int32_t first = state.step;
   const tess::Time begin = tess::now();
   while (state.step < grid.n_steps) {
-    const std::int32_t until = options.checkpoints.pause_after(state.step, grid.n_steps);
+    const std::int32_t from = state.step;
+    state.step = options.checkpoints.pause_after(from, grid.n_steps);
     tess::Future<double> paused;
-    state.blocks.broadcast<&Block::run>(until, paused.callback());
+    state.blocks.broadcast<&Block::run>(state.step, paused.callback());
     co_await paused;
-    state.step = until;
-    if (options.checkpoints.is_due(state.step, grid.n_steps)) {
-      tess::CheckpointOptions how;
-      how.note = fmt::format("stencil --size {} --blocks {}, after step {}", grid.problem.size,
-                             grid.n_blocks, state.step);
-      co_await tess::checkpoint(options.checkpoints.folder(), state, how);
-    }
+    co_await options.checkpoints.save_if_due(state, from, grid.n_steps);
   }
   const double seconds = tess::seconds(tess::now() - begin);
   tess::Future<Outcome> result;
@@ -174,17 +148,13 @@ int main(int argc, char** argv) {
     stencil::Options options;
     stencil::Grid& grid = options.grid;
     apps::CommandLine line("A two-dimensional Jacobi stencil on chares.");
-    const auto blocks = line.option("--blocks", grid.n_blocks, "blocks on each axis");
-    apps::Option(blocks).between(1, 4096);
-    const auto size = line.option("--size", grid.problem.size, "grid points on each axis");
-    apps::Option(size).between(1, 65536);
+    line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
+    line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
     line.option("--json", options.json, "write the result as JSON");
     options.checkpoints.add_options(line);
     if (!line.parse(argc, argv)) return 0;
-    options.checkpoints.check();
-    options.blocks_given = blocks.is_given();
-    options.size_given = size.is_given();
+    options.checkpoints.check(line, {"--blocks", "--size"});
     plot::require_writable("--json", options.json);
     if (grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,

@@ -237,6 +237,12 @@ std::vector<std::uint64_t> numbers_in(const std::string& folder) {
   return numbers;
 }
 
+std::string canonical(const std::string& folder) {
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(fs::absolute(folder, error), error);
+  return error ? folder : path.string();
+}
+
 bool is_complete(const std::string& folder, std::uint64_t number) {
   return fs::exists(folder_of(folder, number) + "/manifest.json");
 }

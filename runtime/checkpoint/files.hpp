@@ -65,6 +65,8 @@ void make_folder(const std::string& path);
 /// The numbers of the checkpoints in a folder, the latest first, complete or not. None if there is
 /// no such folder.
 [[nodiscard]] std::vector<std::uint64_t> numbers_in(const std::string& folder);
+/// One name for a folder, however it is written.
+[[nodiscard]] std::string canonical(const std::string& folder);
 /// True if a checkpoint has a manifest.
 [[nodiscard]] bool is_complete(const std::string& folder, std::uint64_t number);
 /// Removes a checkpoint: first its manifest, and no file of another kind.

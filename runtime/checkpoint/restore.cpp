@@ -158,6 +158,12 @@ void check_plan(const Chosen& chosen, const std::string& state_type, std::int32_
 
 }  // namespace
 
+std::string latest_checkpoint(const std::string& folder) {
+  for (const std::uint64_t number : numbers_in(folder))
+    if (is_complete(folder, number)) return folder_of(folder, number);
+  return {};
+}
+
 Task read_checkpoint(std::string folder, std::string state_type, std::vector<std::byte>& state) {
   require_main("restart()");
   Pe& pe = current_pe();
@@ -170,6 +176,7 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   const std::vector<std::uint64_t> numbers = numbers_in(folder);
   if (numbers.empty())
     fail(ErrorCode::bad_file, folder, ": no checkpoint is in this folder; start without a restart");
+  Runtime::OwnCheckpoints own{.last = numbers.front()};
   std::optional<Chosen> chosen;
   for (std::size_t i = 0; i < numbers.size() && !chosen; ++i) {
     Chosen candidate;
@@ -192,6 +199,7 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
       chosen = std::move(candidate);
       continue;
     }
+    own.refused.push_back(numbers[i]);
     pe.runtime().error_line(text(
         "tessera: a checkpoint is refused: ", error,
         i + 1 < numbers.size() ? "; the one before is used: " + folder_of(folder, numbers[i + 1])
@@ -213,6 +221,7 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   Quiet settled;
   (void)co_await settled;
   state = std::move(chosen->main.state);
+  pe.runtime().own_checkpoints(canonical(folder)) = std::move(own);
 }
 
 }  // namespace tess::detail

@@ -7,6 +7,7 @@
 #include "runtime/collections/index_map.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/report/waiting.hpp"
+#include "runtime/scheduler/runtime.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -146,6 +147,16 @@ void refuse_unless_quiet(std::vector<std::string> lines) {
   fail(ErrorCode::bad_value, "no checkpoint can be made here: ", list);
 }
 
+/// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its restart: a
+/// later restart could take one run's checkpoint for the other's.
+void require_own(const std::string& folder, const std::vector<std::uint64_t>& numbers,
+                 const Runtime::OwnCheckpoints& own) {
+  for (const std::uint64_t number : numbers)
+    if (number > own.last && is_complete(folder, number))
+      fail(ErrorCode::bad_argument, folder_of(folder, number),
+           " is a checkpoint of another run: restart from ", folder, ", or give another folder");
+}
+
 Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
   Pe& pe = current_pe();
   OwnFrame own;
@@ -160,6 +171,8 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
   refuse_unless_quiet(std::move(waiting));
 
   const std::vector<std::uint64_t> before = numbers_in(folder);
+  Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
+  require_own(folder, before, ours);
   Manifest manifest;
   manifest.number = before.empty() ? 1 : before.front() + 1;
   manifest.n_pes = pe.n_pes();
@@ -191,10 +204,14 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
   const std::vector<std::byte> bytes = to_bytes(main);
   manifest.files.push_back(write_file(here, "main", bytes));
   write_manifest(here, manifest, main);
+  ours.last = manifest.number;
 
   int n_kept = 1;
-  for (const std::uint64_t number : before)
-    if (!is_complete(folder, number) || n_kept++ >= options.keep) remove_checkpoint(folder, number);
+  for (const std::uint64_t number : before) {
+    const bool is_good =
+        is_complete(folder, number) && std::ranges::count(ours.refused, number) == 0;
+    if (!is_good || n_kept++ >= options.keep) remove_checkpoint(folder, number);
+  }
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
     entries.push_back({entry.action->id(), 0, meter.seconds(entry.ticks), entry.calls});
   std::vector<PackedTraffic> traffic;
   for (const auto& [to, sent] : load.sent.entries()) traffic.push_back({to, sent});
-  ar(sync, size_bytes);
+  ar(sync, past, size_bytes);
   ar(meter.seconds(load.ticks), load.since, entries, traffic);
 }
 
 void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
-  ar(sync, size_bytes);
+  ar(sync, past, size_bytes);
   load.ticks = meter.ticks(ar.take<double>());
   ar(load.since);
   for (const PackedEntry& entry : ar.take<std::vector<PackedEntry>>())

@@ -29,17 +29,28 @@ struct SyncState {
   std::uint32_t led_by = 0;     ///< the broadcast that led to its wait
 };
 
+/// The loads of an element as a checkpoint has them, in seconds; -1 if unknown.
+struct PastLoad {
+  double of_last_phase = -1;
+  double since_then = -1;  ///< of the phase that the checkpoint interrupted
+};
+
 struct BalanceRecord {
   static constexpr std::size_t nowhere = ~std::size_t{0};
 
   LoadRecord load;
   SyncState sync;
+  PastLoad past;                   ///< its second part: only after a restart, until a phase begins
   std::uint64_t size_bytes = 0;    ///< packed size when last measured; 0: never
   std::size_t position = nowhere;  ///< position in its PE's report of this round; does not migrate
 
   /// Ticks are packed as seconds, since another machine's counter may have another rate.
   void pack(Writer& ar, const Meter& meter) const;
   void unpack(Reader& ar, const Meter& meter);
+  /// For a checkpoint.
+  [[nodiscard]] PastLoad to_save(const Meter& meter) const {
+    return {past.of_last_phase, load.known() ? meter.seconds(load.ticks) : past.since_then};
+  }
 };
 
 }  // namespace tess::detail

@@ -12,12 +12,15 @@
 
 namespace tess::detail {
 
+/// `balanced`: an element with the load that it had.
+enum class SavedKind : std::uint8_t { destroyed, alive, balanced };
+
 template <class Index>
 std::uint64_t ArrayOf<Index>::save_destroyed(Writer& ar) const {
   std::uint64_t n = 0;
   table_.for_each([&](const Index& index, const Record& record) {
     if (record.state() != IndexState::destroyed) return;
-    ar(record.version().incarnation, false);
+    ar(record.version().incarnation, SavedKind::destroyed);
     pack_framed(ar, [&index](Writer& body) { body(index); });
     ++n;
   });

@@ -100,6 +100,14 @@ class Runtime final : public Program {
                                        const std::function<bool(PeId)>& answered) const;
   /// Describes what a PE runs: "Block[3], Block::step on PE 2".
   [[nodiscard]] std::string describe(Pe& pe) const;
+  /// The checkpoints of this run in a folder. On PE 0, for checkpoint() and restart().
+  struct OwnCheckpoints {
+    std::uint64_t last = 0;                ///< the last one that this run wrote or restarted from
+    std::vector<std::uint64_t> refused{};  ///< damaged ones that a restart found
+  };
+  [[nodiscard]] OwnCheckpoints& own_checkpoints(const std::string& folder) {
+    return own_checkpoints_[folder];
+  }
   /// Prints whole lines to standard error, never mixed with lines of another thread.
   void error_line(const std::string& line);
 
@@ -175,7 +183,8 @@ class Runtime final : public Program {
   bool takes_census_ = false;
   std::int32_t n_answers_ = 0;
   Census census_;
-  std::map<CollectionId, std::int32_t> empty_on_;  // number of PEs per collection
+  std::map<CollectionId, std::int32_t> empty_on_;          // number of PEs per collection
+  std::map<std::string, OwnCheckpoints> own_checkpoints_;  // by folder
   // On each PE: the greatest exit code requested here.
   std::vector<int> asked_;
 };

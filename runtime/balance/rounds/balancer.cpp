@@ -42,6 +42,12 @@ struct MergeOutcomes {
   }
 };
 
+struct MergePast {
+  PastLoad operator()(const PastLoad& a, const PastLoad& b) const {
+    return {a.of_last_phase + b.of_last_phase, a.since_then + b.since_then};
+  }
+};
+
 }  // namespace
 
 Balancer::Balancer(const Plan& plan)
@@ -200,11 +206,38 @@ Task Balancer::begin_phase() {
   TESS_CHECK(!running_, "a phase begins while a round runs: await that one first");
   running_ = true;
   co_await attached();
+  co_await forget_all();
+  phase_began_ = current_pe().now();
+  running_ = false;
+}
+
+Task Balancer::forget_all() {
   Future<std::uint64_t> forgotten;
   group().broadcast<&Balancer::forget>(forgotten.callback());
   co_await forgotten;
+}
+
+// The phase that a checkpoint interrupted counts if it was at least half as long as the last one.
+Task Balancer::place_again() {
+  TESS_CHECK(coordinator_ != nullptr, "rounds are requested on ", plan_.coordinator, " only");
+  TESS_CHECK(!running_, "a round while another runs: await that one first");
+  running_ = true;
+  co_await attached();
+  Future<PastLoad> summed;
+  group().broadcast<&Balancer::sum_past>(summed.callback());
+  const PastLoad past = co_await summed;
+  Future<std::uint64_t> recalled;
+  group().broadcast<&Balancer::recall>(2 * past.since_then >= past.of_last_phase,
+                                       recalled.callback());
+  const std::uint64_t n_known = co_await recalled;
+  if (n_known != 0) {
+    co_await round();
+  } else {
+    co_await forget_all();
+  }
   phase_began_ = current_pe().now();
   running_ = false;
+  end_if_over();
 }
 
 Task Balancer::phase_ends() {
@@ -223,9 +256,7 @@ Task Balancer::phase_ends() {
   if (worth) {
     co_await round();
   } else {
-    Future<std::uint64_t> forgotten;
-    group().broadcast<&Balancer::forget>(forgotten.callback());
-    co_await forgotten;
+    co_await forget_all();
   }
   phase_began_ = current_pe().now();
   running_ = false;
@@ -330,6 +361,14 @@ void Balancer::resume(std::uint32_t round) {
 void Balancer::forget(const Callback<std::uint64_t>& done) {
   measured_.clear();
   contribute(sum, std::uint64_t{0}, done);
+}
+
+void Balancer::sum_past(const Callback<PastLoad>& target) {
+  contribute(MergePast{}, measured_.past(), target);
+}
+
+void Balancer::recall(bool interrupted, const Callback<std::uint64_t>& done) {
+  contribute(sum, measured_.recall(interrupted), done);
 }
 
 void Balancer::prepare(const Callback<PhaseSums>& target) {

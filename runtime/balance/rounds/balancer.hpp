@@ -68,6 +68,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void cannot_attach();
   /// On the coordinator: begins a phase; earlier measurements are discarded.
   Task begin_phase();
+  /// On the coordinator: a round by the loads of a checkpoint.
+  Task place_again();
   /// On the coordinator: ends a phase without a barrier of the elements.
   Task phase_ends();
 
@@ -82,6 +84,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
   void forget(const Callback<std::uint64_t>& done);
+  void sum_past(const Callback<PastLoad>& target);
+  void recall(bool interrupted, const Callback<std::uint64_t>& done);
   void prepare(const Callback<PhaseSums>& target);
   void fetch();
   void sum_outcome(const Callback<Outcome>& target);
@@ -96,6 +100,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
 
   void watch(Collection& array);
   Task attached();
+  Task forget_all();
   Task round();
   Task central_round();
   Task distributed_round();

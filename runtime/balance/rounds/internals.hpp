@@ -21,6 +21,7 @@ using detail::find_collection;
 using detail::LoadRecord;
 using detail::MergedPartial;
 using detail::Meter;
+using detail::PastLoad;
 using detail::ReductionHostOfCollection;
 using detail::ReductionTree;
 using detail::Registry;

@@ -60,6 +60,7 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
     record.size_bytes = array_->packed_bytes(element);
   report.keys.push_back({array_->id(), key});
   report.seconds.push_back(meter_.seconds(record.load.ticks));
+  record.past = {record.load.known() ? report.seconds.back() : -1, -1};
   report.measured.push_back(record.load.known() ? 1 : 0);
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
@@ -116,6 +117,35 @@ void Measured::clear() {
   if (array_ == nullptr) return;
   for (Element* element : array_->elements())
     if (element != nullptr) Collection::record_of(*element)->load.clear();
+}
+
+PastLoad Measured::past() const {
+  PastLoad sum{0, 0};
+  if (array_ == nullptr) return sum;
+  for (const Element* element : array_->elements()) {
+    if (element == nullptr) continue;
+    const PastLoad& past = Collection::record_of(*element)->past;
+    sum.of_last_phase += std::max(past.of_last_phase, 0.0);
+    sum.since_then += std::max(past.since_then, 0.0);
+  }
+  return sum;
+}
+
+std::uint64_t Measured::recall(bool interrupted) {
+  clear();
+  std::uint64_t n_known = 0;
+  if (array_ == nullptr) return n_known;
+  for (Element* element : array_->elements()) {
+    if (element == nullptr) continue;
+    BalanceRecord& record = *Collection::record_of(*element);
+    const double past = interrupted ? record.past.since_then : record.past.of_last_phase;
+    record.load.ticks = meter_.ticks(std::max(past, 0.0));
+    if (past < 0)
+      record.load.since = LoadRecord::Since::somewhere;
+    else
+      ++n_known;
+  }
+  return n_known;
 }
 
 std::uint64_t Measured::move(const std::vector<Move>& moves) {

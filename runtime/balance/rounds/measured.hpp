@@ -31,6 +31,12 @@ class Measured {
   /// Begins a new phase and discards earlier measurements.
   void clear();
 
+  /// The loads that a checkpoint had of the elements here, in seconds.
+  [[nodiscard]] PastLoad past() const;
+  /// Takes them for those of the phase so far: of the last phase before the checkpoint, or of the one
+  /// that the checkpoint interrupted. Returns the number of elements whose load it had.
+  std::uint64_t recall(bool interrupted);
+
   /// Sends elements of the last report to other PEs; returns their packed size.
   std::uint64_t move(const std::vector<Move>& moves);
 

@@ -9,7 +9,7 @@ using namespace amr;
 namespace {
 
 Settings small(std::int32_t least_level, std::int32_t most_level) {
-  Settings settings{.problem = {}, .change_every = 2, .balance = {}};
+  Settings settings{.problem = {}, .change_every = 2, .balance = {}, .checkpoints = {}};
   Problem& problem = settings.problem;
   problem.n_cells = 4;
   problem.least_level = least_level;
@@ -20,7 +20,7 @@ Settings small(std::int32_t least_level, std::int32_t most_level) {
   return settings;
 }
 
-Outcome run(const Settings& settings, int n_pes, std::uint64_t seed) {
+Outcome run(Settings settings, int n_pes, std::uint64_t seed) {
   tess::Setup setup = tess::test::adversarial(n_pes, seed);
   Outcome outcome;
   const int code = tess::run(setup, [&] { return simulate(settings, outcome); });

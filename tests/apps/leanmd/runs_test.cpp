@@ -21,7 +21,7 @@ Options small(std::array<std::int32_t, 3> cells) {
   return options;
 }
 
-Outcome run(const Options& options, int n_pes, std::uint64_t seed) {
+Outcome run(Options options, int n_pes, std::uint64_t seed) {
   tess::Setup setup = tess::test::adversarial(n_pes, seed);
   Outcome outcome;
   const Motion motion(start.edge, options.problem.dt);
@@ -46,7 +46,6 @@ TEST_CASE("the result is the same for any cells, PEs, schedules and migrations",
       Options options = small(cells);
       if (*strategy != '\0') {
         options.balance = tess::parse_balance(strategy);
-        options.problem.balanced = true;
       }
       const Outcome outcome = run(options, 1 + static_cast<int>(seed % 7), seed);
       CHECK(outcome.error.empty());

@@ -60,6 +60,27 @@ TEST_CASE("a board's path orders boards from left to right, and is part of its s
   CHECK(n_solutions == known_count(n));
 }
 
+TEST_CASE("the boards of a row, and those above them, are the whole tree", "[apps][nqueens]") {
+  for (const std::int32_t n : {1, 2, 4, 7}) {
+    const Count whole = count_below(Board(), n);
+    for (std::int32_t row = 0; row < n; ++row) {
+      CAPTURE(n, row);
+      Count sum;
+      std::int64_t before = -1;
+      for (const Board& board : boards_of_row(row, n, sum.n_boards)) {
+        CHECK(board.row == row);
+        CHECK(board.path > before);
+        before = board.path;
+        const Count below = count_below(board, n);
+        sum.n_solutions += below.n_solutions;
+        sum.n_boards += below.n_boards;
+      }
+      CHECK(sum.n_solutions == whole.n_solutions);
+      CHECK(sum.n_boards == whole.n_boards);
+    }
+  }
+}
+
 TEST_CASE("queens in one column or diagonal are no solution", "[apps][nqueens]") {
   CHECK(is_solution({1, 3, 0, 2}, 4));
   CHECK_FALSE(is_solution({1, 3, 0, 0}, 4));

@@ -84,10 +84,10 @@ TEST_CASE("a run that restarts on another number of PEs has the results of one t
 }
 
 TEST_CASE("a run goes on after a checkpoint as if there had been none", "[runtime][checkpoint]") {
-  const tess::test::Scratch scratch;
-  const std::string folder = scratch.path("saved");
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     INFO("seed " << seed);
+    const tess::test::Scratch scratch;
+    const std::string folder = scratch.path("saved");
     std::uint64_t log = 0;
     auto setup = quiet_machine(4, seed);
     struct Run {

@@ -78,9 +78,9 @@ tess::Task try_to_save(std::string folder, Prepare prepare, std::string& error) 
 }
 
 std::string error_after(Prepare prepare) {
-  const tess::test::Scratch scratch;
   std::string error;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const tess::test::Scratch scratch;
     std::string found;
     auto setup = tess::test::adversarial(3, seed);
     CHECK(tess::run(setup, [&] { return try_to_save(scratch.path("saved"), prepare, found); }) ==

@@ -66,6 +66,9 @@ says "a checkpoint is refused: .*/${latest##*/}/pe-3 has [0-9]* bytes, but the m
 says '^continues after step 270$'
 same_result "after a damaged checkpoint"
 
+refuses "--checkpoint $folder: holds $latest of another run: continue that with --restart $folder, or give" "$stencil" --pes 2 "${often[@]}"
+refuses 'holds .* of another run' "$stencil" --pes 2 --restart "$scratch/timed" "${often[@]}"
+refuses 'holds .* of another run' "${mpirun[@]}" -n 2 "$stencil" --pes 1 "${often[@]}"
 refuses 'nothing: no checkpoint is in this folder' "$stencil" --restart "$scratch/nothing" --pes 2
 refuses '--size: 64, but the checkpoint has 48' "$stencil" --restart "$folder" --size 64 --pes 2
 refuses '--steps: 10, but the checkpoint has done 270' "$stencil" --restart "$folder" --steps 10 --pes 2

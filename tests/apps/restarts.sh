@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# restarts.sh BIN: leanmd, amr and nqueens stop on 4 threads and restart on 2 ranks, on 7 simulated PEs and on one PE, with
+# and without balancing, with the result_hash of a run that never stopped; and what is refused.
+source "$(dirname "$0")/../support/checks.sh"
+bin=$1
+folder=$scratch/saved
+
+hash_of() { grep -o '"result_hash": "[0-9a-f]*"' "$1"; }
+# runs COMMAND…: exit code 0; its result is in run.json.
+runs() {
+  rm -f "$scratch/run.json"
+  timeout 100 "$@" --json "$scratch/run.json" >"$scratch/out" 2>&1 && pass && return
+  fail "$*"
+  tail -5 "$scratch/out"
+}
+same() {
+  [[ -n $want && $(hash_of "$scratch/run.json") == "$want" ]] && pass && return
+  fail "another result: $*"
+}
+# says TEXT: in the output of the last command.
+says() {
+  grep -q -- "$1" "$scratch/out" && pass && return
+  fail "no line with '$1'"
+  tail -5 "$scratch/out"
+}
+# from_machine_to_machine PROGRAM EVERY FIRST SECOND THIRD LAST OPTIONS…: the runs end after these steps, with checkpoints
+# after each EVERY; the result of the last one is compared. $balance holds options of the second run and of later ones.
+from_machine_to_machine() {
+  local program=$bin/$1 every=$2 first=$3 second=$4 third=$5 last=$6
+  shift 6
+  rm -rf "$folder"
+  runs "$program" "$@" --steps "$last" --pes 2
+  want=$(hash_of "$scratch/run.json")
+  local often=(--checkpoint "$folder" --checkpoint-every "$every")
+  runs "$program" "$@" --steps "$first" --pes 4 "${often[@]}"
+  runs "${mpirun[@]}" -n 2 "$program" --steps "$second" --pes 1 "${often[@]}" --restart "$folder" $balance
+  says '^continues after step'
+  runs "$program" --steps "$third" --sim "pes=7,cost=100ns,seed=$first,migrate=0.05" "${often[@]}" --restart "$folder" $balance
+  says '^continues after step'
+  runs "$program" --steps "$last" --pes 1 --restart "$folder" $balance
+  same "$program $* $balance"
+}
+
+problem=(--atoms 600 --density 0.6 --cells 3,2,3 --exchange 4 --every 5 --gradient 1)
+balance= from_machine_to_machine leanmd 7 17 25 33 40 "${problem[@]}"
+balance="--balance greedy" from_machine_to_machine leanmd 4 17 25 33 40 "${problem[@]}" --check
+balance="--balance rotate" from_machine_to_machine leanmd 6 17 25 33 40 "${problem[@]}" --balance greedy_refine --check
+# With the options given again; the way back after a restart. Without --steps a run ends where the one before was to end.
+runs "$bin/leanmd" "${problem[@]}" --steps 40 --pes 2 --restart "$folder" --reverse --check
+same "leanmd --reverse after a restart"
+says "forces as of all pairs"
+runs "$bin/leanmd" --pes 2 --restart "$folder"
+says " 33 steps: "
+exits 2 "--atoms: 700, but the checkpoint has 600: leave the option out" "$bin/leanmd" --atoms 700 --pes 2 --restart "$folder"
+exits 2 "--cells: 3,3,3, but the checkpoint has 3,2,3" "$bin/leanmd" --cells 3,3,3 --pes 2 --restart "$folder"
+exits 2 "--steps: 5, but the checkpoint has done" "$bin/leanmd" --steps 5 --pes 2 --restart "$folder"
+exits 2 "not for --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
+exits 2 "was written by a program\|of the class" "$bin/amr" --pes 2 --restart "$folder"
+
+problem=(--cells 4 --max-level 4 --change-every 3)
+balance= from_machine_to_machine amr 5 14 20 26 32 "${problem[@]}"
+balance="--balance greedy_refine" from_machine_to_machine amr 2 14 20 26 32 "${problem[@]}"
+balance="--balance rotate" from_machine_to_machine amr 1 14 20 26 32 "${problem[@]}" --balance hilbert
+exits 2 "--order: 3, but the checkpoint has 2" "$bin/amr" --order 3 --pes 2 --restart "$folder"
+exits 2 "--uncorrected: yes, but the checkpoint has no" "$bin/amr" --uncorrected --pes 2 --restart "$folder"
+exits 2 "not for --study" "$bin/amr" --stability --checkpoint "$scratch/none"
+
+# The parts of nqueens are its steps. The first two runs are killed once they have written a checkpoint.
+latest() { ls -d "$folder"/*/manifest.json 2>/dev/null | tail -1; }
+# until_checkpoint COMMAND…
+until_checkpoint() {
+  local before child
+  before=$(latest)
+  "$@" >"$scratch/out" 2>&1 &
+  child=$!
+  while kill -0 $child 2>/dev/null && [[ $(latest) == "$before" ]]; do sleep 0.002; done
+  kill -9 $child 2>/dev/null
+  wait $child 2>/dev/null
+}
+often=(--checkpoint "$folder" --checkpoint-every 40)
+for form in group chares; do
+  rm -rf "$folder"
+  runs "$bin/nqueens" 14 --form $form --pes 2
+  want=$(hash_of "$scratch/run.json")
+  until_checkpoint "$bin/nqueens" 14 --form $form --pes 4 "${often[@]}"
+  until_checkpoint "$bin/nqueens" 14 --sim pes=7,cost=100ns,seed=5 "${often[@]}" --restart "$folder"
+  runs "${mpirun[@]}" -n 2 "$bin/nqueens" --pes 1 --form $form --restart "$folder" --checkpoint "$folder"
+  says '^continues after step'
+  same "nqueens 14 --form $form"
+  runs "$bin/nqueens" --pes 1 --restart "$folder"
+  same "nqueens 14 --form $form once more"
+done
+rm -rf "$folder"
+runs "$bin/nqueens" 8 --first --pes 3
+want=$(hash_of "$scratch/run.json")
+runs "$bin/nqueens" 8 --first --pes 2 --checkpoint "$folder" --checkpoint-every 1
+same "nqueens 8 --first in parts"
+runs "$bin/nqueens" --restart "$folder" --pes 1
+same "nqueens --first after a restart"
+exits 2 "N: 9, but the checkpoint has 8" "$bin/nqueens" 9 --pes 2 --restart "$folder"
+exits 2 "not for --study" "$bin/nqueens" 9 --study --checkpoint "$scratch/none"
+
+# run_forever.sh starts a program that dies again, with all its options.
+cat >"$scratch/dies" <<END2
+#!/usr/bin/env bash
+# amr; the first run dies once it has written a checkpoint.
+[[ -e "$scratch/died" ]] && exec "$bin/amr" "\$@"
+touch "$scratch/died"
+"$bin/amr" "\$@" &
+while kill -0 \$! 2>/dev/null && ! ls "$scratch/forever"/*/manifest.json >/dev/null 2>&1; do sleep 0.002; done
+kill -9 \$!
+wait \$!
+exit 137
+END2
+problem=(--cells 4 --max-level 4 --steps 40 --pes 2)
+runs "$bin/amr" "${problem[@]}"
+want=$(hash_of "$scratch/run.json")
+runs bash "$(dirname "$0")/../../apps/run_forever.sh" "$scratch/forever" bash "$scratch/dies" "${problem[@]}" --checkpoint-every 4
+says 'started again from checkpoint-'
+same "run_forever.sh"
+finish

@@ -1,0 +1,119 @@
+// The checkpoints of one run are never mixed with those of another: which folder a run may write to,
+// and which checkpoints it keeps there.
+#include "runtime/checkpoint.hpp"
+#include "runtime/checkpoint/files.hpp"
+#include "runtime/core/error.hpp"
+#include "tests/runtime/checkpoint/world.hpp"
+#include "tests/support/adversarial.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <filesystem>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Numbers = std::vector<std::uint64_t>;
+
+/// Some steps with a checkpoint after each, which begin with a restart if `from` is given. A
+/// checkpoint that is refused is reported, and the steps go on.
+struct Job {
+  std::string from, folder;
+  int n_steps = 1;
+  std::string other{};  ///< after the first step this checkpoint is put into the folder
+  std::string refused{};
+  std::int32_t step = 0;
+
+  tess::Task run() {
+    world::State state;
+    if (from.empty()) {
+      co_await world::make(state);
+    } else {
+      state = co_await tess::restart<world::State>(from);
+    }
+    for (int n = 0; n < n_steps; ++n) {
+      co_await world::advance(state);
+      try {
+        co_await tess::checkpoint(folder, state);
+      } catch (const tess::Error& error) {
+        refused += error.what();
+      }
+      if (n == 0 && !other.empty())
+        fs::copy(other, tess::detail::folder_of(folder, 9), fs::copy_options::recursive);
+    }
+    step = state.step;
+  }
+};
+
+void run(Job& job) {
+  auto setup = tess::test::adversarial(3, 7);
+  setup.options.report = [](const std::string& /*line*/) {};  // of messages to destroyed words
+  REQUIRE(tess::run(setup, [&] { return job.run(); }) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a run that begins anew writes no checkpoint beside those of another run",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  Job first{.from = "", .folder = folder, .n_steps = 2};
+  run(first);
+  CHECK(first.refused.empty());
+  CHECK(tess::latest_checkpoint(folder) == tess::detail::folder_of(folder, 2));
+
+  Job anew{.from = "", .folder = folder};
+  run(anew);
+  CHECK(anew.refused == folder +
+                            "/checkpoint-000002 is a checkpoint of another run: restart from " +
+                            folder + ", or give another folder");
+  CHECK(anew.step == 1);
+  CHECK(tess::detail::numbers_in(folder) == Numbers{2, 1});
+  CHECK(fs::exists(folder + "/checkpoint-000001/manifest.json"));
+
+  // Nor does one that restarted elsewhere; the folder may be written in any way.
+  Job elsewhere{.from = "", .folder = scratch.path("elsewhere")};
+  run(elsewhere);
+  Job mixed{.from = scratch.path("elsewhere"), .folder = folder};
+  run(mixed);
+  CHECK_FALSE(mixed.refused.empty());
+  Job same{.from = folder, .folder = scratch.path("elsewhere/../saved/.")};
+  run(same);
+  CHECK(same.refused.empty());
+  CHECK(tess::detail::numbers_in(folder) == Numbers{3, 2});
+}
+
+TEST_CASE("a checkpoint that another run writes meanwhile is noticed", "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  Job other{.from = "", .folder = scratch.path("other")};
+  run(other);
+  Job job{.from = "", .folder = scratch.path("saved"), .n_steps = 2};
+  job.other = tess::latest_checkpoint(other.folder);
+  run(job);
+  CHECK(job.refused.find("checkpoint-000009 is a checkpoint of another run") != std::string::npos);
+}
+
+TEST_CASE("what a killed run left unfinished does not prevent a new run", "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  CHECK(tess::latest_checkpoint(folder).empty());
+  fs::create_directories(tess::detail::folder_of(folder, 1));
+  CHECK(tess::latest_checkpoint(folder).empty());
+  Job job{.from = "", .folder = folder};
+  run(job);
+  CHECK(job.refused.empty());
+  CHECK(tess::detail::numbers_in(folder) == Numbers{2});
+}
+
+TEST_CASE("a damaged checkpoint is not one of those that are kept", "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  Job job{.from = "", .folder = folder, .n_steps = 3};
+  run(job);
+  CHECK(tess::detail::numbers_in(folder) == Numbers{3, 2});
+  fs::resize_file(tess::latest_checkpoint(folder) + "/main", 5);
+  Job next{.from = folder, .folder = folder};
+  run(next);
+  CHECK(next.step == 3);
+  CHECK(tess::detail::numbers_in(folder) == Numbers{4, 2});
+}
