@@ -3,6 +3,7 @@
 #include "apps/lb_lab/output/draw.hpp"
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/run/experiment.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 
 #include <fmt/format.h>
 
@@ -22,6 +23,7 @@ Experiment experiment_of(const Settings& s, const Problem& problem, const std::s
   e.balance.prediction = s.prediction;
   e.balance.seed = s.seed;
   e.balance.speeds = s.speeds;
+  e.balance.memory_limit_bytes = limits_of_pes(s, static_cast<std::size_t>(problem.n_pes));
   // Without a barrier a period is a time: of so many iterations of a PE with average work.
   e.balance.period = std::chrono::nanoseconds(static_cast<std::int64_t>(
       1e9 * problem.cell_seconds * static_cast<double>(problem.domain.n_cells()) / problem.n_pes *
@@ -88,6 +90,7 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
       problem.domain = cut(problem.domain, per_pe * n_pes);
       double none_seconds = 0;  // the first strategy
       for (const std::string& strategy : s.strategies) {
+        if (!obstacle(strategy, workload_of(problem)).empty()) continue;
         const Experiment experiment = experiment_of(s, problem, strategy, steps_a_second);
         Outcome outcome;
         co_await run_fastest(experiment, s.repeat, outcome);
@@ -97,7 +100,7 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
         check(sweep, row, serial);
         sweep.rows.push_back(std::move(row));
         if (sweep.on_row) sweep.on_row(sweep.rows.back());
-        if (!s.snapshots.empty()) save_snapshots(s.snapshots, sweep.rows.back(), outcome);
+        if (!s.snapshots.empty()) save_snapshots(s, sweep.rows.back(), outcome);
         if (!s.plot.empty()) drawings.add(outcome, sweep.rows.back());
       }
     }

@@ -102,8 +102,11 @@ std::string list_text() {
 
 std::string explain_text(const Settings& s, std::int32_t n_pes) {
   std::string out;
+  std::size_t n_balanced = 0;  // pairs of a workload and a strategy
   for (const std::string& name : s.workloads) {
     const Problem p = problem_of(s, find_workload(name), n_pes);
+    for (const std::string& strategy : s.strategies)
+      n_balanced += obstacle(strategy, workload_of(p)).empty() ? 1 : 0;
     const double total = total_seconds(p);
     double speed = n_pes;
     if (!s.speeds.empty()) speed = 0;
@@ -112,8 +115,7 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
                        workload_of(p).kind->describe(p), total, total / speed, n_pes);
   }
   out += fmt::format("{} runs of {} iterations",
-                     s.workloads.size() * s.per_pe.size() * s.strategies.size() *
-                         static_cast<std::size_t>(s.repeat),
+                     n_balanced * s.per_pe.size() * static_cast<std::size_t>(s.repeat),
                      s.n_iterations);
   out +=
       s.when == "periodic"
@@ -127,19 +129,29 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   return out;
 }
 
-void save_snapshots(const std::string& directory, const Row& row, const Outcome& outcome) {
+void print_left_out(const Settings& s) {
+  for (const std::string& workload : s.workloads)
+    for (const std::string& strategy : s.strategies)
+      if (const std::string why = obstacle(strategy, workloads()[find_workload(workload)]);
+          !why.empty())
+        tess::print_text(fmt::format("left out: {} under {}: {}\n", workload, strategy, why));
+}
+
+void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {
   if (outcome.phases.empty()) return;
   const std::filesystem::path folder =
-      std::filesystem::path(directory) /
+      std::filesystem::path(s.snapshots) /
       fmt::format("{}-{}-{}", row.workload, row.per_pe, row.strategy);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
     tess::fail(tess::ErrorCode::environment, "--save-snapshot: ", folder.string(), ": ",
                error.message());
-  for (std::int32_t pe = 0; pe < row.n_pes; ++pe)
-    plot::write_file((folder / fmt::format("data.{}.json", pe)).string(),
-                     tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe}));
+  for (std::int32_t pe = 0; pe < row.n_pes; ++pe) {
+    const std::string file = (folder / fmt::format("data.{}.{}", pe, s.snapshot_format)).string();
+    const std::string text = tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe});
+    plot::write_file(file, tess::balance::lb_datafile_bytes(file, text));
+  }
 }
 
 }  // namespace lb_lab

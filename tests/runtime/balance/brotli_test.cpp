@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t plenty = 1U << 30U;
 
 /// The message of the Error that unpacking gives; empty if it gives none.
-std::string complaint(const std::string& packed, std::size_t most_bytes = plenty) {
+std::string unpacking_says(const std::string& packed, std::size_t most_bytes = plenty) {
   try {
     (void)unpack_brotli("data.0.json.br", packed, most_bytes);
   } catch (const Error& e) {
@@ -49,7 +49,7 @@ struct Scratch {
   }
 };
 
-std::string file_complaint(const std::string& file) {
+std::string reading_says(const std::string& file) {
   try {
     (void)read_lb_datafiles({file});
   } catch (const Error& e) {
@@ -79,16 +79,16 @@ TEST_CASE("brotli that is truncated, damaged or followed by more is refused by n
   const std::string packed = pack_brotli(text);
   for (std::size_t n = 0; n < packed.size(); ++n) {
     INFO(n << " of " << packed.size());
-    REQUIRE_THAT(complaint(packed.substr(0, n)), Catch::Contains("is truncated"));
+    REQUIRE_THAT(unpacking_says(packed.substr(0, n)), Catch::Contains("is truncated"));
   }
-  CHECK_THAT(complaint(packed + "x"), Catch::Contains("has 1 bytes after its end"));
-  CHECK_THAT(complaint(text), Catch::Contains("is damaged, or not compressed with brotli"));
+  CHECK_THAT(unpacking_says(packed + "x"), Catch::Contains("has 1 bytes after its end"));
+  CHECK_THAT(unpacking_says(text), Catch::Contains("is damaged, or not compressed with brotli"));
   // The format has no checksum: what still decodes has another text.
   std::size_t n_refused = 0;
   for (std::size_t at = 0; at < packed.size(); ++at) {
     std::string damaged = packed;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
-    if (!complaint(damaged).empty()) ++n_refused;
+    if (!unpacking_says(damaged).empty()) ++n_refused;
   }
   CHECK(4 * n_refused > packed.size());
 }
@@ -96,9 +96,9 @@ TEST_CASE("brotli that is truncated, damaged or followed by more is refused by n
 TEST_CASE("text longer than its bound is refused before it is unpacked", "[balance][brotli]") {
   const std::string packed = pack_brotli(std::string(50'000'000, '0'));
   REQUIRE(packed.size() < 1000);
-  CHECK_THAT(complaint(packed, 1'000'000), Catch::Contains("unpack to more than 1000000"));
-  CHECK_THAT(complaint(packed, 49'999'999), Catch::Contains("unpack to more than"));
-  CHECK(complaint(packed, 50'000'000).empty());
+  CHECK_THAT(unpacking_says(packed, 1'000'000), Catch::Contains("unpack to more than 1000000"));
+  CHECK_THAT(unpacking_says(packed, 49'999'999), Catch::Contains("unpack to more than"));
+  CHECK(unpacking_says(packed, 50'000'000).empty());
 }
 
 TEST_CASE("a file holds the same phases compressed or not", "[balance][brotli]") {
@@ -118,7 +118,7 @@ TEST_CASE("compressed files that cannot be used are refused by name", "[balance]
   const std::string packed = pack_brotli(text);
   const auto said = [&](const char* name, const std::string& bytes) {
     const std::string file = scratch.write(name, bytes);
-    const std::string message = file_complaint(file);
+    const std::string message = reading_says(file);
     REQUIRE(message.starts_with(file + ": "));
     REQUIRE(message.find('\n') == std::string::npos);
     return message;
@@ -135,7 +135,7 @@ TEST_CASE("compressed files that cannot be used are refused by name", "[balance]
     std::string damaged = packed;
     damaged[at] = static_cast<char>(damaged[at] ^ 1);
     const std::string file = scratch.write("damaged.json.br", damaged);
-    const std::string message = file_complaint(file);
+    const std::string message = reading_says(file);
     if (!message.empty()) REQUIRE(message.find('\n') == std::string::npos);
   }
 }

@@ -170,12 +170,18 @@ TEST_CASE("shared blocks and memory are read as vt writes them", "[balance][lb_d
                   {"task_serialized_bytes", 9.0},
                   {"rank_working_bytes", node == 0 ? 1000.0 : 2000.0}}}};
   };
-  const auto file = [&](const json& tasks) {
-    return json{{"type", "LBDatafile"}, {"phases", {{{"id", 0}, {"tasks", tasks}}}}}.dump();
+  const auto file = [](const json& tasks) {
+    json phase;
+    phase["id"] = 0;
+    phase["tasks"] = tasks;
+    json whole;
+    whole["phases"] = json::array({phase});
+    return whole.dump();
   };
   const auto phases = parse_lb_datafiles(
-      {{"data.0.json", file({task(3, 0, 44, 100), task(7, 0, 44, 100), task(11, 0, -1, 0)})},
-       {"data.1.json", file({task(15, 1, 44, 120), task(19, 1, 45, 10)})}});
+      {{"data.0.json",
+        file(json::array({task(3, 0, 44, 100), task(7, 0, 44, 100), task(11, 0, -1, 0)}))},
+       {"data.1.json", file(json::array({task(15, 1, 44, 120), task(19, 1, 45, 10)}))}});
   const Snapshot& s = phases.at(0).snapshot;
   CHECK(s.pes.size() == 3);  // a block is at home on the third
   CHECK(s.blocks == std::vector<SharedBlock>{{44, 120, PeId{2}}, {45, 10, PeId{2}}});
@@ -188,7 +194,7 @@ TEST_CASE("shared blocks and memory are read as vt writes them", "[balance][lb_d
   const auto refused = [&](const char* key, const json& value) {
     json one = task(3, 0, 44, 100);
     one["user_defined"][key] = value;
-    return complaint(file({one}));
+    return complaint(file(json::array({one})));
   };
   CHECK_THAT(refused("shared_id", 4.5), Catch::Contains("shared_id is not a whole number"));
   CHECK_THAT(refused("shared_id", "four"), Catch::Contains("shared_id is not a number"));
@@ -198,7 +204,7 @@ TEST_CASE("shared blocks and memory are read as vt writes them", "[balance][lb_d
   CHECK_THAT(refused("rank_working_bytes", 0x1p61), Catch::Contains("adds up to"));
   json lacks = task(3, 0, 44, 100);
   lacks["user_defined"].erase("shared_bytes");
-  CHECK_THAT(complaint(file({lacks})), Catch::Contains("lacks 'shared_bytes'"));
+  CHECK_THAT(complaint(file(json::array({lacks}))), Catch::Contains("lacks 'shared_bytes'"));
 }
 
 TEST_CASE("our files give memory to vt's balancers, which accept floating point only",

@@ -172,7 +172,8 @@ TEST_CASE("strategies come near the best of all placements that keep the limits"
     const double optimum = best_placement(s);
     best += optimum / n;
     start += measure(s, s.elements.pe).max_over_average / n;
-    for (const char* name : {"greedy", "greedy_refine", "refine", "diffusion", "gossip"}) {
+    // Without diffusion: of three PEs, the first and the last are no neighbours there.
+    for (const char* name : {"greedy", "greedy_refine", "refine", "gossip"}) {
       INFO("seed " << seed << ", " << name);
       const Assignment a = make_strategy(name, 1)(s);
       REQUIRE(keeps_limits(s, a));
@@ -184,7 +185,7 @@ TEST_CASE("strategies come near the best of all placements that keep the limits"
   INFO("best " << best << ", start " << start);
   for (const auto& [name, mean] : reached) {
     INFO(name << " " << mean);
-    CHECK(mean - best <= 0.35 * (start - best));
+    CHECK(mean - best <= 0.15 * (start - best));
   }
 }
 
