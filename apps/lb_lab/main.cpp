@@ -19,7 +19,8 @@ tess::Task measure(Settings settings, double steps_a_second) {
   sweep.settings = std::move(settings);
   sweep.on_row = print_row;
   sweep.machine = tess::machine().describe();
-  print_left_out(sweep.settings);
+  for (const std::string& one : sweep.settings.left_out)
+    tess::print_text("left out: " + one + '\n');
   print_head();
   co_await run_all(sweep, steps_a_second);
   print_best(sweep);

@@ -3,7 +3,6 @@
 #include "apps/lb_lab/output/draw.hpp"
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/run/experiment.hpp"
-#include "apps/lb_lab/run/kind.hpp"
 
 #include <fmt/format.h>
 
@@ -90,7 +89,6 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
       problem.domain = cut(problem.domain, per_pe * n_pes);
       double none_seconds = 0;  // the first strategy
       for (const std::string& strategy : s.strategies) {
-        if (!obstacle(strategy, workload_of(problem)).empty()) continue;
         const Experiment experiment = experiment_of(s, problem, strategy, steps_a_second);
         Outcome outcome;
         co_await run_fastest(experiment, s.repeat, outcome);

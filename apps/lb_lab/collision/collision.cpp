@@ -81,6 +81,6 @@ std::string describe_collision(const Problem& p) {
 }  // namespace
 
 const Kind collision_kind{&serial_answer_of_collision, &nominal_seconds, &describe_collision,
-                          &run_collision, false};
+                          &run_collision};
 
 }  // namespace lb_lab

@@ -44,8 +44,9 @@ std::string row(std::uint64_t phase, const Snapshot& snapshot, const std::string
   const std::vector<std::uint64_t> memory = tess::balance::memory_of(snapshot, wanted);
   std::size_t n_over = 0;
   for (std::size_t p = 0; p < memory.size(); ++p)
-    if (const std::uint64_t limit = snapshot.pes.memory_limit_bytes[p]; limit != 0)
-      n_over += memory[p] > limit ? 1 : 0;
+    if (const std::uint64_t limit = snapshot.pes.memory_limit_bytes[p];
+        limit != 0 && memory[p] > limit)
+      ++n_over;
   return fmt::format(
       "{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f} {:>14} {:>10}\n",
       phase, snapshot.pes.size(), snapshot.elements.size(), name, before.max_over_average,

@@ -102,11 +102,8 @@ std::string list_text() {
 
 std::string explain_text(const Settings& s, std::int32_t n_pes) {
   std::string out;
-  std::size_t n_balanced = 0;  // pairs of a workload and a strategy
   for (const std::string& name : s.workloads) {
     const Problem p = problem_of(s, find_workload(name), n_pes);
-    for (const std::string& strategy : s.strategies)
-      n_balanced += obstacle(strategy, workload_of(p)).empty() ? 1 : 0;
     const double total = total_seconds(p);
     double speed = n_pes;
     if (!s.speeds.empty()) speed = 0;
@@ -115,7 +112,8 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
                        workload_of(p).kind->describe(p), total, total / speed, n_pes);
   }
   out += fmt::format("{} runs of {} iterations",
-                     n_balanced * s.per_pe.size() * static_cast<std::size_t>(s.repeat),
+                     s.workloads.size() * s.per_pe.size() * s.strategies.size() *
+                         static_cast<std::size_t>(s.repeat),
                      s.n_iterations);
   out +=
       s.when == "periodic"
@@ -127,14 +125,6 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   if (s.plot.empty()) out += "left out: intervals for timelines (--plot)\n";
   if (s.snapshots.empty()) out += "left out: snapshots for strategies (--save-snapshot)\n";
   return out;
-}
-
-void print_left_out(const Settings& s) {
-  for (const std::string& workload : s.workloads)
-    for (const std::string& strategy : s.strategies)
-      if (const std::string why = obstacle(strategy, workloads()[find_workload(workload)]);
-          !why.empty())
-        tess::print_text(fmt::format("left out: {} under {}: {}\n", workload, strategy, why));
 }
 
 void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {

@@ -23,9 +23,6 @@ void write_json(const std::string& path, const Sweep& sweep);
 /// What these settings use, and what they leave out.
 [[nodiscard]] std::string explain_text(const Settings& settings, std::int32_t n_pes);
 
-/// A line per strategy that cannot balance a workload of the settings and is left out.
-void print_left_out(const Settings& settings);
-
 /// Writes the phases that a strategy was given, one file per PE:
 /// DIR/WORKLOAD-PER_PE-STRATEGY/data.PE.json.br, or .json.
 void save_snapshots(const Settings& settings, const Row& row, const Outcome& outcome);

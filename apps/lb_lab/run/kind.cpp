@@ -1,7 +1,5 @@
 #include "apps/lb_lab/run/kind.hpp"
 
-#include "runtime/balance/strategy.hpp"
-
 #include <algorithm>
 
 namespace lb_lab {
@@ -14,12 +12,6 @@ double iteration_seconds(const Problem& p) {
 }
 
 }  // namespace
-
-std::string obstacle(const std::string& strategy, const Workload& workload) {
-  if (!workload.kind->has_positions && tess::balance::needs_positions(strategy))
-    return "its chares have no positions";
-  return tess::balance::obstacle(strategy, {});
-}
 
 std::uint64_t n_items(const Problem& p, double nominal_seconds) {
   return static_cast<std::uint64_t>(

@@ -20,11 +20,7 @@ struct Kind {
   /// Makes the chares, balances them, runs them to their end, and fills times, answer and rounds of
   /// the outcome. Awaited on PE 0; all arguments outlive it.
   tess::Task (*run)(const Experiment&, tess::GroupProxy<Station>, Outcome&) = nullptr;
-  bool has_positions = true;  ///< its chares have balance_position()
 };
-
-/// Why a strategy cannot balance a workload, as "its chares have no positions"; empty if it can.
-[[nodiscard]] std::string obstacle(const std::string& strategy, const Workload& workload);
 
 /// The amount of real work: as many items as the grain makes at `nominal_seconds` each, limited by
 /// memory and by the time of a simulated machine. The same for every cut and machine.

@@ -1,6 +1,5 @@
 #include "apps/lb_lab/run/settings.hpp"
 
-#include "apps/lb_lab/run/kind.hpp"
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
@@ -22,16 +21,17 @@ void expand_names(Settings& s) {
     for (const Workload& one : workloads()) s.workloads.push_back(one.name);
   }
   for (const std::string& name : s.workloads) (void)find_workload(name);
-  const bool all = std::ranges::count(s.strategies, "all") > 0;
-  if (all) s.strategies = tess::balance::strategy_names();
-  for (const std::string& name : s.strategies) {
-    (void)tess::balance::make_strategy(name, s.seed);
-    for (const std::string& workload : s.workloads)
-      if (const std::string why = obstacle(name, workloads()[find_workload(workload)]);
-          !all && !why.empty())
-        refuse("--strategy: ", name, " cannot balance ", workload, ": ", why,
-               "; choose another, or all, which leaves it out");
+  if (std::ranges::count(s.strategies, "all") > 0) {
+    s.strategies.clear();
+    for (const std::string& name : tess::balance::strategy_names()) {
+      const std::string why = tess::balance::obstacle(name, {});
+      (why.empty() ? s.strategies : s.left_out).push_back(why.empty() ? name : name + ": " + why);
+    }
   }
+  for (const std::string& name : s.strategies)
+    if (const std::string why = tess::balance::obstacle(name, {}); !why.empty())
+      refuse("--strategy: ", name, ": ", why, "; choose another, or all, which leaves it out");
+  for (const std::string& name : s.strategies) (void)tess::balance::make_strategy(name, s.seed);
   // What is gained is gained over none.
   std::erase(s.strategies, "none");
   s.strategies.insert(s.strategies.begin(), "none");

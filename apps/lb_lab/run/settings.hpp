@@ -16,6 +16,7 @@ struct Settings {
   std::vector<std::string> workloads{"linear"};  ///< names, or all
   std::vector<std::int32_t> per_pe{1, 2, 4, 8, 16, 32};
   std::vector<std::string> strategies{"none", "greedy_refine"};  ///< names, or all
+  std::vector<std::string> left_out;         ///< strategies of `all` that cannot run, and why
   std::vector<std::uint64_t> memory_limits;  ///< of PEs, in bytes; one: of each; empty: none
   std::int32_t period = 10;                  ///< iterations between rounds
   std::int32_t n_iterations = 50;
@@ -36,8 +37,7 @@ struct Settings {
 };
 
 /// Replaces `all` by names, puts `none` in front of the strategies, and throws tess::Error for
-/// settings that cannot be run on that many PEs. Strategies by the name `all` that cannot balance a
-/// workload stay: they are left out when it runs (obstacle() in kind.hpp).
+/// settings that cannot be run on that many PEs.
 void complete(Settings& settings, std::int32_t n_pes);
 
 /// A limit for each PE, from none, one or all of them. Throws tess::Error for another number.
