@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace tess::balance {
 
@@ -42,7 +43,7 @@ struct PeSummary {
 
 class LocalPe {
  public:
-  explicit LocalPe(PeSummary without_elements) : now_(without_elements) {}
+  explicit LocalPe(PeSummary without_elements) : now_(std::move(without_elements)) {}
 
   [[nodiscard]] const PeSummary& summary() const { return now_; }
   [[nodiscard]] const std::set<Item>& items() const { return items_; }
