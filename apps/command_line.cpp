@@ -87,6 +87,8 @@ template Option CommandLine::option(const std::string&, std::optional<std::uint6
                                     const std::string&);
 template Option CommandLine::option(const std::string&, std::vector<std::int32_t>&,
                                     const std::string&);
+template Option CommandLine::option(const std::string&, std::vector<std::uint64_t>&,
+                                    const std::string&);
 template Option CommandLine::option(const std::string&, std::vector<double>&, const std::string&);
 template Option CommandLine::option(const std::string&, std::vector<std::string>&,
                                     const std::string&);

@@ -6,6 +6,7 @@ find_package(fmt REQUIRED)
 if("runtime" IN_LIST TESS_COMPONENTS)
   find_package(Boost 1.81 REQUIRED)
   find_package(Hwloc REQUIRED)
+  find_package(Brotli REQUIRED)  # files of load balancing
   find_package(nlohmann_json REQUIRED)  # while building only: it has no library
   if(TESS_MPI)
     find_package(MPI REQUIRED COMPONENTS CXX)

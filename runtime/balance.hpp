@@ -63,11 +63,23 @@ class BalancerProxy {
   GroupProxy<balance::Balancer> group_;
 };
 
+namespace balance {
+/// Elements of this chare have a position, for strategies that cut space.
+template <class C>
+concept HasPosition = requires(const C& chare) { chare.balance_position(); };
+}  // namespace balance
+
 /// Starts balancing an array; may be called once per array. The calling PE coordinates the rounds.
-/// Throws Error for options with an unknown strategy or prediction, and for options that do not
-/// match the PEs of the run.
+/// Throws Error, before anything is sent, for options with an unknown strategy or prediction, for
+/// options that do not match the PEs of the run, and for a strategy that needs positions if the
+/// chare has no balance_position().
 template <class C>
 BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options = {}) {
+  static_assert(
+      requires { sizeof(C); },
+      "start_balancing needs the definition of the chare: include its header");
+  if constexpr (!balance::HasPosition<C>)
+    balance::require_no_positions(options, plain_name(name_of_type<C>));
   return BalancerProxy(balance::start(array.id(), options, {}));
 }
 

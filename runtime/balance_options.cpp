@@ -105,4 +105,10 @@ void balance::validate(const BalanceOptions& options, std::int32_t n_pes) {
          " are given, the run has ", n_pes, " PEs");
 }
 
+void balance::require_no_positions(const BalanceOptions& options, std::string_view chare) {
+  if (!needs_positions(options.strategy)) return;
+  fail(ErrorCode::bad_argument, "balance strategy ", options.strategy, ": elements of ", chare,
+       " have no position; choose another strategy, or define balance_position() in the chare");
+}
+
 }  // namespace tess

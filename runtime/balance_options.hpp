@@ -34,6 +34,9 @@ struct BalanceOptions {
 namespace balance {
 /// Throws Error that names the option, its value, and what it may be.
 void validate(const BalanceOptions& options, std::int32_t n_pes);
+/// For a chare without balance_position(): throws Error that names it and the strategy if that one
+/// needs positions.
+void require_no_positions(const BalanceOptions& options, std::string_view chare);
 }  // namespace balance
 
 }  // namespace tess

@@ -19,6 +19,8 @@ tess::Task measure(Settings settings, double steps_a_second) {
   sweep.settings = std::move(settings);
   sweep.on_row = print_row;
   sweep.machine = tess::machine().describe();
+  for (const std::string& one : sweep.settings.left_out)
+    tess::print_text("left out: " + one + '\n');
   print_head();
   co_await run_all(sweep, steps_a_second);
   print_best(sweep);
@@ -40,6 +42,9 @@ void add_options(apps::CommandLine& line, Settings& s) {
   line.option("--when", s.when, "at_sync, periodic (no barrier), automatic");
   line.option("--prediction", s.prediction, "last, moving_average, linear_trend");
   line.option("--speed", s.speeds, "speed of each PE, as 1,1,0.5").separated_by(',');
+  line.option("--memory-limit", s.memory_limits,
+              "bytes that a PE's chares may need: one number, or one per PE; 0: any")
+      .separated_by(',');
   line.option("--seed", s.seed, "of random workloads and strategies");
   line.option("--cell-bytes", s.cell_bytes, "bytes that migrate with a chare at the finest cut")
       .between(0, 1 << 30);
@@ -50,8 +55,11 @@ void add_options(apps::CommandLine& line, Settings& s) {
   line.option("--plot", s.plot, "write SVG plots into a directory");
   line.option("--save-snapshot", s.snapshots,
               "write the snapshots given to strategies into a directory");
+  line.option("--snapshot-format", s.snapshot_format,
+              "json.br: compressed with brotli, as vt does by default; or json")
+      .one_of({"json.br", "json"});
   line.option("--replay", s.replay,
-              "run the strategies on saved snapshots (vt's LBDatafile) instead");
+              "run the strategies on saved snapshots (vt's LBDatafile, .json or .json.br) instead");
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
   line.option("--fold", s.fold, "how elements are placed on another number of PEs: block, modulo");

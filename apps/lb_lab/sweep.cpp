@@ -22,6 +22,7 @@ Experiment experiment_of(const Settings& s, const Problem& problem, const std::s
   e.balance.prediction = s.prediction;
   e.balance.seed = s.seed;
   e.balance.speeds = s.speeds;
+  e.balance.memory_limit_bytes = limits_of_pes(s, static_cast<std::size_t>(problem.n_pes));
   // Without a barrier a period is a time: of so many iterations of a PE with average work.
   e.balance.period = std::chrono::nanoseconds(static_cast<std::int64_t>(
       1e9 * problem.cell_seconds * static_cast<double>(problem.domain.n_cells()) / problem.n_pes *
@@ -97,7 +98,7 @@ tess::Task run_all(Sweep& sweep, double steps_a_second) {
         check(sweep, row, serial);
         sweep.rows.push_back(std::move(row));
         if (sweep.on_row) sweep.on_row(sweep.rows.back());
-        if (!s.snapshots.empty()) save_snapshots(s.snapshots, sweep.rows.back(), outcome);
+        if (!s.snapshots.empty()) save_snapshots(s, sweep.rows.back(), outcome);
         if (!s.plot.empty()) drawings.add(outcome, sweep.rows.back());
       }
     }

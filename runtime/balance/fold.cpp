@@ -3,6 +3,8 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
+
 namespace tess::balance {
 
 Fold parse_fold(std::string_view name) {
@@ -15,8 +17,13 @@ Snapshot fold(Snapshot snapshot, std::size_t n_pes, Fold how) {
   TESS_CHECK(n_pes > 0, "a snapshot cannot be folded onto 0 PEs");
   const std::size_t n_before = snapshot.pes.size();
   if (n_pes == n_before) return snapshot;
-  for (PeId& pe : snapshot.elements.pe)
-    pe = pe_at(how == Fold::block ? slot(pe) * n_pes / n_before : slot(pe) % n_pes);
+  const auto folded = [&](PeId pe) {
+    return pe_at(how == Fold::block ? slot(pe) * n_pes / n_before : slot(pe) % n_pes);
+  };
+  for (PeId& pe : snapshot.elements.pe) pe = folded(pe);
+  for (SharedBlock& block : snapshot.blocks) block.home = folded(block.home);
+  if (auto& working = snapshot.pes.working_bytes; !working.empty())
+    working.assign(n_pes, std::ranges::max(working));
   snapshot.pes.background.assign(n_pes, 0);
   snapshot.pes.speed.assign(n_pes, 1);
   snapshot.pes.memory_limit_bytes.assign(n_pes, 0);

@@ -19,7 +19,7 @@ enum class Fold : std::uint8_t { block, modulo };
 
 /// The snapshot on `n_pes` PEs, at least 1. For its own number of PEs it is returned unchanged.
 /// Otherwise all PEs have speed 1 and neither background nor memory limits, since these are
-/// unknown.
+/// unknown, and each needs as much working memory as the PE that needed most.
 [[nodiscard]] Snapshot fold(Snapshot snapshot, std::size_t n_pes, Fold how);
 
 }  // namespace tess::balance

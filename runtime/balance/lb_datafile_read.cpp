@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace tess::balance {
 namespace {
@@ -64,6 +62,12 @@ class Place {
     if (is_count()) return count();
     if (amount() >= 0x1p63) damaged("is above 2^63");
     return static_cast<std::uint64_t>(amount());
+  }
+  /// The same, or no value below 0.
+  [[nodiscard]] std::optional<std::uint64_t> whole_or_none() const {
+    if (number() < 0) return std::nullopt;
+    if (std::floor(number()) != number()) damaged("is not a whole number");
+    return whole_amount();
   }
 
   [[noreturn]] void damaged(const std::string& what) const {
@@ -125,10 +129,18 @@ class Gathering {
   [[nodiscard]] Snapshot finish(std::size_t n_pes) {
     auto& e = s_.elements;
     if (n_positions_ != e.size()) e.position.clear();
+    if (s_.blocks.empty()) e.block.clear();
+    if (std::ranges::count(e.working_bytes, 0U) == std::ssize(e.working_bytes))
+      e.working_bytes.clear();
     if (s_.pes.size() == 0) {
       s_.pes.speed.assign(n_pes, 1.0);
       s_.pes.background.assign(n_pes, 0.0);
       s_.pes.memory_limit_bytes.assign(n_pes, 0);
+    }
+    for (const auto& [node, bytes] : rank_working_bytes_) {
+      if (bytes == 0 || node >= s_.pes.size()) continue;
+      s_.pes.working_bytes.resize(s_.pes.size(), 0);
+      s_.pes.working_bytes[node] = std::max(s_.pes.working_bytes[node], bytes);
     }
     if (n_known_loads(s_) == s_.elements.size()) s_.elements.measured.clear();
     validate(s_);
@@ -155,18 +167,46 @@ class Gathering {
     e.size_bytes.push_back(0);
     e.memory_bytes.push_back(0);
     e.position.push_back({});
-    if (task.has("user_defined")) read_extras(task["user_defined"]);
+    e.working_bytes.push_back(0);
+    e.block.push_back(no_block);
+    if (task.has("user_defined")) read_extras(task["user_defined"], node);
   }
 
-  void read_extras(const Place& user) {
+  void read_extras(const Place& user, std::uint64_t node) {
     auto& e = s_.elements;
-    if (user.has("size_bytes")) e.size_bytes.back() = user["size_bytes"].whole_amount();
-    if (user.has("memory_bytes")) e.memory_bytes.back() = user["memory_bytes"].whole_amount();
+    const auto take = [&](const char* key, std::uint64_t& bytes) {
+      if (user.has(key)) bytes = user[key].whole_amount();
+    };
+    take("size_bytes", e.size_bytes.back());  // files written before vt's names were used
+    take("memory_bytes", e.memory_bytes.back());
+    take("task_serialized_bytes", e.size_bytes.back());
+    take("task_footprint_bytes", e.memory_bytes.back());
+    take("task_working_bytes", e.working_bytes.back());
+    std::uint64_t rank_bytes = 0;
+    take("rank_working_bytes", rank_bytes);
+    rank_working_bytes_[node] = std::max(rank_working_bytes_[node], rank_bytes);
+    if (user.has("shared_id")) read_block(user, node);
     if (user.has("measured")) e.measured.back() = user["measured"].whole_amount() != 0 ? 1 : 0;
     if (!user.has("position_x")) return;
     e.position.back() = {user["position_x"].number(), user["position_y"].number(),
                          user["position_z"].number()};
     ++n_positions_;
+  }
+
+  void read_block(const Place& user, std::uint64_t node) {
+    const auto id = user["shared_id"].whole_or_none();
+    if (!id) return;
+    const auto [at, is_new] = blocks_.try_emplace(*id, s_.blocks.size());
+    if (is_new) {
+      const auto home = user.has("home_rank") ? user["home_rank"].whole_or_none() : node;
+      if (home && *home >= most_pes)
+        user["home_rank"].damaged(text("is ", *home, ", not below ", most_pes));
+      s_.blocks.push_back({*id, 0, pe_at(home.value_or(node))});
+      highest_ = std::max(highest_, slot(s_.blocks.back().home));
+    }
+    auto& bytes = s_.blocks[at->second].bytes;
+    bytes = std::max(bytes, user["shared_bytes"].whole_amount());
+    s_.elements.block.back() = at->second;
   }
 
   void read_pes(const Place& user) {
@@ -182,6 +222,11 @@ class Gathering {
       s_.pes.background.push_back(background.at(p).amount());
       s_.pes.memory_limit_bytes.push_back(limit.at(p).count());
     }
+    if (!user.has("pe_working_bytes")) return;
+    const Place working = user["pe_working_bytes"];
+    if (working.size() != speed.size()) user.damaged("has lists of PEs that differ in length");
+    for (std::size_t p = 0; p < working.size(); ++p)
+      s_.pes.working_bytes.push_back(working.at(p).whole_amount());
   }
 
   [[nodiscard]] std::size_t element(const Place& entity) const {
@@ -192,6 +237,8 @@ class Gathering {
 
   Snapshot s_;
   std::map<Name, std::size_t> positions_;
+  std::map<std::uint64_t, std::size_t> blocks_;  // position of an id
+  std::map<std::uint64_t, std::uint64_t> rank_working_bytes_;
   std::size_t highest_ = 0;
   std::size_t n_positions_ = 0;
 };
@@ -200,7 +247,8 @@ json parse(const LbDatafile& file) {
   try {
     return json::parse(file.text);
   } catch (const json::parse_error& e) {
-    fail(ErrorCode::bad_file, file.name, ": not JSON from byte ", e.byte, " on; write it again");
+    fail(ErrorCode::bad_file, file.name, ": not JSON from byte ", e.byte,
+         " on; write it again, or if it is compressed, let its name end in .br");
   } catch (const json::exception&) {
     fail(ErrorCode::bad_file, file.name, ": has a number beyond all range; write it again");
   }
@@ -228,18 +276,6 @@ std::vector<Phase> parse_lb_datafiles(const std::vector<LbDatafile>& files) {
   std::vector<Phase> result;
   for (auto& [id, one] : phases) result.push_back({id, one.finish(n_pes)});
   return result;
-}
-
-std::vector<Phase> read_lb_datafiles(const std::vector<std::string>& paths) {
-  std::vector<LbDatafile> files;
-  for (const std::string& path : paths) {
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream content;
-    if (!in || !(content << in.rdbuf()))
-      fail(ErrorCode::bad_file, path, ": cannot be read, or is empty; give an LBDatafile");
-    files.push_back({path, content.str()});
-  }
-  return parse_lb_datafiles(files);
 }
 
 }  // namespace tess::balance

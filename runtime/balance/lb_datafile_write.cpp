@@ -40,8 +40,25 @@ class Identities {
   std::map<ElementKey, Identity> known_;
 };
 
-json task(const Identities& identities, const Elements& e, std::size_t i) {
-  json user = {{"size_bytes", e.size_bytes[i]}, {"memory_bytes", e.memory_bytes[i]}};
+/// As vt's balancers read it: they accept floating-point numbers only.
+json memory(const Snapshot& s, std::size_t i) {
+  const auto number = [](std::uint64_t bytes) { return static_cast<double>(bytes); };
+  const Elements& e = s.elements;
+  json user = {{"task_serialized_bytes", number(e.size_bytes[i])},
+               {"task_footprint_bytes", number(e.memory_bytes[i])},
+               {"task_working_bytes", number(e.working_bytes_of(i))},
+               {"rank_working_bytes", number(s.pes.working_bytes_of(slot(e.pe[i])))}};
+  if (e.block_of(i) == no_block) return user;
+  const SharedBlock& block = s.blocks[e.block_of(i)];
+  user["shared_id"] = number(block.id);
+  user["shared_bytes"] = number(block.bytes);
+  user["home_rank"] = number(slot(block.home));
+  return user;
+}
+
+json task(const Identities& identities, const Snapshot& s, std::size_t i) {
+  const Elements& e = s.elements;
+  json user = memory(s, i);
   if (!e.knows_load(i)) user["measured"] = 0;
   if (!e.position.empty()) {
     user["position_x"] = e.position[i][0];
@@ -68,16 +85,17 @@ json document(const Identities& identities, const Phase& phase, std::optional<Pe
   const auto wanted = [&](std::size_t element) { return !rank || s.elements.pe[element] == *rank; };
   json tasks = json::array(), communications = json::array();
   for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (wanted(i)) tasks.push_back(task(identities, s.elements, i));
+    if (wanted(i)) tasks.push_back(task(identities, s, i));
   for (const Edge& edge : s.edges)
     if (wanted(edge.from)) communications.push_back(communication(identities, s.elements, edge));
+  json pes = {{"pe_speed", s.pes.speed},
+              {"pe_background", s.pes.background},
+              {"pe_memory_limit_bytes", s.pes.memory_limit_bytes}};
+  if (!s.pes.working_bytes.empty()) pes["pe_working_bytes"] = s.pes.working_bytes;
   return {{"id", phase.id},
           {"tasks", std::move(tasks)},
           {"communications", std::move(communications)},
-          {"user_defined",
-           {{"pe_speed", s.pes.speed},
-            {"pe_background", s.pes.background},
-            {"pe_memory_limit_bytes", s.pes.memory_limit_bytes}}}};
+          {"user_defined", std::move(pes)}};
 }
 
 }  // namespace

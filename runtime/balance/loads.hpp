@@ -4,18 +4,14 @@
 // before. Work starts empty, or with the present placement (present()).
 #pragma once
 
-#include "runtime/balance/snapshot.hpp"
+#include "runtime/balance/memory.hpp"
 
 namespace tess::balance {
 
 class Loads {
  public:
   /// Memory of the present placement; work is only the background.
-  explicit Loads(const Snapshot& s)
-      : snapshot_(s), work_(s.pes.size(), 0.0), memory_bytes_(s.pes.size(), 0) {
-    for (std::size_t i = 0; i < s.elements.size(); ++i)
-      memory_bytes_[slot(s.elements.pe[i])] += s.elements.memory_bytes[i];
-  }
+  explicit Loads(const Snapshot& s) : snapshot_(s), work_(s.pes.size(), 0.0), memory_(s) {}
   /// Memory and work of the present placement.
   [[nodiscard]] static Loads present(const Snapshot& s) {
     Loads loads(s);
@@ -25,8 +21,7 @@ class Loads {
 
   void put(std::size_t element, std::size_t pe) { work_[pe] += snapshot_.elements.load[element]; }
   void move_memory(std::size_t element, std::size_t from, std::size_t to) {
-    memory_bytes_[from] -= snapshot_.elements.memory_bytes[element];
-    memory_bytes_[to] += snapshot_.elements.memory_bytes[element];
+    memory_.move(element, from, to);
   }
   /// Moves work and memory.
   void move(std::size_t element, std::size_t from, std::size_t to) {
@@ -37,8 +32,7 @@ class Loads {
   /// True if an element that occupies `from` may go to `to`; it may always stay.
   [[nodiscard]] bool fits(std::size_t element, std::size_t from, std::size_t to) const {
     const auto limit = snapshot_.pes.memory_limit_bytes[to];
-    return from == to || limit == 0 ||
-           memory_bytes_[to] + snapshot_.elements.memory_bytes[element] <= limit;
+    return from == to || limit == 0 || memory_.bytes_with(element, to) <= limit;
   }
   /// The seconds that a PE needs, with `more` seconds of work added.
   [[nodiscard]] double time(std::size_t pe, double more = 0) const {
@@ -48,7 +42,7 @@ class Loads {
  private:
   const Snapshot& snapshot_;
   std::vector<double> work_;
-  std::vector<std::uint64_t> memory_bytes_;
+  Memory memory_;
 };
 
 }  // namespace tess::balance

@@ -12,14 +12,16 @@ std::vector<std::size_t> kinds(const Snapshot& s) {
   std::vector<std::size_t> alone(s.pes.size(), 0);  // above 0: different from all others
   for (std::size_t i = 0; i < s.elements.size(); ++i)
     if (!s.elements.migratable[i]) alone[slot(s.elements.pe[i])] = 1 + slot(s.elements.pe[i]);
-  std::map<std::tuple<double, double, std::uint64_t, std::size_t>, std::size_t> known;
+  std::map<std::tuple<double, double, std::uint64_t, std::uint64_t, std::size_t>, std::size_t>
+      known;
   std::vector<std::size_t> result;
   for (std::size_t p = 0; p < s.pes.size(); ++p)
-    result.push_back(known
-                         .try_emplace({s.pes.speed[p], s.pes.background[p],
-                                       s.pes.memory_limit_bytes[p], alone[p]},
-                                      known.size())
-                         .first->second);
+    result.push_back(
+        known
+            .try_emplace({s.pes.speed[p], s.pes.background[p], s.pes.memory_limit_bytes[p],
+                          s.pes.working_bytes_of(p), alone[p]},
+                         known.size())
+            .first->second);
   return result;
 }
 

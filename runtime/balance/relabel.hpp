@@ -7,7 +7,7 @@
 
 namespace tess::balance {
 
-/// `wanted` with its parts renumbered among PEs of equal speed, background and memory limit without
+/// `wanted` with its parts renumbered among PEs of equal speed, background and memory without
 /// pinned elements, such that the packed overlap with the present placement is large (greedily,
 /// largest overlap first).
 [[nodiscard]] Assignment relabel(const Snapshot& snapshot, Assignment wanted);

@@ -5,6 +5,38 @@
 #include <cmath>
 
 namespace tess::balance {
+namespace {
+
+/// Sums below it fit into a signed word, as room on a PE is computed.
+constexpr double most_memory_bytes = 0x1p60;
+
+void validate_memory(const Snapshot& s) {
+  const auto& e = s.elements;
+  if ((!e.working_bytes.empty() && e.working_bytes.size() != e.size()) ||
+      (!e.block.empty() && e.block.size() != e.size()) ||
+      (!s.pes.working_bytes.empty() && s.pes.working_bytes.size() != s.pes.size()))
+    fail(ErrorCode::bad_value, "snapshot: arrays of memory differ in length; give ", e.size(),
+         " for elements, ", s.pes.size(), " for PEs");
+  double all = 0;
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    if (e.block_of(i) != no_block && e.block_of(i) >= s.blocks.size())
+      fail(ErrorCode::out_of_range, "snapshot: element ", i, " uses block ", e.block_of(i), " of ",
+           s.blocks.size());
+    all += static_cast<double>(e.memory_bytes[i]) + static_cast<double>(e.working_bytes_of(i));
+  }
+  for (const SharedBlock& block : s.blocks) {
+    if (block.home.value < 0 || slot(block.home) >= s.pes.size())
+      fail(ErrorCode::out_of_range, "snapshot: block ", block.id, " has its home on ", block.home,
+           " of ", s.pes.size(), " PEs");
+    all += static_cast<double>(block.bytes);
+  }
+  for (const std::uint64_t bytes : s.pes.working_bytes) all += static_cast<double>(bytes);
+  if (!(all < most_memory_bytes))
+    fail(ErrorCode::bad_value, "snapshot: its memory adds up to ", all,
+         " bytes; give sizes whose sum is below 2^60");
+}
+
+}  // namespace
 
 void validate(const Snapshot& s) {
   const auto& e = s.elements;
@@ -41,6 +73,7 @@ void validate(const Snapshot& s) {
     if (edge.from >= n || edge.to >= n)
       fail(ErrorCode::out_of_range, "snapshot: edge ", edge.from, " to ", edge.to, " of ", n,
            " elements");
+  validate_memory(s);
 }
 
 }  // namespace tess::balance

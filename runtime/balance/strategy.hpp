@@ -1,6 +1,6 @@
 // Strategies by name. A strategy is a pure function from a snapshot to an assignment: equal
 // snapshots and seeds give equal results. Elements that do not migrate stay; no move takes a PE
-// above its memory limit; an element for which there is no room stays. An element of unknown load
+// above its memory limit (memory.hpp: a block that elements share counts once per PE); an element for which there is no room stays. An element of unknown load
 // also stays, and counts as the mean of the others. Each strategy has a file in strategies/.
 #pragma once
 
@@ -21,6 +21,12 @@ using Strategy = std::function<Assignment(const Snapshot&)>;
 
 /// The strategy of this name. Throws Error that lists the names for any other.
 [[nodiscard]] Strategy make_strategy(std::string_view name, std::uint64_t seed);
+
+/// True for a strategy that places elements by their positions.
+[[nodiscard]] bool needs_positions(std::string_view name);
+
+/// Why the strategy of this name cannot serve a snapshot, as "no positions"; empty if it can.
+[[nodiscard]] std::string obstacle(std::string_view name, const Snapshot& snapshot);
 
 /// Wraps the user's function: its assignment is followed where elements may move and there is room.
 /// The result throws Error unless the function gives one PE of the snapshot per element.

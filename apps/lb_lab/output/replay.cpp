@@ -2,6 +2,7 @@
 
 #include "runtime/balance/fold.hpp"
 #include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/memory.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
@@ -9,17 +10,20 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <map>
 
 namespace lb_lab {
 namespace {
 
 using tess::balance::Snapshot;
 
-/// As the files have it, or on as many PEs and of such speeds as the options say.
+/// As the files have it, or on as many PEs and with such speeds and limits as the options say.
 Snapshot prepared(const Settings& s, Snapshot snapshot) {
   const auto n_pes =
       s.replay_pes > 0 ? static_cast<std::size_t>(s.replay_pes) : snapshot.pes.size();
   snapshot = tess::balance::fold(std::move(snapshot), n_pes, tess::balance::parse_fold(s.fold));
+  if (auto limits = limits_of_pes(s, n_pes); !limits.empty())
+    snapshot.pes.memory_limit_bytes = std::move(limits);
   if (s.speeds.empty()) return snapshot;
   if (s.speeds.size() != n_pes)
     tess::fail(tess::ErrorCode::bad_argument, "--speed: ", s.speeds.size(),
@@ -37,25 +41,49 @@ std::string row(std::uint64_t phase, const Snapshot& snapshot, const std::string
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
   const tess::balance::Metrics before = measure(snapshot, snapshot.elements.pe);
   const tess::balance::Metrics after = measure(snapshot, wanted);
-  return fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f}\n",
-                     phase, snapshot.pes.size(), snapshot.elements.size(), name,
-                     before.max_over_average, after.max_over_average, after.n_moves,
-                     after.moved_bytes, after.external_bytes, took.count());
+  const std::vector<std::uint64_t> memory = tess::balance::memory_of(snapshot, wanted);
+  std::size_t n_over = 0;
+  for (std::size_t p = 0; p < memory.size(); ++p)
+    if (const std::uint64_t limit = snapshot.pes.memory_limit_bytes[p];
+        limit != 0 && memory[p] > limit)
+      ++n_over;
+  return fmt::format(
+      "{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f} {:>14} {:>10}\n",
+      phase, snapshot.pes.size(), snapshot.elements.size(), name, before.max_over_average,
+      after.max_over_average, after.n_moves, after.moved_bytes, after.external_bytes, took.count(),
+      std::ranges::max(memory), n_over);
 }
 
 }  // namespace
 
 std::string replay(const Settings& s) {
   (void)tess::balance::parse_fold(s.fold);  // before files are read
-  std::vector<std::string> names = s.strategies;
-  if (std::ranges::count(names, "all") > 0) names = tess::balance::strategy_names();
-  std::string out = fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12}\n",
-                                "phase", "PEs", "elements", "strategy", "before", "predicted",
-                                "moves", "bytes", "external bytes", "strategy ms");
-  for (tess::balance::Phase& phase : tess::balance::read_lb_datafiles(s.replay)) {
+  const bool all = std::ranges::count(s.strategies, "all") > 0;
+  const std::vector<std::string>& names = all ? tess::balance::strategy_names() : s.strategies;
+  std::string out =
+      fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12} {:>14} {:>10}\n",
+                  "phase", "PEs", "elements", "strategy", "before", "predicted", "moves", "bytes",
+                  "external bytes", "strategy ms", "fullest PE", "over limit");
+  std::vector<tess::balance::Phase> phases = tess::balance::read_lb_datafiles(s.replay);
+  std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
+  for (tess::balance::Phase& phase : phases) {
     const Snapshot snapshot = prepared(s, std::move(phase.snapshot));
-    for (const std::string& name : names) out += row(phase.id, snapshot, name, s.seed);
+    for (const std::string& name : names) {
+      const std::string why = tess::balance::obstacle(name, snapshot);
+      if (why.empty()) {
+        out += row(phase.id, snapshot, name, s.seed);
+      } else if (all) {
+        ++left_out[{name, why}];
+      } else {
+        tess::fail(tess::ErrorCode::bad_argument, "--strategy ", name, ": ", why, " (phase ",
+                   phase.id, " of ", s.replay.front(), s.replay.size() > 1 ? " and others" : "",
+                   "); choose another, or all, which leaves it out");
+      }
+    }
   }
+  for (const auto& [what, n_phases] : left_out)
+    out += fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), what.first,
+                       what.second);
   return out;
 }
 

@@ -127,19 +127,21 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   return out;
 }
 
-void save_snapshots(const std::string& directory, const Row& row, const Outcome& outcome) {
+void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {
   if (outcome.phases.empty()) return;
   const std::filesystem::path folder =
-      std::filesystem::path(directory) /
+      std::filesystem::path(s.snapshots) /
       fmt::format("{}-{}-{}", row.workload, row.per_pe, row.strategy);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
     tess::fail(tess::ErrorCode::environment, "--save-snapshot: ", folder.string(), ": ",
                error.message());
-  for (std::int32_t pe = 0; pe < row.n_pes; ++pe)
-    plot::write_file((folder / fmt::format("data.{}.json", pe)).string(),
-                     tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe}));
+  for (std::int32_t pe = 0; pe < row.n_pes; ++pe) {
+    const std::string file = (folder / fmt::format("data.{}.{}", pe, s.snapshot_format)).string();
+    const std::string text = tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe});
+    plot::write_file(file, tess::balance::lb_datafile_bytes(file, text));
+  }
 }
 
 }  // namespace lb_lab

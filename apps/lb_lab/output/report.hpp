@@ -24,7 +24,7 @@ void write_json(const std::string& path, const Sweep& sweep);
 [[nodiscard]] std::string explain_text(const Settings& settings, std::int32_t n_pes);
 
 /// Writes the phases that a strategy was given, one file per PE:
-/// DIR/WORKLOAD-PER_PE-STRATEGY/data.PE.json.
-void save_snapshots(const std::string& directory, const Row& row, const Outcome& outcome);
+/// DIR/WORKLOAD-PER_PE-STRATEGY/data.PE.json.br, or .json.
+void save_snapshots(const Settings& settings, const Row& row, const Outcome& outcome);
 
 }  // namespace lb_lab

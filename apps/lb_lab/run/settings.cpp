@@ -21,7 +21,16 @@ void expand_names(Settings& s) {
     for (const Workload& one : workloads()) s.workloads.push_back(one.name);
   }
   for (const std::string& name : s.workloads) (void)find_workload(name);
-  if (std::ranges::count(s.strategies, "all") > 0) s.strategies = tess::balance::strategy_names();
+  if (std::ranges::count(s.strategies, "all") > 0) {
+    s.strategies.clear();
+    for (const std::string& name : tess::balance::strategy_names()) {
+      const std::string why = tess::balance::obstacle(name, {});
+      (why.empty() ? s.strategies : s.left_out).push_back(why.empty() ? name : name + ": " + why);
+    }
+  }
+  for (const std::string& name : s.strategies)
+    if (const std::string why = tess::balance::obstacle(name, {}); !why.empty())
+      refuse("--strategy: ", name, ": ", why, "; choose another, or all, which leaves it out");
   for (const std::string& name : s.strategies) (void)tess::balance::make_strategy(name, s.seed);
   // What is gained is gained over none.
   std::erase(s.strategies, "none");
@@ -39,6 +48,16 @@ double parse_time(std::string_view option, std::string_view value) {
   if (error != std::errc() || !(count * unit_seconds > 0) || count * unit_seconds > 1e6)
     refuse(option, ": ", value, " is not a time above 0; give 250us, 1ms, 0.5s or the like");
   return count * unit_seconds;
+}
+
+std::vector<std::uint64_t> limits_of_pes(const Settings& s, std::size_t n_pes) {
+  if (s.memory_limits.empty()) return {};
+  if (s.memory_limits.size() == 1)
+    return std::vector<std::uint64_t>(n_pes, s.memory_limits.front());
+  if (s.memory_limits.size() != n_pes)
+    refuse("--memory-limit: ", s.memory_limits.size(), " limits for ", n_pes,
+           " PEs; give one, or one per PE");
+  return s.memory_limits;
 }
 
 tess::BalanceWhen parse_when(std::string_view value) {
@@ -75,6 +94,7 @@ void complete(Settings& s, std::int32_t n_pes) {
     refuse("--period: ", s.period, " iterations; give 1 to --iterations ", s.n_iterations);
   if (!s.speeds.empty() && s.speeds.size() != static_cast<std::size_t>(n_pes))
     refuse("--speed: ", s.speeds.size(), " speeds for ", n_pes, " PEs; give one per PE");
+  (void)limits_of_pes(s, static_cast<std::size_t>(n_pes));
   for (const double speed : s.speeds)
     if (!(speed >= 1e-3 && speed <= 1e3))
       refuse("--speed: ", speed, " is not within 0.001 and 1000");

@@ -16,7 +16,9 @@ struct Settings {
   std::vector<std::string> workloads{"linear"};  ///< names, or all
   std::vector<std::int32_t> per_pe{1, 2, 4, 8, 16, 32};
   std::vector<std::string> strategies{"none", "greedy_refine"};  ///< names, or all
-  std::int32_t period = 10;                                      ///< iterations between rounds
+  std::vector<std::string> left_out;         ///< strategies of `all` that cannot run, and why
+  std::vector<std::uint64_t> memory_limits;  ///< of PEs, in bytes; one: of each; empty: none
+  std::int32_t period = 10;                  ///< iterations between rounds
   std::int32_t n_iterations = 50;
   std::string grain = "1ms";  ///< mean work of an element an iteration, at the finest cut
   std::string when = "at_sync";
@@ -27,6 +29,7 @@ struct Settings {
   std::uint64_t message_bytes = 1024;
   std::int32_t repeat = 1;  ///< runs of each; the fastest counts
   std::string json, plot, snapshots;
+  std::string snapshot_format = "json.br";  ///< or json: not compressed
   bool explain = false;
   std::vector<std::string> replay;  ///< files; not empty: no run
   std::int32_t replay_pes = 0;      ///< 0: as in the files
@@ -36,6 +39,9 @@ struct Settings {
 /// Replaces `all` by names, puts `none` in front of the strategies, and throws tess::Error for
 /// settings that cannot be run on that many PEs.
 void complete(Settings& settings, std::int32_t n_pes);
+
+/// A limit for each PE, from none, one or all of them. Throws tess::Error for another number.
+[[nodiscard]] std::vector<std::uint64_t> limits_of_pes(const Settings& settings, std::size_t n_pes);
 
 /// "250us", "1ms", "0.5s" in seconds, above 0. Throws tess::Error that names the option.
 [[nodiscard]] double parse_time(std::string_view option, std::string_view value);

@@ -13,15 +13,19 @@
 #include "runtime/balance/unknown_loads.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace tess::balance {
 namespace {
 
+enum class Needs : std::uint8_t { nothing, positions, scotch };
+
 struct Entry {
   std::string name;
   Assignment (*run)(const Snapshot&, std::uint64_t seed);
+  Needs needs = Needs::nothing;
 };
 
 /// The table of strategies; an entry without a seed ignores it.
@@ -36,11 +40,17 @@ const std::vector<Entry>& entries() {
       {"diffusion", [](const Snapshot& s, std::uint64_t) { return diffusion(s); }},
       {"gossip", [](const Snapshot& s, std::uint64_t seed) { return gossip(s, seed); }},
       {"hierarchical", [](const Snapshot& s, std::uint64_t) { return hierarchical(s); }},
-      {"rcb", [](const Snapshot& s, std::uint64_t) { return rcb(s); }},
-      {"hilbert", [](const Snapshot& s, std::uint64_t) { return hilbert(s); }},
-      {"graph", [](const Snapshot& s, std::uint64_t seed) { return graph(s, seed); }},
+      {"rcb", [](const Snapshot& s, std::uint64_t) { return rcb(s); }, Needs::positions},
+      {"hilbert", [](const Snapshot& s, std::uint64_t) { return hilbert(s); }, Needs::positions},
+      {"graph", [](const Snapshot& s, std::uint64_t seed) { return graph(s, seed); },
+       Needs::scotch},
   };
   return all;
+}
+
+Needs needs_of(std::string_view name) {
+  const auto entry = std::ranges::find(entries(), name, &Entry::name);
+  return entry == entries().end() ? Needs::nothing : entry->needs;
 }
 
 }  // namespace
@@ -63,6 +73,18 @@ Strategy make_strategy(std::string_view name, std::uint64_t seed) {
       };
   fail(ErrorCode::bad_argument, fmt::format("no balance strategy '{}'; choose one of {}", name,
                                             fmt::join(strategy_names(), ", ")));
+}
+
+bool needs_positions(std::string_view name) {
+  return needs_of(name) == Needs::positions;
+}
+
+std::string obstacle(std::string_view name, const Snapshot& s) {
+  if (needs_positions(name) && s.elements.position.empty() && s.elements.size() > 0)
+    return "the snapshot does not have the positions of all elements";
+  if (needs_of(name) == Needs::scotch && !graph_is_built())
+    return "Tessera is built without Scotch";
+  return {};
 }
 
 Strategy make_strategy(Strategy users) {

@@ -127,6 +127,10 @@ Assignment map(const Snapshot& s, std::uint64_t seed, double tolerance) {
 
 }  // namespace
 
+bool graph_is_built() {
+  return true;
+}
+
 Assignment graph(const Snapshot& s, std::uint64_t seed, double tolerance) {
   if (s.pes.size() == 1 || s.elements.size() == 0) return s.elements.pe;
   if (s.elements.size() + 2 * s.edges.size() > INT32_MAX / 2)

@@ -12,4 +12,7 @@ namespace tess::balance {
 [[nodiscard]] Assignment graph(const Snapshot& snapshot, std::uint64_t seed,
                                double tolerance = 1.05);
 
+/// False where Tessera is built without Scotch: then graph() throws Error.
+[[nodiscard]] bool graph_is_built();
+
 }  // namespace tess::balance

@@ -14,6 +14,7 @@ namespace {
 Snapshot of_groups(const Snapshot& s, std::size_t group_size) {
   Snapshot groups;
   groups.elements = s.elements;
+  groups.blocks = s.blocks;
   for (PeId& pe : groups.elements.pe) pe = pe_at(slot(pe) / group_size);
   const std::size_t n_groups = (s.pes.size() + group_size - 1) / group_size;
   groups.pes.background.assign(n_groups, 0.0);
@@ -48,10 +49,12 @@ Assignment enter(const Snapshot& s, const Assignment& group, std::size_t group_s
 Snapshot inside(const Snapshot& s, const Assignment& placed,
                 const std::vector<std::size_t>& elements, std::size_t begin, std::size_t end) {
   Snapshot group;
+  group.blocks = s.blocks;
   for (std::size_t p = begin; p < end; ++p) {
     group.pes.background.push_back(s.pes.background[p]);
     group.pes.speed.push_back(s.pes.speed[p]);
     group.pes.memory_limit_bytes.push_back(s.pes.memory_limit_bytes[p]);
+    group.pes.working_bytes.push_back(s.pes.working_bytes_of(p));
   }
   for (const std::size_t i : elements) {
     group.elements.key.push_back(s.elements.key[i]);
@@ -60,6 +63,8 @@ Snapshot inside(const Snapshot& s, const Assignment& placed,
     group.elements.migratable.push_back(s.elements.migratable[i]);
     group.elements.size_bytes.push_back(s.elements.size_bytes[i]);
     group.elements.memory_bytes.push_back(s.elements.memory_bytes[i]);
+    group.elements.working_bytes.push_back(s.elements.working_bytes_of(i));
+    group.elements.block.push_back(s.elements.block_of(i));
   }
   return group;
 }

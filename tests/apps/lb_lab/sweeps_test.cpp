@@ -2,12 +2,15 @@
 // refuses.
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"
+#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -37,6 +40,37 @@ Settings linear() {
   s.n_iterations = 20;
   s.period = 2;
   return s;
+}
+
+/// The table of a replay without its column of times, which differ from run to run.
+std::string without_times(const std::string& table) {
+  std::string result;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);)
+    result +=
+        line.starts_with("left out") ? line + '\n' : line.substr(0, 94) + line.substr(107) + '\n';
+  return result;
+}
+
+/// A snapshot on two PEs without positions, in a file of this name.
+std::string save_without_positions(const Scratch& scratch, const char* name) {
+  tess::balance::Snapshot s;
+  s.pes = {{0, 0}, {1, 1}, {0, 0}, {}};
+  s.blocks.push_back({3, 100, tess::PeId{0}});
+  auto& e = s.elements;
+  for (std::size_t i = 0; i < 8; ++i) {
+    e.key.push_back({tess::CollectionId{7}, i});
+    e.pe.push_back(tess::PeId{0});
+    e.load.push_back(1);
+    e.migratable.push_back(1);
+    e.size_bytes.push_back(1);
+    e.memory_bytes.push_back(10);
+    e.block.push_back(0);
+  }
+  const std::string file = (scratch.path / name).string();
+  const std::string text = tess::balance::write_lb_datafile({{0, s}, {1, s}});
+  std::ofstream(file, std::ios::binary) << tess::balance::lb_datafile_bytes(file, text);
+  return file;
 }
 
 const Row& row_of(const Sweep& sweep, const std::string& strategy, std::int32_t per_pe) {
@@ -137,7 +171,7 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
     CHECK(std::filesystem::exists(scratch.path / (std::string("linear-") + name + ".csv")));
   for (int pe = 0; pe < 4; ++pe)
     s.replay.push_back(
-        (scratch.path / "linear-16-greedy" / ("data." + std::to_string(pe) + ".json")).string());
+        (scratch.path / "linear-16-greedy" / ("data." + std::to_string(pe) + ".json.br")).string());
   s.strategies = {"none", "greedy"};
   const std::string table = replay(s);
   std::istringstream lines(table);
@@ -161,4 +195,71 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
   CHECK(replay(s).find("      7        64 graph") != std::string::npos);
   s.speeds = {1, 2};
   CHECK_THROWS_WITH(replay(s), Catch::Contains("2 speeds for a replay on 7 PEs"));
+}
+
+TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
+  const Scratch scratch;
+  Settings s = linear();
+  s.per_pe = {4};
+  s.strategies = {"greedy"};
+  std::map<std::string, std::string> table;
+  for (const char* format : {"json", "json.br"}) {
+    s.replay.clear();
+    s.snapshots = (scratch.path / format).string();
+    s.snapshot_format = format;
+    (void)sweep_on("pes=2,cost=1us", s);
+    for (int pe = 0; pe < 2; ++pe)
+      s.replay.push_back(s.snapshots + "/linear-4-greedy/data." + std::to_string(pe) + '.' +
+                         format);
+    Settings all = s;
+    all.strategies = {"all"};
+    table[format] = without_times(replay(all));
+  }
+  CHECK(table["json"] == table["json.br"]);
+  CHECK(table["json"].find("hilbert") != std::string::npos);
+  CHECK(table["json"].find("left out") == std::string::npos);
+}
+
+TEST_CASE("all leaves out what a snapshot without positions cannot serve, and says so",
+          "[lb_lab]") {
+  const Scratch scratch;
+  Settings s;
+  s.replay = {save_without_positions(scratch, "data.0.json.br")};
+  s.strategies = {"all"};
+  const std::string table = replay(s);
+  for (const std::string& name : tess::balance::strategy_names()) {
+    INFO(name);
+    const bool is_row = table.find("         8 " + name + ' ') != std::string::npos;
+    const bool is_left_out = table.find("left out in 2 of 2 phases: " + name +
+                                        ": the snapshot does not have") != std::string::npos;
+    CHECK(is_row == (name != "rcb" && name != "hilbert"));
+    CHECK(is_left_out == !is_row);
+  }
+  s.strategies = {"greedy", "rcb"};
+  CHECK_THROWS_WITH(replay(s), Catch::Contains("--strategy rcb: the snapshot does not have") &&
+                                   Catch::Contains("data.0.json.br"));
+}
+
+TEST_CASE("memory limits of a replay count a shared block once per PE", "[lb_lab]") {
+  const Scratch scratch;
+  Settings s;
+  s.replay = {save_without_positions(scratch, "data.0.json")};
+  s.strategies = {"greedy"};
+  const auto moves = [&](std::vector<std::uint64_t> limits) {
+    s.memory_limits = std::move(limits);
+    std::istringstream lines(replay(s));
+    std::string line, name;
+    std::getline(lines, line);
+    std::size_t phase = 0, n_pes = 0, n_elements = 0, n_moves = 0, fullest = 0, n_over = 9;
+    double before = 0, predicted = 0, bytes = 0, external = 0, took = 0;
+    lines >> phase >> n_pes >> n_elements >> name >> before >> predicted >> n_moves >> bytes >>
+        external >> took >> fullest >> n_over;
+    return std::vector<std::size_t>{n_moves, fullest, n_over};
+  };
+  using Numbers = std::vector<std::size_t>;
+  CHECK(moves({}) == Numbers{4, 140, 0});
+  CHECK(moves({140}) == Numbers{4, 140, 0});
+  CHECK(moves({0, 120}) == Numbers{2, 160, 0});
+  CHECK(moves({150, 109}) == Numbers{0, 180, 1});  // above its limit as it is
+  CHECK_THROWS_WITH(moves({1, 2, 3}), Catch::Contains("--memory-limit: 3 limits for 2 PEs"));
 }

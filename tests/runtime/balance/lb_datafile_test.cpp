@@ -2,6 +2,7 @@
 
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/core/error.hpp"
+#include "tests/runtime/balance/memory_scenes.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -13,6 +14,11 @@ using nlohmann::json;
 
 namespace {
 
+std::optional<SharedBlock> block_of(const Snapshot& s, std::size_t i) {
+  const std::size_t block = s.elements.block_of(i);
+  return block == no_block ? std::nullopt : std::optional(s.blocks[block]);
+}
+
 void require_same(const Snapshot& a, const Snapshot& b) {
   REQUIRE(a.elements.key == b.elements.key);
   REQUIRE(a.elements.pe == b.elements.pe);
@@ -22,9 +28,15 @@ void require_same(const Snapshot& a, const Snapshot& b) {
   REQUIRE(a.elements.size_bytes == b.elements.size_bytes);
   REQUIRE(a.elements.memory_bytes == b.elements.memory_bytes);
   REQUIRE(a.elements.position == b.elements.position);
+  for (std::size_t i = 0; i < a.elements.size(); ++i) {
+    REQUIRE(a.elements.working_bytes_of(i) == b.elements.working_bytes_of(i));
+    REQUIRE(block_of(a, i) == block_of(b, i));
+  }
   REQUIRE(a.pes.speed == b.pes.speed);
   REQUIRE(a.pes.background == b.pes.background);
   REQUIRE(a.pes.memory_limit_bytes == b.pes.memory_limit_bytes);
+  for (std::size_t p = 0; p < a.pes.size(); ++p)
+    REQUIRE(a.pes.working_bytes_of(p) == b.pes.working_bytes_of(p));
   std::vector<Edge> edges_a = a.edges, edges_b = b.edges;  // files of ranks bring them by rank
   std::ranges::sort(edges_a);
   std::ranges::sort(edges_b);
@@ -66,7 +78,7 @@ std::string complaint(const std::string& text) {
 TEST_CASE("phases come back from a file as they were", "[balance][lb_datafile]") {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     INFO("seed " << seed);
-    const std::vector<Phase> phases = {{3, anything(seed)}, {9, stencil(5, 3, seed)}};
+    const std::vector<Phase> phases = {{3, anything(seed)}, {9, any_memory(seed)}};
     const auto back = parse_lb_datafiles({{"f", write_lb_datafile(phases)}});
     REQUIRE(back.size() == 2);
     for (std::size_t k = 0; k < 2; ++k) {
@@ -141,6 +153,84 @@ TEST_CASE("files as vt writes them are read, one per rank", "[balance][lb_datafi
   CHECK(s.elements.migratable == std::vector<std::uint8_t>{1, 0, 1});
   CHECK(s.elements.position.empty());
   CHECK(s.edges == std::vector<Edge>{{0, 2, 100, 2}});
+}
+
+TEST_CASE("shared blocks and memory are read as vt writes them", "[balance][lb_datafile]") {
+  const auto task = [](int id, int node, double shared_id, double shared_bytes) {
+    return json{{"entity", {{"home", node}, {"id", id}, {"migratable", true}, {"type", "object"}}},
+                {"node", node},
+                {"resource", "cpu"},
+                {"time", 0.5},
+                {"user_defined",
+                 {{"shared_id", shared_id},
+                  {"shared_bytes", shared_bytes},
+                  {"home_rank", 2.0},
+                  {"task_working_bytes", 30.0},
+                  {"task_footprint_bytes", 7.0},
+                  {"task_serialized_bytes", 9.0},
+                  {"rank_working_bytes", node == 0 ? 1000.0 : 2000.0}}}};
+  };
+  const auto file = [](const json& tasks) {
+    json phase;
+    phase["id"] = 0;
+    phase["tasks"] = tasks;
+    json whole;
+    whole["phases"] = json::array({phase});
+    return whole.dump();
+  };
+  const auto phases = parse_lb_datafiles(
+      {{"data.0.json",
+        file(json::array({task(3, 0, 44, 100), task(7, 0, 44, 100), task(11, 0, -1, 0)}))},
+       {"data.1.json", file(json::array({task(15, 1, 44, 120), task(19, 1, 45, 10)}))}});
+  const Snapshot& s = phases.at(0).snapshot;
+  CHECK(s.pes.size() == 3);  // a block is at home on the third
+  CHECK(s.blocks == std::vector<SharedBlock>{{44, 120, PeId{2}}, {45, 10, PeId{2}}});
+  CHECK(s.elements.block == std::vector<std::size_t>{0, 0, no_block, 0, 1});
+  CHECK(s.elements.working_bytes == std::vector<std::uint64_t>(5, 30));
+  CHECK(s.elements.memory_bytes == std::vector<std::uint64_t>(5, 7));
+  CHECK(s.elements.size_bytes == std::vector<std::uint64_t>(5, 9));
+  CHECK(s.pes.working_bytes == std::vector<std::uint64_t>{1000, 2000, 0});
+
+  const auto refused = [&](const char* key, const json& value) {
+    json one = task(3, 0, 44, 100);
+    one["user_defined"][key] = value;
+    return complaint(file(json::array({one})));
+  };
+  CHECK_THAT(refused("shared_id", 4.5), Catch::Contains("shared_id is not a whole number"));
+  CHECK_THAT(refused("shared_id", "four"), Catch::Contains("shared_id is not a number"));
+  CHECK_THAT(refused("shared_bytes", -1.0), Catch::Contains("shared_bytes is below 0"));
+  CHECK_THAT(refused("task_working_bytes", -1), Catch::Contains("task_working_bytes is below 0"));
+  CHECK_THAT(refused("home_rank", 4e9), Catch::Contains("home_rank is 4000000000, not below"));
+  CHECK_THAT(refused("rank_working_bytes", 0x1p61), Catch::Contains("adds up to"));
+  json lacks = task(3, 0, 44, 100);
+  lacks["user_defined"].erase("shared_bytes");
+  CHECK_THAT(complaint(file(json::array({lacks}))), Catch::Contains("lacks 'shared_bytes'"));
+}
+
+TEST_CASE("our files give memory to vt's balancers, which accept floating point only",
+          "[balance][lb_datafile]") {
+  const json file = json::parse(write_lb_datafile({{0, any_memory(3)}}));
+  std::size_t n_shared = 0;
+  for (const json& task : file.at("phases").at(0).at("tasks")) {
+    const json& user = task.at("user_defined");
+    for (const char* key : {"task_footprint_bytes", "task_working_bytes", "task_serialized_bytes",
+                            "rank_working_bytes"})
+      CHECK(user.at(key).is_number_float());
+    if (!user.contains("shared_id")) continue;
+    ++n_shared;
+    for (const char* key : {"shared_id", "shared_bytes", "home_rank"})
+      CHECK(user.at(key).is_number_float());
+  }
+  CHECK(n_shared > 0);
+}
+
+TEST_CASE("files that give sizes under their former names are read", "[balance][lb_datafile]") {
+  const auto phases = parse_lb_datafiles(
+      {{"f", R"({"phases":[{"id":0,"tasks":[{"entity":{"home":0,"id":7,"migratable":true,
+        "type":"object"},"node":0,"time":1.0,
+        "user_defined":{"size_bytes":12,"memory_bytes":34}}]}]})"}});
+  CHECK(phases.at(0).snapshot.elements.size_bytes.at(0) == 12);
+  CHECK(phases.at(0).snapshot.elements.memory_bytes.at(0) == 34);
 }
 
 TEST_CASE("a damaged file is refused in one line with file, place and remedy",

@@ -118,6 +118,23 @@ TEST_CASE("a partition of a partition moves nothing, whatever its parts were cal
   }
 }
 
+TEST_CASE("what a snapshot cannot serve is known before a strategy runs", "[balance]") {
+  const Snapshot without = mod_seven(Start::blocks), with = stencil(4, 2, 1);
+  for (const std::string& name : strategy_names()) {
+    INFO(name);
+    const bool by_position = name == "rcb" || name == "hilbert";
+    CHECK(needs_positions(name) == by_position);
+    for (const Snapshot& s : {without, with}) {
+      if (obstacle(name, s).empty()) {
+        CHECK_NOTHROW(make_strategy(name, 1)(s));
+      } else {
+        CHECK_THROWS_AS(make_strategy(name, 1)(s), Error);
+      }
+    }
+    if (by_position) CHECK_THAT(obstacle(name, without), Catch::Contains("positions"));
+  }
+}
+
 TEST_CASE("strategies by position refuse a snapshot without positions", "[balance]") {
   for (const char* name : {"rcb", "hilbert"})
     CHECK_THROWS_WITH(run(mod_seven(Start::blocks), name), Catch::Contains("has no positions"));
