@@ -1,0 +1,30 @@
+// What messages between the two PEs of a machine take, real or simulated: the figures from which the
+// parameters of a simulated machine are found.
+#pragma once
+
+#include "runtime/task.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace bench {
+
+/// The size of the vector of WireTimes::large.
+inline constexpr std::size_t large_bytes = std::size_t{1} << 18U;
+
+/// Nanoseconds; of several samples the least, which is that of an undisturbed machine.
+struct WireTimes {
+  double ping = 0;      ///< a number, one way, when both PEs do nothing else
+  double large = 0;     ///< a vector of large_bytes, one way; 0 within a process, where it is a pointer
+  double exchange = 0;  ///< what sending a message and receiving one adds to the work of a busy PE
+};
+
+struct WireEffort {
+  std::int32_t n_samples = 60;
+  std::int32_t n_messages = 2000;  ///< of a sample
+};
+
+/// The main coroutine of a run on two PEs.
+tess::Task measure_wire(WireEffort effort, WireTimes& result);
+
+}  // namespace bench
