@@ -47,14 +47,14 @@ void require_calibration(const std::string& path, const tess::Machine& machine) 
 }
 
 int calibrate(const Bench& bench, const std::string& path) {
-  const WireEffort effort{bench.size(60, 2), bench.size(2000, 40)};
+  const WireEffort effort{bench.size(15, 1), bench.size(1000, 20)};
   WireTimes measured;
   if (const int code = bench.run([&] { return measure_wire(effort, measured); }); code != 0)
     return code;
   if (!bench.speaks()) return 0;
   const Joins joins = bench.ranks() > 1 ? Joins::processes : Joins::pes;
   int code = 0;
-  const WireEffort less{bench.size(20, 2), effort.n_messages};
+  const WireEffort less{bench.size(5, 1), effort.n_rounds};
   const FittedWire fitted = fit_wire(measured, [&](const tess::Wire& wire) {
     WireTimes times;
     tess::Setup setup;

@@ -4,6 +4,7 @@
 #include "runtime/base/ticks.hpp"
 #include "runtime/runtime.hpp"
 
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -13,107 +14,130 @@ namespace {
 /// The work between two messages of an exchange: so long that each message travels alone.
 constexpr double grain_seconds = 8e-6;
 
+/// Rounds of a lap. A lap is so short that most have no disturbance by other programs, and the
+/// median lap counts.
+constexpr std::int32_t lap_rounds = 10;
+
 using Bytes = std::vector<std::uint8_t>;
 
-struct Exchange {
-  std::int32_t n_messages = 0;
-  bool sends = false;  ///< otherwise it works only
+enum class Game : std::uint8_t {
+  ping,      ///< a number goes to and fro
+  large,     ///< a vector does
+  work,      ///< both work
+  exchange,  ///< both work, send and receive
 };
 
-/// One on each of two PEs.
+struct Match {
+  Game game = Game::ping;
+  std::int32_t n_rounds = 0;
+};
+
+/// Laps of so many rounds, timed on one PE.
+class Laps {
+ public:
+  void begin(std::int32_t rounds) {
+    times_ = {};
+    rounds_ = rounds;
+    n_ = 0;
+    watch_ = Stopwatch();
+  }
+  /// A round is over. A lap counts only if it is `fair`.
+  void round(bool fair) {
+    if (++n_ < rounds_) return;
+    if (fair) times_.add(watch_.nanoseconds() / rounds_);
+    n_ = 0;
+    watch_ = Stopwatch();
+  }
+  [[nodiscard]] bool at_begin() const { return n_ == 0; }
+  /// Nanoseconds of a round; 0 if no lap counts.
+  [[nodiscard]] double median() const { return times_.empty() ? 0 : times_.median(); }
+
+ private:
+  Samples times_;
+  std::int32_t rounds_ = 1, n_ = 0;
+  Stopwatch watch_;
+};
+
+/// One on each of two PEs. The first takes the times.
 class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
  public:
   WirePeer() : other_(1 - index().x) {}
 
-  // To the first element: a ball goes to and fro.
-  void serve(std::int32_t n_round_trips, tess::Callback<std::int32_t> done) {
-    begin(n_round_trips, std::move(done));
-    other().send<&WirePeer::hit>(0);
+  /// To both; `done` gets the nanoseconds of a round.
+  void play(Match match, tess::Callback<double> done) {
+    done_ = std::move(done);
+    left_ = match.n_rounds;
+    sends_ = match.game == Game::exchange;
+    n_due_ += sends_ ? match.n_rounds : 0;
+    laps_.begin(match.game == Game::large ? 1 : lap_rounds);
+    if (match.game == Game::work || sends_) {
+      works_ = true;
+      work();
+    } else if (index().x != 0) {
+      contribute(tess::max, 0.0, done_);
+    } else if (match.game == Game::ping) {
+      other().send<&WirePeer::hit>(0);
+    } else {
+      other().send<&WirePeer::hit_large>(Bytes(large_bytes, 7));
+    }
   }
-  void serve_large(std::int32_t n_round_trips, tess::Callback<std::int32_t> done) {
-    begin(n_round_trips, std::move(done));
-    other().send<&WirePeer::hit_large>(Bytes(large_bytes, 7));
-  }
+
   void hit(std::int32_t n_hits) {
     if (!over()) other().send<&WirePeer::hit>(n_hits + 1);
   }
   void hit_large(Bytes bytes) {
     if (!over()) other().send<&WirePeer::hit_large>(std::move(bytes));
   }
-
-  // To both: each works, sends, and receives meanwhile.
-  void exchange(Exchange exchange, tess::Callback<std::int32_t> done) {
-    done_ = std::move(done);
-    sends_ = exchange.sends;
-    n_due_ += exchange.sends ? exchange.n_messages : 0;
-    works_ = true;
-    work(exchange.n_messages);
-  }
-  void work(std::int32_t left) {
-    const auto grain =
-        static_cast<std::uint64_t>(grain_seconds / tess::detail::seconds_per_tick());
+  void work() {
+    const auto grain = static_cast<std::uint64_t>(grain_seconds / tess::detail::seconds_per_tick());
     const std::uint64_t until = tess::detail::read_ticks() + grain;
     while (tess::detail::read_ticks() < until) {
     }
-    if (sends_) other().send<&WirePeer::take>(left);
-    if (left > 1) {
-      array()[index()].send<&WirePeer::work>(left - 1);
+    if (sends_) other().send<&WirePeer::take>();
+    // Where the other PE was held up, the messages of a lap are too few or too many.
+    laps_.round(!sends_ || std::abs(n_taken_ - lap_rounds) <= 1);
+    if (laps_.at_begin()) n_taken_ = 0;
+    if (--left_ > 0) {
+      array()[index()].send<&WirePeer::work>();
     } else {
       works_ = false;
       finish();
     }
   }
-  void take(std::int32_t /*left*/) {
+  void take() {
+    ++n_taken_;
     --n_due_;
     finish();
   }
 
  private:
   [[nodiscard]] tess::ElementProxy<WirePeer> other() const { return array()[{other_}]; }
-  void begin(std::int32_t n_round_trips, tess::Callback<std::int32_t> done) {
-    left_ = n_round_trips;
-    done_ = std::move(done);
-  }
   /// The ball has arrived; true if that was the last time.
   bool over() {
-    if (index().x != 0 || --left_ > 0) return false;
-    done_(0);
+    if (index().x != 0) return false;
+    laps_.round(true);
+    if (--left_ > 0) return false;
+    contribute(tess::max, laps_.median(), done_);
     return true;
   }
-  /// A message may come before its exchange() does: then messages are due in advance.
+  /// A message may come before play() does: then messages are due in advance.
   void finish() {
-    if (!works_ && n_due_ == 0) contribute(tess::sum, std::int32_t{1}, done_);
+    if (!works_ && n_due_ == 0) contribute(tess::max, index().x == 0 ? laps_.median() : 0.0, done_);
   }
 
   std::int32_t other_;
-  std::int32_t left_ = 0, n_due_ = 0;
+  std::int32_t left_ = 0, n_due_ = 0, n_taken_ = 0;
   bool sends_ = false, works_ = true;
-  tess::Callback<std::int32_t> done_;
+  Laps laps_;
+  tess::Callback<double> done_;
 };
 
-using Peers = tess::ArrayProxy<WirePeer>;
-
-enum class Size : std::uint8_t { number, large };
-
-/// Gives nanoseconds one way.
-tess::Task play(Peers peers, Size size, std::int32_t n_round_trips, double& result) {
-  tess::Future<std::int32_t> done;
-  const Stopwatch watch;
-  if (size == Size::number)
-    peers[{0}].send<&WirePeer::serve>(n_round_trips, done.callback());
-  else
-    peers[{0}].send<&WirePeer::serve_large>(n_round_trips, done.callback());
-  co_await done;
-  result = watch.nanoseconds() / (2.0 * n_round_trips);
-}
-
-/// Gives nanoseconds of one work, with its messages if there are any.
-tess::Task work_both(Peers peers, Exchange exchange, double& result) {
-  tess::Future<std::int32_t> done;
-  const Stopwatch watch;
-  peers.broadcast<&WirePeer::exchange>(exchange, done.callback());
-  co_await done;
-  result = watch.nanoseconds() / exchange.n_messages;
+/// Adds the nanoseconds of a round, if any lap was fair.
+tess::Task sample(tess::ArrayProxy<WirePeer> peers, Match match, Samples& samples) {
+  tess::Future<double> done;
+  peers.broadcast<&WirePeer::play>(match, done.callback());
+  const double round = co_await done;
+  if (round > 0) samples.add(round);
 }
 
 }  // namespace
@@ -122,21 +146,19 @@ tess::Task measure_wire(WireEffort effort, WireTimes& result) {
   TESS_CHECK(tess::n_pes() == 2, tess::n_pes(), " PEs, not two");
   const auto peers = tess::create<WirePeer>(tess::range(2));
   const bool travels = !tess::machine().same_process(tess::PeId{0}, tess::PeId{1});
-  const Exchange alone_exchange{effort.n_messages / 4, false}, both{effort.n_messages / 4, true};
-  Samples ping, large, alone, exchange;
-  for (std::int32_t i = 0; i <= effort.n_samples; ++i) {
-    double numbers = 0, vectors = 0, works = 0, exchanges = 0;
-    co_await play(peers, Size::number, effort.n_messages / 2, numbers);
-    if (travels) co_await play(peers, Size::large, 1 + effort.n_messages / 100, vectors);
-    co_await work_both(peers, alone_exchange, works);
-    co_await work_both(peers, both, exchanges);
-    if (i == 0) continue;  // the first warms up
-    ping.add(numbers);
-    large.add(vectors);
-    alone.add(works);
-    exchange.add(exchanges);
+  const std::int32_t n = effort.n_rounds;
+  const Match ping{Game::ping, n}, large{Game::large, 1 + n / 20};
+  const Match work{Game::work, n}, exchange{Game::exchange, n};
+  Samples pings, larges, works, exchanges, warm_up;
+  co_await sample(peers, exchange, warm_up);
+  for (std::int32_t i = 0; i < effort.n_samples; ++i) {
+    co_await sample(peers, ping, pings);
+    if (travels) co_await sample(peers, large, larges);
+    co_await sample(peers, work, works);
+    co_await sample(peers, exchange, exchanges);
   }
-  result = {ping.least(), large.least(), exchange.least() - alone.least()};
+  const auto median = [](const Samples& samples) { return samples.empty() ? 0 : samples.median(); };
+  result = {median(pings) / 2, median(larges) / 2, median(exchanges) - median(works)};
 }
 
 }  // namespace bench

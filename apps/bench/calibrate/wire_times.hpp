@@ -12,7 +12,7 @@ namespace bench {
 /// The size of the vector of WireTimes::large.
 inline constexpr std::size_t large_bytes = std::size_t{1} << 18U;
 
-/// Nanoseconds; of several samples the least, which is that of an undisturbed machine.
+/// Nanoseconds; medians.
 struct WireTimes {
   double ping = 0;      ///< a number, one way, when both PEs do nothing else
   double large = 0;     ///< a vector of large_bytes, one way; 0 within a process, where it is a pointer
@@ -20,8 +20,8 @@ struct WireTimes {
 };
 
 struct WireEffort {
-  std::int32_t n_samples = 60;
-  std::int32_t n_messages = 2000;  ///< of a sample
+  std::int32_t n_samples = 15;
+  std::int32_t n_rounds = 1000;  ///< of a sample; a multiple of 10
 };
 
 /// The main coroutine of a run on two PEs.
