@@ -99,7 +99,10 @@ class SimulatedMachine final : public Machine {
     const PeId taker{to.value * pes_per_process_};
     const std::int64_t time = departs({from, taker, nullptr, {bytes.data(), bytes.size()}},
                                       bytes.size(), Traffic::user, between_);
-    push(time, taker.value, nullptr, new Parcel{std::move(bytes), {}, {}});
+    // A copy: the sender keeps its memory, as it does on a real machine.
+    Buffer copy(bytes.size());
+    std::copy(bytes.data(), bytes.data() + bytes.size(), copy.data());
+    push(time, taker.value, nullptr, new Parcel{std::move(copy), {}, {}});
   }
   void send(PeId from, ProcessId to, Parcel&& parcel) override {
     const NotWork pause(*this);

@@ -12,7 +12,7 @@ namespace bench {
 /// The size of the vector of WireTimes::large.
 inline constexpr std::size_t large_bytes = std::size_t{1} << 18U;
 
-/// Nanoseconds; medians.
+/// Nanoseconds; of several medians the least, which is that of the least disturbed sample.
 struct WireTimes {
   double ping = 0;      ///< a number, one way, when both PEs do nothing else
   double large = 0;     ///< a vector of large_bytes, one way; 0 within a process, where it is a pointer

@@ -215,7 +215,8 @@ TEST_CASE("overheads and the wire between processes are virtual time, exactly",
     std::int64_t message;  // ns from one PE to the other; its bytes take none
   };
   for (const Case& c :
-       {Case{"pes=2,latency=1us", 1000}, Case{"pes=2,latency=1us,overhead=40ns", 1080},
+       {Case{"pes=2,latency=1us,bandwidth=1e15", 1000},
+        Case{"pes=2,latency=1us,bandwidth=1e15,overhead=40ns", 1080},
         Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1e15", 3000},
         Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1e15,overhead=40ns,"
              "process-overhead=500ns",

@@ -38,7 +38,7 @@ using Clock = tess::detail::WorkClock<ClockworkTime>;
 }  // namespace
 
 TEST_CASE("the cost of reading the clock is not work", "[runtime][machine][simulated]") {
-  for (const std::uint64_t cost : {0, 20, 2000}) {
+  for (const std::uint64_t cost : {0U, 20U, 2000U}) {
     CAPTURE(cost);
     Clockwork thread;
     thread.ticks_cost = cost;
