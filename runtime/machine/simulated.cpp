@@ -27,6 +27,12 @@ struct Event {
   }
 };
 
+std::size_t bytes_of(const Parcel& parcel) {
+  std::size_t n_bytes = parcel.head.size();
+  for (const auto part : parcel.parts) n_bytes += part.size();
+  return n_bytes;
+}
+
 /// A message of a thread that is no PE.
 struct Outside : Link {
   PeId to;
@@ -106,8 +112,7 @@ class SimulatedMachine final : public Machine {
   }
   void send(PeId from, ProcessId to, Parcel&& parcel) override {
     const NotWork pause(*this);
-    std::size_t n_bytes = parcel.head.size();
-    for (const auto part : parcel.parts) n_bytes += part.size();
+    const std::size_t n_bytes = bytes_of(parcel);
     const PeId taker{to.value * pes_per_process_};
     const std::int64_t time = departs({from, taker, nullptr, {parcel.head.data(), parcel.head.size()}},
                                       n_bytes, Traffic::user, between_);
@@ -186,10 +191,16 @@ class SimulatedMachine final : public Machine {
   [[nodiscard]] bool draws() const {
     return options_.seed.has_value() && options_.adversary == nullptr;
   }
+  /// What passing on so many bytes takes each end.
+  static Time cpu_time(const Wire& wire, std::size_t bytes) {
+    if (wire.copy == 0) return wire.overhead;
+    return wire.overhead +
+           Time(static_cast<std::int64_t>(static_cast<double>(bytes) * 1e9 / wire.copy));
+  }
   /// A message is sent: charges the sender, and returns when it arrives.
   std::int64_t departs(const Sending& sending, std::size_t bytes, Traffic traffic,
                        const Wire& wire) {
-    if (sending.from != sending.to) charge(sending.from, wire.overhead);
+    if (sending.from != sending.to) charge(sending.from, cpu_time(wire, bytes));
     return arrival(sending, bytes, traffic, wire);
   }
   std::int64_t arrival(Sending sending, std::size_t bytes, Traffic traffic, const Wire& wire) {
@@ -257,7 +268,7 @@ void SimulatedMachine::run(Program& program) {
       program.accept(pe, event.message);
       look(event.pe);
     } else if (event.parcel != nullptr) {
-      charge(pe, between_.overhead);
+      charge(pe, cpu_time(between_, bytes_of(*event.parcel)));
       deliver(program, pe, *std::unique_ptr<Parcel>(event.parcel));
       look(event.pe);
     } else {

@@ -67,7 +67,7 @@ struct Value {
 };
 
 constexpr const char* machine_keys =
-    "latency, bandwidth, overhead, process-latency, process-bandwidth, process-overhead";
+    "latency, bandwidth, overhead, process-latency, process-bandwidth, process-overhead, process-copy";
 
 /// The keys of the machine, which a file may have; false for another key.
 bool take_of_machine(const std::string& key, const Value& value, SimulatedOptions& options) {
@@ -83,6 +83,8 @@ bool take_of_machine(const std::string& key, const Value& value, SimulatedOption
     options.process_bandwidth = value.rate();
   } else if (key == "process-overhead") {
     options.process_overhead = value.time();
+  } else if (key == "process-copy") {
+    options.process_copy = value.rate();
   } else {
     return false;
   }

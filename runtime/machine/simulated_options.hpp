@@ -4,7 +4,7 @@
 //
 // A message to another PE takes the sender `overhead`, is under way for latency + bytes / bandwidth,
 // and takes the receiver `overhead` again. Between processes a transfer of packed messages does the
-// same with parameters of its own.
+// same with parameters of its own, and its bytes are copied by both.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
@@ -22,6 +22,7 @@ struct Wire {
   Time latency{1000};
   double bandwidth = 10e9;  ///< bytes per second
   Time overhead{0};         ///< CPU time of a message, of the sender and again of the receiver
+  double copy = 0;  ///< bytes per second of CPU time, of the sender and again of the receiver; 0: free
 };
 
 struct SimulatedOptions {
@@ -35,6 +36,7 @@ struct SimulatedOptions {
   std::optional<Time> process_latency;
   std::optional<double> process_bandwidth;
   std::optional<Time> process_overhead;
+  double process_copy = 0;
   std::optional<Time> cost;           ///< cost of one message; absent: measured
   std::optional<std::uint64_t> seed;  ///< if present: adversarial order
   /// After each message; absent: 0, or drawn from the seed.
@@ -45,10 +47,10 @@ struct SimulatedOptions {
   /// If present: it chooses the disorder, and the seed only the processes. Not owned.
   Adversary* adversary = nullptr;
 
-  [[nodiscard]] Wire within_process() const { return {latency, bandwidth, overhead}; }
+  [[nodiscard]] Wire within_process() const { return {latency, bandwidth, overhead, 0}; }
   [[nodiscard]] Wire between_processes() const {
     return {process_latency.value_or(latency), process_bandwidth.value_or(bandwidth),
-            process_overhead.value_or(overhead)};
+            process_overhead.value_or(overhead), process_copy};
   }
 };
 

@@ -18,11 +18,13 @@ tess::Time whole_nanoseconds(double nanoseconds) {
 
 /// Parameters that are corrected, in nanoseconds.
 struct Guess {
-  double overhead = 0, latency = 0, per_byte = 0;
+  double overhead = 0, latency = 0;
+  double per_byte = 0;       // under way
+  double copy_per_byte = 0;  // of CPU time, of each end
 
   [[nodiscard]] tess::Wire wire() const {
     return {whole_nanoseconds(latency), std::min(most_bandwidth, 1e9 / std::max(1e-12, per_byte)),
-            whole_nanoseconds(overhead)};
+            whole_nanoseconds(overhead), copy_per_byte > 0 ? 1e9 / copy_per_byte : 0};
   }
 };
 
@@ -46,10 +48,17 @@ FittedWire fit_wire(const WireTimes& measured, const SimulateWire& simulate) {
     // The overhead of both ends is part of the way.
     guess.latency = std::max(
         0.0, guess.latency + (measured.ping - is.ping) - 2 * (guess.overhead - overhead));
-    if (measured.large > 0)
-      guess.per_byte = std::max(0.0, guess.per_byte + ((measured.large - measured.ping) -
-                                                       (is.large - is.ping)) /
-                                                          static_cast<double>(large_bytes));
+    const double copy = guess.copy_per_byte;
+    if (measured.exchange_packed > 0) {
+      const double lacks = (measured.exchange_packed - measured.exchange) -
+                           (is.exchange_packed - is.exchange);
+      guess.copy_per_byte = std::max(0.0, copy + lacks / (2 * static_cast<double>(packed_bytes)));
+    }
+    if (measured.large > 0) {
+      const double lacks = (measured.large - measured.ping) - (is.large - is.ping);
+      guess.per_byte = std::max(0.0, guess.per_byte + lacks / static_cast<double>(large_bytes) -
+                                         2 * (guess.copy_per_byte - copy));
+    }
     result.wire = guess.wire();
     result.simulated = simulate(result.wire);
   }
@@ -63,7 +72,10 @@ std::string wire_file(Joins joins, const tess::Wire& wire, const std::string& no
   std::string mine = fmt::format("# {}: {}\n{}latency={}ns\n{}overhead={}ns\n",
                                  between ? "Between processes" : "Within a process", note, prefix,
                                  wire.latency.count(), prefix, wire.overhead.count());
-  if (between) mine += fmt::format("{}bandwidth={:.3f}GB/s\n", prefix, wire.bandwidth / 1e9);
+  if (between) {
+    mine += fmt::format("{}bandwidth={:.3f}GB/s\n", prefix, wire.bandwidth / 1e9);
+    if (wire.copy > 0) mine += fmt::format("{}copy={:.3f}GB/s\n", prefix, wire.copy / 1e9);
+  }
   std::string others;
   std::istringstream lines(before);
   for (std::string line; std::getline(lines, line);)

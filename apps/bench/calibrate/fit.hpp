@@ -6,6 +6,7 @@
 //
 //     overhead    from a message sent and one received by busy PEs, half of it each
 //     latency     from a ball that goes to and fro
+//     copy        from the same exchange with vectors of packed_bytes, between processes
 //     bandwidth   from a ball of large_bytes, between processes
 #pragma once
 

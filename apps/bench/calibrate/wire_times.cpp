@@ -25,6 +25,7 @@ enum class Game : std::uint8_t {
   large,     ///< a vector does
   work,      ///< both work
   exchange,  ///< both work, send and receive
+  packed,    ///< the same with vectors
 };
 
 struct Match {
@@ -67,15 +68,16 @@ class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
   void play(Match match, tess::Callback<double> done) {
     done_ = std::move(done);
     left_ = match.n_rounds;
-    sends_ = match.game == Game::exchange;
+    game_ = match.game;
+    sends_ = game_ == Game::exchange || game_ == Game::packed;
     n_due_ += sends_ ? match.n_rounds : 0;
-    laps_.begin(match.game == Game::large ? 1 : lap_rounds);
-    if (match.game == Game::work || sends_) {
+    laps_.begin(game_ == Game::large ? 1 : lap_rounds);
+    if (game_ == Game::work || sends_) {
       works_ = true;
       work();
     } else if (index().x != 0) {
       contribute(tess::max, 0.0, done_);
-    } else if (match.game == Game::ping) {
+    } else if (game_ == Game::ping) {
       other().send<&WirePeer::hit>(0);
     } else {
       other().send<&WirePeer::hit_large>(Bytes(large_bytes, 7));
@@ -93,7 +95,8 @@ class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
     const std::uint64_t until = tess::detail::read_ticks() + grain;
     while (tess::detail::read_ticks() < until) {
     }
-    if (sends_) other().send<&WirePeer::take>();
+    if (game_ == Game::exchange) other().send<&WirePeer::take>();
+    if (game_ == Game::packed) other().send<&WirePeer::take_packed>(Bytes(packed_bytes, 7));
     // Where the other PE was held up, the messages of a lap are too few or too many.
     laps_.round(!sends_ || std::abs(n_taken_ - lap_rounds) <= 1);
     if (laps_.at_begin()) n_taken_ = 0;
@@ -109,6 +112,8 @@ class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
     --n_due_;
     finish();
   }
+
+  void take_packed(const Bytes& /*bytes*/) { take(); }
 
  private:
   [[nodiscard]] tess::ElementProxy<WirePeer> other() const { return array()[{other_}]; }
@@ -127,6 +132,7 @@ class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
 
   std::int32_t other_;
   std::int32_t left_ = 0, n_due_ = 0, n_taken_ = 0;
+  Game game_ = Game::ping;
   bool sends_ = false, works_ = true;
   Laps laps_;
   tess::Callback<double> done_;
@@ -148,17 +154,19 @@ tess::Task measure_wire(WireEffort effort, WireTimes& result) {
   const bool travels = !tess::machine().same_process(tess::PeId{0}, tess::PeId{1});
   const std::int32_t n = effort.n_rounds;
   const Match ping{Game::ping, n}, large{Game::large, 1 + n / 20};
-  const Match work{Game::work, n}, exchange{Game::exchange, n};
-  Samples pings, larges, works, exchanges, warm_up;
+  const Match work{Game::work, n}, exchange{Game::exchange, n}, packed{Game::packed, n};
+  Samples pings, larges, works, exchanges, packs, warm_up;
   co_await sample(peers, exchange, warm_up);
   for (std::int32_t i = 0; i < effort.n_samples; ++i) {
     co_await sample(peers, ping, pings);
     if (travels) co_await sample(peers, large, larges);
     co_await sample(peers, work, works);
     co_await sample(peers, exchange, exchanges);
+    if (travels) co_await sample(peers, packed, packs);
   }
   const auto least = [](const Samples& samples) { return samples.empty() ? 0 : samples.least(); };
-  result = {least(pings) / 2, least(larges) / 2, least(exchanges) - least(works)};
+  result = {least(pings) / 2, least(larges) / 2, least(exchanges) - least(works),
+            packs.empty() ? 0 : packs.least() - least(works)};
 }
 
 }  // namespace bench
