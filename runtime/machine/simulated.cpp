@@ -82,7 +82,8 @@ class SimulatedMachine final : public Machine {
 
   void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) override {
     const NotWork pause(*this);
-    push(departs({from, to, message, {}}, bytes, traffic, within_), to.value, message, nullptr, from != to);
+    push(departs({from, to, message, {}}, bytes, traffic, within_), to.value, message, nullptr,
+         from != to);
   }
   void hand_in(PeId to, Link* message) override {
     auto* outside = new Outside;
@@ -114,8 +115,9 @@ class SimulatedMachine final : public Machine {
     const NotWork pause(*this);
     const std::size_t n_bytes = bytes_of(parcel);
     const PeId taker{to.value * pes_per_process_};
-    const std::int64_t time = departs({from, taker, nullptr, {parcel.head.data(), parcel.head.size()}},
-                                      n_bytes, Traffic::user, between_);
+    const std::int64_t time =
+        departs({from, taker, nullptr, {parcel.head.data(), parcel.head.size()}}, n_bytes,
+                Traffic::user, between_);
     push(time, taker.value, nullptr, new Parcel(std::move(parcel)));
   }
 
@@ -215,9 +217,7 @@ class SimulatedMachine final : public Machine {
     if (options_.adversary != nullptr) sending.due += options_.adversary->delay(sending);
     return sending.due.count();
   }
-  [[nodiscard]] std::int64_t elapsed() const {
-    return work_ ? work_->read() - work_began_ : 0;
-  }
+  [[nodiscard]] std::int64_t elapsed() const { return work_ ? work_->read() - work_began_ : 0; }
   void look(std::int32_t pe) {
     Clock& clock = clocks_[static_cast<std::size_t>(pe)];
     if (clock.looks) return;

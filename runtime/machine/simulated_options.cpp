@@ -67,7 +67,8 @@ struct Value {
 };
 
 constexpr const char* machine_keys =
-    "latency, bandwidth, overhead, process-latency, process-bandwidth, process-overhead, process-copy";
+    "latency, bandwidth, overhead, process-latency, process-bandwidth, process-overhead, "
+    "process-copy";
 
 /// The keys of the machine, which a file may have; false for another key.
 bool take_of_machine(const std::string& key, const Value& value, SimulatedOptions& options) {

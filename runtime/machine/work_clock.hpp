@@ -60,9 +60,9 @@ class WorkClock {
   }
 
  private:
-  static constexpr double long_nanoseconds = 20e3;     // shorter intervals hold no switch of threads
-  static constexpr double quantum_nanoseconds = 1e6;   // the ratio of the clocks is not exact
-  static constexpr double noise_nanoseconds = 5e3;     // the two clocks differ without a reason
+  static constexpr double long_nanoseconds = 20e3;    // shorter intervals hold no switch of threads
+  static constexpr double quantum_nanoseconds = 1e6;  // the ratio of the clocks is not exact
+  static constexpr double noise_nanoseconds = 5e3;    // the two clocks differ without a reason
   static constexpr std::size_t n_tries = 301;
 
   [[nodiscard]] std::uint64_t ticks(double nanoseconds) const {

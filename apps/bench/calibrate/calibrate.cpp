@@ -69,7 +69,7 @@ int calibrate(const Bench& bench, const std::string& path) {
   if (measured.large > 0) show("256 KiB, one way", measured.large, fitted.simulated.large);
   show("a message sent and one received", measured.exchange, fitted.simulated.exchange);
   if (measured.exchange_packed > 0)
-    show("the same with 4 KiB", measured.exchange_packed, fitted.simulated.exchange_packed);
+    show("the same with 8 KiB", measured.exchange_packed, fitted.simulated.exchange_packed);
   const std::string before = contents(path);
   plot::write_file(path, wire_file(joins, fitted.wire, bench.origin().machine, before));
   tess::print(path, ":\n", contents(path));

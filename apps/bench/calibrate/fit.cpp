@@ -46,18 +46,20 @@ FittedWire fit_wire(const WireTimes& measured, const SimulateWire& simulate) {
     const double overhead = guess.overhead;
     guess.overhead = std::max(0.0, overhead + (measured.exchange - is.exchange) / 2);
     // The overhead of both ends is part of the way.
-    guess.latency = std::max(
-        0.0, guess.latency + (measured.ping - is.ping) - 2 * (guess.overhead - overhead));
-    const double copy = guess.copy_per_byte;
-    if (measured.exchange_packed > 0) {
-      const double lacks = (measured.exchange_packed - measured.exchange) -
-                           (is.exchange_packed - is.exchange);
-      guess.copy_per_byte = std::max(0.0, copy + lacks / (2 * static_cast<double>(packed_bytes)));
-    }
+    guess.latency =
+        std::max(0.0, guess.latency + (measured.ping - is.ping) - 2 * (guess.overhead - overhead));
     if (measured.large > 0) {
-      const double lacks = (measured.large - measured.ping) - (is.large - is.ping);
-      guess.per_byte = std::max(0.0, guess.per_byte + lacks / static_cast<double>(large_bytes) -
-                                         2 * (guess.copy_per_byte - copy));
+      // Nanoseconds per byte of a large message, from one end to the other; a part of it is CPU time
+      // of both ends.
+      const double all =
+          std::max(0.0, guess.per_byte + 2 * guess.copy_per_byte +
+                            ((measured.large - measured.ping) - (is.large - is.ping)) /
+                                static_cast<double>(large_bytes));
+      const double lacks =
+          (measured.exchange_packed - measured.exchange) - (is.exchange_packed - is.exchange);
+      guess.copy_per_byte = std::clamp(
+          guess.copy_per_byte + lacks / (2 * static_cast<double>(packed_bytes)), 0.0, all / 2);
+      guess.per_byte = all - 2 * guess.copy_per_byte;
     }
     result.wire = guess.wire();
     result.simulated = simulate(result.wire);

@@ -37,24 +37,25 @@ struct Match {
 class Laps {
  public:
   void begin(std::int32_t rounds) {
-    times_ = {};
+    fair_ = {};
+    others_ = {};
     rounds_ = rounds;
     n_ = 0;
     watch_ = Stopwatch();
   }
-  /// A round is over. A lap counts only if it is `fair`.
+  /// A round is over; `fair` says whether its lap is one to count, if it is the last of a lap.
   void round(bool fair) {
     if (++n_ < rounds_) return;
-    if (fair) times_.add(watch_.nanoseconds() / rounds_);
+    (fair ? fair_ : others_).add(watch_.nanoseconds() / rounds_);
     n_ = 0;
     watch_ = Stopwatch();
   }
   [[nodiscard]] bool at_begin() const { return n_ == 0; }
-  /// Nanoseconds of a round; 0 if no lap counts.
-  [[nodiscard]] double median() const { return times_.empty() ? 0 : times_.median(); }
+  /// Nanoseconds of a round, of the fair laps, or of all where none was fair.
+  [[nodiscard]] double median() const { return (fair_.empty() ? others_ : fair_).median(); }
 
  private:
-  Samples times_;
+  Samples fair_, others_;
   std::int32_t rounds_ = 1, n_ = 0;
   Stopwatch watch_;
 };
@@ -138,12 +139,11 @@ class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
   tess::Callback<double> done_;
 };
 
-/// Adds the nanoseconds of a round, if any lap was fair.
+/// Adds the nanoseconds of a round.
 tess::Task sample(tess::ArrayProxy<WirePeer> peers, Match match, Samples& samples) {
   tess::Future<double> done;
   peers.broadcast<&WirePeer::play>(match, done.callback());
-  const double round = co_await done;
-  if (round > 0) samples.add(round);
+  samples.add(co_await done);
 }
 
 }  // namespace
@@ -164,9 +164,11 @@ tess::Task measure_wire(WireEffort effort, WireTimes& result) {
     co_await sample(peers, exchange, exchanges);
     if (travels) co_await sample(peers, packed, packs);
   }
-  const auto least = [](const Samples& samples) { return samples.empty() ? 0 : samples.least(); };
-  result = {least(pings) / 2, least(larges) / 2, least(exchanges) - least(works),
-            packs.empty() ? 0 : packs.least() - least(works)};
+  result.ping = pings.least() / 2;
+  result.exchange = exchanges.least() - works.least();
+  if (!travels) co_return;
+  result.large = larges.least() / 2;
+  result.exchange_packed = packs.least() - works.least();
 }
 
 }  // namespace bench

@@ -12,12 +12,13 @@ namespace bench {
 /// The size of the vector of WireTimes::large.
 inline constexpr std::size_t large_bytes = std::size_t{1} << 18U;
 /// The size of the vector of WireTimes::exchange_packed: small enough to be packed.
-inline constexpr std::size_t packed_bytes = std::size_t{1} << 12U;
+inline constexpr std::size_t packed_bytes = std::size_t{1} << 13U;
 
 /// Nanoseconds; of several medians the least, which is that of the least disturbed sample.
 struct WireTimes {
-  double ping = 0;      ///< a number, one way, when both PEs do nothing else
-  double large = 0;     ///< a vector of large_bytes, one way; 0 within a process, where it is a pointer
+  double ping = 0;  ///< a number, one way, when both PEs do nothing else
+  double large =
+      0;  ///< a vector of large_bytes, one way; 0 within a process, where it is a pointer
   double exchange = 0;  ///< what sending a message and receiving one adds to the work of a busy PE
   double exchange_packed = 0;  ///< the same with vectors of packed_bytes; 0 within a process
 };

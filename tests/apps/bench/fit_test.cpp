@@ -24,7 +24,8 @@ WireTimes formula(const Wire& wire, double own) {
   const double way = own + nanoseconds(wire.latency) + 2 * nanoseconds(wire.overhead);
   const double exchange = own + 2 * nanoseconds(wire.overhead);
   const double copy = wire.copy > 0 ? 2e9 / wire.copy : 0;  // ns per byte, of both ends
-  return {way, way + 3 * own + static_cast<double>(bench::large_bytes) * (1e9 / wire.bandwidth + copy),
+  return {way,
+          way + 3 * own + static_cast<double>(bench::large_bytes) * (1e9 / wire.bandwidth + copy),
           exchange, exchange + own + static_cast<double>(bench::packed_bytes) * copy};
 }
 
@@ -59,8 +60,9 @@ TEST_CASE("what the simulation costs itself is no part of the parameters", "[ben
   CHECK(fitted.wire.latency == wire.latency);
 
   // A simulation that is slower in all: nothing is left, and nothing is negative.
-  const bench::FittedWire none = bench::fit_wire(
-      formula({Time(0), 1e12, Time(0), 0}, 40), [](const Wire& guess) { return formula(guess, 4000); });
+  const bench::FittedWire none =
+      bench::fit_wire(formula({Time(0), 1e12, Time(0), 0}, 40),
+                      [](const Wire& guess) { return formula(guess, 4000); });
   CHECK(none.wire.overhead == Time(0));
   CHECK(none.wire.latency == Time(0));
   CHECK(none.wire.copy == 0);
