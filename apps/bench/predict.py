@@ -28,7 +28,7 @@ CASES = [
     ("task_bench, spread, 1 KiB outputs", "task_bench -type spread -radix 5 -width 32 -steps 3000 -output 1024",
      "task_bench -type spread -steps 20", TASKS),
     ("m2m_transfer, 24 576 tetrahedra", "m2m_transfer kuhn:16@0.2 kuhn:17 --field sin", "m2m_transfer kuhn:3 kuhn:4 --field sin", TRANSFER),
-    ("lb_lab, linear, greedy_refine",
+    ("lb_lab, linear_comm, greedy_refine",
      "lb_lab --workload linear_comm --per-pe 8 --strategy greedy_refine --iterations 200 --period 20 --grain 100us",
      "lb_lab --workload linear_comm --per-pe 2 --strategy greedy_refine --iterations 20 --period 5 --grain 10us", LABORATORY),
 ]

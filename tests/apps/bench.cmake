@@ -1,5 +1,6 @@
 # Runs bench on one PE, on two PEs and on two processes. Every row that --list names is in the CSV and in the JSON, with all
-# keys. --calibrate writes a file that --sim reads. A row that cannot be measured gives one line of error and exit code 2. The times are not checked.
+# keys. --calibrate writes a file that --sim reads. A row that cannot be measured gives one line of error and exit code 2.
+# The times are not checked.
 #     cmake -D BENCH=… -D MPIRUN=… -D SCRATCH=… -P bench.cmake
 cmake_minimum_required(VERSION 3.25)
 file(MAKE_DIRECTORY "${SCRATCH}")

@@ -14,8 +14,8 @@ namespace {
 /// The work between two messages of an exchange: so long that each message travels alone.
 constexpr double grain_seconds = 8e-6;
 
-/// Rounds of a lap. A lap is so short that most have no disturbance by other programs: of a sample
-/// the median lap counts, and of the samples the least.
+/// Rounds of a lap. A lap is so short that most have no disturbance by other programs: the
+/// median lap of a sample counts, and the median sample.
 constexpr std::int32_t lap_rounds = 10;
 
 using Bytes = std::vector<std::uint8_t>;
@@ -164,11 +164,11 @@ tess::Task measure_wire(WireEffort effort, WireTimes& result) {
     co_await sample(peers, exchange, exchanges);
     if (travels) co_await sample(peers, packed, packs);
   }
-  result.ping = pings.least() / 2;
-  result.exchange = exchanges.least() - works.least();
+  result.ping = pings.median() / 2;
+  result.exchange = exchanges.median() - works.median();
   if (!travels) co_return;
-  result.large = larges.least() / 2;
-  result.exchange_packed = packs.least() - works.least();
+  result.large = larges.median() / 2;
+  result.exchange_packed = packs.median() - works.median();
 }
 
 }  // namespace bench

@@ -14,7 +14,7 @@ inline constexpr std::size_t large_bytes = std::size_t{1} << 18U;
 /// The size of the vector of WireTimes::exchange_packed: small enough to be packed.
 inline constexpr std::size_t packed_bytes = std::size_t{1} << 13U;
 
-/// Nanoseconds; of several medians the least, which is that of the least disturbed sample.
+/// Nanoseconds; medians.
 struct WireTimes {
   double ping = 0;  ///< a number, one way, when both PEs do nothing else
   double large =
