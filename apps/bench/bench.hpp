@@ -62,6 +62,8 @@ class Bench {
   }
   [[nodiscard]] bool has(Needs needs) const;
   [[nodiscard]] std::int32_t ranks() const { return origin_.ranks; }
+  /// True on the process that prints.
+  [[nodiscard]] bool speaks() const { return speaks_; }
   /// True if the row is asked for, by its name or its shape's, and this machine has what it needs.
   [[nodiscard]] bool wants(std::string_view row) const;
 

@@ -3,6 +3,7 @@
 // stand in apps/bench/results/.
 //
 //     bench --pes 1;  bench --pes 2;  mpirun -n 2 bench --pes 1;  bench message one_way --pes 2
+#include "apps/bench/calibrate/calibrate.hpp"
 #include "apps/bench/shapes/shapes.hpp"
 #include "apps/command_line.hpp"
 #include "apps/plot/write_file.hpp"
@@ -83,6 +84,7 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     bench::Options options;
     bool lists = false;
+    std::string calibrated;
     apps::CommandLine line("What the runtime costs, beside what the machine allows.");
     line.option("names", options.names, "shapes or rows (all by default)");
     const apps::Option repeat =
@@ -91,11 +93,18 @@ int main(int argc, char** argv) {
     line.flag("--list", lists, "names and meanings of what can be measured on this machine");
     line.flag("--quick", options.quick, "small sizes: to try out, not to measure");
     line.option("--json", options.json, "a file for the rows as JSON");
+    line.option("--calibrate", calibrated,
+                "measure what a simulated machine needs, and write it to a file for --sim");
     if (!line.parse(argc, argv)) return 0;
     if (options.quick && !repeat.is_given()) options.repeat = 1;
     plot::require_writable("--json", options.json);
 
     bench::Bench bench(options, command_line, *setup.machine);
+    if (!calibrated.empty()) {
+      bench::require_calibration(calibrated, *setup.machine);
+      plot::require_writable("--calibrate", calibrated);
+      return bench::calibrate(bench, calibrated);
+    }
     bench.choose(bench::chosen(bench, options.names));
     const bool speaks = setup.machine->process().value == 0;
     if (lists) {

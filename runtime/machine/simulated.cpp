@@ -1,16 +1,16 @@
 #include "runtime/machine/simulated.hpp"
 
 #include "runtime/base/mpsc_queue.hpp"
-#include "runtime/core/cpu_clock.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/adversary.hpp"
+#include "runtime/machine/work_clock.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdlib>
 #include <queue>
+#include <utility>
 
 namespace tess::detail {
 namespace {
@@ -19,6 +19,7 @@ struct Event {
   std::int64_t time;
   std::uint64_t order;  // order of events at equal times: the order of posting, or random
   std::int32_t pe;
+  bool remote;     // another PE of the process sent it: it costs the receiver the overhead
   Link* message;   // null: the PE checks its queue
   Parcel* parcel;  // or takes a transfer of another process; a buffer if it has no parts
   friend bool operator<(const Event& a, const Event& b) {
@@ -26,18 +27,32 @@ struct Event {
   }
 };
 
+std::size_t bytes_of(const Parcel& parcel) {
+  std::size_t n_bytes = parcel.head.size();
+  for (const auto part : parcel.parts) n_bytes += part.size();
+  return n_bytes;
+}
+
 /// A message of a thread that is no PE.
 struct Outside : Link {
   PeId to;
   Link* message = nullptr;
 };
 
+/// A PE checks its inbox after so much work, about as on real machines (team.cpp).
+constexpr std::int64_t nanoseconds_per_step = 30'000;
+constexpr std::size_t most_per_step = 64;
+
 class SimulatedMachine final : public Machine {
  public:
   explicit SimulatedMachine(const SimulatedOptions& options)
       : options_(options),
+        within_(options.within_process()),
+        between_(options.between_processes()),
+        first_most_(options.cost || intercepts_local() ? 1 : most_per_step),
         random_(options.seed.value_or(0)),
-        clocks_(static_cast<std::size_t>(options.n_pes)) {
+        clocks_(static_cast<std::size_t>(options.n_pes), Clock{.most = first_most_}) {
+    if (!options.cost) work_.emplace();
     pes_per_process_ = options.pes_per_process;
     if (pes_per_process_ == 0) {
       pes_per_process_ = options.n_pes;
@@ -66,7 +81,9 @@ class SimulatedMachine final : public Machine {
   [[nodiscard]] unsigned patience() const override { return 1; }
 
   void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) override {
-    push(arrival({from, to, message, {}}, bytes, traffic), to.value, message, nullptr);
+    const NotWork pause(*this);
+    push(departs({from, to, message, {}}, bytes, traffic, within_), to.value, message, nullptr,
+         from != to);
   }
   void hand_in(PeId to, Link* message) override {
     auto* outside = new Outside;
@@ -79,23 +96,28 @@ class SimulatedMachine final : public Machine {
     if (options_.adversary != nullptr) {
       time += options_.adversary->delay({to, to, message, {}, Time(time)}).count();
     } else if (options_.seed) {  // it is late by the time that a message to itself takes
-      time += arrival({to, to, message, {}}, 0, Traffic::user) - now(to).count();
+      time += arrival({to, to, message, {}}, 0, Traffic::user, within_) - now(to).count();
     }
     push(time, to.value, message, nullptr);
     return true;
   }
   void send(PeId from, ProcessId to, Buffer&& bytes) override {
+    const NotWork pause(*this);
     const PeId taker{to.value * pes_per_process_};
-    const std::int64_t time =
-        arrival({from, taker, nullptr, {bytes.data(), bytes.size()}}, bytes.size(), Traffic::user);
-    push(time, taker.value, nullptr, new Parcel{std::move(bytes), {}, {}});
+    const std::int64_t time = departs({from, taker, nullptr, {bytes.data(), bytes.size()}},
+                                      bytes.size(), Traffic::user, between_);
+    // A copy: the sender keeps its memory, as it does on a real machine.
+    Buffer copy(bytes.size());
+    std::copy(bytes.data(), bytes.data() + bytes.size(), copy.data());
+    push(time, taker.value, nullptr, new Parcel{std::move(copy), {}, {}});
   }
   void send(PeId from, ProcessId to, Parcel&& parcel) override {
-    std::size_t n_bytes = parcel.head.size();
-    for (const auto part : parcel.parts) n_bytes += part.size();
+    const NotWork pause(*this);
+    const std::size_t n_bytes = bytes_of(parcel);
     const PeId taker{to.value * pes_per_process_};
-    const std::int64_t time = arrival(
-        {from, taker, nullptr, {parcel.head.data(), parcel.head.size()}}, n_bytes, Traffic::user);
+    const std::int64_t time =
+        departs({from, taker, nullptr, {parcel.head.data(), parcel.head.size()}}, n_bytes,
+                Traffic::user, between_);
     push(time, taker.value, nullptr, new Parcel(std::move(parcel)));
   }
 
@@ -114,28 +136,78 @@ class SimulatedMachine final : public Machine {
   }
   [[nodiscard]] std::string gave_up() const override { return gave_up_; }
   [[nodiscard]] std::string describe() const override {
+    const bool two = n_processes_ > 1 && (options_.process_latency || options_.process_bandwidth);
     return text("simulated: ", options_.n_pes, " PEs in ", n_processes_, " processes, latency ",
-                options_.latency.count(), " ns, ", options_.bandwidth / 1e9, " GB/s",
+                within_.latency.count(), " ns, ", within_.bandwidth / 1e9, " GB/s",
+                two ? text(", between processes ", between_.latency.count(), " ns, ",
+                           between_.bandwidth / 1e9, " GB/s")
+                    : "",
                 options_.seed ? text(", seed ", *options_.seed) : "");
   }
 
  private:
   struct Clock {
     std::int64_t now = 0;
-    bool looks = false;  // an event to check the queue is under way
+    bool looks = false;    // an event to check the queue is under way
+    std::size_t most = 1;  // messages of the next step
   };
 
-  void push(std::int64_t time, std::int32_t pe, Link* message, Parcel* parcel) {
+  /// The scope of what the simulation does inside a call of the program.
+  class NotWork {
+   public:
+    explicit NotWork(SimulatedMachine& machine)
+        : clock_(machine.work_ && machine.running_ >= 0 ? &*machine.work_ : nullptr) {
+      if (clock_ != nullptr) clock_->pause();
+    }
+    ~NotWork() {
+      if (clock_ != nullptr) clock_->resume();
+    }
+    NotWork(const NotWork&) = delete;
+    NotWork& operator=(const NotWork&) = delete;
+
+   private:
+    WorkClock<>* clock_;
+  };
+
+  /// The program works on this PE from here on.
+  void begin_work(std::int32_t pe) {
+    running_ = pe;
+    if (!work_) return;
+    work_->resume();
+    work_began_ = work_->read();
+  }
+  /// Returns what it worked: the caller advances the clock of the PE.
+  std::int64_t end_work() {
+    running_ = -1;
+    if (!work_) return 0;  // the program charges a fixed cost per message
+    work_->pause();
+    return work_->read() - work_began_;
+  }
+
+  void push(std::int64_t time, std::int32_t pe, Link* message, Parcel* parcel,
+            bool remote = false) {
     ++n_posted_;
-    events_.push(Event{time, draws() ? random_() : n_posted_, pe, message, parcel});
+    events_.push(Event{time, draws() ? random_() : n_posted_, pe, remote, message, parcel});
   }
   /// The disorder is drawn from the seed here.
   [[nodiscard]] bool draws() const {
     return options_.seed.has_value() && options_.adversary == nullptr;
   }
-  std::int64_t arrival(Sending sending, std::size_t bytes, Traffic traffic) {
-    auto delay = static_cast<double>(options_.latency.count()) +
-                 static_cast<double>(bytes) * 1e9 / options_.bandwidth;
+  /// What passing on so many bytes takes each end.
+  static Time cpu_time(const Wire& wire, std::size_t bytes) {
+    if (wire.copy == 0) return wire.overhead;
+    return wire.overhead +
+           Time(static_cast<std::int64_t>(static_cast<double>(bytes) * 1e9 / wire.copy));
+  }
+  /// A message is sent: charges the sender, and returns when it arrives.
+  std::int64_t departs(const Sending& sending, std::size_t bytes, Traffic traffic,
+                       const Wire& wire) {
+    if (sending.from != sending.to) charge(sending.from, cpu_time(wire, bytes));
+    return arrival(sending, bytes, traffic, wire);
+  }
+  std::int64_t arrival(Sending sending, std::size_t bytes, Traffic traffic, const Wire& wire) {
+    auto delay = static_cast<double>(wire.latency.count()) +
+                 static_cast<double>(bytes) * 1e9 / wire.bandwidth;
     if (draws()) {
       const double u = random_.unit();
       const double spread = u < 0.8 ? 4 : u < 0.95 ? 50 : 500;
@@ -145,9 +217,7 @@ class SimulatedMachine final : public Machine {
     if (options_.adversary != nullptr) sending.due += options_.adversary->delay(sending);
     return sending.due.count();
   }
-  [[nodiscard]] std::int64_t elapsed() const {
-    return options_.cost ? 0 : thread_cpu_nanoseconds() - step_began_;
-  }
+  [[nodiscard]] std::int64_t elapsed() const { return work_ ? work_->read() - work_began_ : 0; }
   void look(std::int32_t pe) {
     Clock& clock = clocks_[static_cast<std::size_t>(pe)];
     if (clock.looks) return;
@@ -155,11 +225,14 @@ class SimulatedMachine final : public Machine {
     push(clock.now, pe, nullptr, nullptr);
   }
 
-  static void deliver(Program& program, PeId pe, const Parcel& parcel);
+  void deliver(Program& program, PeId pe, const Parcel& parcel);
+  void run_step(Program& program, PeId pe);
   void take_outside(Program& program);
   [[nodiscard]] bool gives_up(std::uint64_t n_events);
 
   const SimulatedOptions options_;
+  const Wire within_, between_;
+  const std::size_t first_most_;
   Random random_;
   std::vector<Clock> clocks_;
   std::array<double, 4> slowness_{};
@@ -167,7 +240,8 @@ class SimulatedMachine final : public Machine {
   MpscQueue outside_;
   std::uint64_t n_posted_ = 0;
   std::int32_t running_ = -1;
-  std::int64_t step_began_ = 0;  // CPU time of this thread, in ns
+  mutable std::optional<WorkClock<>> work_;  // if the cost is measured
+  std::int64_t work_began_ = 0;
   bool stopped_ = false;
   std::string gave_up_;
 };
@@ -190,26 +264,16 @@ void SimulatedMachine::run(Program& program) {
     clock.now = std::max(clock.now, event.time);
     if (event.message != nullptr) {
       event.message->next = nullptr;
+      if (event.remote) charge(pe, within_.overhead);
       program.accept(pe, event.message);
       look(event.pe);
     } else if (event.parcel != nullptr) {
+      charge(pe, cpu_time(between_, bytes_of(*event.parcel)));
       deliver(program, pe, *std::unique_ptr<Parcel>(event.parcel));
       look(event.pe);
     } else {
       clock.looks = false;
-      if (draws() && random_.chance(0.1)) program.idle(pe);
-      running_ = event.pe;
-      if (!options_.cost) step_began_ = thread_cpu_nanoseconds();
-      const std::size_t ran = program.step(pe, 1);
-      const std::int64_t cost =
-          options_.cost ? 0 : elapsed();  // the program charges a fixed cost per message
-      running_ = -1;
-      if (ran != 0) {
-        clock.now += cost;
-        look(event.pe);
-      } else if (program.idle(pe)) {
-        look(event.pe);
-      }
+      run_step(program, pe);
     }
   }
   // Messages still under way belong to the program, which frees them.
@@ -222,6 +286,24 @@ void SimulatedMachine::run(Program& program) {
     program.accept(PeId{event.pe}, event.message);
   }
   for (std::int32_t pe = 0; pe < options_.n_pes; ++pe) program.finish(PeId{pe});
+}
+
+void SimulatedMachine::run_step(Program& program, PeId pe) {
+  Clock& clock = clocks_[static_cast<std::size_t>(pe.value)];
+  if (draws() && random_.chance(0.1)) program.idle(pe);
+  begin_work(pe.value);
+  const std::size_t ran = program.step(pe, clock.most);
+  const std::int64_t worked = end_work();
+  if (ran == 0) {
+    if (program.idle(pe)) look(pe.value);
+    return;
+  }
+  clock.now += worked;
+  if (worked > 2 * nanoseconds_per_step)
+    clock.most = std::max<std::size_t>(1, clock.most / 2);
+  else if (worked < nanoseconds_per_step)
+    clock.most = std::min(first_most_, clock.most * 2);
+  look(pe.value);
 }
 
 bool SimulatedMachine::gives_up(std::uint64_t n_events) {
@@ -247,100 +329,26 @@ void SimulatedMachine::take_outside(Program& program) {
 }
 
 void SimulatedMachine::deliver(Program& program, PeId pe, const Parcel& parcel) {
+  begin_work(pe.value);
   const std::span<const std::byte> head(parcel.head.data(), parcel.head.size());
-  if (parcel.parts.empty()) return program.receive(pe, head);
-  std::vector<std::uint64_t> sizes;
-  for (const auto part : parcel.parts) sizes.push_back(part.size());
-  std::vector<std::span<std::byte>> places;
-  Link* const message = program.place(pe, head, sizes, places);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    std::copy(parcel.parts[i].begin(), parcel.parts[i].end(), places[i].begin());
-  program.placed(pe, message);
-}
-
-double number_of(const std::string& value, const std::string& part, std::string* unit) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc())
-    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value, " is not a number");
-  *unit = std::string(end, value.data() + value.size());
-  return number;
-}
-
-Time time_of(const std::string& value, const std::string& part) {
-  std::string unit;
-  const double number = number_of(value, part, &unit);
-  const double factor = unit.empty() || unit == "ns" ? 1
-                        : unit == "us"               ? 1e3
-                        : unit == "ms"               ? 1e6
-                        : unit == "s"                ? 1e9
-                                                     : -1;
-  if (factor < 0 || number < 0)
-    fail(ErrorCode::bad_argument, "--sim ", part, ": ", value,
-         " is not a time (a number with ns, us, ms or s)");
-  return Time(static_cast<std::int64_t>(number * factor));
+  if (parcel.parts.empty()) {
+    program.receive(pe, head);
+  } else {
+    std::vector<std::uint64_t> sizes;
+    for (const auto part : parcel.parts) sizes.push_back(part.size());
+    std::vector<std::span<std::byte>> places;
+    Link* const message = program.place(pe, head, sizes, places);
+    {
+      const NotWork pause(*this);  // the bandwidth stands for the copies
+      for (std::size_t i = 0; i < places.size(); ++i)
+        std::copy(parcel.parts[i].begin(), parcel.parts[i].end(), places[i].begin());
+    }
+    program.placed(pe, message);
+  }
+  clocks_[static_cast<std::size_t>(pe.value)].now += end_work();
 }
 
 }  // namespace
-
-SimulatedOptions parse_simulated(const std::string& given) {
-  SimulatedOptions options;
-  std::size_t at = 0;
-  while (at < given.size()) {
-    const std::size_t comma = std::min(given.find(',', at), given.size());
-    const std::string part = given.substr(at, comma - at);
-    at = comma + 1;
-    const std::size_t equals = part.find('=');
-    if (equals == std::string::npos)
-      fail(ErrorCode::bad_argument, "--sim: ", part, " is not of the form key=value");
-    const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
-    std::string unit;
-    const auto whole = [&](double least, double most) {
-      const double number = number_of(value, key, &unit);
-      if (!unit.empty() || number < least || number > most ||
-          number != static_cast<double>(static_cast<std::int64_t>(number)))
-        fail(ErrorCode::bad_argument, "--sim ", key, ": ", value, " is not a whole number of ",
-             least, " … ", most);
-      return static_cast<std::int64_t>(number);
-    };
-    if (key == "pes") {
-      options.n_pes = static_cast<std::int32_t>(whole(1, 1 << 20));
-    } else if (key == "per-process") {
-      options.pes_per_process = static_cast<std::int32_t>(whole(1, 1 << 20));
-    } else if (key == "seed") {
-      options.seed = static_cast<std::uint64_t>(whole(0, 9e15));
-    } else if (key == "latency") {
-      options.latency = time_of(value, key);
-    } else if (key == "cost") {
-      if (value != "measured") options.cost = time_of(value, key);
-    } else if (key == "migrate") {
-      options.migration_chance = number_of(value, key, &unit);
-      if (!unit.empty() || *options.migration_chance < 0 || *options.migration_chance > 1)
-        fail(ErrorCode::bad_argument, "--sim migrate: ", value, " is not a probability of 0 … 1");
-    } else if (key == "bandwidth") {
-      const double number = number_of(value, key, &unit);
-      const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : unit.empty() ? 1 : -1;
-      if (factor < 0 || number <= 0)
-        fail(ErrorCode::bad_argument, "--sim bandwidth: ", value,
-             " is not a rate (a number with MB/s or GB/s)");
-      options.bandwidth = number * factor;
-    } else {
-      fail(ErrorCode::bad_argument, "--sim: unknown key ", key,
-           " (pes, per-process, latency, bandwidth, cost, seed, migrate)");
-    }
-  }
-  if (options.pes_per_process != 0 && options.n_pes % options.pes_per_process != 0)
-    fail(ErrorCode::bad_argument, "--sim: ", options.n_pes, " PEs do not divide into processes of ",
-         options.pes_per_process);
-  return options;
-}
-
-double migration_chance(const SimulatedOptions& options) {
-  if (options.migration_chance) return *options.migration_chance;
-  if (!options.seed) return 0;
-  constexpr std::array<double, 4> choices{0, 0.01, 0.1, 0.5};
-  return choices[mix(*options.seed ^ 0x6d696772U) % 4];
-}
 
 std::unique_ptr<Machine> make_simulated_machine(const SimulatedOptions& options) {
   return std::make_unique<SimulatedMachine>(options);

@@ -1,7 +1,9 @@
 // A machine with any number of PEs, simulated in one thread as a sequential discrete-event
 // simulation. Each PE has a virtual clock. Running a message advances it by the measured time or by
 // a fixed cost (with which a run repeats bit for bit); a message arrives after latency + bytes /
-// bandwidth.
+// bandwidth. What is measured is the time of the program's code: neither that of the simulation nor
+// that of the clock (work_clock.hpp). With a measured cost and without a seed a PE runs several
+// messages in a step, as on real machines, so that messages to other processes are packed.
 //
 // With a seed the machine is adversarial: messages arrive in any order, some kinds of traffic are
 // slow throughout, and a PE is asked to report its counters in the middle of its work. Every choice
@@ -9,38 +11,11 @@
 #pragma once
 
 #include "runtime/machine/machine.hpp"
+#include "runtime/machine/simulated_options.hpp"
 
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <string>
 
 namespace tess::detail {
-
-class Adversary;
-
-struct SimulatedOptions {
-  std::int32_t n_pes = 4;
-  std::int32_t pes_per_process = 0;  ///< 0: one process, or drawn from the seed if there is one
-  Time latency{1000};
-  double bandwidth = 10e9;            ///< bytes per second
-  std::optional<Time> cost;           ///< cost of one message; absent: measured
-  std::optional<std::uint64_t> seed;  ///< if present: adversarial order
-  /// After each message; absent: 0, or drawn from the seed.
-  std::optional<double> migration_chance;
-  // A run that needs more is stopped as a livelock. 0: no bound.
-  std::uint64_t most_events = 0;
-  Time most_time{};  ///< virtual
-  /// If present: it chooses the disorder, and the seed only the processes. Not owned.
-  Adversary* adversary = nullptr;
-};
-
-/// "pes=8,latency=2us,bandwidth=10GB/s,cost=100ns,per-process=2,migrate=0.1,seed=7". Throws Error
-/// that names the part.
-[[nodiscard]] SimulatedOptions parse_simulated(const std::string& text);
-
-/// The probability of a forced migration after a message: as given, or drawn from the seed.
-[[nodiscard]] double migration_chance(const SimulatedOptions& options);
 
 [[nodiscard]] std::unique_ptr<Machine> make_simulated_machine(const SimulatedOptions& options);
 
@@ -49,7 +24,5 @@ struct SimulatedOptions {
 namespace tess {
 
 using detail::make_simulated_machine;
-using detail::parse_simulated;
-using detail::SimulatedOptions;
 
 }  // namespace tess

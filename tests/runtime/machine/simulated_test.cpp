@@ -4,6 +4,10 @@
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
 namespace {
 
 class Walker : public tess::Chare<Walker, tess::Index1> {
@@ -85,5 +89,138 @@ TEST_CASE("a bad runtime option is refused", "[runtime]") {
     int argc = 2;
     INFO(bad);
     CHECK_THROWS_AS(tess::take_options(argc, argv.data()), tess::Error);
+  }
+}
+
+namespace {
+
+/// A file of parameters with this content.
+class ParameterFile {
+ public:
+  explicit ParameterFile(const std::string& content) { std::ofstream(path_) << content; }
+  ~ParameterFile() { std::filesystem::remove(path_); }
+  ParameterFile(const ParameterFile&) = delete;
+  ParameterFile& operator=(const ParameterFile&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_ = (std::filesystem::temp_directory_path() /
+                       ("tess_simulated_" + std::to_string(::getpid()) + ".sim"))
+                          .string();
+};
+
+/// The error of --sim with these options.
+std::string refusal(const std::string& options) {
+  try {
+    (void)tess::parse_simulated(options);
+  } catch (const tess::Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// Sends a ball from PE 0 to PE 1 and back, several times; the last time counts.
+class Pair : public tess::Group<Pair> {
+ public:
+  void serve(int n_left) {
+    n_left_ = n_left;
+    began_ = tess::now();
+    group()[tess::PeId{1}].send<&Pair::hit>();
+  }
+  void hit() {
+    if (pe().value == 1) {
+      group()[tess::PeId{0}].send<&Pair::hit>();
+    } else if (n_left_ > 1) {
+      serve(n_left_ - 1);
+    } else {
+      last = tess::now() - began_;
+    }
+  }
+  static tess::Time last;
+
+ private:
+  int n_left_ = 0;
+  tess::Time began_{};
+};
+tess::Time Pair::last{};
+
+/// Nanoseconds to the other PE and back, with a fixed cost of 100 ns, which a PE pays after a
+/// message.
+std::int64_t round_trip(const std::string& options) {
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(tess::parse_simulated("cost=100ns," + options));
+  Pair::last = {};
+  REQUIRE(tess::run(setup,
+                    [] { tess::create_group<Pair>()[tess::PeId{0}].send<&Pair::serve>(3); }) == 0);
+  return Pair::last.count();
+}
+
+}  // namespace
+
+TEST_CASE("a file has the parameters of a machine, and later parts override it",
+          "[runtime][simulated]") {
+  const ParameterFile file(
+      "# here\n\nlatency=150ns\n overhead = 40ns\nprocess-latency=2us\r\n"
+      "process-bandwidth=5GB/s\nprocess-overhead=300ns");
+  for (const char* form : {"", "file="}) {
+    const auto options = tess::parse_simulated(form + file.path() + ",pes=8,overhead=50ns");
+    CHECK(options.n_pes == 8);
+    CHECK(options.within_process().latency == tess::Time(150));
+    CHECK(options.within_process().overhead == tess::Time(50));
+    CHECK(options.within_process().bandwidth == 10e9);
+    CHECK(options.between_processes().latency == tess::Time(2000));
+    CHECK(options.between_processes().bandwidth == 5e9);
+    CHECK(options.between_processes().overhead == tess::Time(300));
+    CHECK_FALSE(options.cost.has_value());
+  }
+  const auto one = tess::parse_simulated("latency=3us,bandwidth=1GB/s,overhead=7ns");
+  CHECK(one.between_processes().latency == tess::Time(3000));
+  CHECK(one.between_processes().bandwidth == 1e9);
+  CHECK(one.between_processes().overhead == tess::Time(7));
+}
+
+TEST_CASE("a bad file of parameters is refused with its line, value and remedy",
+          "[runtime][simulated]") {
+  struct Case {
+    const char* content;
+    const char* line;
+    const char* says;
+  };
+  for (const Case& c :
+       {Case{"latency=1us\noverhead=-4ns\n", ":2: overhead", "-4ns is not a time"},
+        Case{"latency=fast\n", ":1: latency", "fast is not a number"},
+        Case{"process-bandwidth=3km\n", ":1: process-bandwidth", "MB/s or GB/s"},
+        Case{"process-latency=1e300s\n", ":1: process-latency", "1e300s is not a time"},
+        Case{"# x\nlatency\n", ":2: latency", "bench --calibrate"},
+        Case{"pes=4\n", ":1: unknown key pes", "--sim "},
+        Case{"# nothing\n", "has no values", "bench --calibrate"}}) {
+    const ParameterFile file(c.content);
+    const std::string error = refusal("pes=2,file=" + file.path());
+    CAPTURE(error);
+    CHECK(error.find(file.path()) != std::string::npos);
+    CHECK(error.find(c.line) != std::string::npos);
+    CHECK(error.find(c.says) != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  CHECK(refusal("/nowhere/here.sim").find("/nowhere/here.sim cannot be opened") !=
+        std::string::npos);
+  CHECK(refusal("latency=1us,pes").find("bench --calibrate") != std::string::npos);
+}
+
+TEST_CASE("overheads and the wire between processes are virtual time, exactly",
+          "[runtime][simulated]") {
+  struct Case {
+    const char* machine;
+    std::int64_t message;  // ns from one PE to the other; its bytes take none
+  };
+  for (const Case& c :
+       {Case{"pes=2,latency=1us,bandwidth=1e15", 1000},
+        Case{"pes=2,latency=1us,bandwidth=1e15,overhead=40ns", 1080},
+        Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1e15", 3000},
+        Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1e15,overhead=40ns,"
+             "process-overhead=500ns",
+             4000}}) {
+    CAPTURE(c.machine);
+    CHECK(round_trip(c.machine) == 2 * c.message);
   }
 }
