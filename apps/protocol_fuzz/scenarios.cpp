@@ -44,7 +44,7 @@ constexpr std::array known{
              &asks, 1},
     Scenario{"all_at_once",
              "replies, sections, priorities, groups, timers, epochs and checkpoints in one program",
-             &all_at_once, 1},
+             &all_at_once, 400},
     Scenario{"payloads", "values of every kind arrive as they were sent", &payloads, 40},
     Scenario{"floods", "messages without credit wait, and no budget is too small", &floods, 1000},
     Scenario{"priorities", "messages that are ready on a PE run in the order of their priorities",
