@@ -72,7 +72,56 @@ tess::Task reduce() {
   co_await tess::epoch([&] { odd.destroy(); });
 }
 
+/// Moves on request, and hears.
+class Rider : public tess::Chare<Rider> {
+ public:
+  void hear() {}
+  void ride_on() { migrate_to(tess::PeId{(tess::my_pe().value + 3) % tess::n_pes()}); }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+class Counter : public tess::Group<Counter> {
+ public:
+  void report(tess::Callback<std::uint64_t> target) {
+    contribute(tess::sum, tess::statistics().messages, target);
+  }
+};
+
+using Costs = std::vector<std::uint64_t>;
+
+/// The messages of ten multicasts before the members move, and after.
+tess::Task count_messages(Costs& costs) {
+  const auto riders = tess::create<Rider>(tess::range(64));
+  const auto counters = tess::create_group<Counter>();
+  const auto all = tess::create_section_if(riders, [](tess::Index1) { return true; });
+  for (int phase = 0; phase < 2; ++phase) {
+    if (phase == 1) co_await tess::epoch([&] { riders.broadcast<&Rider::ride_on>(); });
+    // The first multicasts find the members' places.
+    for (int i = 0; i < 4; ++i) co_await tess::epoch([&] { all.broadcast<&Rider::hear>(); });
+    tess::Future<std::uint64_t> before, after;
+    counters.broadcast<&Counter::report>(before.callback());
+    const std::uint64_t n_before = co_await before;
+    for (int i = 0; i < 10; ++i) co_await tess::epoch([&] { all.broadcast<&Rider::hear>(); });
+    counters.broadcast<&Counter::report>(after.callback());
+    const std::uint64_t n_after = co_await after;
+    costs.push_back(n_after - n_before);
+  }
+}
+
 }  // namespace
+
+TEST_CASE("once members have moved, multicasts cost as few messages as before",
+          "[runtime][section]") {
+  tess::SimulatedOptions options;
+  options.n_pes = 8;
+  options.cost = std::chrono::nanoseconds(100);
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(options);
+  Costs costs;
+  REQUIRE(tess::run(setup, [&] { return count_messages(costs); }) == 0);
+  INFO(costs[0] << " messages, after the members have moved " << costs[1]);
+  CHECK(costs[1] < costs[0] + 64);  // one per member and multicast would be 640 more
+}
 
 TEST_CASE("reductions are finished at the root and gathered by index, over arrays and sections",
           "[runtime][section]") {
