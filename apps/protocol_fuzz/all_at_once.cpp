@@ -74,7 +74,7 @@ PeId any_pe(Random& random) {
   return PeId{draw(random, tess::n_pes())};
 }
 
-// --- Who receives tokens.
+// --- What receives tokens.
 
 class Spot : public Chare<Spot, std::string> {
  public:
@@ -220,7 +220,7 @@ void check_choruses(const std::vector<Chorus>& choruses, const std::vector<Index
          "the results of a section are not those of its reductions");
 }
 
-// --- Those who do it all.
+// --- What does it all.
 
 struct Prices {
   std::vector<std::uint64_t> each;
