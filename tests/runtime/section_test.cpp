@@ -108,7 +108,55 @@ tess::Task count_messages(Costs& costs) {
   }
 }
 
+/// Each call moves the other members of the PE away, before or after their turn.
+class Pusher : public tess::Chare<Pusher> {
+ public:
+  void hear(bool pushes) {
+    ++n_heard_;
+    if (!pushes) return;
+    for (int x = 0; x < 8; ++x)
+      if (x % 3 == 0 && x != index().x) array()[{x}].send<&Pusher::go>();
+  }
+  void go() { migrate_to(tess::PeId{(tess::my_pe().value + 1) % tess::n_pes()}); }
+  void report(tess::Callback<std::vector<int>> target) {
+    contribute(tess::in_order(tess::concatenate), std::vector<int>{n_heard_}, target);
+  }
+  using EntryAttributes = tess::Attributes<tess::EntryMethod<&Pusher::go, tess::inline_when_local>>;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_heard_);
+  }
+
+ private:
+  int n_heard_ = 0;
+};
+
+tess::Task push(std::vector<int>& heard) {
+  const auto pushers = tess::create<Pusher>(tess::range(8));
+  const auto all = tess::create_section_if(pushers, [](tess::Index1) { return true; });
+  for (int i = 0; i < 12; ++i)
+    co_await tess::epoch([&] { all.broadcast<&Pusher::hear>(i % 4 == 3); });
+  tess::Future<std::vector<int>> reports;
+  pushers.broadcast<&Pusher::report>(reports.callback());
+  heard = co_await reports;
+}
+
 }  // namespace
+
+TEST_CASE("a member that another member's call moves away before its turn receives the multicast",
+          "[runtime][section]") {
+  for (int n_pes = 1; n_pes <= 4; ++n_pes) {
+    INFO(n_pes << " PEs");
+    tess::SimulatedOptions options;
+    options.n_pes = n_pes;
+    options.cost = std::chrono::nanoseconds(100);
+    tess::Setup setup;
+    setup.machine = tess::make_simulated_machine(options);
+    std::vector<int> heard;
+    REQUIRE(tess::run(setup, [&] { return push(heard); }) == 0);
+    CHECK(heard == std::vector<int>(8, 12));
+  }
+}
 
 TEST_CASE("once members have moved, multicasts cost as few messages as before",
           "[runtime][section]") {
