@@ -12,6 +12,7 @@
 #include "runtime/array.hpp"
 #include "runtime/collections/section_lists.hpp"
 
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -112,6 +113,15 @@ SectionProxy<C> create_section(const ArrayProxy<C>& array, std::vector<typename 
       pe, array.id(), detail::root_of(CollectionId{id.value}, pe.n_pes()),
       {id, epoch, std::move(indices)});
   return SectionProxy<C>(array.id(), id);
+}
+
+/// Indices of another type do not name elements of the array.
+template <class C, class Index>
+  requires(!std::is_convertible_v<std::vector<Index>, std::vector<typename C::Index>>)
+SectionProxy<C> create_section(const ArrayProxy<C>& array, std::vector<Index> indices) {
+  static_assert(std::is_same_v<Index, typename C::Index>,
+                "the indices of a section are of the array's type of index");
+  return create_section(array, std::vector<typename C::Index>(indices.size()));
 }
 
 /// The section of the initial elements (ArrayProxy::range) whose index fulfils the condition.

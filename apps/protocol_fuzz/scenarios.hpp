@@ -28,6 +28,7 @@ void epoch_migrations(Trial& trial);     // epoch_migrations.cpp
 void flood_exit(Trial& trial);           // exits.cpp
 void mailboxes(Trial& trial);            // mailboxes.cpp
 void asks(Trial& trial);                 // asks.cpp
+void all_at_once(Trial& trial);          // all_at_once.cpp
 void timers(Trial& trial);               // timers.cpp
 void payloads(Trial& trial);             // payloads.cpp
 void floods(Trial& trial);               // floods.cpp

@@ -49,6 +49,9 @@ class Trial {
   /// Lets no message wait for credit.
   void give_memory() { message_memory_ = std::uint64_t{32} << 20U; }
 
+  /// The runs that follow have so many PEs; in one process.
+  void change_pes(std::int32_t n_pes) { n_pes_ = n_pes; }
+
   /// Turns forced migrations off.
   void forbid_forced_migration() { forced_migration_ = false; }
 
@@ -81,7 +84,7 @@ class Trial {
   void add_failure(std::string failure);
 
   const std::uint64_t seed_;
-  const std::int32_t n_pes_;
+  std::int32_t n_pes_;
   const std::int32_t pes_of_process_;
   const On machine_;
   Random random_;

@@ -21,6 +21,7 @@
 #include "runtime/collections/sections.hpp"
 #include "runtime/core/algorithm.hpp"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <unordered_map>
@@ -438,15 +439,18 @@ template <class Index>
 void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
                                     const Generation& generation, const SectionCall& call) {
   SectionPart& part = *sections().part(id);
-  if (number == part.generation && part.n_listed == generation.entries.size()) {
-    sections().deliver_listed(part, call);
-    return;
-  }
-  std::vector<const Entry*> here;
   const auto forward = [&](const Entry& entry) {
     completion().sent(call.numbered.epoch);
     send_token(id, entry.index, call);
   };
+  if (number == part.generation && part.n_listed == generation.entries.size()) {
+    for (const std::uint32_t ordinal : sections().deliver_listed(part, call))
+      forward(
+          *std::lower_bound(generation.entries.begin(), generation.entries.end(), ordinal,
+                            [](const Entry& entry, std::uint32_t o) { return entry.ordinal < o; }));
+    return;
+  }
+  std::vector<const Entry*> here;
   for (const Entry& entry : generation.entries) {
     if (part.slots.contains(entry.ordinal)) {
       here.push_back(&entry);

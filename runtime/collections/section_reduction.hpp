@@ -17,6 +17,7 @@
 
 #include "runtime/collections/gathered.hpp"
 #include "runtime/collections/number_counts.hpp"
+#include "runtime/completion/completion.hpp"
 
 #include <cstdint>
 #include <map>

@@ -113,8 +113,9 @@ class Sections {
 
   /// Calls the member, or keeps the call until its turn. Within a Run.
   void deliver(const Seat& seat, const SectionCall& call);
-  /// Calls all members that are listed here.
-  void deliver_listed(SectionPart& part, const SectionCall& call);
+  /// Calls all members that are listed here. Returns those that left before their turn.
+  [[nodiscard]] std::vector<std::uint32_t> deliver_listed(SectionPart& part,
+                                                          const SectionCall& call);
   /// While it lives, members keep their slots, and what they cause belongs to the call's epoch.
   class Run {
    public:

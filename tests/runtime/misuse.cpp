@@ -63,6 +63,34 @@ struct ToItsNumber {
   PeId operator()(const tess::Index1& index, std::int32_t /*n_pes*/) const { return {index.x}; }
 };
 
+/// Its place() is wrong.
+template <int PeOfAll>
+class Placed : public tess::Chare<Placed<PeOfAll>> {
+ public:
+  static PeId place(tess::Index1 /*index*/, std::int32_t /*n_pes*/) { return PeId{PeOfAll}; }
+  void nothing() {}
+};
+
+/// Contributes to a section of another array of its class.
+class Voter : public tess::Chare<Voter> {
+ public:
+  struct Vote {
+    tess::SectionProxy<Voter> section;
+    tess::Callback<int> target;
+  };
+  void vote(Vote vote) { contribute(vote.section, tess::sum, 1, vote.target); }
+};
+
+tess::Task vote_elsewhere() {
+  const auto voters = tess::create<Voter>(tess::range(2)),
+             others = tess::create<Voter>(tess::range(2));
+  const auto section = tess::create_section(others, {{0}, {1}});
+  tess::Future<int> sum;
+  const Voter::Vote vote{section, sum.callback()};
+  voters[{1}].send<&Voter::vote>(vote);
+  (void)co_await sum;
+}
+
 /// Reads, where it arrives, another number of bytes than it wrote.
 template <class Value>
 class Carrier : public tess::Chare<Carrier<Value>, tess::Index1> {
@@ -150,6 +178,14 @@ const std::map<std::string, std::function<void()>> misuses{
     {"throw_inserted", [] { blocks()[{7}].insert(1); }},
     {"throw_initial", [] { tess::create<Block>(tess::range(1), 1); }},
     {"check_inserted", [] { blocks()[{7}].insert_on(PeId{0}, 2); }},
+    {"place_77", [] { tess::create<Placed<77>>(tess::sparse)[{4}].insert(); }},
+    {"place_-2", [] { tess::create<Placed<-2>>(tess::range(3)); }},
+    {"section_twice",
+     [] {
+       (void)tess::create_section(blocks(), {{0}, {2}, {0}});
+     }},
+    {"section_empty", [] { tess::SectionProxy<Block>().broadcast<&Block::nothing>(); }},
+    {"section_of_another", [] { const tess::Task task = vote_elsewhere(); }},
     {"short_element", &carry<Short>},
     {"long_element", &carry<Long>},
     {"short_argument", &hear<Short>},

@@ -3,6 +3,7 @@
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace {
@@ -19,10 +20,12 @@ std::uint64_t n_seeds() {
 }
 
 void run_seeds(std::string_view name,
-               std::int32_t (*pes_of)(std::uint64_t) = &tess::fuzz::pes_of_seed) {
+               std::int32_t (*pes_of)(std::uint64_t) = &tess::fuzz::pes_of_seed,
+               std::uint64_t most_seeds = ~std::uint64_t{0}) {
   const auto& scenario = tess::fuzz::scenario(name);
+  const std::uint64_t n_trials = std::min(n_seeds(), most_seeds);
   std::uint64_t n_checks = 0;
-  for (std::uint64_t seed = 0; seed < n_seeds(); ++seed) {
+  for (std::uint64_t seed = 0; seed < n_trials; ++seed) {
     const std::int32_t n_pes = pes_of(seed);
     Trial trial(seed, n_pes, Trial::On::simulated);
     scenario.run(trial);
@@ -33,7 +36,7 @@ void run_seeds(std::string_view name,
                                            << trial.failures().front());
     return;
   }
-  CHECK(tess::fuzz::too_few_checks(scenario, n_seeds(), n_checks) == "");
+  CHECK(tess::fuzz::too_few_checks(scenario, n_trials, n_checks) == "");
 }
 
 /// Each number of PEs from 2 to 8 in turn.
@@ -45,6 +48,10 @@ std::int32_t two_to_eight(std::uint64_t seed) {
 
 TEST_CASE("an index that all PEs demand at once is created once", "[runtime][protocol]") {
   run_seeds("create_at_once");
+}
+TEST_CASE("all means of control work in one program at the same time",
+          "[runtime][protocol][checkpoint]") {
+  run_seeds("all_at_once", &tess::fuzz::pes_of_seed, 300);
 }
 TEST_CASE("each wait at the balance barrier is resumed once", "[runtime][protocol][balance]") {
   run_seeds("balance_rounds");
@@ -168,7 +175,8 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
         "flood_exit",       "mailboxes",      "destroyed",       "constructors",
         "timers",           "asks",           "payloads",        "floods",
         "groups",           "balance_rounds", "balance_barrier", "balance_rotate",
-        "balance_periodic", "balance_epochs", "priorities",      "process_groups"}) {
+        "balance_periodic", "balance_epochs", "priorities",      "process_groups",
+        "all_at_once"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

@@ -72,7 +72,104 @@ tess::Task reduce() {
   co_await tess::epoch([&] { odd.destroy(); });
 }
 
+/// Moves on request, and hears.
+class Rider : public tess::Chare<Rider> {
+ public:
+  void hear() {}
+  void ride_on() { migrate_to(tess::PeId{(tess::my_pe().value + 3) % tess::n_pes()}); }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+class Counter : public tess::Group<Counter> {
+ public:
+  void report(tess::Callback<std::uint64_t> target) {
+    contribute(tess::sum, tess::statistics().messages, target);
+  }
+};
+
+using Costs = std::vector<std::uint64_t>;
+
+/// The messages of ten multicasts before the members move, and after.
+tess::Task count_messages(Costs& costs) {
+  const auto riders = tess::create<Rider>(tess::range(64));
+  const auto counters = tess::create_group<Counter>();
+  const auto all = tess::create_section_if(riders, [](tess::Index1) { return true; });
+  for (int phase = 0; phase < 2; ++phase) {
+    if (phase == 1) co_await tess::epoch([&] { riders.broadcast<&Rider::ride_on>(); });
+    // The first multicasts find the members' places.
+    for (int i = 0; i < 4; ++i) co_await tess::epoch([&] { all.broadcast<&Rider::hear>(); });
+    tess::Future<std::uint64_t> before, after;
+    counters.broadcast<&Counter::report>(before.callback());
+    const std::uint64_t n_before = co_await before;
+    for (int i = 0; i < 10; ++i) co_await tess::epoch([&] { all.broadcast<&Rider::hear>(); });
+    counters.broadcast<&Counter::report>(after.callback());
+    const std::uint64_t n_after = co_await after;
+    costs.push_back(n_after - n_before);
+  }
+}
+
+/// Each call moves the other members of the PE away, before or after their turn.
+class Pusher : public tess::Chare<Pusher> {
+ public:
+  void hear(bool pushes) {
+    ++n_heard_;
+    if (!pushes) return;
+    for (int x = 0; x < 8; ++x)
+      if (x % 3 == 0 && x != index().x) array()[{x}].send<&Pusher::go>();
+  }
+  void go() { migrate_to(tess::PeId{(tess::my_pe().value + 1) % tess::n_pes()}); }
+  void report(tess::Callback<std::vector<int>> target) {
+    contribute(tess::in_order(tess::concatenate), std::vector<int>{n_heard_}, target);
+  }
+  using EntryAttributes = tess::Attributes<tess::EntryMethod<&Pusher::go, tess::inline_when_local>>;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_heard_);
+  }
+
+ private:
+  int n_heard_ = 0;
+};
+
+tess::Task push(std::vector<int>& heard) {
+  const auto pushers = tess::create<Pusher>(tess::range(8));
+  const auto all = tess::create_section_if(pushers, [](tess::Index1) { return true; });
+  for (int i = 0; i < 12; ++i)
+    co_await tess::epoch([&] { all.broadcast<&Pusher::hear>(i % 4 == 3); });
+  tess::Future<std::vector<int>> reports;
+  pushers.broadcast<&Pusher::report>(reports.callback());
+  heard = co_await reports;
+}
+
 }  // namespace
+
+TEST_CASE("a member that another member's call moves away before its turn receives the multicast",
+          "[runtime][section]") {
+  for (int n_pes = 1; n_pes <= 4; ++n_pes) {
+    INFO(n_pes << " PEs");
+    tess::SimulatedOptions options;
+    options.n_pes = n_pes;
+    options.cost = std::chrono::nanoseconds(100);
+    tess::Setup setup;
+    setup.machine = tess::make_simulated_machine(options);
+    std::vector<int> heard;
+    REQUIRE(tess::run(setup, [&] { return push(heard); }) == 0);
+    CHECK(heard == std::vector<int>(8, 12));
+  }
+}
+
+TEST_CASE("once members have moved, multicasts cost as few messages as before",
+          "[runtime][section]") {
+  tess::SimulatedOptions options;
+  options.n_pes = 8;
+  options.cost = std::chrono::nanoseconds(100);
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine(options);
+  Costs costs;
+  REQUIRE(tess::run(setup, [&] { return count_messages(costs); }) == 0);
+  INFO(costs[0] << " messages, after the members have moved " << costs[1]);
+  CHECK(costs[1] < costs[0] + 64);  // one per member and multicast would be 640 more
+}
 
 TEST_CASE("reductions are finished at the root and gathered by index, over arrays and sections",
           "[runtime][section]") {

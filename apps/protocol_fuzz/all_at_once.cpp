@@ -1,0 +1,499 @@
+// All means of control in one program, at the same time: replies with errors, deadlines, when_all and
+// when_any, sections that are made, used and destroyed while their members migrate, are created and
+// end, priorities and expedited messages, delayed sends and periodic timers, nested epochs, mailboxes,
+// elements created on demand, a single chare, a group, a process group, read-only data, reductions,
+// a user-defined map, and between the phases checkpoints, with a restart on another number of PEs.
+//
+// The oracle: each message that must arrive carries a token, and each element adds up the tokens that
+// reached it. After each phase the sums over all collections equal the sum of what was sent. Replies
+// are what the function would return. A result of a section has one contribution of each member that
+// has not ended, and all of them to the same multicast.
+#include "apps/protocol_fuzz/city_life.hpp"
+#include "apps/protocol_fuzz/scenarios.hpp"
+#include "runtime/checkpoint.hpp"
+#include "runtime/when.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+namespace tess::fuzz::city_life {
+
+// --- What does it all.
+
+struct Prices {
+  std::vector<std::uint64_t> each;
+};
+struct Orders {
+  std::int32_t phase = 0;
+  std::int32_t n_left = 0;  // steps
+  std::int32_t n_singers = 0;
+  ArrayProxy<Singer> singers;
+  ArrayProxy<Spot> spots;
+  ChareProxy<Mayor> mayor;
+  GroupProxy<Office> offices;
+  ProcessGroupProxy<Treasury> treasuries;
+  ReadOnly<Prices> prices;
+  Callback<std::vector<std::int32_t>> began;
+};
+struct Note {
+  std::int32_t phase = 0;
+  std::uint64_t token = 0;
+};
+struct Hop {
+  std::uint64_t epoch = 0;
+  std::int32_t n_left = 0;
+};
+
+class Citizen : public Chare<Citizen, Index1> {
+ public:
+  static PeId place(Index1 index, std::int32_t n_pes) {
+    return PeId{static_cast<std::int32_t>(mix(static_cast<std::uint64_t>(index.x) + 3) %
+                                          static_cast<std::uint64_t>(n_pes))};
+  }
+
+  void add(std::uint64_t token) { count_.note(token); }
+  void add_soon(std::uint64_t token) { add(token); }
+  void add_inline(std::uint64_t token) { add(token); }
+  void receive(Note note) { notes_.put(note); }
+
+  [[nodiscard]] std::uint64_t value(std::uint64_t question) {
+    add(question);
+    if (refuses(question)) fail(ErrorCode::bad_value, "refused ", question);
+    return answer_of(question, index().x);
+  }
+  /// A coroutine that asks others before it replies.
+  Task pass_on(std::uint64_t question, int depth) {
+    add(question);
+    Random random(mix(question));
+    if (depth > 0) {
+      const std::uint64_t other = token(random);
+      co_await any(random).ask<&Citizen::pass_on>(other, depth - 1);
+    } else if (refuses(question)) {
+      fail(ErrorCode::bad_value, "refused ", question);
+    }
+  }
+  void hop(Hop hop) {
+    {
+      const std::lock_guard lock(city->mutex);
+      ++city->hops[hop.epoch];
+    }
+    Random random(mix(hop.epoch ^ static_cast<std::uint64_t>(hop.n_left)));
+    if (random.chance(city->move_chance)) migrate_to(any_pe(random));
+    if (--hop.n_left == 0) return;
+    switch (random.below(3)) {
+      case 0:
+        any(random).send<&Citizen::hop>(hop);
+        break;
+      case 1:
+        any(random).with(expedited).send<&Citizen::hop>(hop);
+        break;
+      default:
+        any(random).send_after<&Citizen::hop>(delay(random), hop);
+    }
+  }
+  /// A result of a section that has ended meanwhile, or not.
+  void heard(Chorus chorus) {
+    for (const auto& [index, nth] : chorus)
+      expect(nth == chorus.front().second, "a late result of a section has mixed contributions");
+  }
+
+  /// One step, then a message to itself with the next: between them it may migrate.
+  Task live(Orders orders) {
+    Random random(mix(city->seed ^ static_cast<std::uint64_t>(
+                                       (orders.phase * 100 + orders.n_left) * 1000 + index().x)));
+    if (orders.n_left == city->n_steps) {
+      contribute(in_order(concatenate), std::vector<std::int32_t>{index().x}, orders.began);
+      const Note note{orders.phase, token(random)};
+      array()[{(index().x + 1) % city->n_citizens}].send<&Citizen::receive>(note);
+    }
+    if (orders.n_left == 0) {
+      const Note note = co_await notes_.take(orders.phase);
+      add(note.token);
+      co_return;
+    }
+    switch (random.below(9)) {
+      case 0:
+        co_await ask_others(random);
+        break;
+      case 1:
+        co_await ask_coroutines(random);
+        break;
+      case 2:
+        co_await ask_several(random);
+        break;
+      case 3:
+        co_await ask_mortals(orders, random);
+        break;
+      case 4:
+        co_await conduct(orders, random);
+        break;
+      case 5:
+        co_await open_epoch(random);
+        break;
+      case 6:
+        set_timers(random);
+        break;
+      default:
+        send_tokens(orders, random);
+    }
+    if (random.chance(city->move_chance)) migrate_to(any_pe(random));
+    --orders.n_left;
+    if (random.chance(0.2)) {
+      self().with(Priority{draw(random, 9) - 4}).send<&Citizen::live>(orders);
+    } else {
+      self().send<&Citizen::live>(orders);
+    }
+  }
+  void report(Callback<Count> target) { contribute(sum, count_, target); }
+
+  using EntryAttributes = Attributes<EntryMethod<&Citizen::add_soon, Priority{-5}>,
+                                     EntryMethod<&Citizen::add_inline, inline_when_local>>;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(count_, notes_);
+  }
+
+ private:
+  [[nodiscard]] ElementProxy<Citizen> any(Random& random) const {
+    return array()[{draw(random, city->n_citizens)}];
+  }
+
+  Task ask_others(Random& random) {
+    const std::uint64_t question = token(random);
+    const int to = draw(random, city->n_citizens);
+    const bool hurries = random.chance(0.5);
+    const Time limit = delay(random);
+    std::uint64_t answer = 0;
+    std::string error;
+    try {
+      auto ask = array()[{to}].ask<&Citizen::value>(question);
+      if (hurries) {
+        answer = co_await std::move(ask).within(limit);
+      } else {
+        answer = co_await ask;
+      }
+    } catch (const Error& thrown) {
+      error = thrown.what();
+    }
+    const bool late = hurries && error.find("did not come within") != std::string::npos;
+    expect(late || (refuses(question) ? error == text("refused ", question)
+                                      : answer == answer_of(question, to)),
+           "a reply is wrong; ", error);
+  }
+  Task ask_coroutines(Random& random) {
+    const std::uint64_t question = token(random);
+    const int depth = draw(random, 3);
+    std::uint64_t last = question;
+    for (int i = 0; i < depth; ++i) last = Random(mix(last))();
+    bool refused = false;
+    try {
+      co_await any(random).ask<&Citizen::pass_on>(question, depth);
+    } catch (const Error& error) {
+      refused = error.code() == ErrorCode::bad_value;
+    }
+    expect(refused == refuses(last), "a coroutine's error is lost or invented");
+  }
+  Task ask_several(Random& random) {
+    const std::uint64_t first = token(random), second = token(random);
+    const int a = draw(random, city->n_citizens), b = draw(random, city->n_citizens);
+    bool refused = false;
+    if (random.chance(0.5)) {
+      try {
+        const auto [of_a, of_b] = co_await when_all(array()[{a}].ask<&Citizen::value>(first),
+                                                    array()[{b}].ask<&Citizen::value>(second));
+        expect(of_a == answer_of(first, a) && of_b == answer_of(second, b),
+               "when_all gives the values of other asks");
+      } catch (const Error&) {
+        refused = true;
+      }
+      expect(refused == (refuses(first) || refuses(second)), "when_all loses an error");
+      co_return;
+    }
+    const Time limit = delay(random);
+    const Time began = now();
+    (void)array()[{b}].ask<&Citizen::value>(second);  // given up
+    std::size_t which = 0;
+    try {
+      const auto one = co_await when_any(array()[{a}].ask<&Citizen::value>(first), sleep(limit));
+      which = one.index();
+      if (which == 0)
+        expect(std::get<0>(one) == answer_of(first, a), "when_any gives another value");
+    } catch (const Error&) {
+      refused = true;
+    }
+    expect(which == 0 || now() >= began + limit, "when_any's time is over too early");
+    expect(which != 0 || refused == refuses(first), "when_any loses an error");
+  }
+  Task ask_mortals(Orders& orders, Random& random) {
+    const int to = draw(random, orders.n_singers);
+    const std::uint64_t question = random();
+    bool was_dead = false;
+    for (int i = 0; i < 2; ++i) {
+      bool is_dead = false;
+      std::uint64_t answer = 0;
+      try {
+        if (i == 0 && Singer::is_mortal(to) && random.chance(city->end_chance))
+          co_await orders.singers[{to}].ask<&Singer::end>();
+        answer = co_await orders.singers[{to}].ask<&Singer::age>(question);
+      } catch (const Error& error) {
+        is_dead = std::string(error.what()).find("was destroyed") != std::string::npos;
+      }
+      expect(is_dead ? Singer::is_mortal(to) : !was_dead && answer == answer_of(question, to),
+             "an element is neither asked nor dead, or lives again");
+      was_dead = is_dead;
+    }
+  }
+  /// A section of its own.
+  Task conduct(Orders& orders, Random& random) {
+    std::vector<Index1> members{{0}};
+    for (int index = 1; index < orders.n_singers; ++index)
+      if (random.chance(0.4)) members.push_back({index});
+    const auto section = create_section(orders.singers, members);
+    const int n = 1 + draw(random, 4);
+    if (random.chance(0.3)) {  // it ends in mid-use
+      ++city->n_cut;
+      const Cue cue{section, self().target<&Citizen::heard>()};
+      for (int i = 0; i < n; ++i) section.broadcast<&Singer::sing>(cue);
+      if (random.chance(0.5)) co_await sleep(delay(random));
+    } else {
+      std::vector<Future<Chorus>> results(static_cast<std::size_t>(n));
+      for (const auto& result : results)
+        section.broadcast<&Singer::sing>(Cue{section, result.callback()});
+      const std::vector<Chorus> choruses = co_await when_all(std::move(results));
+      check_choruses(choruses, members);
+    }
+    section.destroy();
+  }
+  Task open_epoch(Random& random) {
+    const Hop hop{random(), 1 + draw(random, 6)};
+    const ElementProxy<Citizen> to = any(random);
+    co_await epoch([&] { to.send<&Citizen::hop>(hop); });
+    const std::lock_guard lock(city->mutex);
+    expect(city->hops[hop.epoch] == hop.n_left, "an epoch ends after ", city->hops[hop.epoch],
+           " of ", hop.n_left, " messages");
+  }
+  void set_timers(Random& random) {
+    any(random).send_after<&Citizen::add>(delay(random), token(random));
+    after(delay(random), any(random).target<&Citizen::add>(), token(random));
+    // Cancelled before it can have run, since this code does not wait.
+    any(random).send_after<&Citizen::add>(delay(random), random()).cancel();
+  }
+  void send_tokens(Orders& orders, Random& random) {
+    const ElementProxy<Citizen> to = any(random);
+    switch (random.below(4)) {
+      case 0:
+        to.send<&Citizen::add>(token(random));
+        break;
+      case 1:
+        to.with(Priority{draw(random, 9) - 4}).send<&Citizen::add>(token(random));
+        break;
+      case 2:
+        to.with(expedited).send<&Citizen::add>(token(random));
+        break;
+      default:
+        to.send<&Citizen::add_soon>(token(random));
+    }
+    any(random).send<&Citizen::add_inline>(token(random));
+    const auto spot = orders.spots[text("spot ", draw(random, 12))];
+    if (random.chance(0.5)) {
+      spot.send_or_create_here<&Spot::add>(token(random));
+    } else {
+      spot.with(expedited).send_or_create_home<&Spot::add>(token(random));
+    }
+    orders.mayor.send<&Mayor::add>(token(random));
+    orders.offices[any_pe(random)].send<&Office::add>(token(random));
+    const std::uint64_t coin = token(random);
+    orders.treasuries.write([coin](Treasury& treasury) { treasury.add(coin); });
+    const ProcessId process{draw(random, machine().n_processes())};
+    orders.treasuries[process].send<&Treasury::add>(token(random));
+    const auto at = static_cast<std::size_t>(draw(random, 10));
+    expect(orders.prices->each.at(at) == mix(at), "read-only data is wrong");
+    if (random.chance(city->move_chance)) orders.mayor.migrate_to(any_pe(random));
+  }
+
+  Count count_;
+  Mailbox<&Note::phase> notes_;
+};
+
+// --- The main coroutine.
+
+struct State {
+  std::int32_t phase = 0, n_indices = 0, n_singers = 0, n_sung = 0;
+  ArrayProxy<Citizen> citizens;
+  ArrayProxy<Singer> singers;
+  ArrayProxy<Spot> spots;
+  ChareProxy<Mayor> mayor;
+  GroupProxy<Office> offices;
+  std::vector<Index1> members;
+  SectionProxy<Singer> choir;
+  Count sent, spent;  // spent: what the process groups of earlier phases held
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(phase, n_indices, n_singers, n_sung, citizens, singers, spots, mayor, offices, members,
+       choir, sent, spent);
+  }
+};
+
+void found_city(State& state, int n_singers) {
+  state.citizens = create<Citizen>(range(city->n_citizens));
+  state.singers = create<Singer>(range(n_singers));
+  state.spots = create<Spot>(sparse);
+  state.spots["first"].insert();
+  state.mayor = create_one<Mayor>();
+  state.offices = create_group<Office>();
+  for (int index = 0; index < n_singers; index += 2) state.members.push_back({index});
+  state.choir = create_section(state.singers, state.members);
+  state.n_indices = n_singers;
+  city->n_singers = n_singers;
+}
+
+/// At most 20 calls, each with a message.
+Timer start_ticks(GroupProxy<Office> offices) {
+  const Time period(machine().virtual_time() ? 1 + static_cast<int>(city->longest) : 200'000);
+  return every(period, [offices, n = std::make_shared<int>(0)] {
+    if (++*n > 20) return;
+    ++city->n_ticks_sent;
+    offices[PeId{*n % tess::n_pes()}].send<&Office::tick>();
+  });
+}
+
+Task run_phase(State& state) {
+  const std::int32_t phase = state.phase++;
+  Random random(mix(city->seed + static_cast<std::uint64_t>(phase)));
+  ProcessGroupProxy<Treasury> treasuries;
+  ReadOnly<Prices> prices;
+  co_await epoch([&] {
+    treasuries = create_process_group<Treasury>();
+    Prices made;
+    for (std::uint64_t i = 0; i < 10; ++i) made.each.push_back(mix(i));
+    prices = create_read_only(std::move(made));
+  });
+  const std::int32_t first_new = state.n_indices;
+  state.n_indices += draw(random, 4);
+  city->n_singers += state.n_indices - first_new;
+  Future<std::vector<std::int32_t>> began;
+  std::vector<Future<Chorus>> sung(static_cast<std::size_t>(1 + draw(random, 3)));
+  const auto n_sung = static_cast<std::int32_t>(sung.size());
+  const Orders orders{phase,       city->n_steps, state.n_indices, state.singers, state.spots,
+                      state.mayor, state.offices, treasuries,      prices,        began.callback()};
+  const Timer ticks = start_ticks(state.offices);
+  co_await epoch([&] {
+    state.citizens.broadcast<&Citizen::live>(orders);
+    for (const auto& result : sung)
+      state.choir.broadcast<&Singer::sing>(Cue{state.choir, result.callback()});
+    for (int index = first_new; index < state.n_indices; ++index) state.singers[{index}].insert();
+  });
+  ticks.cancel();
+  expect(began.await_ready(), "an epoch ends before a reduction of it");
+  const std::vector<std::int32_t> all = co_await began;
+  expect(all.size() == static_cast<std::size_t>(city->n_citizens) &&
+             std::is_sorted(all.begin(), all.end()),
+         "a reduction in order has ", all.size(), " contributions");
+  const std::vector<Chorus> choruses = co_await when_all(std::move(sung));
+  check_choruses(choruses, state.members, state.n_sung);
+  state.n_sung += n_sung;
+
+  const std::uint64_t question = token(random);
+  const std::uint64_t answer = co_await state.mayor.element().ask<&Mayor::answer>(question);
+  expect(answer == answer_of(question, -1), "the single chare has another answer");
+  Future<Count> of_citizens, of_spots, of_mayor;
+  Future<Both> of_offices;
+  Future<double> half;
+  state.citizens.broadcast<&Citizen::report>(of_citizens.callback());
+  state.spots.broadcast<&Spot::report>(of_spots.callback());
+  state.mayor.send<&Mayor::report>(of_mayor.callback());
+  state.offices.broadcast<&Office::report>(treasuries, of_offices.callback());
+  state.singers.broadcast<&Singer::count>(half.callback());
+  const auto [citizens, spots, mayor, offices, singers_by_two] =
+      co_await when_all(of_citizens, of_spots, of_mayor, of_offices, half);
+  state.spent = state.spent + offices[1];
+  const Count arrived = citizens + spots + mayor + offices[0] + state.spent;
+  state.sent = city->sent;
+  state.n_singers = city->n_singers;
+  expect(arrived == state.sent, "phase ", phase, ": ", state.sent.n, " tokens were sent, ",
+         arrived.n, " have arrived, or others");
+  expect(2 * singers_by_two == state.n_singers, "phase ", phase, ": ", 2 * singers_by_two,
+         " singers of ", state.n_singers);
+  treasuries.destroy();
+  prices.destroy();
+}
+
+/// A checkpoint after each phase whose number is at least `save_from`; none if that is negative.
+Task run_phases(State& state, int last, int save_from, std::string folder) {
+  while (state.phase < last) {
+    co_await run_phase(state);
+    if (save_from >= 0 && state.phase >= save_from) co_await checkpoint(folder, state);
+  }
+}
+Task run_first(int n_singers, int last, int save_from, std::string folder) {
+  State state;
+  co_await epoch([&] { found_city(state, n_singers); });
+  co_await run_phases(state, last, save_from, folder);
+  if (save_from < 0) co_return;
+  co_await run_phase(state);  // the restart does not know of it
+}
+Task run_restarted(int last, std::string folder) {
+  State state = co_await restart<State>(folder);
+  city->sent = state.sent;
+  city->n_singers = state.n_singers;
+  city->hops.clear();
+  co_await run_phases(state, last, -1, folder);
+}
+
+class Folder {
+ public:
+  Folder() : path_((std::filesystem::temp_directory_path() / "tess-fuzz-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) fail(ErrorCode::environment, "no folder like ", path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string path() const { return path_ + "/saved"; }
+
+ private:
+  std::string path_;
+};
+
+/// What is dropped with a section is counted and reported; nothing else is.
+void run(Trial& trial, const std::function<Task()>& main) {
+  const Ending ending = trial.run(main);
+  trial.expect(ending.exit_code == 0, "exit code ", ending.exit_code, "; ", ending.report);
+  trial.expect(ending.report.empty() ||
+                   (city->n_cut > 0 && ending.report.ends_with("were not delivered\n") &&
+                    std::count(ending.report.begin(), ending.report.end(), '\n') == 1),
+               "report: ", ending.report);
+}
+
+}  // namespace tess::fuzz::city_life
+
+namespace tess::fuzz {
+
+void all_at_once(Trial& trial) {
+  using namespace city_life;
+  const bool long_run = trial.seed() % 50 == 0;
+  City here{trial,
+            trial.random()(),
+            trial.draw(1, 16),
+            long_run ? 60 : trial.draw(1, 12),
+            100ULL << trial.draw(0, 12),
+            0.3 * trial.draw(0, 2),
+            0.3 * trial.draw(0, 2)};
+  city = &here;
+  const int n_singers = trial.draw(1, 20);
+  if (trial.draw(0, 2) != 0) {
+    const int n_phases = trial.draw(1, 2);
+    city_life::run(trial, [&] { return run_first(n_singers, n_phases, -1, ""); });
+  } else {
+    const Folder folder;
+    const int n_phases = trial.draw(1, 2), n_more = trial.draw(1, 2);
+    const int save_from = trial.draw(1, n_phases);
+    city_life::run(trial, [&] { return run_first(n_singers, n_phases, save_from, folder.path()); });
+    trial.change_pes(trial.draw(1, 8));
+    city_life::run(trial, [&] { return run_restarted(n_phases + n_more, folder.path()); });
+  }
+  trial.expect(here.n_ticks == here.n_ticks_sent, here.n_ticks.load(), " of ",
+               here.n_ticks_sent.load(), " messages of periodic timers have arrived");
+}
+
+}  // namespace tess::fuzz
