@@ -241,10 +241,12 @@ TEST_CASE("a heat map shows where elements are and what they cost, while it is w
     CHECK(watched_run(machine_of(threads), "", [&](unsigned short port) {
             Browser events(port, "/events");
             std::string id;
-            while (id.empty())
-              for (const json& one : events.next("frame")["collections"])
+            while (id.empty()) {
+              const json frame = events.next("frame");
+              for (const json& one : frame["collections"])
                 if (one["name"].get<std::string>().find("Watched") != std::string::npos)
                   id = one["id"];
+            }
             Browser by_pe(port, "/heat?by=pe&array=" + id);
             json map;  // complete once all PEs have reported
             do {
