@@ -138,6 +138,7 @@ class Heat {
     for (const json& one : frame["collections"]) {
       if (events_ || one["name"].get<std::string>().find(options_.heat) == std::string::npos)
         continue;
+      line_ = options_.heat + ": the PEs are asked";
       events_.emplace(options_, "/heat?by=" + options_.by + "&array=" + one["id"].get<std::string>());
     }
     if (!events_) line_ = "no array is named " + options_.heat + " yet";

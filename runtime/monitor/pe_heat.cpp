@@ -10,6 +10,7 @@ namespace {
 constexpr std::size_t most_scopes = 8192;    // in a window
 constexpr std::size_t most_counted = 65536;  // elements of a process in a period
 constexpr std::size_t least_counted = 64;    // of a PE
+constexpr std::size_t counted_first = 1024;  // of a PE, until its first pass is over
 constexpr double noise_seconds = 20e-6;      // the clocks differ by as much without a reason
 
 }  // namespace
@@ -150,9 +151,10 @@ bool PeHeat::count(const HeatQuery& query, Map& map) {
   const HostedCollection& collection = *pe_.find(query.array);
   const std::vector<Element*>& elements = collection.elements();
   const auto n_pes_here = static_cast<std::size_t>(pe_.machine().n_pes_here());
-  // The PEs of a simulated machine share a thread.
+  // The PEs of a simulated machine share a thread, and may answer rarely.
+  const std::size_t least = map.sent.cells.empty() ? counted_first : least_counted;
   const std::size_t most =
-      pe_.machine().virtual_time() ? std::max(least_counted, most_counted / n_pes_here) : most_counted;
+      pe_.machine().virtual_time() ? std::max(least, most_counted / n_pes_here) : most_counted;
   const std::size_t end = std::min(elements.size(), map.next + most);
   std::uint32_t last_cell = 0;
   std::uint32_t* counter = nullptr;  // neighbours are mostly in one cell
