@@ -11,7 +11,7 @@ constexpr std::size_t most_scopes = 8192;    // in a window
 constexpr std::size_t most_counted = 65536;  // elements of a process in a period
 constexpr std::size_t least_counted = 64;    // of a PE
 constexpr std::size_t counted_first = 1024;  // of a PE, until its first pass is over
-constexpr double noise_seconds = 20e-6;      // the clocks differ by as much without a reason
+constexpr double long_seconds = 20e-6;       // a stretch of code so long may have been interrupted
 
 }  // namespace
 
@@ -47,9 +47,7 @@ void PeHeat::begin_window() {
   open_ = listens_ = true;
   spent_.clear();
   running_ = {};
-  longest_ticks_ = 0;
-  began_ = since_ = meter.now();
-  cpu_at_begin_ = thread_cpu_seconds();
+  began_ = meter.now();
   meter.set_listener(this);
 }
 
@@ -62,11 +60,9 @@ void PeHeat::stop_listening() {
 
 void PeHeat::changed(std::uint64_t at) {
   if (running_.map != nullptr) add(at - since_);
-  since_ = at;
   running_ = {};
   if (spent_.size() >= most_scopes) {
     ended_ = at;
-    subtract_stolen();
     listens_ = false;  // the meter goes on until the window is closed, outside of any scope
     pe_.meter()->set_listener(nullptr);
     return;
@@ -79,32 +75,22 @@ void PeHeat::changed(std::uint64_t at) {
     const std::int64_t rank = collection != nullptr ? collection->rank_of(*element) : -1;
     if (rank < 0) continue;
     running_ = {&map, map.grid.cell_of(rank), 0};
+    if (!pe_.machine().virtual_time()) cpu_since_ = thread_cpu_seconds();
+    since_ = pe_.meter()->now();
     return;
   }
 }
 
 void PeHeat::add(std::uint64_t ticks) {
-  // A simulated machine may charge for messages instead of the time of their code.
-  const auto cost = static_cast<std::uint64_t>(pe_.machine().message_cost().count());
+  if (pe_.machine().virtual_time()) {  // it may charge for messages instead of the time of their code
+    ticks += static_cast<std::uint64_t>(pe_.machine().message_cost().count());
+  } else if (const Meter& meter = *pe_.meter(); meter.seconds(ticks) > long_seconds) {
+    // Another thread may have had the core.
+    ticks = std::min(ticks, meter.ticks(thread_cpu_seconds() - cpu_since_));
+  }
   if (spent_.empty() || spent_.back().map != running_.map || spent_.back().cell != running_.cell)
     spent_.push_back(running_);
-  spent_.back().ticks += ticks + (pe_.machine().virtual_time() ? cost : 0);
-  if (ticks <= longest_ticks_) return;
-  longest_ticks_ = ticks;
-  longest_ = spent_.size() - 1;
-}
-
-void PeHeat::subtract_stolen() {
-  // As in the meter: what other threads took is in the longest stretch.
-  if (pe_.machine().virtual_time() || spent_.empty()) return;
-  const Meter& meter = *pe_.meter();
-  std::uint64_t sum = 0;
-  for (const Spent& one : spent_) sum += one.ticks;
-  const double stolen = meter.seconds(sum) - (thread_cpu_seconds() - cpu_at_begin_);
-  if (stolen < noise_seconds) return;
-  const std::uint64_t back = std::min(meter.ticks(stolen), longest_ticks_);
-  spent_[longest_].ticks -= back;
-  ended_ -= std::min(back, ended_ - began_);
+  spent_.back().ticks += ticks;
 }
 
 std::vector<HeatCells> PeHeat::end_window() {
@@ -114,10 +100,7 @@ std::vector<HeatCells> PeHeat::end_window() {
 
 std::vector<HeatCells> PeHeat::close_window() {
   open_ = false;
-  if (listens_) {
-    ended_ = pe_.meter()->now();
-    subtract_stolen();
-  }
+  if (listens_) ended_ = pe_.meter()->now();
   if (pe_.meter() != nullptr) {
     pe_.meter()->set_listener(nullptr);
     pe_.stop_brief_meter();

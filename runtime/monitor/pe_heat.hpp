@@ -63,7 +63,6 @@ class PeHeat final : public ScopeListener {
   void stop_listening();
   [[nodiscard]] std::vector<HeatCells> close_window();
   void add(std::uint64_t ticks);
-  void subtract_stolen();
   /// Counts a part of the elements; true if the pass is over and found something new.
   [[nodiscard]] bool count(const HeatQuery& query, Map& map);
 
@@ -71,12 +70,11 @@ class PeHeat final : public ScopeListener {
   std::map<HeatQuery, Map> maps_;
   bool open_ = false, listens_ = false;
   std::uint64_t began_ = 0, ended_ = 0;  // ticks; of the window
-  double cpu_at_begin_ = 0;
-  std::uint64_t since_ = 0;  // when the running scope began, or went on
-  Spent running_;            // its cell, and the ticks that each call costs
+  // The running scope: when it began, or went on, in ticks and in the thread's time; and its cell.
+  std::uint64_t since_ = 0;
+  double cpu_since_ = 0;
+  Spent running_;
   std::vector<Spent> spent_;
-  std::size_t longest_ = 0;  // the one of `spent_` with the longest single stretch
-  std::uint64_t longest_ticks_ = 0;
 };
 
 }  // namespace tess::detail
