@@ -61,12 +61,14 @@ seconds() {
 
 variants=(off off_again on watched heat)
 stencil=("$built/stencil" --pes 1 --size 1024 --blocks 64 --steps "$steps")
-messages=("$built/bench" --pes 1 message one_way --repeat 9)
+messages=("$built/bench" --pes 1 --repeat 3 message)
 for ((round = 0; round < rounds; ++round)); do
   for variant in "${variants[@]}"; do
-    echo "stencil $variant $round $(seconds "$variant" Block "${stencil[@]}")"
-    # The arrays of bench live too short for a heat map.
-    if [[ $variant != heat ]]; then echo "message $variant $round $(seconds "$variant" - "${messages[@]}")"; fi
+    time=$(seconds "$variant" Block "${stencil[@]}")
+    echo "stencil $variant $round $time"
+    if [[ $variant == heat ]]; then continue; fi  # the arrays of bench end too soon
+    time=$(seconds "$variant" - "${messages[@]}")
+    echo "message $variant $round $time"
   done
 done >"$scratch/all"
 

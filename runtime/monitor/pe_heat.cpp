@@ -7,7 +7,9 @@
 namespace tess::detail {
 namespace {
 
-constexpr std::size_t most_scopes = 8192;    // in a window
+constexpr std::size_t most_scopes = 8192;    // in a window; the PEs of a simulated machine share more
+constexpr std::size_t least_scopes = 64;
+constexpr double shortest_window = 1e-3;     // seconds: shares of shorter ones would mislead
 constexpr std::size_t most_counted = 65536;  // elements of a process in a period
 constexpr std::size_t least_counted = 64;    // of a PE
 constexpr std::size_t counted_first = 1024;  // of a PE, until its first pass is over
@@ -47,6 +49,9 @@ void PeHeat::begin_window() {
   open_ = listens_ = true;
   spent_.clear();
   running_ = {};
+  const auto n_pes_here = static_cast<std::size_t>(pe_.machine().n_pes_here());
+  most_scopes_ = pe_.machine().virtual_time() ? std::max(least_scopes, 8 * most_scopes / n_pes_here)
+                                              : most_scopes;
   began_ = meter.now();
   meter.set_listener(this);
 }
@@ -61,7 +66,7 @@ void PeHeat::stop_listening() {
 void PeHeat::changed(std::uint64_t at) {
   if (running_.map != nullptr) add(at - since_);
   running_ = {};
-  if (spent_.size() >= most_scopes) {
+  if (spent_.size() >= most_scopes_) {
     ended_ = at;
     listens_ = false;  // the meter goes on until the window is closed, outside of any scope
     pe_.meter()->set_listener(nullptr);
@@ -94,7 +99,11 @@ void PeHeat::add(std::uint64_t ticks) {
 }
 
 std::vector<HeatCells> PeHeat::end_window() {
-  if (!open_ || (listens_ && spent_.empty())) return {};
+  if (!open_) return {};
+  const bool is_short =
+      spent_.empty() || pe_.machine().virtual_time() ||
+      pe_.meter()->seconds(pe_.meter()->now() - began_) < shortest_window;
+  if (listens_ && is_short) return {};
   return close_window();
 }
 

@@ -3,8 +3,9 @@
 //
 // Load: the monitor opens a window of a few milliseconds in each period, in which the meter of the
 // PE shows each scope to this listener. The window ends by a message that the monitor posts. If
-// nothing has run by then, it stays open, so that entry methods that take longer than a window are
-// seen, too. It also ends after a number of scopes.
+// nothing has run by then, or the message follows the first one too soon, it stays open for the
+// period, so that entry methods that take longer than a window are seen, too. So it does always in
+// virtual time. It also ends after a number of scopes.
 //
 //     period k   begin ──────── few ms ──── end_window: (cell, part of the time) …     period k + 1
 //
@@ -75,6 +76,7 @@ class PeHeat final : public ScopeListener {
   double cpu_since_ = 0;
   Spent running_;
   std::vector<Spent> spent_;
+  std::size_t most_scopes_ = 0;
 };
 
 }  // namespace tess::detail
