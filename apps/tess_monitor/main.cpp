@@ -139,7 +139,8 @@ class Heat {
       if (events_ || one["name"].get<std::string>().find(options_.heat) == std::string::npos)
         continue;
       line_ = options_.heat + ": the PEs are asked";
-      events_.emplace(options_, "/heat?by=" + options_.by + "&array=" + one["id"].get<std::string>());
+      events_.emplace(options_,
+                      "/heat?by=" + options_.by + "&array=" + one["id"].get<std::string>());
     }
     if (!events_) line_ = "no array is named " + options_.heat + " yet";
     std::string kind;

@@ -30,7 +30,8 @@ struct HeatCells {
   HeatQuery of;
   PeId pe{};
   Range range;
-  std::vector<std::uint32_t> cells;  ///< of the HeatGrid of the range; only those with elements here
+  std::vector<std::uint32_t>
+      cells;  ///< of the HeatGrid of the range; only those with elements here
   /// For each cell. Load: the part of the PE's time since the window began. PE: the number of elements.
   std::vector<float> values;
 };

@@ -12,7 +12,7 @@ constexpr std::int32_t cells_of_hashes = 32;  // on each side
 }  // namespace
 
 HeatGrid::HeatGrid(const Range& range)
-    : layout_(range.n_axes == 0                       ? Layout::by_hash
+    : layout_(range.n_axes == 0                        ? Layout::by_hash
               : range.n_axes == 2 || range.n_axes == 3 ? Layout::by_axes
                                                        : Layout::by_rank),
       n_axes_(range.n_axes) {

@@ -22,7 +22,9 @@ class HeatGrid {
 
   [[nodiscard]] std::int32_t width() const { return width_; }
   [[nodiscard]] std::int32_t height() const { return height_; }
-  [[nodiscard]] std::uint32_t n_cells() const { return static_cast<std::uint32_t>(width_ * height_); }
+  [[nodiscard]] std::uint32_t n_cells() const {
+    return static_cast<std::uint32_t>(width_ * height_);
+  }
   /// The cell of an element, from HostedCollection::rank_of() ≥ 0.
   [[nodiscard]] std::uint32_t cell_of(std::int64_t rank) const;
   /// The number of indices in a cell; 0 in gaps, and 1 in each cell of a sparse array.

@@ -11,8 +11,8 @@
 namespace tess::detail {
 namespace {
 
-constexpr double fades = 0.93;            // in a period: half of it is gone after ten
-constexpr std::uint64_t most_missed = 20; // periods for which a late report counts
+constexpr double fades = 0.93;             // in a period: half of it is gone after ten
+constexpr std::uint64_t most_missed = 20;  // periods for which a late report counts
 
 }  // namespace
 
@@ -89,10 +89,11 @@ std::string HeatMap::event_by_load(const std::string& name) const {
   }
   const std::string summary =
       most == 0 ? "no load was seen yet"
-                : fmt::format("hottest {}: {:.3g} % of a PE for each element, {:.3g} x the mean of "
-                              "{} cells; {} without load",
-                              grid_->text_of(static_cast<std::uint32_t>(hottest)), 100 * most,
-                              most * static_cast<double>(n) / sum, n, n_cold);
+                : fmt::format(
+                      "hottest {}: {:.3g} % of a PE for each element, {:.3g} x the mean of "
+                      "{} cells; {} without load",
+                      grid_->text_of(static_cast<std::uint32_t>(hottest)), 100 * most,
+                      most * static_cast<double>(n) / sum, n, n_cold);
   return head(name, summary) + fmt::format(R"("most":{:.4g},"values":"{}"}})", most, values);
 }
 

@@ -140,7 +140,7 @@ class Monitor::Loop {
 
  private:
   struct OfPe {
-    bool asked = false;                       // and has not answered yet
+    bool asked = false;  // and has not answered yet
     // Only its thread uses these.
     std::unordered_set<std::uint64_t> parts;  // hashes of those that were sent since its sample
     std::unique_ptr<PeHeat> heat;             // while heat maps are watched
@@ -219,12 +219,12 @@ class Monitor::Loop {
     heat_.queries = std::move(queries);
   }
   void end_windows_later(std::vector<PeId> of) {
-    window_timer_.expires_after(std::max<Clock::duration>(period_ / 200, std::chrono::milliseconds(1)));
+    window_timer_.expires_after(
+        std::max<Clock::duration>(period_ / 200, std::chrono::milliseconds(1)));
     window_timer_.async_wait([this, of = std::move(of)](const boost::system::error_code& error) {
       const std::lock_guard lock(mutex_);
       if (error || closed_) return;
-      for (const PeId to : of)
-        machine_.hand_in(to, make_outside<&window_ends>(to, WindowEnds{}));
+      for (const PeId to : of) machine_.hand_in(to, make_outside<&window_ends>(to, WindowEnds{}));
     });
   }
   void publish() {

@@ -7,7 +7,7 @@
 namespace tess::detail {
 namespace {
 
-constexpr std::size_t most_scopes = 8192;    // in a window; the PEs of a simulated machine share more
+constexpr std::size_t most_scopes = 8192;  // in a window; the PEs of a simulated machine share more
 constexpr std::size_t least_scopes = 64;
 constexpr double shortest_window = 1e-3;     // seconds: shares of shorter ones would mislead
 constexpr std::size_t most_counted = 65536;  // elements of a process in a period
@@ -87,7 +87,8 @@ void PeHeat::changed(std::uint64_t at) {
 }
 
 void PeHeat::add(std::uint64_t ticks) {
-  if (pe_.machine().virtual_time()) {  // it may charge for messages instead of the time of their code
+  if (pe_.machine()
+          .virtual_time()) {  // it may charge for messages instead of the time of their code
     ticks += static_cast<std::uint64_t>(pe_.machine().message_cost().count());
   } else if (const Meter& meter = *pe_.meter(); meter.seconds(ticks) > long_seconds) {
     // Another thread may have had the core.
@@ -100,9 +101,8 @@ void PeHeat::add(std::uint64_t ticks) {
 
 std::vector<HeatCells> PeHeat::end_window() {
   if (!open_) return {};
-  const bool is_short =
-      spent_.empty() || pe_.machine().virtual_time() ||
-      pe_.meter()->seconds(pe_.meter()->now() - began_) < shortest_window;
+  const bool is_short = spent_.empty() || pe_.machine().virtual_time() ||
+                        pe_.meter()->seconds(pe_.meter()->now() - began_) < shortest_window;
   if (listens_ && is_short) return {};
   return close_window();
 }

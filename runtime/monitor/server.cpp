@@ -155,8 +155,9 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
 
   void watch(const std::optional<HeatQuery>& query) {
     if (!query)
-      return reply(http::status::bad_request, "say /heat?array=ID&by=load or by=pe, with an ID that "
-                                              "frames name\n");
+      return reply(http::status::bad_request,
+                   "say /heat?array=ID&by=load or by=pe, with an ID that "
+                   "frames name\n");
     const std::vector<HeatQuery> watched = server_.watched();
     if (watched.size() >= most_heat_maps &&
         std::find(watched.begin(), watched.end(), *query) == watched.end())

@@ -8,9 +8,7 @@
 namespace tess::detail {
 
 JobReport::JobReport(std::uint64_t round, std::int32_t n_processes)
-    : round_(round),
-      reported_(static_cast<std::size_t>(n_processes)),
-      n_missing_(n_processes) {}
+    : round_(round), reported_(static_cast<std::size_t>(n_processes)), n_missing_(n_processes) {}
 
 void JobReport::take(ProcessReport&& report) {
   const auto process = static_cast<std::size_t>(report.process.value);

@@ -200,8 +200,8 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
 TEST_CASE("with a token, nothing is told without it", "[runtime][monitor]") {
   CHECK(
       watched_run(machine_of(true), "secret", [](unsigned short port) {
-        for (const char* target :
-             {"/", "/events", "/report", "/heat?array=1&by=pe", "/?token=", "/?token=secreT", "/?token=secret2"})
+        for (const char* target : {"/", "/events", "/report", "/heat?array=1&by=pe",
+                                   "/?token=", "/?token=secreT", "/?token=secret2"})
           CHECK(Browser(port, target).read().starts_with("HTTP/1.1 403"));
         CHECK(
             Browser(port, "/?x=1&token=secret", "any.example").read().starts_with("HTTP/1.1 200"));
