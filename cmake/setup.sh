@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Installs the packages that Tessera builds on, as far as they are missing. Quick when nothing is missing.
 #
-#   cmake/setup.sh [--dry-run] [--peers] [--fuzz]   --dry-run: says what it would do, and does nothing
-#                                                   --peers: also the libraries beside which benchmarks run
-#                                                   --fuzz: also clang's libraries for tests/fuzz
+#   cmake/setup.sh [--dry-run] [--peers] [--fuzz] [--with-browser]
+#     --dry-run: says what it would do, and does nothing
+#     --peers: also the libraries beside which benchmarks run
+#     --fuzz: also clang's libraries for tests/fuzz
+#     --with-browser: also Chromium for the test of the page of --monitor, which is skipped otherwise; about 100 MB
 #
 # Exit code 2, and nothing is changed, where apt would remove a package or where it may not install.
 set -euo pipefail
@@ -29,8 +31,9 @@ for option; do
     --dry-run) dry=true ;;
     --peers) packages+=("${peers[@]}") ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
-    --help | -h) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) refuse "unknown option $option: there are --dry-run, --peers and --fuzz" ;;
+    --with-browser) packages+=(chromium) ;;
+    --help | -h) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) refuse "unknown option $option: there are --dry-run, --peers, --fuzz and --with-browser" ;;
   esac
 done
 command -v apt-get >/dev/null || refuse "this script uses apt; install by hand what cmake/setup.sh lists, or the like: ${packages[*]}"

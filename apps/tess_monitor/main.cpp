@@ -1,7 +1,7 @@
 // The page of a run that serves one (--monitor PORT), as a table in a terminal: connects, and prints
 // a frame whenever one comes.
 //
-//     tess_monitor --connect localhost:8080 [--token T] [--frames N]
+//     tess_monitor --connect localhost:8080 [--token T] [--frames N] [--heat Block [--by pe]]
 #include "apps/command_line.hpp"
 #include "runtime/core/error.hpp"
 
@@ -15,8 +15,10 @@
 #include <cstdio>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -25,14 +27,15 @@ using Tcp = boost::asio::ip::tcp;
 
 struct Options {
   std::string connect = "localhost:8080", token;
+  std::string heat, by = "load";
   std::int32_t n_frames = 0;
   std::int32_t n_rows = 24;
 };
 
-/// The stream of events of a run. Throws tess::Error if it cannot be had.
+/// A stream of events of a run. Throws tess::Error if it cannot be had.
 class Events {
  public:
-  explicit Events(const Options& options) : options_(options), socket_(io_) {
+  Events(const Options& options, const std::string& path) : options_(options), socket_(io_) {
     const std::size_t colon = options.connect.rfind(':');
     const std::string host = options.connect.substr(0, colon);
     const std::string port =
@@ -41,8 +44,8 @@ class Events {
     const auto found = Tcp::resolver(io_).resolve(host, port, error);
     if (!error) boost::asio::connect(socket_, found, error);
     if (error) refuse(error.message() + "; is the run started with --monitor?");
-    const std::string query = options.token.empty() ? "" : "?token=" + options.token;
-    boost::asio::write(socket_, boost::asio::buffer("GET /events" + query +
+    const std::string token = options.token.empty() ? "" : "&token=" + options.token;
+    boost::asio::write(socket_, boost::asio::buffer("GET " + path + token +
                                                     " HTTP/1.1\r\nHost: " + host + "\r\n\r\n"));
     const std::string status = line();
     if (status.find(" 200 ") == std::string::npos)
@@ -51,6 +54,11 @@ class Events {
     }
   }
 
+  /// True if something has come that next() has not read.
+  [[nodiscard]] bool has_more() {
+    boost::system::error_code error;
+    return !over_ && (!text_.empty() || socket_.available(error) != 0);
+  }
   /// Reads the next event; false if the run is over.
   bool next(std::string& kind, json& data) {
     for (kind.clear();;) {
@@ -84,7 +92,7 @@ class Events {
   bool over_ = false;
 };
 
-void print_frame(const json& frame, const std::string& round, std::int32_t n_rows) {
+void print_frame(const json& frame, const std::vector<std::string>& lines, std::int32_t n_rows) {
   const auto n_pes = frame["busy"].size();
   fmt::print("{:.1f} s", frame["t"].get<double>());
   if (frame.contains("virtual")) fmt::print(" (virtual {:.6g} s)", frame["virtual"].get<double>());
@@ -113,13 +121,45 @@ void print_frame(const json& frame, const std::string& round, std::int32_t n_row
     fmt::print("{:>24} {:>10} {:>10} {:>10}\n", one["name"].get<std::string>(),
                one["n"].get<std::uint64_t>(), one["least"].get<std::uint64_t>(),
                one["most"].get<std::uint64_t>());
-  if (!round.empty()) fmt::print("{}\n", round);
+  for (const std::string& line : lines)
+    if (!line.empty()) fmt::print("{}\n", line);
   fmt::print("\n");
   std::fflush(stdout);
 }
 
+/// The heat map of an array, as the line that sums it up.
+class Heat {
+ public:
+  explicit Heat(const Options& options) : options_(options) {}
+
+  /// Asks for it once a frame names the array, and reads what has come.
+  void follow(const json& frame) {
+    if (options_.heat.empty()) return;
+    for (const json& one : frame["collections"]) {
+      if (events_ || one["name"].get<std::string>().find(options_.heat) == std::string::npos)
+        continue;
+      line_ = options_.heat + ": the PEs are asked";
+      events_.emplace(options_,
+                      "/heat?by=" + options_.by + "&array=" + one["id"].get<std::string>());
+    }
+    if (!events_) line_ = "no array is named " + options_.heat + " yet";
+    std::string kind;
+    json data;
+    while (events_ && events_->has_more() && events_->next(kind, data))
+      line_ = data["name"].get<std::string>() + " by " + options_.by + ": " +
+              data["summary"].get<std::string>();
+  }
+  [[nodiscard]] const std::string& line() const { return line_; }
+
+ private:
+  const Options& options_;
+  std::optional<Events> events_;
+  std::string line_;
+};
+
 int watch(const Options& options) {
-  Events events(options);
+  Events events(options, "/events?");
+  Heat heat(options);
   const bool clears = isatty(STDOUT_FILENO) != 0;
   std::string kind, round;
   json data;
@@ -131,7 +171,8 @@ int watch(const Options& options) {
     if (kind == "round") round = data["text"];
     if (kind != "frame") continue;
     if (clears) fmt::print("\033[H\033[2J");
-    print_frame(data, round, options.n_rows);
+    heat.follow(data);
+    print_frame(data, {round, heat.line()}, options.n_rows);
     ++n;
   }
   return 0;
@@ -146,6 +187,9 @@ int main(int argc, char** argv) {
         "Shows a run that was started with --monitor PORT, as a table in a terminal.");
     line.option("--connect", options.connect, "HOST:PORT of the run");
     line.option("--token", options.token, "its --monitor-token");
+    line.option("--heat", options.heat, "sums up the heat map of the array with this in its name");
+    line.option("--by", options.by, "what the heat map shows: load, or the PE that holds most")
+        .one_of({"load", "pe"});
     line.option("--frames", options.n_frames, "ends after so many frames; 0: when the run ends")
         .between(0, 1'000'000'000);
     line.option("--rows", options.n_rows, "lines for PEs; more PEs share them").between(1, 10'000);

@@ -189,6 +189,13 @@ class ArrayOf : public Collection {
     return IndexHash<Index>()(static_cast<const Indexed&>(element).index_);
   }
 
+  [[nodiscard]] std::int64_t rank_of(const Element& element) const override {
+    if (&Collection::of(element) != this) return -1;
+    if constexpr (Coordinates<Index>)
+      if (range().n_axes != 0) return rank_in(range(), index_of(element));
+    return static_cast<std::int64_t>(key_of(element) >> 1U);
+  }
+
   void restore_sections(Reader& ar) override;
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;

@@ -283,6 +283,10 @@ void Collection::resume(Element& element) {
   TESS_CHECK(false, element_text(element), " has no resume_from_sync()");
 }
 
+std::int64_t Collection::rank_of(const Element& element) const {
+  return element.collection_ == this ? pe_.id().value : -1;  // an array has indices instead
+}
+
 std::uint64_t Collection::key_of(const Element& /*element*/) const {
   return 0;
 }

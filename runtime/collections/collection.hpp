@@ -73,7 +73,7 @@ class Collection : public HostedCollection {
   void set_index_map(std::shared_ptr<const IndexMap> map) { index_map_ = std::move(map); }
 
   /// Local elements; a slot may be null while elements leave in the middle of a broadcast.
-  [[nodiscard]] const std::vector<Element*>& elements() const { return elements_; }
+  [[nodiscard]] const std::vector<Element*>& elements() const final { return elements_; }
 
   /// Calls one element for a broadcast.
   void call(Element& element, const NumberedCall& call);
@@ -153,6 +153,7 @@ class Collection : public HostedCollection {
   virtual void resume(Element& element);
   /// The hash of the element's index.
   [[nodiscard]] virtual std::uint64_t key_of(const Element& element) const;
+  [[nodiscard]] std::int64_t rank_of(const Element& element) const override;
   /// The result of its balance_position(), if it has one.
   [[nodiscard]] virtual std::optional<std::array<double, 3>> position_of(
       const Element& element) const;
@@ -181,7 +182,7 @@ class Collection : public HostedCollection {
 
   /// How collections of this class are saved and made anew.
   [[nodiscard]] virtual const CollectionKind& kind() const = 0;
-  [[nodiscard]] const Range& range() const { return range_; }
+  [[nodiscard]] const Range& range() const final { return range_; }
   /// Appends a line for each element here that waits at its balancer's barrier: it cannot be saved.
   void describe_unsaved(std::vector<std::string>& lines) const;
   /// Writes the elements that are here. Calls written() after each: what was written may be taken

@@ -42,7 +42,6 @@ Board::Board(const Machine& machine)
       pes_(static_cast<std::size_t>(machine.n_pes())) {}
 
 void Board::arrived(PeSample sample) {
-  collect_census(sample);
   OfPe& of = pes_.at(static_cast<std::size_t>(sample.pe.value));
   // Of two samples in one period the frame shows the sum.
   if (!of.is_new) of.before = std::move(of.last);
@@ -87,13 +86,6 @@ std::vector<Event> Board::take_events(double seconds,
   for (auto& [name, picture] : pictures_) {
     if (std::exchange(picture.changed, false)) events.push_back(event_of(name, picture));
   }
-  if (takes_census_ && census_from_.size() == pes_.size()) {
-    takes_census_ = false;
-    events.push_back(
-        {"census",
-         json_string(census_.empty() ? "nothing waits" : list_of_waiting(std::move(census_)))});
-    census_ = Waits();
-  }
   return events;
 }
 
@@ -103,15 +95,49 @@ std::vector<Event> Board::past() const {
   return events;
 }
 
-void Board::begin_census() {
-  takes_census_ = true;
-  census_from_.clear();
-  census_ = Waits();
+void Board::watch_heat(const std::vector<HeatQuery>& watched) {
+  std::erase_if(heat_, [&](const auto& one) {
+    return std::none_of(watched.begin(), watched.end(), [&](const HeatQuery& query) {
+      return query.array == one.first.array && query.by == one.first.by;
+    });
+  });
+  for (const HeatQuery& query : watched) {
+    const HeatQuery key{query.array, query.by, 0};
+    if (!heat_.contains(key)) heat_.emplace(key, WatchedHeat{++n_watches_, {query.by, n_pes_}});
+  }
 }
 
-void Board::collect_census(PeSample& sample) {
-  if (!takes_census_ || !sample.has_census || !census_from_.insert(sample.pe.value).second) return;
-  census_.merge(std::move(sample.census));
+std::vector<HeatQuery> Board::heat_queries() const {
+  std::vector<HeatQuery> queries;
+  for (const auto& [key, heat] : heat_) queries.push_back({key.array, key.by, heat.watch});
+  return queries;
+}
+
+void Board::take(HeatCells&& part) {
+  const auto at = heat_.find({part.of.array, part.of.by, 0});
+  if (at != heat_.end() && at->second.watch == part.of.watch) at->second.map.take(std::move(part));
+}
+
+std::vector<std::pair<HeatQuery, Event>> Board::take_heat_events() {
+  std::vector<std::pair<HeatQuery, Event>> events;
+  for (auto& [key, heat] : heat_) {
+    if (auto event = heat.map.take_event(name_of(key.array)))
+      events.push_back({key, {"heat", std::move(*event)}});
+  }
+  return events;
+}
+
+std::vector<Event> Board::past_heat(const HeatQuery& query) const {
+  const auto at = heat_.find(query);
+  if (at == heat_.end() || at->second.map.last_event().empty()) return {};
+  return {{"heat", at->second.map.last_event()}};
+}
+
+std::string Board::name_of(CollectionId id) const {
+  for (const OfPe& of : pes_)
+    for (const CollectionSample& here : of.last.collections)
+      if (here.id == id) return here.name;
+  return {};
 }
 
 std::string Board::frame(double seconds, const std::function<std::string(PeId)>& runs) {

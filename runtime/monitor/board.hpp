@@ -3,13 +3,14 @@
 //     frame    utilisation, rates, queues of each PE since the last frame; memory; chares; epochs
 //     round    a balance round
 //     picture  what the program draws
-//     census   what waits, after a browser asked
+//     heat     a heat map, for the browsers that watch it
 //
 // It keeps the frames and rounds of the last minutes and the last picture of each name, for a
 // browser that comes late. Not for several threads at once.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
+#include "runtime/monitor/heat_map.hpp"
 #include "runtime/monitor/monitor.hpp"
 #include "runtime/monitor/sample.hpp"
 
@@ -17,8 +18,8 @@
 #include <deque>
 #include <functional>
 #include <map>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tess::detail {
@@ -42,8 +43,16 @@ class Board {
                                                const std::function<std::string(PeId)>& runs);
   /// What a browser that comes now must know.
   [[nodiscard]] std::vector<Event> past() const;
-  /// Collects the census of the samples that come from now on.
-  void begin_census();
+
+  /// These heat maps are watched from now on. The argument's `watch` is not used.
+  void watch_heat(const std::vector<HeatQuery>& watched);
+  /// What the PEs are to report for them.
+  [[nodiscard]] std::vector<HeatQuery> heat_queries() const;
+  void take(HeatCells&& part);
+  /// The new events of heat maps, each with its query (`watch` 0).
+  [[nodiscard]] std::vector<std::pair<HeatQuery, Event>> take_heat_events();
+  /// The last event of a heat map, for a browser that comes now.
+  [[nodiscard]] std::vector<Event> past_heat(const HeatQuery& query) const;
 
  private:
   struct OfPe {
@@ -60,7 +69,7 @@ class Board {
   [[nodiscard]] std::string frame(double seconds, const std::function<std::string(PeId)>& runs);
   [[nodiscard]] std::string collections() const;
   [[nodiscard]] static Event event_of(const std::string& name, const Picture& picture);
-  void collect_census(PeSample& sample);
+  [[nodiscard]] std::string name_of(CollectionId id) const;
 
   const std::int32_t n_pes_, n_processes_;
   const bool virtual_time_;
@@ -69,9 +78,12 @@ class Board {
   std::vector<std::string> new_rounds_;
   std::map<std::string, Picture> pictures_;
   std::deque<Event> past_;
-  bool takes_census_ = false;
-  std::set<std::int32_t> census_from_;
-  Waits census_;
+  struct WatchedHeat {
+    std::uint32_t watch = 0;
+    HeatMap map;
+  };
+  std::map<HeatQuery, WatchedHeat> heat_;  // by query with `watch` 0
+  std::uint32_t n_watches_ = 0;
 };
 
 }  // namespace tess::detail

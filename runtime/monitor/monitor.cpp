@@ -1,7 +1,9 @@
 #include "runtime/monitor/monitor.hpp"
 
+#include "runtime/base/json_string.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/monitor/board.hpp"
+#include "runtime/monitor/pe_heat.hpp"
 #include "runtime/monitor/server.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/scheduler/runtime.hpp"
@@ -10,8 +12,10 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -25,16 +29,29 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct SampleAsked {
-  bool with_census = false;
+  std::vector<HeatQuery> heat;
 };
-struct CensusWanted {};
+struct WindowEnds {};
+/// Process 0 tells the others which heat maps are watched.
+struct HeatWanted {
+  std::uint64_t version = 0;  // newer ones are greater
+  std::vector<HeatQuery> queries;
+};
+
+/// A report of what waits, which the service's thread makes. It may come after the monitor's end.
+struct Reported {
+  std::mutex mutex;
+  std::optional<std::string> text;
+};
 
 bool is_on_process_0(Pe& pe) {
   return pe.machine().process().value == 0;
 }
 
 // The messages of the monitor; they call its loop, which is below.
-void census_is_wanted(Pe& pe, CensusWanted&& wanted);
+void heat_is_wanted(Pe& pe, HeatWanted&& wanted);
+void heat_arrives(Pe& pe, HeatCells&& part);
+void window_ends(Pe& pe, WindowEnds&& ends);
 void sample_is_asked(Pe& pe, SampleAsked&& asked);
 void sample_arrives(Pe& pe, PeSample&& sample);
 void part_arrives(Pe& pe, PicturePart&& part);
@@ -82,10 +99,31 @@ class Monitor::Loop {
     const std::lock_guard lock(mutex_);
     board_->arrived(std::move(sample));
   }
-  /// The next samples of this process say what waits.
-  void want_census() {
+  /// A period of the heat maps begins on a PE of this process.
+  void begin_heat(Pe& pe, const std::vector<HeatQuery>& queries) {
+    std::unique_ptr<PeHeat>& heat = of_pe(pe.id()).heat;
+    if (!heat && queries.empty()) return;
+    if (!heat) heat = std::make_unique<PeHeat>(pe);
+    report_heat(pe, heat->begin(queries));
+    if (queries.empty()) heat.reset();
+  }
+  void end_heat_window(Pe& pe) {
+    if (auto& heat = of_pe(pe.id()).heat) report_heat(pe, heat->end_window());
+  }
+  void take(HeatCells&& part) {
     const std::lock_guard lock(mutex_);
-    wants_census_ = true;
+    board_->take(std::move(part));
+  }
+  /// On process 0: what the other processes have not been told yet.
+  [[nodiscard]] std::optional<HeatWanted> heat_to_tell() {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(told_, heat_.version) == heat_.version) return std::nullopt;
+    return heat_;
+  }
+  /// On other processes.
+  void want_heat(HeatWanted&& wanted) {
+    const std::lock_guard lock(mutex_);
+    if (wanted.version > heat_.version) heat_ = std::move(wanted);
   }
   [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
     // Only this PE's thread uses its set; answered() clears it on the same thread.
@@ -102,9 +140,20 @@ class Monitor::Loop {
 
  private:
   struct OfPe {
-    bool asked = false;                       // and has not answered yet
+    bool asked = false;  // and has not answered yet
+    // Only its thread uses these.
     std::unordered_set<std::uint64_t> parts;  // hashes of those that were sent since its sample
+    std::unique_ptr<PeHeat> heat;             // while heat maps are watched
   };
+
+  void report_heat(Pe& pe, std::vector<HeatCells>&& parts) {
+    for (HeatCells& part : parts) {
+      if (is_on_process_0(pe))
+        take(std::move(part));
+      else
+        send_uncounted<&heat_arrives>(pe, PeId{0}, std::move(part));
+    }
+  }
 
   [[nodiscard]] PeId first_pe() const {
     return PeId{machine_.process().value * machine_.pes_per_process()};
@@ -120,10 +169,15 @@ class Monitor::Loop {
       const std::lock_guard lock(mutex_);
       return board_->past();
     };
-    source.begin_census = [this] {
+    source.past_heat = [this](const HeatQuery& query) {
       const std::lock_guard lock(mutex_);
-      board_->begin_census();
-      wants_census_ = true;
+      return board_->past_heat(query);
+    };
+    source.ask_report = [this] {
+      runtime_.service().report_job([reported = reported_](std::string&& text) {
+        const std::lock_guard lock(reported->mutex);
+        reported->text = std::move(text);
+      });
     };
     server_.emplace(io_, options, std::move(source));
     runtime_.error_line(text("tessera: monitor on http://", options.address, ":", server_->port(),
@@ -144,16 +198,39 @@ class Monitor::Loop {
   void ask() {
     const std::lock_guard lock(mutex_);
     if (closed_) return;
-    const bool with_census = std::exchange(wants_census_, false);
+    if (server_) watch_heat();
+    const bool by_load =
+        std::any_of(heat_.queries.begin(), heat_.queries.end(),
+                    [](const HeatQuery& query) { return query.by == HeatBy::load; });
+    std::vector<PeId> asked;
     for (std::int32_t i = 0; i < machine_.n_pes_here(); ++i) {
       const PeId to{first_pe().value + i};
-      if (std::exchange(of_pe(to).asked, true) && !with_census) continue;
-      machine_.hand_in(to, make_outside<&sample_is_asked>(to, SampleAsked{with_census}));
+      if (std::exchange(of_pe(to).asked, true)) continue;
+      machine_.hand_in(to, make_outside<&sample_is_asked>(to, SampleAsked{heat_.queries}));
+      if (by_load) asked.push_back(to);
     }
+    if (by_load) end_windows_later(std::move(asked));
+  }
+  void watch_heat() {
+    board_->watch_heat(server_->watched());
+    std::vector<HeatQuery> queries = board_->heat_queries();
+    if (queries == heat_.queries) return;
+    ++heat_.version;
+    heat_.queries = std::move(queries);
+  }
+  void end_windows_later(std::vector<PeId> of) {
+    window_timer_.expires_after(
+        std::max<Clock::duration>(period_ / 200, std::chrono::milliseconds(1)));
+    window_timer_.async_wait([this, of = std::move(of)](const boost::system::error_code& error) {
+      const std::lock_guard lock(mutex_);
+      if (error || closed_) return;
+      for (const PeId to : of) machine_.hand_in(to, make_outside<&window_ends>(to, WindowEnds{}));
+    });
   }
   void publish() {
     if (!server_) return;
     std::vector<Event> events;
+    std::vector<std::pair<HeatQuery, Event>> heat;
     {
       const std::lock_guard lock(mutex_);
       if (closed_) return;
@@ -164,21 +241,30 @@ class Monitor::Loop {
             const Action* action = runtime_.pe(pe).running();
             return action != nullptr ? plain_name(action->name()) : std::string();
           });
+      heat = board_->take_heat_events();
+    }
+    {
+      const std::lock_guard lock(reported_->mutex);
+      if (reported_->text) events.push_back({"report", json_string(*reported_->text)});
+      reported_->text.reset();
     }
     server_->publish(events);
+    for (const auto& [query, event] : heat) server_->publish(query, event);
   }
 
   Runtime& runtime_;
   Machine& machine_;
   const Clock::duration period_;
   const Clock::time_point began_;
-  std::mutex mutex_;  // guards what follows, but `parts`
+  const std::shared_ptr<Reported> reported_ = std::make_shared<Reported>();
+  std::mutex mutex_;  // guards what follows, but not what only a PE uses
   std::vector<OfPe> of_pes_;
   std::optional<Board> board_;  // on process 0
-  bool wants_census_ = false;
+  HeatWanted heat_;
+  std::uint64_t told_ = 0;  // the version that the other processes have been told
   bool closed_ = false;
   boost::asio::io_context io_{1};
-  boost::asio::steady_timer timer_{io_};
+  boost::asio::steady_timer timer_{io_}, window_timer_{io_};
   std::optional<Server> server_;  // on process 0
   std::thread thread_;
 };
@@ -189,17 +275,27 @@ Monitor::Loop& loop_of(Pe& pe) {
   return static_cast<Monitor&>(*pe.runtime().monitor()).loop();
 }
 
-void census_is_wanted(Pe& pe, CensusWanted&& /*wanted*/) {
-  loop_of(pe).want_census();
+void heat_is_wanted(Pe& pe, HeatWanted&& wanted) {
+  loop_of(pe).want_heat(std::move(wanted));
+}
+void heat_arrives(Pe& pe, HeatCells&& part) {
+  loop_of(pe).take(std::move(part));
+}
+void window_ends(Pe& pe, WindowEnds&& /*ends*/) {
+  if (!pe.stopped()) loop_of(pe).end_heat_window(pe);
 }
 void sample_is_asked(Pe& pe, SampleAsked&& asked) {
   if (pe.stopped()) return;
-  if (asked.with_census && pe.id().value == 0) {  // the other processes hear of it from PE 0
-    for (std::int32_t first = pe.machine().n_pes_here(); first < pe.n_pes();
-         first += pe.machine().pes_per_process())
-      send_uncounted<&census_is_wanted>(pe, PeId{first}, CensusWanted{});
+  Monitor::Loop& loop = loop_of(pe);
+  if (pe.id().value == 0) {  // the other processes hear of it from PE 0
+    if (const auto wanted = loop.heat_to_tell()) {
+      for (std::int32_t first = pe.machine().n_pes_here(); first < pe.n_pes();
+           first += pe.machine().pes_per_process())
+        send_uncounted<&heat_is_wanted>(pe, PeId{first}, HeatWanted(*wanted));
+    }
   }
-  loop_of(pe).answered(pe, sample_of(pe, asked.with_census));
+  loop.begin_heat(pe, asked.heat);
+  loop.answered(pe, sample_of(pe));
 }
 void sample_arrives(Pe& pe, PeSample&& sample) {
   loop_of(pe).arrived(std::move(sample));

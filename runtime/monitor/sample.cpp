@@ -4,7 +4,7 @@
 #include "runtime/scheduler/idle_time.hpp"
 
 namespace tess::detail {
-PeSample sample_of(Pe& pe, bool with_census) {
+PeSample sample_of(Pe& pe) {
   PeSample sample;
   sample.pe = pe.id();
   sample.at_ns = pe.now().count();
@@ -16,8 +16,6 @@ PeSample sample_of(Pe& pe, bool with_census) {
   if (pe.id().value == first) sample.process_bytes = resident_memory();
   for (const HostedCollection* collection : pe.collections())
     sample.collections.push_back({collection->id(), collection->name(), collection->n_local()});
-  sample.has_census = with_census;
-  if (with_census) sample.census = pe.census_of_running();
   return sample;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
-#include "runtime/report/waiting.hpp"
 #include "runtime/scheduler/pe.hpp"
 
 #include <cstdint>
@@ -31,18 +30,16 @@ struct PeSample {
   std::uint64_t n_epochs = 0;       ///< epochs that it keeps counters of
   std::uint64_t process_bytes = 0;  ///< memory of the process; only from the first PE of each
   std::vector<CollectionSample> collections;
-  bool has_census = false;
-  Waits census;  ///< what waits on this PE, if it was asked
 
   template <class Ar>
   void serialize(Ar& ar) {
     ar(pe, at_ns, idle_ns, counts.messages, counts.sent_remote, counts.bytes_sent, counts.forwards,
        counts.migrations, counts.dead_letters, counts.late_replies, n_ready, n_epochs,
-       process_bytes, collections, has_census, census);
+       process_bytes, collections);
   }
 };
 
 /// The present sample of a PE, on its thread.
-[[nodiscard]] PeSample sample_of(Pe& pe, bool with_census);
+[[nodiscard]] PeSample sample_of(Pe& pe);
 
 }  // namespace tess::detail

@@ -12,8 +12,13 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <deque>
+#include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -29,21 +34,37 @@ constexpr std::size_t most_waiting = 8;           // events for one browser that
 constexpr std::uint64_t most_request = 16 << 10;  // bytes
 constexpr std::size_t most_listeners = 64;
 
-/// "path?token=T": the two.
+/// "path?token=T&array=7".
 struct Target {
-  std::string path, token;
+  std::string path;
+  std::map<std::string, std::string, std::less<>> values;
+
+  [[nodiscard]] std::string value(std::string_view key) const {
+    const auto at = values.find(key);
+    return at != values.end() ? at->second : std::string();
+  }
 };
 Target target_of(std::string_view given) {
   const std::size_t mark = std::min(given.find('?'), given.size());
   Target target{std::string(given.substr(0, mark)), {}};
-  constexpr std::string_view key = "token=";
   for (std::size_t at = mark; at < given.size();) {
     const std::size_t next = std::min(given.find('&', at + 1), given.size());
     const std::string_view part = given.substr(at + 1, next - at - 1);
-    if (part.starts_with(key)) target.token = part.substr(key.size());
+    const std::size_t equals = std::min(part.find('='), part.size());
+    target.values.emplace(part.substr(0, equals), part.substr(std::min(equals + 1, part.size())));
     at = next;
   }
   return target;
+}
+/// The heat map that is asked for.
+std::optional<HeatQuery> heat_of(const Target& target) {
+  const std::string array = target.value("array"), by = target.value("by");
+  HeatQuery query;
+  const char* end = array.data() + array.size();
+  const auto [stop, error] = std::from_chars(array.data(), end, query.array.value, 16);
+  if (error != std::errc() || stop != end || (by != "load" && by != "pe")) return std::nullopt;
+  query.by = by == "load" ? HeatBy::load : HeatBy::pe;
+  return query;
 }
 
 /// Compares all characters, so that the time tells nothing of where they differ.
@@ -93,19 +114,25 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
     if (request.method() != http::verb::get)
       return reply(http::status::method_not_allowed, "only GET\n");
     if (server_.token().empty() ? !names_this_machine(std::string_view(host.data(), host.size()))
-                                : !same(target.token, server_.token()))
+                                : !same(target.value("token"), server_.token()))
       return reply(http::status::forbidden,
                    server_.token().empty()
                        ? "ask for localhost, or start the run with --monitor-token\n"
                        : "the token is missing or wrong: add ?token=…\n");
     if (target.path == "/")
       return reply(http::status::ok, monitor_page(), "text/html; charset=utf-8");
-    if (target.path == "/census") {
-      server_.source().begin_census();
+    if (target.path == "/report") {
+      server_.source().ask_report();
       return reply(http::status::accepted, "the answer comes as an event\n");
     }
-    if (target.path == "/events") return listen();
-    reply(http::status::not_found, "there is / and /events\n");
+    if (target.path == "/heat") return watch(heat_of(target));
+    if (target.path == "/events") {
+      std::vector<Event> past = server_.source().past();
+      past.push_back({"now", "{}"});
+      server_.listens(weak_from_this());
+      return stream(past);
+    }
+    reply(http::status::not_found, "there are /, /events, /heat and /report\n");
   }
 
   void reply(http::status status, std::string body,
@@ -126,15 +153,28 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
                       });
   }
 
-  void listen() {
+  void watch(const std::optional<HeatQuery>& query) {
+    if (!query)
+      return reply(http::status::bad_request,
+                   "say /heat?array=ID&by=load or by=pe, with an ID that "
+                   "frames name\n");
+    const std::vector<HeatQuery> watched = server_.watched();
+    if (watched.size() >= most_heat_maps &&
+        std::find(watched.begin(), watched.end(), *query) == watched.end())
+      return reply(http::status::service_unavailable,
+                   "other browsers watch as many heat maps as a run makes: close one\n");
+    server_.watches(*query, weak_from_this());
+    stream(server_.source().past_heat(*query));
+  }
+
+  /// Answers with events: these, and those that are sent later.
+  void stream(const std::vector<Event>& past) {
     stream_.expires_never();
     std::string all =
         "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n"
         "Connection: close\r\n\r\n";
-    for (const Event& event : server_.source().past()) all += as_text(event);
-    all += as_text({"now", "{}"});
+    for (const Event& event : past) all += as_text(event);
     waiting_.push_back(std::make_shared<const std::string>(std::move(all)));
-    server_.listens(weak_from_this());
     write_next();
   }
 
@@ -201,20 +241,42 @@ Server::Server(asio::io_context& io, const MonitorOptions& options, Source sourc
 void Server::accept() {
   acceptor_.async_accept([this](beast::error_code error, Tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && listeners_.size() < most_listeners)
+    if (!error && to_all_.size() + to_heat_.size() < most_listeners)
       std::make_shared<Connection>(*this, std::move(socket))->read();
     accept();
   });
 }
 
+void Server::forget_gone() {
+  std::erase_if(to_all_, [](const auto& listener) { return listener.expired(); });
+  std::erase_if(to_heat_, [](const auto& one) { return one.second.expired(); });
+}
+
 void Server::publish(const std::vector<Event>& events) {
-  std::erase_if(listeners_, [](const auto& listener) { return listener.expired(); });
-  if (listeners_.empty()) return;
+  forget_gone();
+  if (to_all_.empty()) return;
   auto all = std::make_shared<std::string>();
   for (const Event& event : events) *all += as_text(event);
-  for (const auto& listener : listeners_) {
+  for (const auto& listener : to_all_) {
     if (const auto connection = listener.lock()) connection->send(all);
   }
+}
+
+void Server::publish(const HeatQuery& query, const Event& event) {
+  const auto message = std::make_shared<const std::string>(as_text(event));
+  for (const auto& [watched, listener] : to_heat_) {
+    if (watched != query) continue;
+    if (const auto connection = listener.lock()) connection->send(message);
+  }
+}
+
+std::vector<HeatQuery> Server::watched() const {
+  std::vector<HeatQuery> queries;
+  for (const auto& [query, listener] : to_heat_)
+    if (!listener.expired()) queries.push_back(query);
+  std::sort(queries.begin(), queries.end());
+  queries.erase(std::unique(queries.begin(), queries.end()), queries.end());
+  return queries;
 }
 
 }  // namespace tess::detail

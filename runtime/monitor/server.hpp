@@ -2,7 +2,9 @@
 //
 //     GET /          the page
 //     GET /events    server-sent events: what has been (Board::past), `now`, then each event as it comes
-//     GET /census    asks what waits; the answer comes as an event
+//     GET /heat?array=ID&by=load    the heat map of an array likewise, while the connection lasts;
+//                    ID: in hexadecimal, as frames name it; by: load, or pe
+//     GET /report    asks what waits; the answer comes as an event
 //
 // A browser that reads more slowly than events come misses frames, and never holds anything up:
 // one event is under way to it at a time, and what comes meanwhile is kept only up to a limit.
@@ -40,28 +42,38 @@ class Server {
   /// What the server asks of the monitor.
   struct Source {
     std::function<std::vector<Event>()> past;
-    std::function<void()> begin_census;
+    std::function<std::vector<Event>(const HeatQuery&)> past_heat;
+    std::function<void()> ask_report;
   };
 
   /// Listens. Throws Error if the address or port cannot be had.
   Server(boost::asio::io_context& io, const MonitorOptions& options, Source source);
 
   [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
-  /// Sends events to all browsers.
+  /// Sends events to all browsers that listen to them.
   void publish(const std::vector<Event>& events);
+  /// Sends the event of a heat map to the browsers that watch it.
+  void publish(const HeatQuery& query, const Event& event);
+  /// The heat maps that browsers watch.
+  [[nodiscard]] std::vector<HeatQuery> watched() const;
 
   // For its connections.
   [[nodiscard]] const Source& source() const { return source_; }
   [[nodiscard]] const std::string& token() const { return token_; }
-  void listens(std::weak_ptr<Listener> listener) { listeners_.push_back(std::move(listener)); }
+  void listens(std::weak_ptr<Listener> listener) { to_all_.push_back(std::move(listener)); }
+  void watches(const HeatQuery& query, std::weak_ptr<Listener> listener) {
+    to_heat_.emplace_back(query, std::move(listener));
+  }
 
  private:
   void accept();
+  void forget_gone();
 
   const std::string token_;
   const Source source_;
   boost::asio::ip::tcp::acceptor acceptor_;
-  std::vector<std::weak_ptr<Listener>> listeners_;
+  std::vector<std::weak_ptr<Listener>> to_all_;
+  std::vector<std::pair<HeatQuery, std::weak_ptr<Listener>>> to_heat_;
 };
 
 /// An event as it stands in the stream.

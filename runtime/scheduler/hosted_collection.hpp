@@ -5,9 +5,14 @@
 #include "runtime/core/ids.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace tess {
+struct Range;
+}
 
 namespace tess::detail {
 
@@ -29,6 +34,14 @@ class HostedCollection {
   [[nodiscard]] virtual bool was_called() const = 0;
   /// "Block[3,4]": the text for the index that Pe::constructed_index() points to.
   [[nodiscard]] virtual std::string constructed_text(const void* index) const = 0;
+  /// The indices of a dense array; of other collections it has no axes.
+  [[nodiscard]] virtual const Range& range() const = 0;
+  /// The elements on this PE; a slot may be null while elements leave in the middle of a broadcast.
+  [[nodiscard]] virtual const std::vector<Element*>& elements() const = 0;
+  /// The row-major rank of an element's index in range(); where the range has no axes the hash of
+  /// the index, and in a group the number of the PE. −1: the element is not of this collection, or
+  /// its index is outside of the range.
+  [[nodiscard]] virtual std::int64_t rank_of(const Element& element) const = 0;
   /// Appends one line for each object here that waits for something that never arrived.
   virtual void describe_waiting(std::vector<std::string>& lines) const = 0;
 

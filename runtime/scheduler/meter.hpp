@@ -27,6 +27,18 @@ class Pe;
 struct Action;
 struct LoadRecord;
 
+/// Sees which element's code runs: it is in the context of the PE.
+class ScopeListener {
+ public:
+  ScopeListener() = default;
+  ScopeListener(const ScopeListener&) = delete;
+  ScopeListener& operator=(const ScopeListener&) = delete;
+  virtual ~ScopeListener() = default;
+
+  /// A scope has begun or ended; `at` in ticks of the meter.
+  virtual void changed(std::uint64_t at) = 0;
+};
+
 class Meter {
  public:
   Meter(Machine& machine, PeId pe);
@@ -49,8 +61,9 @@ class Meter {
 
   /// Begins a scope; returns the one that it interrupts, for leave().
   [[nodiscard]] Scope enter(Scope scope) {
-    pass();
+    const std::uint64_t at = pass();
     if (watched_ != nullptr) watch_enters(scope.action);
+    if (listener_ != nullptr) listener_->changed(at);
     if (entered_ == nullptr) entered_ = scope.action;
     return std::exchange(scope_, scope);
   }
@@ -60,6 +73,7 @@ class Meter {
   void leave(Scope outer) {
     const std::uint64_t at = pass();
     if (watched_ != nullptr) watch_leaves();
+    if (listener_ != nullptr) listener_->changed(at);
     const Scope ended = std::exchange(scope_, outer);
     if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
       ring(at);
@@ -77,6 +91,8 @@ class Meter {
 
   /// From now on each scope is shown to the watch of this PE, with the element of its context.
   void show_to(Pe& pe) { watched_ = &pe; }
+  /// From now on the listener hears of each scope; null: none does. Not owned.
+  void set_listener(ScopeListener* listener) { listener_ = listener; }
 
   // The PE calls these.
   void step_begins();
@@ -130,6 +146,7 @@ class Meter {
     std::function<void()> ring;
   };
   Pe* watched_ = nullptr;
+  ScopeListener* listener_ = nullptr;
   std::vector<Alarm> alarms_;
   std::uint64_t alarm_at_ = ~std::uint64_t{0};  // the earliest alarm
 };

@@ -95,8 +95,21 @@ class Pe {
   [[nodiscard]] Meter* meter() { return meter_.get(); }
   /// Starts measuring.
   Meter& start_meter() {
-    if (!meter_) meter_ = std::make_unique<Meter>(machine_, id_);
+    measures_briefly_ = false;
+    if (!meter_)
+      meter_ = idle_meter_ ? std::move(idle_meter_) : std::make_unique<Meter>(machine_, id_);
     return *meter_;
+  }
+  /// The same until stop_brief_meter(), unless start_meter() is called meanwhile.
+  Meter& start_brief_meter() {
+    const bool briefly = measures_briefly_ || !meter_;
+    Meter& meter = start_meter();
+    measures_briefly_ = briefly;
+    return meter;
+  }
+  void stop_brief_meter() {
+    if (measures_briefly_) idle_meter_ = std::move(meter_);
+    measures_briefly_ = false;
   }
 
   /// What this PE runs, for a watching thread; null if nothing watches. With it the PE has a meter.
@@ -372,6 +385,8 @@ class Pe {
   PeStatistics statistics_;
   Random random_;
   std::unique_ptr<Meter> meter_;
+  std::unique_ptr<Meter> idle_meter_;  // one that measured briefly; scopes may still refer to it
+  bool measures_briefly_ = false;
   std::unique_ptr<Trace> trace_;
   double migration_chance_ = 0;
   ElementMover* mover_ = nullptr;

@@ -7,11 +7,8 @@
 
 namespace tess::detail {
 
-JobReport::JobReport(std::uint64_t round, std::string heading, std::int32_t n_processes)
-    : round_(round),
-      heading_(std::move(heading)),
-      reported_(static_cast<std::size_t>(n_processes)),
-      n_missing_(n_processes) {}
+JobReport::JobReport(std::uint64_t round, std::int32_t n_processes)
+    : round_(round), reported_(static_cast<std::size_t>(n_processes)), n_missing_(n_processes) {}
 
 void JobReport::take(ProcessReport&& report) {
   const auto process = static_cast<std::size_t>(report.process.value);
@@ -38,7 +35,7 @@ std::string JobReport::finish(const Runtime& runtime) {
     return reported_[process] && std::find(silent_.begin(), silent_.end(), pe) == silent_.end();
   };
   const std::string audit = runtime.audit_text(audit_, answered);
-  return heading_ + (waits_.empty() ? "nothing waits" : list_of_waiting(std::move(waits_))) + audit;
+  return (waits_.empty() ? "nothing waits" : list_of_waiting(std::move(waits_))) + audit;
 }
 
 }  // namespace tess::detail

@@ -1,5 +1,5 @@
-// The report of a whole job: process 0 collects what each process reports, and prints it once all
-// have, or after a time limit. It also names what does not answer.
+// The report of a whole job: process 0 collects what each process reports. It is done once all have
+// reported, or after a time limit. It also names what does not answer.
 //
 //     each process: its PEs' censuses, and what the PEs run that do not answer -> ProcessReport
 //                   -> PE 0 -> JobReport of process 0
@@ -33,8 +33,7 @@ struct ProcessReport {
 /// What process 0 collects in one round.
 class JobReport {
  public:
-  /// `heading`: the beginning of the text that is printed.
-  JobReport(std::uint64_t round, std::string heading, std::int32_t n_processes);
+  JobReport(std::uint64_t round, std::int32_t n_processes);
 
   [[nodiscard]] std::uint64_t round() const { return round_; }
   /// Takes the report of a process; a second one of the same process has no effect.
@@ -47,7 +46,6 @@ class JobReport {
 
  private:
   const std::uint64_t round_;
-  const std::string heading_;
   std::vector<bool> reported_;  // by process
   std::int32_t n_missing_;
   bool active_ = false;

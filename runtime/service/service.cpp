@@ -50,6 +50,8 @@ const char* name_of_signal(int signal) {
 
 /// In place of a signal: no entry method has begun for the time of --hang-report.
 constexpr int hang = 0;
+/// In place of a signal: a browser asks.
+constexpr int browser = -1;
 
 struct CensusAsked {
   std::uint64_t round = 0;
@@ -143,6 +145,18 @@ class Service::Loop {
     take(0, pe, std::move(waits), {});
   }
 
+  void report_job(std::function<void(std::string&&)> done) {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || ending_) return;
+    start();
+    boost::asio::post(io_, [this, done = std::move(done)]() mutable {
+      const std::lock_guard here(mutex_);
+      if (closed_ || ending_) return;
+      askers_.push_back(std::move(done));
+      begin_job(browser);
+    });
+  }
+
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
@@ -158,8 +172,9 @@ class Service::Loop {
   /// Process 0 asks this process.
   void asked(const JobAsk& ask) {
     const std::lock_guard lock(mutex_);
-    if (closed_ || ending_ || !thread_.joinable() || ask.round <= last_asked_) return;
+    if (closed_ || ending_ || ask.round <= last_asked_) return;
     last_asked_ = ask.round;
+    start();
     boost::asio::post(io_, [this, ask] { answer(ask); });
   }
   /// This process's report, for the first PE that fetches it.
@@ -180,7 +195,7 @@ class Service::Loop {
     boost::asio::post(io_, [this, report = std::move(report)]() mutable {
       const std::lock_guard here(mutex_);
       if (closed_ || ending_) return;
-      if (!job_ && report.job_round == 0 && Clock::now() - job_printed_ > job_time)
+      if (report.job_round == 0 && (job_ || Clock::now() - job_printed_ > job_time))
         begin_job(SIGUSR1);  // another process got the signal
       if (!job_ || (report.job_round != 0 && report.job_round != job_->round())) return;
       take_part(std::move(report));
@@ -257,14 +272,21 @@ class Service::Loop {
     });
   }
   void begin_job(int signal) {
-    if (job_) return;
-    job_signal_ = signal;
-    job_.emplace(++n_jobs_, heading(signal), n_processes());
+    if (job_) {  // one report serves both
+      if (job_signal_ == browser && signal == SIGUSR1) print_later(signal);
+      return;
+    }
+    print_later(signal);
+    job_.emplace(++n_jobs_, n_processes());
     after(job_due_, answer_time + job_time, [this] {
       if (job_ && !ending_) print_job();
     });
     if (n_processes() > 1) send_to_pes<&job_ask_is_sent>(JobAsk{n_jobs_, signal});
     begin_census(signal, n_jobs_);
+  }
+  void print_later(int signal) {
+    job_signal_ = signal;
+    job_heading_ = heading(signal);
   }
   void take_part(ProcessReport&& report) {
     job_->take(std::move(report));
@@ -287,6 +309,7 @@ class Service::Loop {
   }
 
   [[nodiscard]] std::string heading(int signal) const {
+    if (signal == browser) return {};
     if (signal == hang) return hang_heading(watch_->idle(Clock::now()));
     return text("tessera: ", name_of_signal(signal), ": ");
   }
@@ -359,8 +382,10 @@ class Service::Loop {
   std::uint64_t n_rounds_ = 0;
   std::optional<JobReport> job_;  // process 0 collects the report of the job
   int job_signal_ = 0;
+  std::string job_heading_;
   std::uint64_t n_jobs_ = 0, asked_others_in_ = 0;
   Clock::time_point job_printed_{};
+  std::vector<std::function<void(std::string&&)>> askers_;  // of the job's report, beside a signal
   std::optional<ProcessReport> outgoing_;  // other processes: not yet confirmed by process 0
   bool fetched_ = false;
   std::uint64_t last_asked_ = 0;
@@ -402,9 +427,16 @@ void Service::Loop::report() {
 void Service::Loop::print_job() {
   JobReport done = std::move(*job_);
   job_.reset();
-  if (job_signal_ == hang && done.active()) return watch_->ask_later(Clock::now());
+  if (job_signal_ == hang && done.active()) {  // no hang; the askers want the whole report
+    watch_->ask_later(Clock::now());
+    if (!askers_.empty()) begin_job(browser);
+    return;
+  }
   if (job_signal_ == hang) watch_->reported();
-  runtime_.error_line(done.finish(runtime_));
+  const std::string words = done.finish(runtime_);
+  for (const auto& asker : std::exchange(askers_, {})) asker(std::string(words));
+  if (job_signal_ == browser) return;
+  runtime_.error_line(job_heading_ + words);
   job_printed_ = Clock::now();
 }
 
@@ -466,6 +498,9 @@ void Service::post_after(PeId to, Envelope* message, Time delay) {
 }
 void Service::ends_by_signal(int signal, PeId pe, Waits waits) {
   loop_->ends_by_signal(signal, pe, std::move(waits));
+}
+void Service::report_job(std::function<void(std::string&&)> done) {
+  loop_->report_job(std::move(done));
 }
 void Service::close() {
   loop_->close();

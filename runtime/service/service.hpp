@@ -2,6 +2,7 @@
 // arrives. It is started for signals, or by the first timer on a machine in real time.
 //
 //     SIGUSR1          process 0 prints what waits on all PEs of the job, and the run goes on
+//     report_job()     the same for the page of --monitor, which gets the text instead
 //     --hang-report    the same, when no entry method has begun for that time; and a line for each
 //                      entry method that takes as long
 //     SIGINT, SIGTERM  each process prints what waits on its PEs, then the run ends on all processes
@@ -41,6 +42,7 @@ class Service final : public ProcessService {
 
   void post_after(PeId to, Envelope* message, Time delay) override;
   void ends_by_signal(int signal, PeId pe, Waits waits) override;
+  void report_job(std::function<void(std::string&&)> done) override;
   void close() override;
 
   /// The thread and its state. Handlers of its messages on the PEs call it.

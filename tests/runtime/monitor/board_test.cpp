@@ -1,4 +1,4 @@
-// What process 0 makes of samples: frames, pictures, the census; and the options of --monitor.
+// What process 0 makes of samples: frames, pictures, heat maps; and the options of --monitor.
 #include "runtime/monitor/board.hpp"
 
 #include "runtime/machine/simulated.hpp"
@@ -12,6 +12,8 @@
 using nlohmann::json;
 using tess::detail::Board;
 using tess::detail::Event;
+using tess::detail::HeatBy;
+using tess::detail::HeatQuery;
 using tess::detail::PeSample;
 
 namespace {
@@ -107,21 +109,31 @@ TEST_CASE("parts of a picture meet, whatever their order", "[runtime][monitor]")
   CHECK(board.take_events(3, &nothing).size() == 16);  // a frame and fifteen new names
 }
 
-TEST_CASE("the census is complete once every PE has answered", "[runtime][monitor]") {
+TEST_CASE("a heat map that is watched again begins anew", "[runtime][monitor]") {
   const auto machine = machine_of(2);
   Board board(*machine);
-  board.begin_census();
-  PeSample one = sample(0, 1, 0, 0), other = sample(1, 1, 0, 0);
-  one.has_census = other.has_census = true;
-  other.census.add(tess::detail::WaitRank::coroutine, "Cell[3] waits for ghost(17)");
-  board.arrived(one);
-  CHECK(board.take_events(1, &nothing).back().kind == "frame");
-  board.arrived(sample(1, 2, 0, 0));  // taken before it was asked
-  CHECK(board.take_events(2, &nothing).back().kind == "frame");
-  board.arrived(other);
-  const std::vector<Event> events = board.take_events(3, &nothing);
-  REQUIRE(events.back().kind == "census");
-  CHECK(json::parse(events.back().json) == "1 wait:\n  Cell[3] waits for ghost(17)");
+  board.arrived(sample(0, 1, 0, 0, 3));  // the array is named
+  const HeatQuery asked{tess::CollectionId{7}, HeatBy::pe, 0};
+  board.watch_heat({asked});
+  REQUIRE(board.heat_queries().size() == 1);
+  const HeatQuery first = board.heat_queries().front();
+  board.take({first, tess::PeId{1}, tess::range(4), {0, 1, 2, 3}, {1, 1, 1, 1}});
+  board.take({{tess::CollectionId{8}, HeatBy::pe, 1}, tess::PeId{0}, tess::range(4), {0}, {9}});
+  auto events = board.take_heat_events();
+  REQUIRE(events.size() == 1);
+  CHECK(events[0].first == asked);
+  CHECK(json::parse(events[0].second.json)["name"] == "Block");
+  CHECK(json::parse(events[0].second.json)["values"] == json({1, 1, 1, 1}));
+  CHECK(board.take_heat_events().empty());  // unchanged: not sent again
+  CHECK(board.past_heat(asked).size() == 1);
+
+  board.watch_heat({});
+  CHECK(board.heat_queries().empty());
+  board.watch_heat({asked});
+  CHECK(board.heat_queries().front() != first);
+  CHECK(board.past_heat(asked).empty());
+  board.take({first, tess::PeId{1}, tess::range(4), {0}, {1}});  // late, for the former watch
+  CHECK(board.take_heat_events().empty());
 }
 
 TEST_CASE("--monitor takes a port, and wants a token where others can reach it",

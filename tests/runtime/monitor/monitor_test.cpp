@@ -41,6 +41,10 @@ class Browser {
     while (!error) read_more(error);
     return text_;
   }
+  void wait_for_headers() {
+    boost::system::error_code error;
+    while (!error && text_.find("\r\n\r\n") == std::string::npos) read_more(error);
+  }
   /// The data of the next event of this kind.
   json next(const std::string& kind) {
     const std::string head = "event: " + kind + "\ndata: ";
@@ -95,6 +99,25 @@ class Watched : public tess::Chare<Watched, tess::Index1> {
   int n_resumed_ = 0;
 };
 
+class Busy : public tess::Chare<Busy, tess::Index1> {
+ public:
+  void stay() {
+    inside = true;
+    inside.notify_all();
+    leave.wait(false);
+  }
+  static inline std::atomic<bool> inside = false, leave = false;
+};
+
+/// Receives the lines of a run, of which one names the port.
+std::function<void(const std::string&)> port_of(std::promise<unsigned short>& port) {
+  return [&port](const std::string& line) {
+    const std::string begin = "http://127.0.0.1:";
+    if (const std::size_t at = line.find(begin); at != std::string::npos)
+      port.set_value(static_cast<unsigned short>(std::stoi(line.substr(at + begin.size()))));
+  };
+}
+
 /// Runs a program until `watch(port)`, which runs on a thread of its own, is done.
 int watched_run(std::unique_ptr<tess::Machine> machine, const std::string& token,
                 const std::function<void(unsigned short)>& watch) {
@@ -103,11 +126,7 @@ int watched_run(std::unique_ptr<tess::Machine> machine, const std::string& token
   setup.machine = std::move(machine);
   setup.options.monitor = tess::MonitorOptions{"127.0.0.1", 0, token, 20};
   std::promise<unsigned short> port;
-  setup.options.report = [&](const std::string& line) {
-    const std::string begin = "http://127.0.0.1:";
-    if (const std::size_t at = line.find(begin); at != std::string::npos)
-      port.set_value(static_cast<unsigned short>(std::stoi(line.substr(at + begin.size()))));
-  };
+  setup.options.report = port_of(port);
   std::atomic<bool> done = false;
   std::thread browser([&] {
     watch(port.get_future().get());
@@ -166,9 +185,9 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
               picture = pictures.next("picture");
             } while (picture["values"] != "0055aaff");
             CHECK(picture["most"] == 3);
-            Browser census(port, "/events");
-            CHECK(Browser(port, "/census").read().starts_with("HTTP/1.1 202"));
-            CHECK(census.next("census").get<std::string>().find("waits for a message of key 5") !=
+            Browser reports(port, "/events");
+            CHECK(Browser(port, "/report").read().starts_with("HTTP/1.1 202"));
+            CHECK(reports.next("report").get<std::string>().find("waits for a message of key 5") !=
                   std::string::npos);
             CHECK(Browser(port, "/events")
                       .next("round")["text"]
@@ -181,12 +200,74 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
 TEST_CASE("with a token, nothing is told without it", "[runtime][monitor]") {
   CHECK(
       watched_run(machine_of(true), "secret", [](unsigned short port) {
-        for (const char* target :
-             {"/", "/events", "/census", "/?token=", "/?token=secreT", "/?token=secret2"})
+        for (const char* target : {"/", "/events", "/report", "/heat?array=1&by=pe",
+                                   "/?token=", "/?token=secreT", "/?token=secret2"})
           CHECK(Browser(port, target).read().starts_with("HTTP/1.1 403"));
         CHECK(
             Browser(port, "/?x=1&token=secret", "any.example").read().starts_with("HTTP/1.1 200"));
       }) == 0);
+}
+
+TEST_CASE("a report names a PE that does not answer, and what it runs", "[runtime][monitor]") {
+  tess::Setup setup;
+  setup.machine = tess::make_threads_machine(2);
+  setup.options.monitor = tess::MonitorOptions{"127.0.0.1", 0, "", 20};
+  std::promise<unsigned short> port;
+  setup.options.report = port_of(port);
+  std::string reported;
+  std::thread browser([&] {
+    const unsigned short at = port.get_future().get();
+    Busy::inside.wait(false);
+    Browser reports(at, "/events");
+    (void)reports.next("now");
+    (void)Browser(at, "/report").read();
+    reported = reports.next("report");
+    Busy::leave = true;
+    Busy::leave.notify_all();
+  });
+  const int code = tess::run(setup, [] {
+    tess::create<Busy>(tess::range(2))[{1}].send<&Busy::stay>();  // on PE 1
+  });
+  browser.join();
+  CHECK(code == 0);
+  CHECK_THAT(reported, Catch::Contains("PE 1 has not answered within 300 ms") &&
+                           Catch::Contains("Busy::stay"));
+}
+
+TEST_CASE("a heat map shows where elements are and what they cost, while it is watched",
+          "[runtime][monitor]") {
+  for (const bool threads : {false, true}) {
+    INFO("threads " << threads);
+    CHECK(watched_run(machine_of(threads), "", [&](unsigned short port) {
+            Browser events(port, "/events");
+            std::string id;
+            while (id.empty()) {
+              const json frame = events.next("frame");
+              for (const json& one : frame["collections"])
+                if (one["name"].get<std::string>().find("Watched") != std::string::npos)
+                  id = one["id"];
+            }
+            Browser by_pe(port, "/heat?by=pe&array=" + id);
+            json map;  // complete once all PEs have reported
+            do {
+              map = by_pe.next("heat");
+            } while (!map["summary"].get<std::string>().starts_with("4 elements on "));
+            CHECK(map["width"] == 4);
+            CHECK(map["height"] == 1);
+            for (const json& pe : map["values"]) CHECK((pe == 0 || pe == 1));
+            Browser by_load(port, "/heat?by=load&array=" + id);
+            do {
+              map = by_load.next("heat");
+            } while (map["values"].get<std::string>().find("ff") == std::string::npos);
+            CHECK(map["name"].get<std::string>().find("Watched") != std::string::npos);
+            CHECK(Browser(port, "/heat?by=load").read().starts_with("HTTP/1.1 400"));
+            CHECK(Browser(port, "/heat?array=" + id).read().starts_with("HTTP/1.1 400"));
+            Browser third(port, "/heat?by=load&array=123"), fourth(port, "/heat?by=load&array=124");
+            third.wait_for_headers();
+            fourth.wait_for_headers();
+            CHECK(Browser(port, "/heat?by=load&array=125").read().starts_with("HTTP/1.1 503"));
+          }) == 0);
+  }
 }
 
 TEST_CASE("browsers that do not read hold nothing up", "[runtime][monitor]") {

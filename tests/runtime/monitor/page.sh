@@ -1,8 +1,13 @@
 #!/usr/bin/env bash
 # The page of a run, drawn by a real browser: page.sh STENCIL CHROMIUM. Fails unless the page that its script has
-# filled shows the chares, a curve and a picture.
+# filled shows the chares, a curve, a picture and a heat map. Without a browser (cmake/setup.sh --with-browser) the test
+# is skipped: exit code 77.
 set -euo pipefail
 stencil=$1 chromium=$2
+if [[ ! -x $chromium ]]; then
+  echo "skipped: there is no Chromium; cmake/setup.sh --with-browser installs it, then configure again"
+  exit 77
+fi
 scratch=$(mktemp -d)
 "$stencil" --pes 2 --monitor 0 --size 256 --blocks 4 --steps 1000000000 >"$scratch/out" 2>"$scratch/lines" &
 run=$!
@@ -13,8 +18,9 @@ for _ in $(seq 100); do
   sleep 0.1
 done
 timeout 60 "$chromium" --headless --no-sandbox --disable-gpu --virtual-time-budget=2000 --user-data-dir="$scratch/profile" \
-  --dump-dom "$url?frames=3" >"$scratch/page" 2>"$scratch/errors" || { cat "$scratch/errors"; exit 1; }
-for want in 'stencil::Block</td><td>16</td>' '<polyline points=' '>temperature</h2><canvas width="256" height="256"' '2 PEs in 1 process'; do
+  --dump-dom "$url?frames=3&heat=Block" >"$scratch/page" 2>"$scratch/errors" || { cat "$scratch/errors"; exit 1; }
+for want in 'stencil::Block</td><td>16</td>' '<polyline points=' '>temperature</h2><canvas width="256" height="256"' '2 PEs in 1 process' \
+  '<canvas id="heat" width="4" height="4"' '>hottest ['; do
   if ! grep -qF "$want" "$scratch/page"; then
     echo "FAILED: the page does not have: $want"
     cat "$scratch/page"
