@@ -345,10 +345,8 @@ class InterfaceArray {
   /// As ArrayProxy::broadcast(); F is a member function of the interface.
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
-    static_assert(detail::check_entry<I, F, Args...>());
+    static_assert(detail::check_broadcast<I, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
-    static_assert(std::is_copy_constructible_v<Arguments>,
-                  "each element gets a copy of a broadcast's arguments, so they can be copied");
     TESS_CHECK(!face_.empty(), "a broadcast to an empty InterfaceArray<", name_of_type<I>,
                ">: assign an array to it first");
     detail::start_broadcast(id_,

@@ -13,6 +13,7 @@
 // co_await has no priority.
 #pragma once
 
+#include "runtime/ask.hpp"
 #include "runtime/collections/element_message.hpp"
 #include "runtime/messages/entry_attributes.hpp"
 

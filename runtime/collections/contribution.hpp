@@ -52,7 +52,8 @@ struct ToSection {
   Sections::Seat seat;
 
   [[nodiscard]] Partial* open_sum(const PartialKind& kind) const {
-    return sections.open_sum(seat, kind, sections.collection().pe().context().epoch);
+    return seat.part->reduction.open_sum(seat.member().next, kind,
+                                         sections.collection().pe().context().epoch);
   }
   void contributed() const { sections.contributed(seat); }
   void contribute(std::unique_ptr<Partial> value) const {

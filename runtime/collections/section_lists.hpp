@@ -21,7 +21,6 @@
 #include "runtime/collections/sections.hpp"
 #include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <unordered_map>

@@ -140,9 +140,6 @@ class Sections {
       return {of, of->current};
     return find_contributor(*of, element);
   }
-  [[nodiscard]] Partial* open_sum(const Seat& seat, const PartialKind& kind, EpochId epoch) {
-    return seat.part->reduction.open_sum(seat.member().next, kind, epoch);
-  }
   void contributed(const Seat& seat) { seat.part->reduction.added(seat.member().next++); }
   void contribute(const Seat& seat, std::unique_ptr<Partial> value);
 

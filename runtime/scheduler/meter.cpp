@@ -4,6 +4,7 @@
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/load_record.hpp"
 #include "runtime/scheduler/pe.hpp"
+#include "runtime/scheduler/scope_listener.hpp"
 
 #include <algorithm>
 
@@ -100,6 +101,10 @@ void Meter::add_alarm(std::uint64_t period, const void* owner, std::function<voi
 
 void Meter::remove_alarms(const void* owner) {
   std::erase_if(alarms_, [owner](const Alarm& alarm) { return alarm.owner == owner; });
+}
+
+void Meter::tell(std::uint64_t at) const {
+  listener_->changed(at);
 }
 
 void Meter::ring(std::uint64_t at) {

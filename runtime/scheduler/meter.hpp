@@ -27,17 +27,7 @@ class Pe;
 struct Action;
 struct LoadRecord;
 
-/// Sees which element's code runs: it is in the context of the PE.
-class ScopeListener {
- public:
-  ScopeListener() = default;
-  ScopeListener(const ScopeListener&) = delete;
-  ScopeListener& operator=(const ScopeListener&) = delete;
-  virtual ~ScopeListener() = default;
-
-  /// A scope has begun or ended; `at` in ticks of the meter.
-  virtual void changed(std::uint64_t at) = 0;
-};
+class ScopeListener;
 
 class Meter {
  public:
@@ -63,7 +53,8 @@ class Meter {
   [[nodiscard]] Scope enter(Scope scope) {
     const std::uint64_t at = pass();
     if (watched_ != nullptr) watch_enters(scope.action);
-    if (listener_ != nullptr) listener_->changed(at);
+    if (listener_ != nullptr) [[unlikely]]
+      tell(at);
     if (entered_ == nullptr) entered_ = scope.action;
     return std::exchange(scope_, scope);
   }
@@ -73,7 +64,8 @@ class Meter {
   void leave(Scope outer) {
     const std::uint64_t at = pass();
     if (watched_ != nullptr) watch_leaves();
-    if (listener_ != nullptr) listener_->changed(at);
+    if (listener_ != nullptr) [[unlikely]]
+      tell(at);
     const Scope ended = std::exchange(scope_, outer);
     if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
       ring(at);
@@ -112,6 +104,7 @@ class Meter {
   void remove_alarms(const void* owner);
 
  private:
+  void tell(std::uint64_t at) const;
   void watch_enters(const Action* action);
   void watch_leaves();
   /// Adds the time since the last change of scope to the running scope; returns the present time.

@@ -90,6 +90,57 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
 
 Pe::~Pe() = default;
 
+void Pe::hold() {
+  if (holds_) return;
+  holds_ = true;
+  held_since_ = last_look_ = read_ticks();
+  until_look_ = look_every_ = 1;
+}
+
+void Pe::accept(Link* first) {
+  if (audit_) [[unlikely]]
+    audit_arrivals(first);
+  for (Link* next = nullptr; first != nullptr; first = next) {
+    next = first->next;
+    enqueue(static_cast<Envelope*>(first));
+  }
+}
+
+void Pe::keep_exception(std::exception_ptr error) {
+  note_place();
+  if (!kept_exception_) kept_exception_ = std::move(error);
+}
+
+void Pe::set_forced_migrations(double chance, ElementMover* mover) {
+  migration_chance_ = chance;
+  mover_ = mover;
+}
+
+CollectionId Pe::new_collection_id(LateMessages late) {
+  return collection_numbers_.next(id_, late);
+}
+
+Meter& Pe::start_meter() {
+  measures_briefly_ = false;
+  if (!meter_)
+    meter_ = idle_meter_ ? std::move(idle_meter_) : std::make_unique<Meter>(machine_, id_);
+  return *meter_;
+}
+Meter& Pe::start_brief_meter() {
+  const bool briefly = measures_briefly_ || !meter_;
+  Meter& meter = start_meter();
+  measures_briefly_ = briefly;
+  return meter;
+}
+void Pe::stop_brief_meter() {
+  if (measures_briefly_) idle_meter_ = std::move(meter_);
+  measures_briefly_ = false;
+}
+void Pe::start_trace(std::size_t most_records) {
+  start_meter();
+  trace_ = std::make_unique<Trace>(most_records);
+}
+
 void Pe::carry(PeId to, Envelope* message) {
   if (to == id_ && !intercepts_) {
     enqueue(message);

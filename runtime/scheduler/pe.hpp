@@ -94,23 +94,10 @@ class Pe {
   /// Measures this PE's code; null if nothing requests it.
   [[nodiscard]] Meter* meter() { return meter_.get(); }
   /// Starts measuring.
-  Meter& start_meter() {
-    measures_briefly_ = false;
-    if (!meter_)
-      meter_ = idle_meter_ ? std::move(idle_meter_) : std::make_unique<Meter>(machine_, id_);
-    return *meter_;
-  }
+  Meter& start_meter();
   /// The same until stop_brief_meter(), unless start_meter() is called meanwhile.
-  Meter& start_brief_meter() {
-    const bool briefly = measures_briefly_ || !meter_;
-    Meter& meter = start_meter();
-    measures_briefly_ = briefly;
-    return meter;
-  }
-  void stop_brief_meter() {
-    if (measures_briefly_) idle_meter_ = std::move(meter_);
-    measures_briefly_ = false;
-  }
+  Meter& start_brief_meter();
+  void stop_brief_meter();
 
   /// What this PE runs, for a watching thread; null if nothing watches. With it the PE has a meter.
   [[nodiscard]] PeWatch* watch() { return watch_.get(); }
@@ -131,10 +118,7 @@ class Pe {
   }
 
   /// Starts recording a trace.
-  void start_trace(std::size_t most_records) {
-    start_meter();
-    trace_ = std::make_unique<Trace>(most_records);
-  }
+  void start_trace(std::size_t most_records);
   /// Null without a trace.
   [[nodiscard]] Trace* trace() const { return trace_.get(); }
 
@@ -155,12 +139,7 @@ class Pe {
       enqueue(message);
     }
   }
-  /// Sends a stamped message to this PE once the delay is over.
-  void send_after(Time delay, Envelope* message) {
-    completion_.hop_sent();
-    post_after(delay, message);
-  }
-  /// The same for a message that epoch 0 does not count.
+  /// Sends to this PE, once the delay is over, a message that epoch 0 does not count.
   void post_after(Time delay, Envelope* message);
   /// Sends a message that epoch 0 does not count.
   void send_uncounted(PeId to, Envelope* message) {
@@ -190,9 +169,7 @@ class Pe {
     EpochId epoch{};  ///< the epoch that waits for the end
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
-  [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted) {
-    return collection_numbers_.next(id_, late);
-  }
+  [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted);
   [[nodiscard]] std::vector<HostedCollection*> collections() const;
   /// For checkpoints: the ids that this PE has given, and, after a restart, ids of ended collections.
   [[nodiscard]] CollectionNumbers& collection_numbers() { return collection_numbers_; }
@@ -200,14 +177,7 @@ class Pe {
 
   // The machine calls these through the runtime.
 
-  void accept(Link* first) {
-    if (audit_) [[unlikely]]
-      audit_arrivals(first);
-    for (Link* next = nullptr; first != nullptr; first = next) {
-      next = first->next;
-      enqueue(static_cast<Envelope*>(first));
-    }
-  }
+  void accept(Link* first);
   void accept(Bundle* bundle);
   std::size_t step(std::size_t most);
   bool idle();
@@ -250,10 +220,7 @@ class Pe {
   /// On a simulated machine that forces migrations: the PE that an element must move to now, or
   /// this PE.
   [[nodiscard]] PeId forced_migration(const AfterMessage& after);
-  void set_forced_migrations(double chance, ElementMover* mover) {
-    migration_chance_ = chance;
-    mover_ = mover;
-  }
+  void set_forced_migrations(double chance, ElementMover* mover);
 
   /// The futures that were made on this PE, by number. A result for a destroyed future is an error.
   std::uint64_t enter_future(void* future);
@@ -264,10 +231,7 @@ class Pe {
 
   /// Keeps an exception that a coroutine threw after it had waited; it is rethrown at the end of
   /// the message.
-  void keep_exception(std::exception_ptr error) {
-    note_place();
-    if (!kept_exception_) kept_exception_ = std::move(error);
-  }
+  void keep_exception(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();
   /// An exception leaves a constructor: records the constructor's name for the report.
@@ -337,12 +301,7 @@ class Pe {
   void post(Bundle*& bundle, PeId to);
   void flush_bundles();
   /// Records that a message is held back, if none was.
-  void hold() {
-    if (holds_) return;
-    holds_ = true;
-    held_since_ = last_look_ = read_ticks();
-    until_look_ = look_every_ = 1;
-  }
+  void hold();
   void look_at_clock(const Action& action);
   void run_slow(Envelope* message, const Action& action);
   void run_one(Envelope* message);

@@ -5,7 +5,10 @@
 #include "runtime/scheduler/pe_action.hpp"
 
 #include <algorithm>
+#include <map>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace tess::detail {
 namespace {
@@ -47,29 +50,57 @@ Time after_now(Pe& pe, Time delay) {
 
 }  // namespace
 
+struct Timers::Tables {
+  struct Once {
+    EpochId epoch;
+    Time due{0};
+    Call call;
+  };
+  struct Periodic {
+    Time period{0};
+    Time due{0};
+    Call call;
+  };
+  std::map<std::pair<Time, std::uint64_t>, Envelope*> waiting;
+  std::vector<Time> alarms;  // under way, the earliest last
+  std::unordered_map<std::uint64_t, Once> once;
+  std::unordered_map<std::uint64_t, Periodic> periodic;
+  bool frozen = false;
+  std::vector<std::uint64_t> kept;  // timers whose tick came while they were frozen
+};
+
+Timers::Timers(Pe& pe) : pe_(pe), tables_(std::make_unique<Tables>()) {}
+Timers::~Timers() {
+  drop_all();
+}
+
+std::size_t Timers::n_waiting() const {
+  return tables_->once.size();
+}
+
 void Timers::drop_all() {
-  for (const auto& [key, message] : waiting_) discard(message);
-  waiting_.clear();
+  for (const auto& [key, message] : tables_->waiting) discard(message);
+  tables_->waiting.clear();
 }
 
 void Timers::wait(std::uint64_t timer, Time due, Envelope* message) {
   message->counted = false;
-  waiting_.emplace(std::pair(due, timer), message);
+  tables_->waiting.emplace(std::pair(due, timer), message);
   set_alarm();
 }
 
 void Timers::stop_waiting(std::uint64_t timer, Time due) {
-  const auto at = waiting_.find({due, timer});
-  if (at == waiting_.end()) return;  // its message is in the queue
+  const auto at = tables_->waiting.find({due, timer});
+  if (at == tables_->waiting.end()) return;  // its message is in the queue
   discard(at->second);
-  waiting_.erase(at);
+  tables_->waiting.erase(at);
 }
 
 void Timers::set_alarm() {
-  if (waiting_.empty()) return;
-  const Time due = waiting_.begin()->first.first;
-  if (!alarms_.empty() && alarms_.back() <= due) return;
-  alarms_.push_back(due);
+  if (tables_->waiting.empty()) return;
+  const Time due = tables_->waiting.begin()->first.first;
+  if (!tables_->alarms.empty() && tables_->alarms.back() <= due) return;
+  tables_->alarms.push_back(due);
   auto* const message = make_message<&alarm_rings>(pe_, Alarm{due.count()});
   message->source = pe_.id();
   message->counted = false;
@@ -77,10 +108,10 @@ void Timers::set_alarm() {
 }
 
 void Timers::on_alarm(Time at) {
-  alarms_.erase(std::find(alarms_.begin(), alarms_.end(), at));
+  tables_->alarms.erase(std::find(tables_->alarms.begin(), tables_->alarms.end(), at));
   if (pe_.stopped()) return;
-  while (!waiting_.empty() && waiting_.begin()->first.first <= pe_.now()) {
-    const auto timer = waiting_.extract(waiting_.begin());
+  while (!tables_->waiting.empty() && tables_->waiting.begin()->first.first <= pe_.now()) {
+    const auto timer = tables_->waiting.extract(tables_->waiting.begin());
     pe_.send_uncounted(pe_.id(), timer.mapped());
   }
   set_alarm();
@@ -90,7 +121,7 @@ std::uint64_t Timers::after(Time delay, Call call) {
   TESS_CHECK(delay >= Time(0), "a timer cannot wait for ", delay.count(), " ns");
   const EpochId epoch = pe_.context().epoch;
   const Time due = after_now(pe_, delay);
-  once_.emplace(++n_made_, Once{epoch, due, std::move(call)});
+  tables_->once.emplace(++n_made_, Tables::Once{epoch, due, std::move(call)});
   pe_.completion().sent(epoch);
   pe_.completion().hop_sent();
   wait(n_made_, due, pe_.stamp(make_message<&timer_is_due>(pe_, Due{n_made_})));
@@ -98,31 +129,31 @@ std::uint64_t Timers::after(Time delay, Call call) {
 }
 
 void Timers::on_due(std::uint64_t timer) {
-  const auto at = once_.find(timer);
-  if (at == once_.end() || pe_.stopped()) return;
-  const Once due = std::move(at->second);  // moved out: the call may set timers
-  once_.erase(at);
+  const auto at = tables_->once.find(timer);
+  if (at == tables_->once.end() || pe_.stopped()) return;
+  const Tables::Once due = std::move(at->second);  // moved out: the call may set timers
+  tables_->once.erase(at);
   due.call();
   pe_.completion().processed(due.epoch);
   pe_.completion().hop_processed();
 }
 
 void Timers::cancel(std::uint64_t timer) {
-  if (const auto at = once_.find(timer); at != once_.end()) {
+  if (const auto at = tables_->once.find(timer); at != tables_->once.end()) {
     pe_.completion().processed(at->second.epoch);
     pe_.completion().hop_processed();
     stop_waiting(timer, at->second.due);
-    once_.erase(at);
-  } else if (const auto tick = periodic_.find(timer); tick != periodic_.end()) {
+    tables_->once.erase(at);
+  } else if (const auto tick = tables_->periodic.find(timer); tick != tables_->periodic.end()) {
     stop_waiting(timer, tick->second.due);
-    periodic_.erase(tick);
+    tables_->periodic.erase(tick);
   }
 }
 
 std::uint64_t Timers::every(Time period, Call call) {
   TESS_CHECK(period > Time(0), "a timer cannot have a period of ", period.count(), " ns");
   const Time due = after_now(pe_, period);
-  periodic_.emplace(++n_made_, Periodic{period, due, std::move(call)});
+  tables_->periodic.emplace(++n_made_, Tables::Periodic{period, due, std::move(call)});
   set_tick(n_made_, due);
   return n_made_;
 }
@@ -134,18 +165,18 @@ void Timers::set_tick(std::uint64_t timer, Time due) {
 }
 
 void Timers::on_tick(std::uint64_t timer) {
-  auto at = periodic_.find(timer);
-  if (at == periodic_.end() || pe_.stopped()) return;
-  if (frozen_) {
-    kept_.push_back(timer);
+  auto at = tables_->periodic.find(timer);
+  if (at == tables_->periodic.end() || pe_.stopped()) return;
+  if (tables_->frozen) {
+    tables_->kept.push_back(timer);
     return;
   }
   // Moved out: the call may make timers, and may cancel this one.
   Call call = std::move(at->second.call);
   call();
-  at = periodic_.find(timer);
-  if (at == periodic_.end()) return;
-  Periodic& of = at->second;
+  at = tables_->periodic.find(timer);
+  if (at == tables_->periodic.end()) return;
+  Tables::Periodic& of = at->second;
   of.call = std::move(call);
   const Time late = std::max(Time(0), pe_.now() - of.due);
   of.due += (late / of.period + 1) * of.period;
@@ -153,13 +184,13 @@ void Timers::on_tick(std::uint64_t timer) {
 }
 
 std::size_t Timers::freeze() {
-  frozen_ = true;
-  return periodic_.size();
+  tables_->frozen = true;
+  return tables_->periodic.size();
 }
 
 void Timers::thaw() {
-  frozen_ = false;
-  for (const std::uint64_t timer : std::exchange(kept_, {})) on_tick(timer);
+  tables_->frozen = false;
+  for (const std::uint64_t timer : std::exchange(tables_->kept, {})) on_tick(timer);
 }
 
 void cancel_timer(PeId pe, std::uint64_t timer) {

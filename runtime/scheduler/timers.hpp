@@ -22,10 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <unordered_map>
-#include <utility>
-#include <vector>
+#include <memory>
 
 namespace tess::detail {
 
@@ -36,10 +33,10 @@ class Timers {
  public:
   using Call = std::function<void()>;
 
-  explicit Timers(Pe& pe) : pe_(pe) {}
+  explicit Timers(Pe& pe);
   Timers(const Timers&) = delete;
   Timers& operator=(const Timers&) = delete;
-  ~Timers() { drop_all(); }
+  ~Timers();
 
   /// Calls `call` on this PE after the delay, in the current epoch, unless the timer is cancelled
   /// before; returns its number.
@@ -54,7 +51,7 @@ class Timers {
   void thaw();
 
   /// The number of timers that run once and have not run yet.
-  [[nodiscard]] std::size_t n_waiting() const { return once_.size(); }
+  [[nodiscard]] std::size_t n_waiting() const;
 
   void drop_all();
 
@@ -64,29 +61,15 @@ class Timers {
   void on_tick(std::uint64_t timer);
 
  private:
-  struct Once {
-    EpochId epoch;
-    Time due{0};
-    Call call;
-  };
-  struct Periodic {
-    Time period{0};
-    Time due{0};
-    Call call;
-  };
   void set_tick(std::uint64_t timer, Time due);
   void wait(std::uint64_t timer, Time due, Envelope* message);
   void stop_waiting(std::uint64_t timer, Time due);
   void set_alarm();
 
   Pe& pe_;
-  std::map<std::pair<Time, std::uint64_t>, Envelope*> waiting_;
-  std::vector<Time> alarms_;  // under way, the earliest last
   std::uint64_t n_made_ = 0;
-  std::unordered_map<std::uint64_t, Once> once_;
-  std::unordered_map<std::uint64_t, Periodic> periodic_;
-  bool frozen_ = false;
-  std::vector<std::uint64_t> kept_;  // timers whose tick came while they were frozen
+  struct Tables;
+  const std::unique_ptr<Tables> tables_;
 };
 
 /// Cancels a timer of any PE: on this PE at once, on another soon.

@@ -6,6 +6,10 @@ sentence=$(sed -n '1s|^// expect: ||p' "$3")
 if "$1" --version | grep -q clang && grep -q '^// expect of clang: ' "$3"; then
   sentence=$(sed -n '2s|^// expect of clang: ||p' "$3")
 fi
+if [[ -z $sentence ]]; then
+  echo "$3 is missing, or its first line names no sentence: // expect: …"
+  exit 1
+fi
 if output=$("$1" -std=gnu++20 -fsyntax-only "-I$2" "$3" 2>&1); then
   echo "$3 compiles, but should not"
   exit 1

@@ -1,0 +1,20 @@
+// What the heat maps of the live view hear from a PE's meter.
+#pragma once
+
+#include <cstdint>
+
+namespace tess::detail {
+
+/// Sees which element's code runs: it is in the context of the PE.
+class ScopeListener {
+ public:
+  ScopeListener() = default;
+  ScopeListener(const ScopeListener&) = delete;
+  ScopeListener& operator=(const ScopeListener&) = delete;
+  virtual ~ScopeListener() = default;
+
+  /// A scope has begun or ended; `at` in ticks of the meter.
+  virtual void changed(std::uint64_t at) = 0;
+};
+
+}  // namespace tess::detail
