@@ -80,7 +80,7 @@ class Rider : public tess::Chare<Rider> {
   template <class Ar>
   void serialize(Ar& /*ar*/) {}
 };
-class Counter : public tess::Group<Counter> {
+class CallCounter : public tess::Group<CallCounter> {
  public:
   void report(tess::Callback<std::uint64_t> target) {
     contribute(tess::sum, tess::statistics().messages, target);
@@ -92,17 +92,17 @@ using Costs = std::vector<std::uint64_t>;
 /// The messages of ten multicasts before the members move, and after.
 tess::Task count_messages(Costs& costs) {
   const auto riders = tess::create<Rider>(tess::range(64));
-  const auto counters = tess::create_group<Counter>();
+  const auto counters = tess::create_group<CallCounter>();
   const auto all = tess::create_section_if(riders, [](tess::Index1) { return true; });
   for (int phase = 0; phase < 2; ++phase) {
     if (phase == 1) co_await tess::epoch([&] { riders.broadcast<&Rider::ride_on>(); });
     // The first multicasts find the members' places.
     for (int i = 0; i < 4; ++i) co_await tess::epoch([&] { all.broadcast<&Rider::hear>(); });
     tess::Future<std::uint64_t> before, after;
-    counters.broadcast<&Counter::report>(before.callback());
+    counters.broadcast<&CallCounter::report>(before.callback());
     const std::uint64_t n_before = co_await before;
     for (int i = 0; i < 10; ++i) co_await tess::epoch([&] { all.broadcast<&Rider::hear>(); });
-    counters.broadcast<&Counter::report>(after.callback());
+    counters.broadcast<&CallCounter::report>(after.callback());
     const std::uint64_t n_after = co_await after;
     costs.push_back(n_after - n_before);
   }
