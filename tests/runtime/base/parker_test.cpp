@@ -106,8 +106,14 @@ TEST_CASE("a backoff without patience sleeps at once, and again after a reset", 
   Backoff rest(Patience{});
   while (!rest.pause()) std::this_thread::yield();
   CHECK(rest.pause());
-  rest.reset();
-  CHECK_FALSE(rest.pause());
+  // If another program took the core in between, it sleeps at once for a third of a second.
+  bool rests = true;
+  for (int i = 0; i < 50 && rests; ++i) {
+    rest.reset();
+    rests = rest.pause();
+    if (rests) std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  }
+  CHECK_FALSE(rests);
 }
 
 }  // namespace
