@@ -204,7 +204,7 @@ Task Exchange::offer_all(Callback<std::uint64_t> n_trades) {
   contribute(sum, n_trades_, n_trades);
 }
 
-void Exchange::propose(Proposal proposal) {
+void Exchange::propose(const Proposal& proposal) {
   auto change = gossip_->answer(proposal.offer);
   Reply answer{proposal.key, change ? std::uint8_t{1} : std::uint8_t{0}, {}, {}};
   if (change) {

@@ -88,7 +88,7 @@ class Exchange final : public Group<Exchange> {
   void spread(const Callback<std::uint64_t>& done);
   void rumour(const std::vector<Rumour>& rumours);
   Task offer_all(Callback<std::uint64_t> n_trades);
-  void propose(Proposal proposal);
+  void propose(const Proposal& proposal);
   void reply(Reply reply);
 
  private:
