@@ -14,6 +14,9 @@ namespace apps {
 void Checkpoints::add_options(CommandLine& line) {
   line.option("--checkpoint", folder_, "write checkpoints into this folder; the last two are kept");
   line.option("--checkpoint-every", every_, "steps (20) or seconds (30s) between checkpoints");
+  line.flag(
+      "--checkpoint-buddy", buddy_copies_,
+      "that folder is local to each host (/dev/shm/NAME): another host has copies of its files");
   line.option("--restart", restart_, "continue from the last good checkpoint in this folder");
 }
 
@@ -95,6 +98,7 @@ void Checkpoints::take(Values saved, std::int32_t step, std::int32_t n_steps) {
 
 tess::CheckpointOptions Checkpoints::described(std::int32_t step) const {
   tess::CheckpointOptions how;
+  how.buddy_copies = buddy_copies_;
   how.note = tess::text("after step ", step);
   for (const auto& [name, value] : problem_) how.note += tess::text(" ", name, " ", value);
   return how;

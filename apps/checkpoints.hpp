@@ -1,7 +1,7 @@
 // The options of a program that writes checkpoints and restarts, and both for its main coroutine:
 //
 //     apps::Checkpoints checkpoints;
-//     checkpoints.add_options(line);            // --checkpoint, --checkpoint-every, --restart
+//     checkpoints.add_options(line);            // --checkpoint, --checkpoint-every, --restart, …
 //     …
 //     checkpoints.check(line, {"--size"});      // after the command line was parsed
 //     …
@@ -37,8 +37,8 @@ class Checkpoints {
  public:
   void add_options(CommandLine& line);
   /// Throws tess::Error for values that cannot be used, and for a folder with checkpoints of another
-  /// run. `of_problem`: the options whose values a
-  /// restart cannot change. Called before the program changes the values of its options.
+  /// run. `of_problem`: the options whose values a restart cannot change. Called before the program
+  /// changes the values of its options.
   void check(const CommandLine& line, const std::vector<std::string>& of_problem);
 
   /// True if --checkpoint or --restart is given.
@@ -89,6 +89,7 @@ class Checkpoints {
   [[nodiscard]] tess::CheckpointOptions described(std::int32_t step) const;
 
   std::string folder_, restart_, every_ = "100";
+  bool buddy_copies_ = false;
   Values problem_, given_;
   bool gives_steps_ = false;
   std::int32_t steps_ = 0;  // 0: by time

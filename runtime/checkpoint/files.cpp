@@ -160,6 +160,10 @@ FileSum FileWriter::finish(std::span<const std::byte> bytes) {
   return sum_;
 }
 
+FileSum sum_of(const std::string& name, std::span<const std::byte> bytes) {
+  return {name, bytes.size(), hash_of(bytes)};
+}
+
 FileSum write_file(const std::string& folder, const std::string& name,
                    std::span<const std::byte> bytes) {
   return FileWriter(folder, name).finish(bytes);
@@ -185,6 +189,10 @@ std::string read_text(const std::string& folder, const std::string& name) {
   for (std::size_t n = 0; (n = file.read(some.data(), some.size())) != 0;)
     all.append(some.data(), n);
   return all;
+}
+
+bool has_file(const std::string& folder, const std::string& name) {
+  return fs::exists(folder + "/" + name);
 }
 
 Buffer read_file(const std::string& folder, const FileSum& sum) {
@@ -219,7 +227,7 @@ void make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) fail(ErrorCode::environment, path, ": cannot be made: ", error.message());
-  sync_folder(fs::path(path).parent_path().string());
+  sync_folder(fs::absolute(path).parent_path().string());
 }
 
 std::vector<std::uint64_t> numbers_in(const std::string& folder) {
@@ -244,7 +252,7 @@ std::string canonical(const std::string& folder) {
 }
 
 bool is_complete(const std::string& folder, std::uint64_t number) {
-  return fs::exists(folder_of(folder, number) + "/manifest.json");
+  return has_file(folder_of(folder, number), "manifest.json");
 }
 
 void remove_checkpoint(const std::string& folder, std::uint64_t number) {

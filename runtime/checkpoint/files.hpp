@@ -26,7 +26,7 @@ struct FileSum {
   std::uint64_t hash = 0;     ///< of these bytes
 };
 
-inline constexpr std::uint32_t checkpoint_version = 2;
+inline constexpr std::uint32_t checkpoint_version = 3;
 
 /// Writes a file piece by piece. All of these throw Error with the name of the file and what is wrong.
 class FileWriter {
@@ -49,12 +49,15 @@ class FileWriter {
   FileSum sum_;
 };
 
+/// What finish() returns for a file of these bytes.
+[[nodiscard]] FileSum sum_of(const std::string& name, std::span<const std::byte> bytes);
 /// Writes a file at once.
 [[nodiscard]] FileSum write_file(const std::string& folder, const std::string& name,
                                  std::span<const std::byte> bytes);
 /// Writes a file of text: it is there after a crash only if all that was written before is.
 void write_last(const std::string& folder, const std::string& name, const std::string& text);
 [[nodiscard]] std::string read_text(const std::string& folder, const std::string& name);
+[[nodiscard]] bool has_file(const std::string& folder, const std::string& name);
 /// The bytes of a file that is as the manifest says.
 [[nodiscard]] Buffer read_file(const std::string& folder, const FileSum& sum);
 

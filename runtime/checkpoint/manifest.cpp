@@ -39,6 +39,7 @@ Manifest parse(const std::string& path, const std::string& text) {
   manifest.n_processes = json.at("processes").get<std::int32_t>();
   manifest.program = from_hex(json.at("program"));
   manifest.note = json.at("note").get<std::string>();
+  manifest.buddy_copies = json.at("buddy_copies").get<bool>();
   for (const Json& file : json.at("files"))
     manifest.files.push_back({file.at("name").get<std::string>(),
                               file.at("bytes").get<std::uint64_t>(), from_hex(file.at("hash"))});
@@ -50,7 +51,7 @@ Manifest parse(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-void write_manifest(const std::string& folder, const Manifest& manifest, const MainPart& main) {
+std::string to_text(const Manifest& manifest, const MainPart& main) {
   Json json;
   json["tessera_checkpoint"] = checkpoint_version;
   json["number"] = manifest.number;
@@ -58,6 +59,7 @@ void write_manifest(const std::string& folder, const Manifest& manifest, const M
   json["processes"] = manifest.n_processes;
   json["program"] = hex(manifest.program);
   json["note"] = manifest.note;
+  json["buddy_copies"] = manifest.buddy_copies;
   json["collections"] = Json::array();
   for (const SavedCollection& one : main.collections)
     json["collections"].push_back({{"class", one.name}, {"elements", one.n_elements}});
@@ -66,7 +68,11 @@ void write_manifest(const std::string& folder, const Manifest& manifest, const M
     json["files"].push_back(
         {{"name", file.name}, {"bytes", file.n_bytes}, {"hash", hex(file.hash)}});
   json["hash"] = hash_of(json);
-  write_last(folder, "manifest.json", json.dump(2) + "\n");
+  return json.dump(2) + "\n";
+}
+
+void write_manifest(const std::string& folder, const std::string& text) {
+  write_last(folder, "manifest.json", text);
 }
 
 Manifest read_manifest(const std::string& folder) {

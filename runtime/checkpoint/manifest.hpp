@@ -33,11 +33,12 @@ struct MainPart {
   std::vector<SavedCollection> collections;
   std::vector<CollectionNumbers::Made> numbers;  ///< by PE
   std::vector<SectionId> sections;
+  std::uint32_t places_of_futures = 0;  ///< the greatest Pe::places_of_futures()
   std::string state_type;
   std::vector<std::byte> state;  ///< the main coroutine's
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(collections, numbers, sections, state_type, state);
+    ar(collections, numbers, sections, places_of_futures, state_type, state);
   }
 };
 
@@ -47,11 +48,13 @@ struct Manifest {
   std::int32_t n_processes = 0;
   std::uint64_t program = 0;   ///< Registry::fingerprint()
   std::string note;            ///< CheckpointOptions::note
+  bool buddy_copies = false;   ///< CheckpointOptions::buddy_copies
   std::vector<FileSum> files;  ///< of PE 0, 1, …, and at last "main"
 };
 
-/// Writes the manifest, with a list of the classes for people.
-void write_manifest(const std::string& folder, const Manifest& manifest, const MainPart& main);
+/// The text of a manifest, with a list of the classes for people.
+[[nodiscard]] std::string to_text(const Manifest& manifest, const MainPart& main);
+void write_manifest(const std::string& folder, const std::string& text);
 /// Throws Error for a manifest that is missing, damaged, or of another version.
 [[nodiscard]] Manifest read_manifest(const std::string& folder);
 

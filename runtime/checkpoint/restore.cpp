@@ -1,6 +1,7 @@
 #include "runtime/checkpoint/restore.hpp"
 
 #include "runtime/checkpoint/ask_all.hpp"
+#include "runtime/checkpoint/hosts.hpp"
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/checkpoint/save.hpp"
@@ -28,31 +29,105 @@ std::vector<std::string> existing(Pe& pe, const Nothing& /*nothing*/) {
   return names;
 }
 
-/// The files of the PEs that a checkpoint was made on.
-struct ReadQuestion {
-  std::string folder;
-  std::vector<FileSum> files;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(folder, files);
-  }
+/// What all PEs have to know of a checkpoint, as one host has it.
+struct Opened {
+  std::string error;  // empty: the rest is good
+  Manifest manifest;
+  MainPart main;
 };
-
-/// Calls read(PE of the checkpoint, bytes) for each file that this PE reads. Returns what is wrong.
-template <class Read>
-std::string for_files_of(const Pe& pe, const ReadQuestion& question, const Read& read) {
-  try {
-    for (std::size_t i = static_cast<std::size_t>(pe.id().value); i < question.files.size();
-         i += static_cast<std::size_t>(pe.n_pes()))
-      read(read_file(question.folder, question.files[i]));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+struct OpenQuestion {
+  std::string folder;
+};
+Opened open_here(Pe& /*pe*/, const OpenQuestion& question) {
+  Opened opened;
+  opened.error = error_of([&] {
+    opened.manifest = read_manifest(question.folder);
+    const Buffer bytes = read_file(question.folder, opened.manifest.files.back());
+    opened.main = from_bytes<MainPart>({bytes.data(), bytes.size()});
+    opened.manifest.files.pop_back();
+  });
+  return opened;
 }
 
-std::string verify_here(Pe& pe, const ReadQuestion& question) {
-  return for_files_of(pe, question, [](const Buffer& /*bytes*/) {});
+struct VerifyQuestion {
+  std::string folder;
+  std::vector<FileSum> files;
+  Hosts hosts;
+  bool buddy_copies = false;
+};
+/// A file of a checkpoint, or its copy, as a PE found it.
+struct Found {
+  std::uint64_t file = 0;  // position in the manifest
+  std::string name;
+  std::string error;  // empty: it is as the manifest says
+};
+/// The PEs of a host share the files between them. A copy is read if the file itself is missing or
+/// damaged there.
+std::vector<Found> verify_here(Pe& pe, const VerifyQuestion& question) {
+  const auto self = static_cast<std::size_t>(pe.id().value);
+  const std::vector<std::uint32_t>& of_pe = question.hosts.of_pe;
+  const auto n_on_host = static_cast<std::size_t>(std::ranges::count(of_pe, of_pe[self]));
+  const auto mine = static_cast<std::size_t>(
+      std::count(of_pe.begin(), of_pe.begin() + pe.id().value, of_pe[self]));
+  std::vector<Found> all;
+  const auto is_good = [&](std::size_t file, const std::string& name) {
+    FileSum sum = question.files[file];
+    sum.name = name;
+    all.push_back({file, name, error_of([&] { (void)read_file(question.folder, sum); })});
+    return all.back().error.empty();
+  };
+  for (std::size_t i = mine; i < question.files.size(); i += n_on_host) {
+    const std::string& name = question.files[i].name;
+    const std::string copy = name_of_copy(name);
+    if (!question.buddy_copies) {
+      (void)is_good(i, name);
+    } else if (!(has_file(question.folder, name) && is_good(i, name)) &&
+               has_file(question.folder, copy)) {
+      (void)is_good(i, copy);
+    }
+  }
+  return all;
+}
+
+/// A file that a PE reads.
+struct Reading {
+  PeId reader;
+  FileSum sum;
+};
+struct ReadQuestion {
+  std::string folder;
+  std::vector<Reading> files;
+};
+
+/// Which PE reads each file. `damaged` are those in whose place others are read. Throws Error for a
+/// file that no host has as it was written.
+std::vector<Reading> plan_reading(const VerifyQuestion& checkpoint,
+                                  const std::vector<std::vector<Found>>& found,
+                                  std::vector<std::string>& damaged) {
+  const std::vector<FileSum>& files = checkpoint.files;
+  std::vector<Reading> readings;
+  readings.reserve(files.size());
+  for (const FileSum& file : files) readings.push_back({PeId{-1}, file});
+  std::vector<std::string> errors(files.size());
+  for (std::size_t pe = 0; pe < found.size(); ++pe) {
+    for (const Found& one : found[pe]) {
+      Reading& reading = readings.at(one.file);
+      if (!one.error.empty()) {
+        damaged.push_back(one.error);
+        errors[one.file] = one.error;
+      } else if (reading.reader.value < 0 || one.name == files[one.file].name) {
+        reading.reader = PeId{static_cast<std::int32_t>(pe)};
+        reading.sum.name = one.name;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (readings[i].reader.value >= 0) continue;
+    if (!errors[i].empty()) fail(ErrorCode::bad_file, errors[i]);
+    fail(ErrorCode::bad_file, checkpoint.folder, "/", files[i].name, " is on no host of this run, ",
+         "nor is its copy ", name_of_copy(files[i].name));
+  }
+  return readings;
 }
 
 struct CreateQuestion {
@@ -75,13 +150,17 @@ Nothing create_here(Pe& pe, const CreateQuestion& question) {
 
 /// The elements of the files go to their homes.
 std::string restore_here(Pe& pe, const ReadQuestion& question) {
-  return for_files_of(pe, question, [&pe](const Buffer& bytes) {
-    Reader ar(std::span<const std::byte>(bytes.data(), bytes.size()));
-    for (auto n = ar.take<std::uint64_t>(); n > 0; --n) {
-      Collection& collection = *find_collection(pe, ar.take<CollectionId>());
-      collection.restore(ar);
-      Reader sections = ar.part(ar.take<std::uint64_t>());
-      if (sections.remaining() > sizeof(std::uint64_t)) collection.restore_sections(sections);
+  return error_of([&] {
+    for (const Reading& file : question.files) {
+      if (file.reader != pe.id()) continue;
+      const Buffer bytes = read_file(question.folder, file.sum);
+      Reader ar(std::span<const std::byte>(bytes.data(), bytes.size()));
+      for (auto n = ar.take<std::uint64_t>(); n > 0; --n) {
+        Collection& collection = *find_collection(pe, ar.take<CollectionId>());
+        collection.restore(ar);
+        Reader sections = ar.part(ar.take<std::uint64_t>());
+        if (sections.remaining() > sizeof(std::uint64_t)) collection.restore_sections(sections);
+      }
     }
   });
 }
@@ -90,12 +169,14 @@ struct FinishQuestion {
   std::vector<SavedCollection> collections;
   std::vector<CollectionNumbers::Made> numbers;
   std::vector<SectionId> sections;
+  std::uint32_t places_of_futures = 0;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(collections, numbers, sections);
+    ar(collections, numbers, sections, places_of_futures);
   }
 };
 Nothing finish_here(Pe& pe, const FinishQuestion& question) {
+  pe.begin_futures_behind(question.places_of_futures);
   std::set<std::uint64_t> alive;
   for (const SavedCollection& saved : question.collections) alive.insert(saved.id.value);
   for (const SectionId id : question.sections) alive.insert(id.value);
@@ -126,7 +207,40 @@ struct Chosen {
   std::string folder;
   Manifest manifest;
   MainPart main;
+  std::vector<Reading> readings;
 };
+
+/// Reads a checkpoint and compares it with its manifest. Throws Error that says what is wrong.
+/// `damaged`: what is wrong with files in whose place copies are read.
+Task choose(std::string folder, std::uint64_t number, const Listing& listing, Chosen& chosen,
+            std::vector<std::string>& damaged) {
+  Pe& pe = current_pe();
+  chosen.folder = folder_of(folder, number);
+  std::string error;
+  bool opened = false;
+  for (std::size_t host = 0; host < listing.hosts.first.size() && !opened; ++host) {
+    // If no host has a manifest, the first one reports that.
+    const bool has = listing.complete_on[host].contains(number);
+    if (!has && (host != 0 || listing.is_complete(number))) continue;
+    const PeId first = listing.hosts.first[host];
+    AskAll<&open_here> asked(OpenQuestion{chosen.folder}, {first});
+    Opened answer = std::move((co_await asked)[static_cast<std::size_t>(first.value)]);
+    opened = answer.error.empty();
+    chosen.manifest = std::move(answer.manifest);
+    chosen.main = std::move(answer.main);
+    if (opened) continue;
+    damaged.push_back(answer.error);
+    if (error.empty()) error = std::move(answer.error);
+  }
+  if (!opened) fail(ErrorCode::bad_file, error);
+
+  const bool copies = chosen.manifest.buddy_copies;
+  const VerifyQuestion checkpoint{chosen.folder, chosen.manifest.files,
+                                  copies ? listing.hosts : one_host(pe.n_pes()), copies};
+  AskAll<&verify_here> verified(checkpoint);
+  const auto found = co_await verified;
+  chosen.readings = plan_reading(checkpoint, found, damaged);
+}
 
 /// Throws Error if this program cannot restore the checkpoint on this many PEs.
 void check_plan(const Chosen& chosen, const std::string& state_type, std::int32_t n_pes) {
@@ -173,29 +287,26 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
       fail(ErrorCode::bad_argument, "restart() comes first, but this run has already made ",
            names.front());
 
-  const std::vector<std::uint64_t> numbers = numbers_in(folder);
+  Listing listing;
+  co_await list_all(folder, listing);
+  const std::vector<std::uint64_t>& numbers = listing.numbers;
   if (numbers.empty())
     fail(ErrorCode::bad_file, folder, ": no checkpoint is in this folder; start without a restart");
   Runtime::OwnCheckpoints own{.last = numbers.front()};
   std::optional<Chosen> chosen;
   for (std::size_t i = 0; i < numbers.size() && !chosen; ++i) {
     Chosen candidate;
-    candidate.folder = folder_of(folder, numbers[i]);
+    std::vector<std::string> damaged;
     std::string error;
     try {
-      candidate.manifest = read_manifest(candidate.folder);
-      const Buffer bytes = read_file(candidate.folder, candidate.manifest.files.back());
-      candidate.main = from_bytes<MainPart>({bytes.data(), bytes.size()});
-      candidate.manifest.files.pop_back();
+      co_await choose(folder, numbers[i], listing, candidate, damaged);
     } catch (const Error& wrong) {
       error = wrong.what();
     }
     if (error.empty()) {
-      AskAll<&verify_here> verified(ReadQuestion{candidate.folder, candidate.manifest.files});
-      for (std::string& wrong : co_await verified)
-        if (error.empty()) error = std::move(wrong);
-    }
-    if (error.empty()) {
+      for (const std::string& one : damaged)
+        pe.runtime().error_line(
+            text("tessera: a file of a checkpoint is refused: ", one, "; its copy is used"));
       chosen = std::move(candidate);
       continue;
     }
@@ -210,13 +321,14 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
 
   AskAll<&create_here> created(CreateQuestion{chosen->main.collections});
   (void)co_await created;
-  AskAll<&restore_here> restored(ReadQuestion{chosen->folder, chosen->manifest.files});
+  AskAll<&restore_here> restored(ReadQuestion{chosen->folder, chosen->readings});
   for (const std::string& error : co_await restored)
     if (!error.empty()) fail(ErrorCode::environment, "the restart failed: ", error);
   Quiet arrived;
   (void)co_await arrived;
-  AskAll<&finish_here> finished(
-      FinishQuestion{chosen->main.collections, chosen->main.numbers, chosen->main.sections});
+  AskAll<&finish_here> finished(FinishQuestion{chosen->main.collections, chosen->main.numbers,
+                                               chosen->main.sections,
+                                               chosen->main.places_of_futures});
   (void)co_await finished;
   Quiet settled;
   (void)co_await settled;

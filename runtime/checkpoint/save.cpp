@@ -1,6 +1,7 @@
 #include "runtime/checkpoint/save.hpp"
 
 #include "runtime/checkpoint/ask_all.hpp"
+#include "runtime/checkpoint/hosts.hpp"
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/collections/collection.hpp"
@@ -84,11 +85,12 @@ struct SaveAnswer {
   std::string error;  // empty: the file is written
   FileSum file;
   CollectionNumbers::Made numbers{};
+  std::uint32_t places_of_futures = 0;
   std::vector<SectionId> sections;  // whose root is this PE
   std::vector<HereSaved> collections;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(error, file, numbers, sections, collections);
+    ar(error, file, numbers, places_of_futures, sections, collections);
   }
 };
 
@@ -114,17 +116,16 @@ SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
   SaveAnswer answer;
   const std::vector<Collection*> collections = saved_collections(pe);
   answer.numbers = pe.collection_numbers().made();
+  answer.places_of_futures = pe.places_of_futures();
   for (const Collection* collection : collections)
     answer.collections.push_back(
         {collection->id(), collection->has_sections(), collection->n_local()});
-  try {
+  answer.error = error_of([&] {
     FileWriter file(question.folder, text("pe-", pe.id().value));
     Buffer bytes;
     answer.sections = pack_all(collections, bytes, file);
     answer.file = file.finish({bytes.data(), bytes.size()});
-  } catch (const Error& error) {
-    answer.error = error.what();
-  }
+  });
   return answer;
 }
 
@@ -147,17 +148,99 @@ void refuse_unless_quiet(std::vector<std::string> lines) {
   fail(ErrorCode::bad_value, "no checkpoint can be made here: ", list);
 }
 
+struct FolderQuestion {
+  std::string folder;
+};
+SeenFolder look_here(Pe& /*pe*/, const FolderQuestion& question) {
+  return look_at(question.folder);
+}
+std::string make_here(Pe& /*pe*/, const FolderQuestion& question) {
+  return error_of([&] { make_folder(question.folder); });
+}
+
+/// The file of a PE for its buddy.
+struct CopyQuestion {
+  std::string folder;
+  std::vector<FileSum> files;
+  Hosts hosts;
+};
+struct FileToCopy {
+  std::string folder;
+  FileSum sum;
+  std::string error;  // empty: these are the bytes
+  Buffer bytes;
+};
+Onward<FileToCopy> read_own(Pe& pe, const CopyQuestion& question) {
+  Onward<FileToCopy> onward;
+  onward.to = buddy_of(pe.id(), question.hosts, pe.machine().pes_per_process());
+  FileToCopy& file = onward.middle;
+  file.folder = question.folder;
+  file.sum = question.files.at(static_cast<std::size_t>(pe.id().value));
+  file.error = error_of([&] { file.bytes = read_file(file.folder, file.sum); });
+  return onward;
+}
+std::string write_copy(Pe& /*pe*/, const FileToCopy& file) {
+  if (!file.error.empty()) return file.error;
+  return error_of([&] {
+    const FileSum sum = write_file(file.folder, name_of_copy(file.sum.name),
+                                   {file.bytes.data(), file.bytes.size()});
+    if (sum.n_bytes != file.sum.n_bytes || sum.hash != file.sum.hash)
+      fail(ErrorCode::environment, file.folder, "/", sum.name, " differs from what was sent");
+  });
+}
+
+struct MainQuestion {
+  std::string folder;
+  std::vector<std::byte> bytes;
+};
+std::string write_main(Pe& /*pe*/, const MainQuestion& question) {
+  return error_of([&] { (void)write_file(question.folder, "main", question.bytes); });
+}
+struct ManifestQuestion {
+  std::string folder, text;
+};
+std::string write_manifest_here(Pe& /*pe*/, const ManifestQuestion& question) {
+  return error_of([&] { write_manifest(question.folder, question.text); });
+}
+struct RemoveQuestion {
+  std::string folder;
+  std::vector<std::uint64_t> numbers;
+};
+std::string remove_here(Pe& /*pe*/, const RemoveQuestion& question) {
+  for (const std::uint64_t number : question.numbers) remove_checkpoint(question.folder, number);
+  return {};
+}
+
+/// They look at a folder, each for its process.
+std::vector<PeId> first_of_processes(Pe& pe) {
+  std::vector<PeId> pes;
+  for (std::int32_t at = 0; at < pe.n_pes(); at += pe.machine().pes_per_process())
+    pes.push_back(PeId{at});
+  return pes;
+}
+
+void fail_for_first(const std::vector<std::string>& errors) {
+  for (const std::string& error : errors)
+    if (!error.empty()) fail(ErrorCode::environment, "the checkpoint failed: ", error);
+}
+
 /// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its restart: a
 /// later restart could take one run's checkpoint for the other's.
-void require_own(const std::string& folder, const std::vector<std::uint64_t>& numbers,
+void require_own(const std::string& folder, const Listing& listing,
                  const Runtime::OwnCheckpoints& own) {
-  for (const std::uint64_t number : numbers)
-    if (number > own.last && is_complete(folder, number))
+  for (const std::uint64_t number : listing.numbers)
+    if (number > own.last && listing.is_complete(number))
       fail(ErrorCode::bad_argument, folder_of(folder, number),
            " is a checkpoint of another run: restart from ", folder, ", or give another folder");
 }
 
-Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
+/// A checkpoint that is being written.
+struct Begun {
+  std::vector<PeId> writers;  // the first PE of each host; none before the first file
+  std::uint64_t number = 0;
+};
+
+Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begun& begun) {
   Pe& pe = current_pe();
   OwnFrame own;
   const std::uint64_t frame = co_await own;
@@ -170,17 +253,29 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
     waiting.insert(waiting.end(), lines.begin(), lines.end());
   refuse_unless_quiet(std::move(waiting));
 
-  const std::vector<std::uint64_t> before = numbers_in(folder);
+  Listing listing;
+  if (options.buddy_copies) {
+    // Hosts are told apart by their folders, so these must be there.
+    AskAll<&make_here> made_all(FolderQuestion{folder}, first_of_processes(pe));
+    fail_for_first(co_await made_all);
+    co_await list_all(folder, listing);
+  } else {
+    listing = list_shared(folder, pe.n_pes());
+  }
+  const std::vector<std::uint64_t>& before = listing.numbers;
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
-  require_own(folder, before, ours);
+  require_own(folder, listing, ours);
   Manifest manifest;
   manifest.number = before.empty() ? 1 : before.front() + 1;
   manifest.n_pes = pe.n_pes();
   manifest.n_processes = pe.machine().n_processes();
   manifest.program = Registry::fingerprint();
   manifest.note = options.note;
+  manifest.buddy_copies = options.buddy_copies;
   const std::string here = folder_of(folder, manifest.number);
-  make_folder(here);
+  begun = {listing.hosts.first, manifest.number};
+  AskAll<&make_here> made(FolderQuestion{here}, begun.writers);
+  fail_for_first(co_await made);
   for (const Collection* collection : saved_collections(pe))
     main.collections.push_back({collection->id(), collection->range(),
                                 std::string(collection->kind().key()), collection->name(), false, 0,
@@ -188,10 +283,10 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
 
   AskAll<&save_here> saved(SaveQuestion{here});
   for (SaveAnswer& answer : co_await saved) {
-    if (!answer.error.empty())
-      fail(ErrorCode::environment, "the checkpoint failed: ", answer.error);
+    fail_for_first({answer.error});
     manifest.files.push_back(std::move(answer.file));
     main.numbers.push_back(answer.numbers);
+    main.places_of_futures = std::max(main.places_of_futures, answer.places_of_futures);
     main.sections.insert(main.sections.end(), answer.sections.begin(), answer.sections.end());
     for (std::size_t i = 0; i < answer.collections.size(); ++i) {
       SavedCollection& all = main.collections.at(i);
@@ -201,20 +296,42 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options) {
       all.n_elements += one.n_elements;
     }
   }
-  const std::vector<std::byte> bytes = to_bytes(main);
-  manifest.files.push_back(write_file(here, "main", bytes));
-  write_manifest(here, manifest, main);
+  if (options.buddy_copies) {
+    AskAll<&read_own, &write_copy> copied(CopyQuestion{here, manifest.files, listing.hosts});
+    fail_for_first(co_await copied);
+  }
+  std::vector<std::byte> bytes = to_bytes(main);
+  manifest.files.push_back(sum_of("main", bytes));
+  AskAll<&write_main> wrote_main(MainQuestion{here, std::move(bytes)}, begun.writers);
+  fail_for_first(co_await wrote_main);
+  AskAll<&write_manifest_here> finished(ManifestQuestion{here, to_text(manifest, main)},
+                                        begun.writers);
+  fail_for_first(co_await finished);
   ours.last = manifest.number;
 
+  RemoveQuestion old{folder, {}};
   int n_kept = 1;
   for (const std::uint64_t number : before) {
     const bool is_good =
-        is_complete(folder, number) && std::ranges::count(ours.refused, number) == 0;
-    if (!is_good || n_kept++ >= options.keep) remove_checkpoint(folder, number);
+        listing.is_complete(number) && std::ranges::count(ours.refused, number) == 0;
+    if (!is_good || n_kept++ >= options.keep) old.numbers.push_back(number);
   }
+  AskAll<&remove_here> removed(std::move(old), begun.writers);
+  (void)co_await removed;
 }
 
 }  // namespace
+
+Task list_all(std::string folder, Listing& listing) {
+  Pe& pe = current_pe();
+  const std::vector<PeId> leaders = first_of_processes(pe);
+  AskAll<&look_here> looked(FolderQuestion{std::move(folder)}, leaders);
+  const std::vector<SeenFolder> answers = co_await looked;
+  std::vector<SeenFolder> seen;
+  seen.reserve(leaders.size());
+  for (const PeId leader : leaders) seen.push_back(answers[static_cast<std::size_t>(leader.value)]);
+  listing = list_hosts(seen, pe.machine().pes_per_process());
+}
 
 void require_main(const std::string& what) {
   Pe& pe = current_pe();
@@ -231,10 +348,15 @@ Task write_checkpoint(std::string folder, std::string state_type, std::vector<st
   main.state_type = std::move(state_type);
   main.state = std::move(state);
   std::exception_ptr error;
+  Begun begun;
   try {
-    co_await save_all(std::move(folder), std::move(main), std::move(options));
+    co_await save_all(folder, std::move(main), std::move(options), begun);
   } catch (const Error&) {
     error = std::current_exception();
+  }
+  if (error && !begun.writers.empty()) {  // it may have filled the memory or the disk
+    AskAll<&remove_here> removed(RemoveQuestion{folder, {begun.number}}, begun.writers);
+    (void)co_await removed;
   }
   AskAll<&thaw_here> thawed(Thaw{});
   (void)co_await thawed;

@@ -3,7 +3,11 @@
 //     quiet     nothing is under way on any PE, and periodic timers are frozen
 //     census    nothing waits but the main coroutine, and every collection can be saved
 //     save      each PE writes its elements into a file of its own
-//     manifest  PE 0 writes "main" and the manifest, and removes older checkpoints
+//     copy      with buddy copies: each PE reads its file, and its buddy writes the copy
+//     manifest  the first PE of each host (hosts.hpp) writes "main", then, once all have, the manifest,
+//               and removes older checkpoints
+//
+// So a checkpoint that has a manifest on any host is complete on all.
 #pragma once
 
 #include "runtime/checkpoint_options.hpp"
@@ -15,9 +19,14 @@
 
 namespace tess::detail {
 
+struct Listing;
+
 /// `state` is the main coroutine's, of a type with this name.
 [[nodiscard]] Task write_checkpoint(std::string folder, std::string state_type,
                                     std::vector<std::byte> state, CheckpointOptions options);
+
+/// Lists the checkpoints in a folder as all processes see it.
+[[nodiscard]] Task list_all(std::string folder, Listing& listing);
 
 /// Ends with an error unless the main coroutine calls `what`.
 void require_main(const std::string& what);

@@ -9,7 +9,7 @@
 //       void serialize(Ar& ar) { ar(grid_, tile_, edges_); }
 //     };
 //
-// Numbers and enums are copied bit by bit: all processes of a job run the same binary on the same
+// Numbers, enums and durations are copied bit by bit: all processes of a job run the same binary on the same
 // kind of machine. Standard and Boost containers, pair, tuple, optional, variant and unique_ptr
 // work if their contents do. A raw pointer does not compile. Reading compares every length with the
 // bytes that are left and throws tess::Error.
@@ -51,7 +51,9 @@ namespace serialization {
 template <class T>
 concept HasSerialize = requires(T& value, Writer& ar) { value.serialize(ar); };
 template <class T>
-concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+concept Duration = requires { typename T::period; } && std::is_arithmetic_v<typename T::rep>;
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T> || Duration<T>;
 template <class T>
 concept TupleLike = requires { std::tuple_size<T>::value; } && !std::is_aggregate_v<T>;
 template <class T>

@@ -145,14 +145,14 @@ TEST_CASE("a checkpoint of another version is refused by name", "[runtime][check
             bytes[8] = 9;
             write_bytes(path + "pe-1", bytes);
           }),
-          "pe-1", "has version 9, but this program reads 2");
+          "pe-1", "has version 9, but this program reads 3");
   refused(after([](const std::string& path) {
             std::string text = tess::test::slurp(path + "manifest.json");
-            const std::string one = "\"tessera_checkpoint\": 2";
+            const std::string one = "\"tessera_checkpoint\": 3";
             text.replace(text.find(one), one.size(), "\"tessera_checkpoint\": 8");
             write_bytes(path + "manifest.json", text);
           }),
-          "manifest.json", "has version 8, but this program reads 2");
+          "manifest.json", "has version 8, but this program reads 3");
 }
 
 TEST_CASE("a checkpoint that a killed run left unfinished is refused, and removed by the next one",
@@ -205,7 +205,7 @@ TEST_CASE("a class that the program has not is named", "[runtime][checkpoint]") 
   auto main = tess::from_bytes<tess::detail::MainPart>({bytes.data(), bytes.size()});
   const auto rewrite = [&] {
     manifest.files.back() = tess::detail::write_file(path, "main", tess::to_bytes(main));
-    tess::detail::write_manifest(path, manifest, main);
+    tess::detail::write_manifest(path, tess::detail::to_text(manifest, main));
     return restart_from(folder);
   };
   const std::string key = main.collections.front().key;

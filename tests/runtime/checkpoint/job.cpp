@@ -1,5 +1,7 @@
-// test_checkpoint_job FOLDER LAST: runs the world of world.hpp to step LAST, with a checkpoint after each second step, from
-// the last checkpoint in FOLDER if there is one. Prints the step that it began at and its log.
+// test_checkpoint_job FOLDER LAST [buddy | buddy-restart]: runs the world of world.hpp to step LAST, with
+// a checkpoint after each second step, from the last checkpoint in FOLDER if there is one. Prints the
+// step that it began at and its log. With "buddy" FOLDER is local to each rank, and the run restarts
+// only if told to.
 #include "runtime/checkpoint.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 
@@ -9,9 +11,9 @@
 
 namespace {
 
-tess::Task run_to(std::string folder, std::int32_t last) {
+tess::Task run_to(std::string folder, std::int32_t last, bool restarts, bool buddy) {
   world::State state;
-  if (std::filesystem::exists(folder)) {
+  if (restarts) {
     state = co_await tess::restart<world::State>(folder);
   } else {
     co_await world::make(state);
@@ -19,7 +21,9 @@ tess::Task run_to(std::string folder, std::int32_t last) {
   const std::int32_t first = state.step;
   while (state.step < last) {
     co_await world::advance(state);
-    if (state.step % 2 == 0) co_await tess::checkpoint(folder, state);
+    tess::CheckpointOptions options;
+    options.buddy_copies = buddy;
+    if (state.step % 2 == 0) co_await tess::checkpoint(folder, state, options);
   }
   tess::print(fmt::format("from {} log {:016x}\n", first, state.log));
 }
@@ -28,8 +32,12 @@ tess::Task run_to(std::string folder, std::int32_t last) {
 
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
-    if (argc != 3)
-      tess::fail(tess::ErrorCode::bad_argument, "usage: test_checkpoint_job FOLDER LAST");
-    return tess::run(setup, [&] { return run_to(argv[1], std::atoi(argv[2])); });
+    if (argc < 3)
+      tess::fail(tess::ErrorCode::bad_argument,
+                 "usage: test_checkpoint_job FOLDER LAST [buddy | buddy-restart]");
+    const std::string how = argc > 3 ? argv[3] : "";
+    const bool restarts = how.empty() ? std::filesystem::exists(argv[1]) : how == "buddy-restart";
+    return tess::run(setup,
+                     [&] { return run_to(argv[1], std::atoi(argv[2]), restarts, !how.empty()); });
   });
 }

@@ -12,12 +12,6 @@ runs() {
   fail "$*"
   tail -5 "$scratch/out"
 }
-# says PATTERN: in the output of the last command.
-says() {
-  grep -Eq -- "$1" "$scratch/out" && pass && return
-  fail "no line with '$1'"
-  tail -5 "$scratch/out"
-}
 # refuses PATTERN COMMAND…: exit code 2, and one line that matches.
 refuses() {
   local pattern=$1

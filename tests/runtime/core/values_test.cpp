@@ -64,6 +64,8 @@ TEST_CASE("text in one line shows control characters as escapes and leaves the r
 TEST_CASE("values come back from their bytes, and truncated bytes are refused", "[runtime]") {
   check_round_trip(42);
   check_round_trip(Plain{1, 2.5});
+  check_round_trip(std::chrono::milliseconds(-7));
+  check_round_trip(std::vector<std::chrono::duration<double>>{{}, std::chrono::hours(2)});
   check_round_trip(Nested{{1, 2}, "name", {{3, 4}, {5, 6}}, {{"k", {1, 2, 3}}, {"", {}}}});
   check_round_trip(Symmetric(7));
   check_round_trip(std::vector<Symmetric>{Symmetric(1), Symmetric(2)});
