@@ -11,53 +11,72 @@
 namespace tess::m2m {
 namespace {
 
-/// Runs a step that ends with a report of all PEs.
+/// Runs a step and all that it causes.
 template <auto Step, class... Args>
-Task step(GroupProxy<Placer> placers, PlacerReport* report, Args... args) {
-  Future<PlacerReport> all;
-  co_await epoch([&] { placers.broadcast<Step>(std::move(args)..., all.callback()); });
-  *report = co_await all;
-}
-/// Runs a step without a report.
-template <auto Step>
-Task step(GroupProxy<Placer> placers) {
-  co_await epoch([&] { placers.broadcast<Step>(); });
+Task step(GroupProxy<Placer> placers, Args... args) {
+  co_await epoch([&] { placers.broadcast<Step>(std::move(args)...); });
 }
 
 void throw_first(const FirstError& error) {
   if (error.key >= 0) throw Error(static_cast<ErrorCode>(error.code), error.message);
 }
 
-Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
-  PlacerReport report;
-  co_await step<&Placer::read>(placers, &report);
+/// The bounds of the mesh. Corners may still be under way.
+Aabb checked_bounds(const PlacerReport& report, const PlacerSetup& setup) {
   throw_first(report.error);
   report.findings.refuse_bad_ids(setup.shown_name, setup.n_points);
-  const Aabb bounds = report.findings.bounds;
-  co_await step<&Placer::ask_corners>(placers);
-  co_await step<&Placer::measure>(placers, &report, bounds);
-  report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
-  census->n_flat = report.findings.n_flat;
-  census->n_inverted = report.findings.n_inverted;
-  census->bounds = bounds;
+  return report.findings.bounds;
+}
 
-  CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
-  while (!cut.is_done()) {
-    Future<std::vector<std::uint32_t>> counts;
-    placers.broadcast<&Placer::count>(cut, counts.callback());
-    const std::vector<std::uint32_t> all = co_await counts;
-    cut.refine(all);
+// A step whose messages the PEs count begins before they have arrived; so every PE goes on as soon
+// as it can.
+Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
+  Future<PlacerReport> read;
+  Task corners = step<&Placer::read>(placers, read.callback());
+  const PlacerReport report = co_await read;
+  std::exception_ptr refused;
+  try {
+    census->bounds = checked_bounds(report, setup);
+  } catch (...) {
+    refused = std::current_exception();
   }
-  co_await epoch([&] { placers.broadcast<&Placer::send_tets>(cut); });
+  if (refused) {
+    co_await corners;
+    std::rethrow_exception(refused);
+  }
+
+  Future<Measured> measured;
+  placers.broadcast<&Placer::measure>(census->bounds, measured.callback());
+  const Measured all = co_await measured;
+  all.report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
+  census->n_flat = all.report.findings.n_flat;
+  census->n_inverted = all.report.findings.n_inverted;
+  CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
+  if (!cut.is_done()) cut.refine(all.counts);
+  while (!cut.is_done()) {
+    Future<CellCounts> counts;
+    placers.broadcast<&Placer::count>(cut, counts.callback());
+    const CellCounts sum = co_await counts;
+    cut.refine(sum);
+  }
+
+  co_await step<&Placer::send_tets>(placers, cut);
+  co_await corners;
   co_await step<&Placer::ask_points>(placers);
-  co_await step<&Placer::answer_points>(placers, &report);
-  census->n_unused = report.n_unused;
+  Future<PlacerReport> answered;
+  Task points = step<&Placer::answer_points>(placers, answered.callback());
+  census->n_unused = (co_await answered).n_unused;
+  // What the Placers do not ask for is not counted.
+  const bool counted = census->n_unused == 0 && setup.halo_layers == 0;
+  if (!counted) co_await points;
   for (std::int32_t layer = 0; layer < setup.halo_layers; ++layer) {
     co_await step<&Placer::ask_around>(placers);
     co_await step<&Placer::ask_halo_points>(placers);
   }
-  co_await step<&Placer::finish>(placers, &report);
-  throw_first(report.error);
+  Future<PlacerReport> finished;
+  co_await step<&Placer::finish>(placers, finished.callback());
+  if (counted) co_await points;
+  throw_first((co_await finished).error);
   co_await step<&Placer::load_workers>(placers);
 }
 
@@ -83,12 +102,15 @@ Task place_ranges(PlacerSetup setup, const TetMesh* whole, PlacedMesh* placed) {
   } catch (...) {
     error = std::current_exception();
   }
-  const auto clear = [&] {
-    placers.destroy();
-    if (error) setup.workers.destroy();
-  };
-  co_await epoch(clear);
-  if (error) std::rethrow_exception(error);
+  if (error) {
+    const auto clear = [&] {
+      placers.destroy();
+      setup.workers.destroy();
+    };
+    co_await epoch(clear);
+    std::rethrow_exception(error);
+  }
+  placers.destroy();  // the Workers need not wait for it
   placed->mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers};
   placed->n_points = setup.n_points;
   placed->n_tets = setup.n_tets;

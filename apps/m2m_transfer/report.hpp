@@ -52,6 +52,7 @@ struct TransferReport {
   std::vector<FieldError> fields;
   Point worst_at{};  ///< the vertex with the largest error of the first field
   std::uint64_t n_candidates = 0;
+  std::uint64_t n_kept_sources = 0;  ///< in the last search
   double voxel = 0;
   PhaseSeconds seconds;
   Footprint footprint;  ///< bytes_sent: by setup and the first transfers of all pairs

@@ -118,6 +118,7 @@ class Piece : public OverlapPiece<C> {
     from.setup = setup;
     const MeshView mesh = self().mesh_view();
     setup.collider.submit({me(), detail::source_model, from.start_search(mesh)});
+    if (from.has_kept_cover()) setup.ledger.local().add(Tally{.n_kept_sources = 1});
   }
   void m2m_submit_target(const CouplingSetup& setup) {
     TargetSide& to = couplings.targets[setup.id];

@@ -76,6 +76,12 @@ void Placer::read(Callback<PlacerReport> target) {
   } catch (const Error& error) {
     report.error = {me_, static_cast<std::int32_t>(error.code()), error.what()};
   }
+  // A refused mesh ends here: its queries need no answer.
+  const bool refused = report.error.key >= 0 || report.findings.bad_corner.tet >= 0;
+  reading_ = refused ? Reading::refused : Reading::done;
+  if (!refused) ask_corners();
+  for (CornerQuery& query : early_queries_) answer_corners(std::move(query));
+  drop(early_queries_);
   contribute(JoinReports{}, std::move(report), std::move(target));
 }
 
@@ -99,10 +105,16 @@ void Placer::ask_corners() {
   for_each_keeper(ids, [&](std::int32_t keeper, std::span<const VertexId> of) {
     group()[PeId{keeper}].send<&Placer::answer_corners>(
         CornerQuery{tess::my_pe(), {of.begin(), of.end()}});
+    ++n_corners_due_;
   });
 }
 
-void Placer::answer_corners(const CornerQuery& query) {
+void Placer::answer_corners(CornerQuery query) {
+  if (reading_ == Reading::before) {
+    early_queries_.push_back(std::move(query));
+    return;
+  }
+  if (reading_ == Reading::refused) return;
   CornerAnswer answer{query.ids.front(), {}};
   answer.points.reserve(query.ids.size());
   for (const VertexId v : query.ids)
@@ -113,6 +125,8 @@ void Placer::answer_corners(const CornerQuery& query) {
 void Placer::receive_corners(const CornerAnswer& answer) {
   std::copy(answer.points.begin(), answer.points.end(),
             far_points_.begin() + far_->rank(answer.first));
+  --n_corners_due_;
+  measure_if_complete();
 }
 
 std::array<Point, 4> Placer::corners_of(const Tet& tet) const {
@@ -126,22 +140,32 @@ std::array<Point, 4> Placer::corners_of(const Tet& tet) const {
   return corners;
 }
 
-void Placer::measure(const Aabb& bounds, Callback<PlacerReport> target) {
-  PlacerReport report;
-  const HilbertCube cube(bounds);
+void Placer::measure(const Aabb& bounds, Callback<Measured> target) {
+  measures_ = bounds;
+  measured_ = std::move(target);
+  measure_if_complete();
+}
+
+void Placer::measure_if_complete() {
+  if (!measures_ || n_corners_due_ != 0) return;
+  Measured measured;
+  const HilbertCube cube(*measures_);
+  measures_.reset();
   cells_.resize(tets_.size());
   for (std::size_t t = 0; t < tets_.size(); ++t) {
     const std::array<Point, 4> corners = corners_of(tets_[t]);
-    report.findings.add_shape(first_tet_ + static_cast<GlobalId>(t), corners);
+    measured.report.findings.add_shape(first_tet_ + static_cast<GlobalId>(t), corners);
     cells_[t] = cube.cell(mean_of_corners(corners));
   }
   far_.reset();
   drop(far_points_);
-  contribute(JoinReports{}, std::move(report), std::move(target));
+  measured.counts =
+      CurveCut(static_cast<std::uint64_t>(setup_.n_tets), setup_.n_parts).counts(cells_);
+  contribute(JoinMeasured{}, std::move(measured), std::move(measured_));
 }
 
-void Placer::count(const CurveCut& cut, Callback<std::vector<std::uint32_t>> target) {
-  contribute(sum, cut.counts(cells_), std::move(target));
+void Placer::count(const CurveCut& cut, Callback<CellCounts> target) {
+  contribute(JoinCounts{}, cut.counts(cells_), std::move(target));
 }
 
 void Placer::send_tets(const CurveCut& cut) {
@@ -181,6 +205,13 @@ void Placer::receive_tets(TetBatch batch) {
   batches_.push_back(std::move(batch));
 }
 
+template <auto Handler>
+void Placer::send_queries() {
+  std::vector<PointQuery> queries = queries_of_parts();
+  n_points_due_ = queries.size();
+  for (PointQuery& query : queries) group()[query.to].send<Handler>(std::move(query));
+}
+
 void Placer::ask_points() {
   // The ranges are in the order of the PEs, so the tetrahedra of a part are in ascending order.
   std::sort(batches_.begin(), batches_.end(),
@@ -210,8 +241,7 @@ void Placer::ask_points() {
     part.mesh.n_own_tets = static_cast<std::int64_t>(part.mesh.tets.size());
     part.asked = IdSet(part.mesh.tets).list();
   }
-  for (PointQuery& query : queries_of_parts())
-    group()[query.to].send<&Placer::receive_point_query>(std::move(query));
+  send_queries<&Placer::receive_point_query>();
 }
 
 std::vector<PointQuery> Placer::queries_of_parts() const {
@@ -321,6 +351,8 @@ void Placer::receive_points(const PointAnswer& answer) {
         if (answer.users[user] != k) to.others.push_back({answer.users[user], *id});
     }
   }
+  --n_points_due_;
+  finish_if_complete();
 }
 
 void Placer::receive_unused(const UnusedPoints& unused) {
@@ -399,8 +431,7 @@ void Placer::ask_halo_points() {
     std::set_difference(corners.begin(), corners.end(), known.begin(), known.end(),
                         std::back_inserter(part.asked));
   }
-  for (PointQuery& query : queries_of_parts())
-    group()[query.to].send<&Placer::answer_halo_points>(std::move(query));
+  send_queries<&Placer::answer_halo_points>();
 }
 
 void Placer::answer_halo_points(const PointQuery& query) {
@@ -408,11 +439,17 @@ void Placer::answer_halo_points(const PointQuery& query) {
 }
 
 void Placer::finish(Callback<PlacerReport> target) {
+  finished_ = std::move(target);
+  finish_if_complete();
+}
+
+void Placer::finish_if_complete() {
+  if (!finished_ || n_points_due_ != 0) return;
   drop(points_);
   PlacerReport report;
   for (std::size_t k = 0; k < parts_.size(); ++k)
     build(first_part_ + static_cast<std::int32_t>(k), report.error);
-  contribute(JoinReports{}, std::move(report), std::move(target));
+  contribute(JoinReports{}, std::move(report), std::exchange(finished_, {}));
 }
 
 void Placer::build(std::int32_t k, FirstError& error) {

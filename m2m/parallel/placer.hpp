@@ -55,6 +55,18 @@ struct JoinReports {
   }
 };
 
+/// Contributed after the shapes: what the first round of a CurveCut needs as well.
+struct Measured {
+  PlacerReport report{};
+  CellCounts counts{};
+};
+struct JoinMeasured {
+  Measured operator()(Measured a, const Measured& b) const {
+    return {JoinReports{}(std::move(a.report), b.report),
+            JoinCounts{}(std::move(a.counts), b.counts)};
+  }
+};
+
 /// A range of a mesh, from the PE that holds all of it.
 struct RangeLoad {
   std::vector<Point> points;
@@ -128,14 +140,15 @@ class Placer : public Group<Placer> {
   explicit Placer(const PlacerSetup& setup);
 
   void receive_range(RangeLoad load);
-  /// Reads the ranges unless they were received, and checks them.
+  /// Reads the ranges unless they were received, checks them, and asks for the corners that other
+  /// PEs keep.
   void read(Callback<PlacerReport> target);
-  void ask_corners();
-  void answer_corners(const CornerQuery& query);
+  void answer_corners(CornerQuery query);
   void receive_corners(const CornerAnswer& answer);
-  /// Checks the shapes of the tetrahedra, and finds their cells in a cube around the mesh.
-  void measure(const Aabb& bounds, Callback<PlacerReport> target);
-  void count(const CurveCut& cut, Callback<std::vector<std::uint32_t>> target);
+  /// Checks the shapes of the tetrahedra, finds their cells in a cube around the mesh, and counts
+  /// them for the first round of a CurveCut. Begins when the corners are here.
+  void measure(const Aabb& bounds, Callback<Measured> target);
+  void count(const CurveCut& cut, Callback<CellCounts> target);
   void send_tets(const CurveCut& cut);
   void receive_tets(TetBatch batch);
 
@@ -152,6 +165,7 @@ class Placer : public Group<Placer> {
   void ask_halo_points();
   void answer_halo_points(const PointQuery& query);
 
+  /// Builds the parts. Begins when the points asked for are here.
   void finish(Callback<PlacerReport> target);
   void receive_ghosts(GhostList list);
   void load_workers();
@@ -191,12 +205,18 @@ class Placer : public Group<Placer> {
   [[nodiscard]] Part& part(std::int32_t k) {
     return parts_[static_cast<std::size_t>(k - first_part_)];
   }
+  void ask_corners();
+  void measure_if_complete();
+  void finish_if_complete();
   [[nodiscard]] std::array<Point, 4> corners_of(const Tet& tet) const;
   /// Calls visit(keeper, ids of that keeper) for ascending ids.
   template <class Visit>
   void for_each_keeper(std::span<const VertexId> ids, const Visit& visit) const;
   /// The points that the parts ask for, per keeper.
   [[nodiscard]] std::vector<PointQuery> queries_of_parts() const;
+  /// Asks for the points of the parts; `Handler` answers, with receive_points().
+  template <auto Handler>
+  void send_queries();
   [[nodiscard]] PointAnswer answer(const PointQuery& query) const;
   static void index_tets(Part& part);
   void build(std::int32_t k, FirstError& error);
@@ -208,6 +228,12 @@ class Placer : public Group<Placer> {
   std::vector<Tet> tets_;      // of the range, from first_tet_
   std::optional<IdSet> far_;   // corners of the range that others keep
   std::vector<Point> far_points_;
+  enum class Reading : std::uint8_t { before, refused, done } reading_ = Reading::before;
+  std::vector<CornerQuery> early_queries_;            // before the points were read
+  std::size_t n_corners_due_ = 0, n_points_due_ = 0;  // answers
+  std::optional<Aabb> measures_;                      // from measure() on, until it begins
+  Callback<Measured> measured_;
+  Callback<PlacerReport> finished_;   // from finish() on, until it begins
   std::vector<std::uint64_t> cells_;  // per tetrahedron of the range
   std::vector<TetBatch> batches_;
   std::vector<PointQuery> queries_;

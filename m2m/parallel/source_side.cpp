@@ -34,6 +34,8 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   donors_.clear();
   rounds_.clear();
   gradient_vertices_.clear();
+  stays_ = same_.ask(mesh);
+  if (stays_ == SameMesh::Answer::same) return cover_.boxes;
   nearest_.reset();
   cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
   return cover_.boxes;
@@ -73,8 +75,10 @@ void SourceSide::choose(Choice choice) {
 }
 
 void SourceSide::prepare(const MeshView& mesh) {
-  cover_ = {};
-  nearest_.reset();
+  if (stays_ == SameMesh::Answer::moved) {
+    cover_ = {};
+    nearest_.reset();
+  }
   if (!needs_gradients(setup.kind) || !gradient_vertices_.empty()) return;
   for (const auto& [target, donors] : donors_)
     for (const Donor& donor : donors)

@@ -7,6 +7,7 @@
 #include "m2m/parallel/messages.hpp"
 #include "m2m/search/cover.hpp"
 #include "m2m/search/nearest_vertex.hpp"
+#include "m2m/search/same_mesh.hpp"
 #include "m2m/weights/rows.hpp"
 
 #include <cstdint>
@@ -21,11 +22,13 @@ class SourceSide {
  public:
   CouplingSetup setup;
 
-  /// Forgets the last search, and returns the boxes of the cover.
+  /// Forgets the last search, and returns the boxes of the cover. Where the mesh has stayed as it
+  /// was, the cover and what finds nearest vertices are kept.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
   [[nodiscard]] DonorAnswer answer(const MeshView& mesh, const DonorQuery& query);
   [[nodiscard]] NearestAnswer answer(const MeshView& mesh, NearestQuery query);
   void choose(Choice choice);
+  [[nodiscard]] bool has_kept_cover() const { return stays_ == SameMesh::Answer::same; }
   /// Calls send(target piece, values) for every target piece that gets values from this one.
   /// `values`: of all points of the piece, n_points × n_components, row-major.
   template <class Send>
@@ -54,11 +57,11 @@ class SourceSide {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, drafts_, donors_, rounds_, gradient_vertices_, gradient_rows_);
+    ar(setup, same_, stays_, cover_, drafts_, donors_, rounds_, gradient_vertices_, gradient_rows_);
   }
 
  private:
-  /// Frees what only the search needs, and makes what only an application needs.
+  /// Frees what only this search needs, and makes what only an application needs.
   void prepare(const MeshView& mesh);
   /// n_points × n_components where a donor needs them; empty if the kind needs none.
   [[nodiscard]] std::vector<Point> gradients(std::span<const double> values,
@@ -70,6 +73,8 @@ class SourceSide {
 
   [[nodiscard]] Rows<double> rows_of(const MeshView& mesh, std::span<const Donor> donors) const;
 
+  SameMesh same_;
+  SameMesh::Answer stays_ = SameMesh::Answer::moved;  // in the last search
   Cover cover_;
   std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered
   std::map<collide::OwnerId, std::vector<Donor>> donors_;  // per target piece, as chosen

@@ -13,6 +13,26 @@ std::uint64_t begin_of(std::uint64_t cell, int level) {
   return cell << static_cast<unsigned>(3 * (hilbert_levels - level));
 }
 
+/// Positions on the curve of level `levels`. Tetrahedra that follow each other are often in one cell.
+class Positions {
+ public:
+  explicit Positions(int levels)
+      : levels_(levels), shift_(3U * static_cast<unsigned>(hilbert_levels - levels)) {}
+  [[nodiscard]] std::uint64_t of(std::uint64_t cell) {
+    if (const std::uint64_t outer = cell >> shift_; outer != outer_) {
+      outer_ = outer;
+      position_ = hilbert_position(cell, levels_);
+    }
+    return position_;
+  }
+
+ private:
+  int levels_;
+  unsigned shift_;
+  std::uint64_t outer_ = ~std::uint64_t{0};  // no cell has this
+  std::uint64_t position_ = 0;
+};
+
 }  // namespace
 
 CurveCut::CurveCut(std::uint64_t n_tets, std::int32_t n_parts)
@@ -25,7 +45,8 @@ CurveCut::CurveCut(std::uint64_t n_tets, std::int32_t n_parts)
 }
 
 int CurveCut::next_level() const {
-  // So fine that one round is enough for a mesh of even density, if its parts are not too many.
+  // So fine that one round is enough for a mesh of even density, if its parts are not too many: at
+  // least 32 cells per part.
   if (level_ == 0) return n_parts_ <= 128 ? 4 : 5;
   return std::min(level_ + further_levels, hilbert_levels);
 }
@@ -38,25 +59,49 @@ std::uint64_t CurveCut::target(std::int32_t cut) const {
   return i * each + i * rest / parts;
 }
 
-std::vector<std::uint32_t> CurveCut::counts(std::span<const std::uint64_t> cells) const {
+CellCounts CurveCut::counts(std::span<const std::uint64_t> cells) const {
+  if (is_done()) return {};
   const int next = next_level();
   const unsigned bits = 3U * static_cast<unsigned>(next - level_);
-  std::vector<std::uint32_t> counts(open_.size() << bits);
+  constexpr std::size_t size = CellCounts::block_size;
+  constexpr std::size_t absent = 0;
+  std::vector<std::size_t> end_of_block((open_.size() << bits) / size + 1, absent);
+  std::vector<std::uint32_t> counts;  // of blocks in the order in which they appear
+  Positions positions(next);
   for (const std::uint64_t cell : cells) {
-    const std::uint64_t position = hilbert_position(cell, next);
+    const std::uint64_t position = positions.of(cell);
     const std::uint64_t outer = position >> bits;
     const auto open = std::lower_bound(open_.begin(), open_.end(), outer);
     if (open == open_.end() || *open != outer) continue;
-    const auto at = static_cast<std::uint64_t>(open - open_.begin());
-    ++counts[at << bits | (position & ((std::uint64_t{1} << bits) - 1))];
+    const auto k = static_cast<std::uint64_t>(open - open_.begin());
+    const std::uint64_t at = k << bits | (position & ((std::uint64_t{1} << bits) - 1));
+    std::size_t& end = end_of_block[at / size];
+    if (end == absent) {
+      counts.resize(counts.size() + size);
+      end = counts.size();
+    }
+    ++counts[end - size + at % size];
   }
-  return counts;
+  CellCounts sorted;
+  sorted.counts.reserve(counts.size());
+  for (std::size_t block = 0; block < end_of_block.size(); ++block) {
+    if (end_of_block[block] == absent) continue;
+    sorted.blocks.push_back(static_cast<std::uint32_t>(block));
+    const auto end = counts.begin() + static_cast<std::ptrdiff_t>(end_of_block[block]);
+    sorted.counts.insert(sorted.counts.end(), end - size, end);
+  }
+  return sorted;
 }
 
-void CurveCut::refine(std::span<const std::uint32_t> counts) {
+void CurveCut::refine(const CellCounts& all) {
   const int next = next_level();
   const unsigned bits = 3U * static_cast<unsigned>(next - level_);
-  const std::uint64_t enough = n_tets_ / static_cast<std::uint64_t>(n_parts_) / 32;
+  const std::uint64_t enough = n_tets_ / static_cast<std::uint64_t>(n_parts_) / 16;
+  constexpr std::size_t size = CellCounts::block_size;
+  std::vector<std::uint32_t> counts(((open_.size() << bits) / size + 1) * size);
+  for (std::size_t block = 0; block < all.blocks.size(); ++block)
+    std::copy_n(all.counts.begin() + static_cast<std::ptrdiff_t>(block * size), size,
+                counts.begin() + static_cast<std::ptrdiff_t>(all.blocks[block] * size));
   const CurveCut last = *this;
   first_.clear();
   end_.clear();
@@ -65,13 +110,12 @@ void CurveCut::refine(std::span<const std::uint32_t> counts) {
   for (std::size_t k = 0; k < last.open_.size(); ++k) {
     const std::int32_t end = last.end_[k];
     std::int32_t cut = last.first_[k];
-    std::uint64_t before = last.before_[k];
+    std::uint64_t before = last.before_[k], wanted = target(cut);
     for (std::uint64_t i = 0; i < std::uint64_t{1} << bits; ++i) {
       const std::uint64_t cell = last.open_[k] << bits | i;
       const std::uint64_t after = before + counts[k << bits | i];
       const bool opens = counts[k << bits | i] > enough && next < hilbert_levels;
-      for (bool is_open = false; cut < end && target(cut) < after; ++cut) {
-        const std::uint64_t wanted = target(cut);
+      for (bool is_open = false; cut < end && wanted < after; wanted = target(++cut)) {
         if (opens && wanted > before) {
           if (!is_open) {
             first_.push_back(cut);
@@ -107,11 +151,18 @@ std::vector<std::int32_t> CurveCut::parts(std::span<const std::uint64_t> cells) 
     const bool whole = cut == cuts_.end() || *cut >= begin_of(cell + 1, table_levels);
     part_of_cell[cell] = whole ? static_cast<std::int32_t>(cut - cuts_.begin()) : -1;
   }
+  Positions coarse(table_levels), fine(cut_level_);
+  std::uint64_t last = 0;  // a position, and its part
+  std::int32_t part_of_last = static_cast<std::int32_t>(part_of(0));
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    parts[i] = part_of_cell[hilbert_position(cells[i], table_levels)];
+    parts[i] = part_of_cell[coarse.of(cells[i])];
     if (parts[i] >= 0) continue;
-    parts[i] = static_cast<std::int32_t>(
-        part_of(begin_of(hilbert_position(cells[i], cut_level_), cut_level_)));
+    const std::uint64_t position = begin_of(fine.of(cells[i]), cut_level_);
+    if (position != last) {
+      last = position;
+      part_of_last = static_cast<std::int32_t>(part_of(position));
+    }
+    parts[i] = part_of_last;
   }
   return parts;
 }

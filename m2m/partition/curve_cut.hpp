@@ -6,9 +6,10 @@
 //     round 1   counts of the 64 cells in each cell where a cut should be and that holds too many
 //     …         until the cut can stand at the border of a cell
 //
-// One PE, the one that receives the sums, calls refine(); then all call part().
+// One PE, the one that receives the sums, calls refine(); then all call parts().
 #pragma once
 
+#include "m2m/partition/cell_counts.hpp"
 #include "m2m/partition/hilbert.hpp"
 
 #include <cstdint>
@@ -25,10 +26,10 @@ class CurveCut {
   /// True once no more counts are needed.
   [[nodiscard]] bool is_done() const { return open_.empty(); }
   /// Counts of this round for some tetrahedra. `cells`: HilbertCube::cell() of each centroid.
-  [[nodiscard]] std::vector<std::uint32_t> counts(std::span<const std::uint64_t> cells) const;
+  [[nodiscard]] CellCounts counts(std::span<const std::uint64_t> cells) const;
   /// Decides with the counts of all tetrahedra, and starts the next round. Parts differ by at most
-  /// 1/32 of their size, unless more tetrahedra than that have the same cell of the last level.
-  void refine(std::span<const std::uint32_t> counts);
+  /// 1/16 of their size, unless more tetrahedra than that have the same cell of the last level.
+  void refine(const CellCounts& all);
 
   /// The part of every tetrahedron.
   [[nodiscard]] std::vector<std::int32_t> parts(std::span<const std::uint64_t> cells) const;

@@ -20,6 +20,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <random>
 
 using namespace tess;
 using namespace tess::m2m;
@@ -179,6 +180,41 @@ TEST_CASE("pieces of the curve hold equally many tetrahedra, also where a mesh i
       CHECK(static_cast<double>(*least) > 0.93 * mean);
       CHECK(static_cast<double>(*most) < 1.07 * mean);
     }
+  }
+}
+
+TEST_CASE("counts of ranges that are joined in any order are those of the whole mesh",
+          "[m2m][placement]") {
+  const TetMesh mesh = kuhn_mesh({9, 0.2});
+  const HilbertCube cube(bounds(mesh));
+  std::vector<std::uint64_t> cells;
+  for (const Tet& tet : mesh.tets) {
+    Point middle{};
+    for (const VertexId v : tet)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        middle[axis] += mesh.points[static_cast<std::size_t>(v)][axis] / 4;
+    cells.push_back(cube.cell(middle));
+  }
+  CurveCut cut(mesh.n_tets(), 300);
+  std::mt19937 random(5);
+  for (int round = 0; !cut.is_done(); ++round) {
+    REQUIRE(round < 8);
+    const CellCounts whole = cut.counts(cells);
+    std::vector<CellCounts> parts;
+    for (std::size_t begin = 0; begin < cells.size();) {
+      const std::size_t n = std::min<std::size_t>(1 + random() % 900, cells.size() - begin);
+      parts.push_back(cut.counts(std::span(cells).subspan(begin, n)));
+      begin += n;
+    }
+    std::shuffle(parts.begin(), parts.end(), random);
+    CellCounts sum;
+    for (const CellCounts& part : parts) sum = JoinCounts{}(std::move(sum), part);
+    CHECK(sum.blocks == whole.blocks);
+    CHECK(sum.counts == whole.counts);
+    std::uint64_t n_counted = 0;
+    for (const std::uint32_t n : sum.counts) n_counted += n;
+    if (round == 0) CHECK(n_counted == cells.size());
+    cut.refine(sum);
   }
 }
 

@@ -66,6 +66,7 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
                      {"apply", r.seconds.apply}, {"transfer", r.seconds.transfer()}};
   if (r.searches > 1) pair["seconds"]["search_again"] = r.seconds.again;
   pair["searches"] = r.searches;
+  pair["kept_sources"] = r.n_kept_sources;
   pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
   pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
   pair["bytes_sent"] = r.footprint.bytes_sent;
@@ -138,8 +139,11 @@ std::string table(const TransferReport& r) {
                      r.seconds.setup, r.seconds.broad, r.seconds.narrow, r.seconds.apply,
                      r.seconds.transfer());
   if (r.searches > 1)
-    line("moved", fmt::format("{} times; the fastest search again took {:.4f} s", r.searches - 1,
-                              r.seconds.again));
+    line("moved",
+         fmt::format(
+             "{} times; the fastest search again took {:.4f} s; the last one kept the covers "
+             "of {} of {} source chares",
+             r.searches - 1, r.seconds.again, r.n_kept_sources, r.chares));
   line("memory",
        fmt::format("{:.1f} MB peak over {} {}, {:.1f} MB the greatest; {:.3f} MB sent between them",
                    megabytes(r.footprint.peak_memory_bytes), r.processes,
