@@ -21,7 +21,7 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
   Plan plan;
   std::exception_ptr refused;
   try {
-    plan = make_plan(summary, o.origin, o.size, o.rules, step);
+    plan = make_plan(summary, n_pes(), o.origin, o.size, o.rules, step);
   } catch (...) {
     refused = std::current_exception();
   }

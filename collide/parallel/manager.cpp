@@ -17,7 +17,7 @@ ObjectList& Manager::pending() {
 }
 
 void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
-  contribute(in_order(JoinSummaries{}), Summary(pending(), n_pes()), target);
+  contribute(JoinSummaries{}, Summary(pending(), pe().value, n_pes()), target);
   round(step).delivery = std::move(pending_);
 }
 

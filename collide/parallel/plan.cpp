@@ -10,7 +10,7 @@
 
 namespace tess::collide {
 
-Summary::Summary(const ObjectList& objects, std::int32_t n_pes)
+Summary::Summary(const ObjectList& objects, std::int32_t pe, std::int32_t n_pes)
     : n(objects.size()), bounds(objects.bounds()) {
   for (std::size_t octave = 0; octave < search::n_octaves<double>; ++octave)
     if (objects.has_octave(octave)) octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
@@ -19,6 +19,7 @@ Summary::Summary(const ObjectList& objects, std::int32_t n_pes)
   const std::size_t n_taken = std::min<std::size_t>(n, wanted);
   for (std::size_t i = 0; i < n_taken; ++i)
     sample.push_back(objects.boxes()[search::scattered(i, n_taken, n)]);
+  if (n_taken != 0) sampled.push_back({pe, static_cast<std::uint32_t>(n_taken)});
 }
 
 void Summary::add(ModelId model) {
@@ -26,13 +27,34 @@ void Summary::add(ModelId model) {
     models.push_back(model);
 }
 
-Summary JoinSummaries::operator()(Summary a, const Summary& b) const {
+Summary JoinSummaries::combine(Summary a, const Summary& b) const {
   a.n += b.n;
   a.bounds = merged(a.bounds, b.bounds);
   a.sample.insert(a.sample.end(), b.sample.begin(), b.sample.end());
+  a.sampled.insert(a.sampled.end(), b.sampled.begin(), b.sampled.end());
   for (std::size_t i = 0; i < a.octaves.size(); ++i) a.octaves[i] |= b.octaves[i];
   for (const ModelId model : b.models) a.add(model);
   return a;
+}
+
+Summary JoinSummaries::finish(Summary all) const {
+  struct Run {
+    std::int32_t pe;
+    std::uint32_t begin, end;
+  };
+  std::vector<Run> runs;
+  std::uint32_t at = 0;
+  for (const Summary::Sampled& sampled : all.sampled) {
+    runs.push_back({sampled.pe, at, at + sampled.n});
+    at += sampled.n;
+  }
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.pe < b.pe; });
+  std::vector<Aabb> ordered;
+  ordered.reserve(all.sample.size());
+  for (const Run& run : runs)
+    ordered.insert(ordered.end(), all.sample.begin() + run.begin, all.sample.begin() + run.end);
+  all.sample = std::move(ordered);
+  return all;
 }
 
 VoxelGrid Plan::grid(Level level) const {
@@ -50,7 +72,7 @@ Level Plan::level_of(double longest_extent) const noexcept {
 
 namespace {
 
-double chosen_size(const Summary& summary) {
+double chosen_size(const Summary& summary, std::int32_t n_pes) {
   std::vector<search::Entry> all(summary.sample.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = search::make_entry(i, 0);
   const search::Problem<double, 3> problem{
@@ -64,8 +86,10 @@ double chosen_size(const Summary& summary) {
       edge = std::max(edge, (summary.bounds.hi[k] - summary.bounds.lo[k]) / choice.n_cells[k]);
     return edge;
   };
-  const search::Choice<3> whole = chooser.choose(problem, summary.bounds, false, scale);
-  const search::Choice<3> points = chooser.choose(problem, summary.bounds, true, scale);
+  const search::Place chares{true, static_cast<double>(n_pes)};
+  const search::Choice<3> whole = chooser.choose(problem, summary.bounds, false, scale, chares);
+  const search::Choice<3> points =
+      chooser.choose_again(problem, summary.bounds, true, scale, chares);
   double size = edge_of(whole);
   if (whole.cost > 4 * points.cost) {
     // Large objects ask for large voxels, in which too many small ones meet: the smallest objects
@@ -79,8 +103,8 @@ double chosen_size(const Summary& summary) {
 
 }  // namespace
 
-Plan make_plan(const Summary& summary, const Point& origin, const Point& size, PairRules rules,
-               std::uint64_t step) {
+Plan make_plan(const Summary& summary, std::int32_t n_pes, const Point& origin, const Point& size,
+               PairRules rules, std::uint64_t step) {
   Plan plan{step, origin, size, 0, true, rules};
   if (summary.n < 2 || (rules.within_model == WithinModel::skip && summary.models.size() == 1))
     return plan;
@@ -91,7 +115,7 @@ Plan make_plan(const Summary& summary, const Point& origin, const Point& size, P
     widest = std::max(widest, summary.bounds.hi[k] - summary.bounds.lo[k]);
   if (is_chosen) {
     plan.origin = summary.bounds.lo;
-    double edge = chosen_size(summary);
+    double edge = chosen_size(summary, n_pes);
     // Indices have 32 bits, with a margin for what rounding does.
     edge = std::clamp(std::max(edge, std::ldexp(widest, -30)), 1e-300, 1e300);
     plan.size = {edge, edge, edge};

@@ -20,21 +20,29 @@ struct Summary {
   std::uint64_t n = 0;
   Aabb bounds = no_box<double, 3>();
   std::vector<Aabb> sample;
+  /// Whose boxes the sample has, one PE after the other.
+  struct Sampled {
+    std::int32_t pe = 0;
+    std::uint32_t n = 0;
+  };
+  std::vector<Sampled> sampled;
   std::array<std::uint64_t, 32> octaves{};  ///< a bit per octave of the longest extents
   std::vector<ModelId> models;              ///< at most three different ones
 
   Summary() = default;
   /// Of the objects on one of so many PEs.
-  Summary(const ObjectList& objects, std::int32_t n_pes);
+  Summary(const ObjectList& objects, std::int32_t pe, std::int32_t n_pes);
   void add(ModelId model);
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n, bounds, sample, octaves, models);
+    ar(n, bounds, sample, sampled, octaves, models);
   }
 };
+/// Joins in any order; in the end the sample is in the order of the PEs.
 struct JoinSummaries {
-  Summary operator()(Summary a, const Summary& b) const;
+  Summary combine(Summary a, const Summary& b) const;
+  Summary finish(Summary all) const;
 };
 
 /// One of the levels: 0 is the finest.
@@ -54,10 +62,10 @@ struct Plan {
   [[nodiscard]] Level level_of(double longest_extent) const noexcept;
 };
 
-/// With a size of zero, the size that is expected to cost least. A size that is too small costs time
+/// For so many PEs. With a size of zero, the size that is expected to cost least. A size that is too small costs time
 /// but no memory: objects stand on the level of their size. Throws Error (out_of_range) if a
 /// coordinate has no 32-bit cell.
-[[nodiscard]] Plan make_plan(const Summary& summary, const Point& origin, const Point& size,
-                             PairRules rules, std::uint64_t step);
+[[nodiscard]] Plan make_plan(const Summary& summary, std::int32_t n_pes, const Point& origin,
+                             const Point& size, PairRules rules, std::uint64_t step);
 
 }  // namespace tess::collide

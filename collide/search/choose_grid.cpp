@@ -18,18 +18,58 @@ constexpr int n_bits = D == 2   ? 20
                        : D == 3 ? 16
                                 : 12;
 
+/// The bits of a byte, D apart.
+template <std::size_t D>
+constexpr auto spread_bytes = [] {
+  std::array<std::uint64_t, 256> out{};
+  for (std::size_t byte = 0; byte < out.size(); ++byte)
+    for (std::size_t bit = 0; bit < 8; ++bit)
+      out[byte] |= static_cast<std::uint64_t>(byte >> bit & 1U) << D * bit;
+  return out;
+}();
+
+/// The first axis has the highest bits.
 template <std::size_t D>
 std::uint64_t interleaved(const std::array<std::uint32_t, D>& cell) {
   std::uint64_t out = 0;
-  for (int bit = n_bits<D> - 1; bit >= 0; --bit)
-    for (std::size_t k = 0; k < D; ++k) out = out << 1 | (cell[k] >> bit & 1U);
+  for (std::size_t k = 0; k < D; ++k)
+    for (std::size_t byte = 0; byte * 8 < n_bits<D>; ++byte)
+      out |= spread_bytes<D>[cell[k] >> 8 * byte & 255U] << (D * 8 * byte + D - 1 - k);
   return out;
+}
+
+template <class Real, std::size_t D>
+Real widest_of(const Box<Real, D>& region) {
+  Real widest = 0;
+  for (std::size_t k = 0; k < D; ++k) widest = std::max(widest, region.hi[k] - region.lo[k]);
+  return widest;
+}
+template <class Real>
+bool can_be_cut(Real widest) {
+  return widest > 0 && std::isfinite(widest) && std::isfinite(1 / widest);
 }
 
 /// How likely two objects share a cell, from runs of equal cells in a sorted sample.
 struct Sharing {
   double within_a = 0, with_b = 0;
 };
+
+/// Vectors of boxes that a box is compared with if it has so many partners in its voxel. On chares
+/// voxels are so large that a sweep counts, which compares with those of a strip: of twice as many
+/// partners about 1.6 times as many.
+double n_vectors(const Place& place, double partners, double lanes) {
+  constexpr double most = static_cast<double>(costs::sweep_from) / 2;
+  if (place.on_chares && partners > most)
+    partners = most * std::cbrt(partners / most * (partners / most));
+  return partners / lanes + 0.5;
+}
+
+/// What voxels cost because they are chares, in a search of the given cost.
+double cost_of_chares(const Place& place, double cost, double n_cells, const Sharing& sharing) {
+  if (!place.on_chares) return 0;
+  const double n_used = std::min(n_cells, 1 / std::max(sharing.within_a, 1e-12));
+  return costs::per_chare * n_used + cost / n_used * place.n_pes;
+}
 
 }  // namespace
 
@@ -76,9 +116,25 @@ void GridChooser<Real, D>::take(const Box<Real, D>* boxes, std::span<const Entry
 
 template <class Real, std::size_t D>
 Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                                       bool as_points, double scale) {
-  Real widest = 0;
-  for (std::size_t k = 0; k < D; ++k) widest = std::max(widest, region.hi[k] - region.lo[k]);
+                                       bool as_points, double scale, const Place& place) {
+  const Real widest = widest_of(region);
+  samples_.clear();
+  if (can_be_cut(widest)) {
+    take(problem.boxes_a, problem.a, region, widest, false, scale);
+    samples_a_ = static_cast<double>(samples_.size());
+    take(problem.boxes_b, problem.b, region, widest, true, scale);
+    samples_b_ = static_cast<double>(samples_.size()) - samples_a_;
+    std::sort(samples_.begin(), samples_.end(),
+              [](const Sample& x, const Sample& y) { return x.code < y.code; });
+  }
+  return choose_again(problem, region, as_points, scale, place);
+}
+
+template <class Real, std::size_t D>
+Choice<D> GridChooser<Real, D>::choose_again(const Problem<Real, D>& problem,
+                                             const Box<Real, D>& region, bool as_points,
+                                             double scale, const Place& place) const {
+  const Real widest = widest_of(region);
   const auto n_a = scale * static_cast<double>(problem.a.size());
   const auto n_b = scale * static_cast<double>(problem.b.size());
   const double lanes = Wide<Real>::width;
@@ -86,20 +142,12 @@ Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Bo
     const double partners =
         (problem.within_a ? in_a * sharing.within_a / 2 : 0) + in_b * sharing.with_b;
     return costs::per_entry * (in_a + in_b) +
-           in_a * (costs::per_probe + costs::per_vector * (partners / lanes + 0.5));
+           in_a * (costs::per_probe + costs::per_vector * n_vectors(place, partners, lanes));
   };
   CellAt<D> one;
   one.fill(1);
   Choice<D> best{one, cost_of(n_a, n_b, {1, 1})};
-  if (!(widest > 0) || !std::isfinite(widest) || !std::isfinite(1 / widest)) return best;
-
-  samples_.clear();
-  take(problem.boxes_a, problem.a, region, widest, false, scale);
-  const double samples_a = static_cast<double>(samples_.size());
-  take(problem.boxes_b, problem.b, region, widest, true, scale);
-  const double samples_b = static_cast<double>(samples_.size()) - samples_a;
-  std::sort(samples_.begin(), samples_.end(),
-            [](const Sample& x, const Sample& y) { return x.code < y.code; });
+  if (!can_be_cut(widest)) return best;
 
   const double most_cells = std::min(0x1p26, 2 * (n_a + n_b) + 64);
   Sharing coarser{1, 1};
@@ -117,8 +165,8 @@ Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Bo
       pairs_b += run_a * run_b;
     }
     Sharing sharing;
-    sharing.within_a = pairs_a / std::max(samples_a * (samples_a - 1), 1.0);
-    sharing.with_b = pairs_b / std::max(samples_a * samples_b, 1.0);
+    sharing.within_a = pairs_a / std::max(samples_a_ * (samples_a_ - 1), 1.0);
+    sharing.with_b = pairs_b / std::max(samples_a_ * samples_b_, 1.0);
     // Too few pairs say nothing; then a surface is assumed.
     if (pairs_a < 16) sharing.within_a = coarser.within_a / 4;
     if (pairs_b < 16) sharing.with_b = coarser.with_b / 4;
@@ -133,16 +181,19 @@ Choice<D> GridChooser<Real, D>::choose(const Problem<Real, D>& problem, const Bo
         product *= std::max(1.0, std::ceil(static_cast<double>(region.hi[k] - region.lo[k]) /
                                            static_cast<double>(widest) / edge));
       if (product > most_cells) return best;
+      const double per_edge = 1 / edge;
       double copies_a = 0, copies_b = 0;
       for (const Sample& sample : samples_) {
         double copies = 1;
         if (!as_points)
-          for (const float extent : sample.extent) copies *= 1 + static_cast<double>(extent) / edge;
+          for (const float extent : sample.extent)
+            copies *= 1 + static_cast<double>(extent) * per_edge;
         ((sample.code & 1U) != 0 ? copies_b : copies_a) += copies;
       }
-      const double in_a = n_a * copies_a / std::max(samples_a, 1.0);
-      const double in_b = n_b * copies_b / std::max(samples_b, 1.0);
-      const double cost = cost_of(in_a, in_b, here) + costs::per_cell * product + costs::per_grid;
+      const double in_a = n_a * copies_a / std::max(samples_a_, 1.0);
+      const double in_b = n_b * copies_b / std::max(samples_b_, 1.0);
+      double cost = cost_of(in_a, in_b, here) + costs::per_cell * product + costs::per_grid;
+      cost += cost_of_chares(place, cost, product, here);
       if (cost < best.cost)
         best = {cells_of_size(region, edge * static_cast<double>(widest), most_cells), cost};
     }

@@ -48,6 +48,12 @@ struct Choice {
   double cost;  ///< expected, in nanoseconds
 };
 
+/// Where the voxels of a search are.
+struct Place {
+  bool on_chares = false;  ///< a voxel that has objects costs its messages
+  double n_pes = 1;        ///< the last PE to finish has about one voxel more than the others
+};
+
 /// Keeps its memory from choice to choice.
 template <class Real, std::size_t D>
 class GridChooser {
@@ -55,7 +61,10 @@ class GridChooser {
   /// For a region that is as wide as the objects of `a` in it; with `as_points` as if the objects
   /// had no extents; as if there were `scale` objects for each.
   [[nodiscard]] Choice<D> choose(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                                 bool as_points = false, double scale = 1);
+                                 bool as_points = false, double scale = 1, const Place& place = {});
+  /// The same with the sample of the last choose(), for the same problem, region and scale.
+  [[nodiscard]] Choice<D> choose_again(const Problem<Real, D>& problem, const Box<Real, D>& region,
+                                       bool as_points, double scale, const Place& place) const;
 
  private:
   struct Sample {
@@ -66,6 +75,7 @@ class GridChooser {
             Real widest, bool is_b, double scale);
 
   std::vector<Sample> samples_;
+  double samples_a_ = 0, samples_b_ = 0;
 };
 
 /// The cells of the given size that cover the region; fewer if they were more than `most_cells`.

@@ -14,6 +14,8 @@ inline constexpr double per_cell = 1.2;  ///< a cell, also an empty one
 inline constexpr std::size_t few_objects = 512;
 /// A sweep pays from here on.
 inline constexpr std::size_t sweep_from = 96;
+/// A voxel that is a chare: its messages and look-ups.
+inline constexpr double per_chare = 1750;
 inline constexpr double per_grid = 3000;  ///< a grid: its choice and its memory
 
 }  // namespace tess::collide::search::costs

@@ -1,0 +1,55 @@
+// The plan of a collision: the voxels that it chooses.
+#include "collide/parallel/plan.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tess::collide {
+namespace {
+
+/// A sheet of n × n boxes that touch their neighbours.
+std::vector<Aabb> sheet(int n) {
+  std::vector<Aabb> boxes;
+  for (int x = 0; x < n; ++x)
+    for (int y = 0; y < n; ++y) boxes.push_back({{1.0 * x, 1.0 * y, 0}, {x + 1.0, y + 1.0, 0}});
+  return boxes;
+}
+
+/// The objects per voxel that is chosen for a sheet of n × n boxes, spread over some PEs.
+double objects_per_voxel(int n, std::int32_t n_pes) {
+  const std::vector<Aabb> boxes = sheet(n);
+  Summary all;
+  for (std::size_t pe = 0; pe < static_cast<std::size_t>(n_pes); ++pe) {
+    const std::size_t pes = static_cast<std::size_t>(n_pes);
+    const std::size_t begin = boxes.size() * pe / pes, end = boxes.size() * (pe + 1) / pes;
+    ObjectList objects;
+    objects.append(Objects{.boxes = std::span(boxes).subspan(begin, end - begin)});
+    all = JoinSummaries{}.combine(std::move(all),
+                                  Summary(objects, static_cast<std::int32_t>(pe), n_pes));
+  }
+  const Plan plan = make_plan(JoinSummaries{}.finish(std::move(all)), n_pes, {}, {},
+                              {.within_model = WithinModel::test}, 1);
+  REQUIRE_FALSE(plan.nothing);
+  return plan.size[0] * plan.size[1];
+}
+
+}  // namespace
+
+// Serially the same sheet has about 60 objects in a voxel.
+TEST_CASE("a voxel on chares has enough objects to be worth its messages", "[collide][parallel]") {
+  const double n = objects_per_voxel(512, 1);
+  CHECK(n > 96);
+  CHECK(n < 1024);
+}
+
+TEST_CASE("on many PEs voxels are smaller, so that each PE has some", "[collide][parallel]") {
+  const double one = objects_per_voxel(256, 1), many = objects_per_voxel(256, 256);
+  CHECK(many < one);
+  CHECK(256 * 256 / many / 256 >= 4);
+}
+
+}  // namespace tess::collide
