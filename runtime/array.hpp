@@ -761,12 +761,19 @@ void create_on_all(Pe& pe, Message message) {
 }
 
 template <class C, class... Args>
+CreateArray<C, std::decay_t<Args>...> new_array(Pe& pe, const Range& range, Args&&... args) {
+  return {pe.new_collection_id(late_messages_of<C>()),
+          range,
+          pe.context().epoch,
+          {std::forward<Args>(args)...}};
+}
+
+template <class C, class... Args>
 CollectionId create_collection(const Range& range, Args&&... args) {
   Pe& pe = current_pe();
-  using Create = CreateArray<C, std::decay_t<Args>...>;
-  const CollectionId id = pe.new_collection_id(late_messages_of<C>());
-  create_on_all<&create_arrives<C, std::decay_t<Args>...>>(
-      pe, Create{id, range, pe.context().epoch, {std::forward<Args>(args)...}});
+  auto array = new_array<C>(pe, range, std::forward<Args>(args)...);
+  const CollectionId id = array.id;
+  create_on_all<&create_arrives<C, std::decay_t<Args>...>>(pe, std::move(array));
   return id;
 }
 

@@ -47,6 +47,16 @@ class Future {
     return detail::make_target<Value>(kind_, to_bytes(std::tuple(pe_->id(), id_)));
   }
 
+  /// Awaits a variable where it is: g++ 12 would copy an operand that is a call, as futures[i].
+  [[nodiscard]] auto operator co_await() {
+    struct InPlace {
+      Future& of;
+      [[nodiscard]] bool await_ready() const { return of.await_ready(); }
+      void await_suspend(Task::Handle task) const { of.await_suspend(task); }
+      T await_resume() const { return of.await_resume(); }
+    };
+    return InPlace{*this};
+  }
   [[nodiscard]] bool await_ready() const { return value_.has_value(); }
   void await_suspend(Task::Handle task) {
     own_.start(task, 1);
@@ -80,15 +90,12 @@ class Future {
   static void give(const Callback<Value>& callback, Value&& value) {
     const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
     Pe& here = current_pe();
+    if (pe.value >= here.n_pes()) (void)here.require_future(0);
     here.completion().sent(here.context().epoch);
     detail::send_system<&Future::arrives>(here, pe, Result{id, std::move(value)});
   }
   static void arrives(Pe& pe, Result&& result) {
-    auto* future = static_cast<Future*>(pe.find_future(result.id));
-    TESS_CHECK(
-        future != nullptr,
-        "the result of a future arrived after its coroutine had continued or ended: keep the "
-        "future until its result is there");
+    auto* future = static_cast<Future*>(pe.require_future(result.id));
     TESS_CHECK(!future->value_, "a future was given two results");
     future->value_ = std::move(result.value);
     if (future->waiting_ != nullptr) future->waiting_->wake();

@@ -154,11 +154,12 @@ ArrayProxy<C> create(const Mapped<Map>& of, Args&&... args) {
       "a map takes an index of the array and the number of PEs, and returns a tess::PeId");
   detail::check_creation<C, Args...>(of.range);
   Pe& pe = current_pe();
-  const CollectionId id = pe.new_collection_id(detail::late_messages_of<C>());
   using Create = detail::CreateMapped<C, Map, std::decay_t<Args>...>;
+  Create mapped{detail::new_array<C>(pe, of.range, std::forward<Args>(args)...), of.map};
+  const ArrayProxy<C> proxy(mapped.array.id);
   detail::create_on_all<&detail::create_mapped_arrives<C, Map, std::decay_t<Args>...>>(
-      pe, Create{{id, of.range, pe.context().epoch, {std::forward<Args>(args)...}}, of.map});
-  return ArrayProxy<C>(id);
+      pe, std::move(mapped));
+  return proxy;
 }
 
 }  // namespace tess

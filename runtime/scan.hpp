@@ -195,12 +195,12 @@ class ScanPartial final : public Partial {
   [[nodiscard]] const PartialKind& kind() const override { return kind_; }
 
   void add(Collection& collection, const Op& op, typename Here::Entry&& entry) {
-    require_one(op);
+    require_one_operation(op_, op);
     open(collection).add(std::move(entry));
   }
   void merge(Partial&& other) override {
     auto& more = static_cast<ScanPartial&>(other);
-    require_one(more.op_);
+    require_one_operation(op_, more.op_);
     parts_.insert(parts_.end(), std::make_move_iterator(more.parts_.begin()),
                   std::make_move_iterator(more.parts_.end()));
     if (more.kept_ == nullptr) return;
@@ -285,11 +285,6 @@ class ScanPartial final : public Partial {
       number_ = collection.kept_scans().add(std::move(made));
     }
     return *kept_;
-  }
-  void require_one(const Op& op) const {
-    if constexpr (!std::is_empty_v<Op> && std::equality_comparable<Op>)
-      TESS_CHECK(op_ == op, "contributions to one scan have operations ", name_of_type<Op>,
-                 " of different state: all elements must give the same");
   }
   static inline const PartialKind kind_{naming::name_of<ScanPartial>(), &unpack};
 

@@ -150,6 +150,7 @@ class Parts {
   using All = std::tuple<AwaitedValue<A>...>;
   using First = std::variant<AwaitedValue<A>...>;
   explicit Parts(A&&... a) : parts_(std::forward<A>(a)...) {}
+  [[nodiscard]] std::ptrdiff_t size() const { return sizeof...(A); }
   template <class Do>
   void each(const Do& run) {
     std::apply([&run](auto&... part) { (run(part), ...); }, parts_);
@@ -182,6 +183,7 @@ class PartsOfVector {
     [[nodiscard]] std::size_t index() const { return which; }
   };
   explicit PartsOfVector(std::vector<A>&& a) : parts_(std::move(a)) {}
+  [[nodiscard]] std::ptrdiff_t size() const { return std::ssize(parts_); }
   template <class Do>
   void each(const Do& run) {
     for (A& part : parts_) run(part);
@@ -207,9 +209,7 @@ class [[nodiscard]] WhenAll {
     return ready;
   }
   void await_suspend(Task::Handle task) {
-    std::ptrdiff_t n = 0;
-    parts_.each([&n](auto& part) { n += part.await_ready() ? 0 : 1; });
-    waiter_.start(task, n);
+    waiter_.start(task, parts_.size());
     suspend(task, [this] {
       WaitReason all("");
       parts_.each([&all](auto& part) {
@@ -221,13 +221,13 @@ class [[nodiscard]] WhenAll {
       return all;
     });
     // An epoch begins now: what it does may be what another part waits for.
-    std::ptrdiff_t n_waiting = 0;
-    parts_.each([&](auto& part) {
-      if (part.await_ready()) return;
-      part.wait(waiter_);
-      ++n_waiting;
+    parts_.each([this](auto& part) {
+      if (part.await_ready()) {
+        waiter_.wake();
+      } else {
+        part.wait(waiter_);
+      }
     });
-    for (; n_waiting < n; ++n_waiting) waiter_.wake();
   }
   typename P::All await_resume() { return parts_.all(); }
 

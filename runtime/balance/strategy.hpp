@@ -1,7 +1,8 @@
 // Strategies by name. A strategy is a pure function from a snapshot to an assignment: equal
 // snapshots and seeds give equal results. Elements that do not migrate stay; no move takes a PE
-// above its memory limit (memory.hpp: a block that elements share counts once per PE); an element for which there is no room stays. An element of unknown load
-// also stays, and counts as the mean of the others. Each strategy has a file in strategies/.
+// above its memory limit (memory.hpp: a block that elements share counts once per PE), and an element
+// for which there is no room stays. An element of unknown load also stays, and counts as the mean of
+// the others. Each strategy has a file in strategies/.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -25,7 +26,7 @@ using Strategy = std::function<Assignment(const Snapshot&)>;
 /// True for a strategy that places elements by their positions.
 [[nodiscard]] bool needs_positions(std::string_view name);
 
-/// Why the strategy of this name cannot serve a snapshot, as "no positions"; empty if it can.
+/// Why the strategy of this name cannot serve a snapshot, as a sentence; empty if it can.
 [[nodiscard]] std::string obstacle(std::string_view name, const Snapshot& snapshot);
 
 /// Wraps the user's function: its assignment is followed where elements may move and there is room.

@@ -11,19 +11,7 @@ namespace tess::detail {
 class IntervalSet {
  public:
   /// Inserts any number except the greatest. Inserting a member again has no effect.
-  void insert(std::uint64_t number) {
-    const auto after = ends_.upper_bound(number);  // the first interval that begins beyond
-    const auto before = after == ends_.begin() ? ends_.end() : std::prev(after);
-    if (before != ends_.end() && number < before->second) return;
-    const bool joins_after = after != ends_.end() && after->first == number + 1;
-    const std::uint64_t end = joins_after ? after->second : number + 1;
-    if (joins_after) ends_.erase(after);
-    if (before != ends_.end() && before->second == number) {
-      before->second = end;
-    } else {
-      ends_.emplace(number, end);
-    }
-  }
+  void insert(std::uint64_t number);
 
   [[nodiscard]] bool contains(std::uint64_t number) const {
     const auto after = ends_.upper_bound(number);

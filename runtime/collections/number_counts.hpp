@@ -41,25 +41,8 @@ class NumberCounts {
     counts_.clear();
     head_ = 0;
   }
-  void extend_up(std::uint32_t number) {
-    if (head_ >= most_below) {
-      counts_.erase(counts_.begin(), counts_.begin() + static_cast<std::ptrdiff_t>(head_));
-      head_ = 0;
-    }
-    counts_.resize(head_ + (number - first_) + 1);
-  }
-  void extend_down(std::uint32_t number) {
-    const std::size_t more = first_ - number;
-    if (head_ >= more) {
-      head_ -= more;  // the counters below the head are zero
-    } else {
-      counts_.insert(counts_.begin(), more - head_, 0);
-      head_ = 0;
-    }
-    first_ = number;
-  }
-
-  static constexpr std::size_t most_below = 32;
+  void extend_up(std::uint32_t number);
+  void extend_down(std::uint32_t number);
 
   // counts_[head_ + k] is the count of number first_ + k; counters below head_ are zero.
   std::vector<std::uint64_t> counts_;

@@ -14,17 +14,21 @@
 
 namespace tess::detail {
 
-/// All contributions to a reduction give one target, and one operation as far as operations can be
-/// compared.
+/// All contributions to a reduction give one operation, as far as operations can be compared.
+template <class Op>
+void require_one_operation(const Op& op, const Op& other) {
+  if constexpr (!std::is_empty_v<Op> && std::equality_comparable<Op>)
+    TESS_CHECK(op == other, "contributions to one reduction have operations ", name_of_type<Op>,
+               " of different state: all elements must give the same");
+}
+/// The same, and one target.
 template <class Op, class T>
 void require_one(const Op& op, const Op& other, const Callback<T>& target,
                  const Callback<T>& other_target) {
   TESS_CHECK(target == other_target,
              "contributions to one reduction have different targets: ", target.name(), " and ",
              other_target.name());
-  if constexpr (!std::is_empty_v<Op> && std::equality_comparable<Op>)
-    TESS_CHECK(op == other, "contributions to one reduction have operations ", name_of_type<Op>,
-               " of different state: all elements must give the same");
+  require_one_operation(op, other);
 }
 
 /// An operation with a finishing step.

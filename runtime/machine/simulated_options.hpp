@@ -22,8 +22,8 @@ struct Wire {
   Time latency{1000};
   double bandwidth = 10e9;  ///< bytes per second
   Time overhead{0};         ///< CPU time of a message, of the sender and again of the receiver
-  double copy =
-      0;  ///< bytes per second of CPU time, of the sender and again of the receiver; 0: free
+  /// Bytes per second of CPU time, of the sender and again of the receiver; 0: free.
+  double copy = 0;
 };
 
 struct SimulatedOptions {

@@ -1,6 +1,7 @@
 #include "runtime/monitor/board.hpp"
 
 #include "runtime/base/json_string.hpp"
+#include "runtime/monitor/level.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
 #include <algorithm>
@@ -17,19 +18,13 @@ constexpr std::size_t most_past = 600;     // frames and rounds: five minutes
 constexpr std::size_t most_pictures = 16;  // names
 constexpr std::size_t most_pixels = 1 << 20;
 
-/// Values as text for JSON: the grey levels 0 to 255 between `least` and `most`, two hexadecimal
-/// digits each.
-std::string hexadecimal(const std::vector<float>& values, float least, float most) {
+/// Values as text for JSON: the grey levels between `least` and `most`.
+std::string as_levels(const std::vector<float>& values, float least, float most) {
   std::string out;
   out.reserve(2 * values.size());
   const float scale = most > least ? 255.0F / (most - least) : 0.0F;
-  for (const float value : values) {
-    const auto level =
-        std::isfinite(value) ? static_cast<unsigned>(std::lround((value - least) * scale)) : 0U;
-    constexpr const char* digits = "0123456789abcdef";
-    out += digits[level >> 4U & 15U];
-    out += digits[level & 15U];
-  }
+  for (const float value : values)
+    add_level(out, std::isfinite(value) ? std::lround((value - least) * scale) : 0);
   return out;
 }
 
@@ -95,40 +90,36 @@ std::vector<Event> Board::past() const {
   return events;
 }
 
-void Board::watch_heat(const std::vector<HeatQuery>& watched) {
+void Board::watch_heat(const std::vector<HeatMapId>& watched) {
   std::erase_if(heat_, [&](const auto& one) {
-    return std::none_of(watched.begin(), watched.end(), [&](const HeatQuery& query) {
-      return query.array == one.first.array && query.by == one.first.by;
-    });
+    return std::find(watched.begin(), watched.end(), one.first) == watched.end();
   });
-  for (const HeatQuery& query : watched) {
-    const HeatQuery key{query.array, query.by, 0};
-    if (!heat_.contains(key)) heat_.emplace(key, WatchedHeat{++n_watches_, {query.by, n_pes_}});
-  }
+  for (const HeatMapId& id : watched)
+    if (!heat_.contains(id)) heat_.emplace(id, WatchedHeat{++n_watches_, {id.by, n_pes_}});
 }
 
 std::vector<HeatQuery> Board::heat_queries() const {
   std::vector<HeatQuery> queries;
-  for (const auto& [key, heat] : heat_) queries.push_back({key.array, key.by, heat.watch});
+  for (const auto& [id, heat] : heat_) queries.push_back({id, heat.watch});
   return queries;
 }
 
 void Board::take(HeatCells&& part) {
-  const auto at = heat_.find({part.of.array, part.of.by, 0});
+  const auto at = heat_.find(part.of.map);
   if (at != heat_.end() && at->second.watch == part.of.watch) at->second.map.take(std::move(part));
 }
 
-std::vector<std::pair<HeatQuery, Event>> Board::take_heat_events() {
-  std::vector<std::pair<HeatQuery, Event>> events;
-  for (auto& [key, heat] : heat_) {
-    if (auto event = heat.map.take_event(name_of(key.array)))
-      events.push_back({key, {"heat", std::move(*event)}});
+std::vector<std::pair<HeatMapId, Event>> Board::take_heat_events() {
+  std::vector<std::pair<HeatMapId, Event>> events;
+  for (auto& [id, heat] : heat_) {
+    if (auto event = heat.map.take_event(name_of(id.array)))
+      events.push_back({id, {"heat", std::move(*event)}});
   }
   return events;
 }
 
-std::vector<Event> Board::past_heat(const HeatQuery& query) const {
-  const auto at = heat_.find(query);
+std::vector<Event> Board::past_heat(const HeatMapId& id) const {
+  const auto at = heat_.find(id);
   if (at == heat_.end() || at->second.map.last_event().empty()) return {};
   return {{"heat", at->second.map.last_event()}};
 }
@@ -220,7 +211,7 @@ Event Board::event_of(const std::string& name, const Picture& picture) {
           fmt::format(
               R"({{"name":{},"width":{},"height":{},"least":{:.6g},"most":{:.6g},"values":"{}"}})",
               json_string(name), picture.width, picture.height, least, most,
-              hexadecimal(picture.values, least, most))};
+              as_levels(picture.values, least, most))};
 }
 
 }  // namespace tess::detail

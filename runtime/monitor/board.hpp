@@ -44,15 +44,15 @@ class Board {
   /// What a browser that comes now must know.
   [[nodiscard]] std::vector<Event> past() const;
 
-  /// These heat maps are watched from now on. The argument's `watch` is not used.
-  void watch_heat(const std::vector<HeatQuery>& watched);
+  /// These heat maps are watched from now on.
+  void watch_heat(const std::vector<HeatMapId>& watched);
   /// What the PEs are to report for them.
   [[nodiscard]] std::vector<HeatQuery> heat_queries() const;
   void take(HeatCells&& part);
-  /// The new events of heat maps, each with its query (`watch` 0).
-  [[nodiscard]] std::vector<std::pair<HeatQuery, Event>> take_heat_events();
+  /// The new events of heat maps.
+  [[nodiscard]] std::vector<std::pair<HeatMapId, Event>> take_heat_events();
   /// The last event of a heat map, for a browser that comes now.
-  [[nodiscard]] std::vector<Event> past_heat(const HeatQuery& query) const;
+  [[nodiscard]] std::vector<Event> past_heat(const HeatMapId& id) const;
 
  private:
   struct OfPe {
@@ -82,7 +82,7 @@ class Board {
     std::uint32_t watch = 0;
     HeatMap map;
   };
-  std::map<HeatQuery, WatchedHeat> heat_;  // by query with `watch` 0
+  std::map<HeatMapId, WatchedHeat> heat_;
   std::uint32_t n_watches_ = 0;
 };
 

@@ -16,10 +16,15 @@ enum class HeatBy : std::uint8_t {
   pe,    ///< the PE that holds most of them
 };
 
-/// A heat map that a browser watches.
-struct HeatQuery {
+/// Names a heat map.
+struct HeatMapId {
   CollectionId array{};
   HeatBy by{};
+  friend auto operator<=>(const HeatMapId&, const HeatMapId&) = default;
+};
+/// A heat map that PEs are asked for.
+struct HeatQuery {
+  HeatMapId map;
   std::uint32_t watch = 0;  ///< numbered by process 0: one that begins again begins anew on all PEs
   friend auto operator<=>(const HeatQuery&, const HeatQuery&) = default;
 };
@@ -30,8 +35,8 @@ struct HeatCells {
   HeatQuery of;
   PeId pe{};
   Range range;
-  std::vector<std::uint32_t>
-      cells;  ///< of the HeatGrid of the range; only those with elements here
+  /// Of the HeatGrid of the range; only those with elements here.
+  std::vector<std::uint32_t> cells;
   /// For each cell. Load: the part of the PE's time since the window began. PE: the number of elements.
   std::vector<float> values;
 };

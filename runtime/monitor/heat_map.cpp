@@ -1,6 +1,7 @@
 #include "runtime/monitor/heat_map.hpp"
 
 #include "runtime/base/json_string.hpp"
+#include "runtime/monitor/level.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -82,10 +83,7 @@ std::string HeatMap::event_by_load(const std::string& name) const {
       values += "--";
       continue;
     }
-    constexpr const char* digits = "0123456789abcdef";
-    const auto level = static_cast<unsigned>(most > 0 ? std::lround(255 * load[cell] / most) : 0);
-    values += digits[level >> 4U & 15U];
-    values += digits[level & 15U];
+    add_level(values, most > 0 ? std::lround(255 * load[cell] / most) : 0);
   }
   const std::string summary =
       most == 0 ? "no load was seen yet"

@@ -169,9 +169,9 @@ class Monitor::Loop {
       const std::lock_guard lock(mutex_);
       return board_->past();
     };
-    source.past_heat = [this](const HeatQuery& query) {
+    source.past_heat = [this](const HeatMapId& id) {
       const std::lock_guard lock(mutex_);
-      return board_->past_heat(query);
+      return board_->past_heat(id);
     };
     source.ask_report = [this] {
       runtime_.service().report_job([reported = reported_](std::string&& text) {
@@ -201,7 +201,7 @@ class Monitor::Loop {
     if (server_) watch_heat();
     const bool by_load =
         std::any_of(heat_.queries.begin(), heat_.queries.end(),
-                    [](const HeatQuery& query) { return query.by == HeatBy::load; });
+                    [](const HeatQuery& query) { return query.map.by == HeatBy::load; });
     std::vector<PeId> asked;
     for (std::int32_t i = 0; i < machine_.n_pes_here(); ++i) {
       const PeId to{first_pe().value + i};
@@ -230,7 +230,7 @@ class Monitor::Loop {
   void publish() {
     if (!server_) return;
     std::vector<Event> events;
-    std::vector<std::pair<HeatQuery, Event>> heat;
+    std::vector<std::pair<HeatMapId, Event>> heat;
     {
       const std::lock_guard lock(mutex_);
       if (closed_) return;
@@ -249,7 +249,7 @@ class Monitor::Loop {
       reported_->text.reset();
     }
     server_->publish(events);
-    for (const auto& [query, event] : heat) server_->publish(query, event);
+    for (const auto& [id, event] : heat) server_->publish(id, event);
   }
 
   Runtime& runtime_;

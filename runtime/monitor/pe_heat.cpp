@@ -23,7 +23,7 @@ std::vector<HeatCells> PeHeat::begin(const std::vector<HeatQuery>& queries) {
   watch(queries);
   bool by_load = false;
   for (auto& [query, map] : maps_) {
-    if (query.by == HeatBy::load) {
+    if (query.map.by == HeatBy::load) {
       by_load = true;
     } else if (count(query, map)) {
       out.push_back(map.sent);
@@ -36,10 +36,10 @@ std::vector<HeatCells> PeHeat::begin(const std::vector<HeatQuery>& queries) {
 void PeHeat::watch(const std::vector<HeatQuery>& queries) {
   std::erase_if(maps_, [&](const auto& one) {
     return std::find(queries.begin(), queries.end(), one.first) == queries.end() ||
-           pe_.find(one.first.array) == nullptr;
+           pe_.find(one.first.map.array) == nullptr;
   });
   for (const HeatQuery& query : queries) {
-    const HostedCollection* collection = pe_.find(query.array);
+    const HostedCollection* collection = pe_.find(query.map.array);
     if (collection != nullptr) maps_.try_emplace(query, collection->range());
   }
 }
@@ -56,9 +56,10 @@ void PeHeat::begin_window() {
   meter.set_listener(this);
 }
 
-void PeHeat::stop_listening() {
-  if (!listens_) return;
-  listens_ = false;
+void PeHeat::stop_metering() {
+  if (!open_) return;
+  open_ = listens_ = false;
+  if (pe_.meter() == nullptr) return;
   pe_.meter()->set_listener(nullptr);
   pe_.stop_brief_meter();
 }
@@ -75,8 +76,8 @@ void PeHeat::changed(std::uint64_t at) {
   const Element* element = pe_.context().element;
   if (element == nullptr) return;
   for (auto& [query, map] : maps_) {
-    if (query.by != HeatBy::load) continue;
-    const HostedCollection* collection = pe_.find(query.array);
+    if (query.map.by != HeatBy::load) continue;
+    const HostedCollection* collection = pe_.find(query.map.array);
     const std::int64_t rank = collection != nullptr ? collection->rank_of(*element) : -1;
     if (rank < 0) continue;
     running_ = {&map, map.grid.cell_of(rank), 0};
@@ -87,8 +88,8 @@ void PeHeat::changed(std::uint64_t at) {
 }
 
 void PeHeat::add(std::uint64_t ticks) {
-  if (pe_.machine()
-          .virtual_time()) {  // it may charge for messages instead of the time of their code
+  if (pe_.machine().virtual_time()) {
+    // It may charge for messages instead of the time of their code.
     ticks += static_cast<std::uint64_t>(pe_.machine().message_cost().count());
   } else if (const Meter& meter = *pe_.meter(); meter.seconds(ticks) > long_seconds) {
     // Another thread may have had the core.
@@ -108,20 +109,15 @@ std::vector<HeatCells> PeHeat::end_window() {
 }
 
 std::vector<HeatCells> PeHeat::close_window() {
-  open_ = false;
   if (listens_) ended_ = pe_.meter()->now();
-  if (pe_.meter() != nullptr) {
-    pe_.meter()->set_listener(nullptr);
-    pe_.stop_brief_meter();
-  }
-  listens_ = false;
+  stop_metering();
   std::vector<HeatCells> out;
   const double passed = std::max(1.0, static_cast<double>(ended_ - began_));
   std::sort(spent_.begin(), spent_.end(), [](const Spent& a, const Spent& b) {
     return std::pair(a.map, a.cell) < std::pair(b.map, b.cell);
   });
   for (auto& [query, map] : maps_) {
-    if (query.by != HeatBy::load) continue;
+    if (query.map.by != HeatBy::load) continue;
     HeatCells& part = out.emplace_back();
     part.of = query;
     part.pe = pe_.id();
@@ -140,7 +136,7 @@ std::vector<HeatCells> PeHeat::close_window() {
 }
 
 bool PeHeat::count(const HeatQuery& query, Map& map) {
-  const HostedCollection& collection = *pe_.find(query.array);
+  const HostedCollection& collection = *pe_.find(query.map.array);
   const std::vector<Element*>& elements = collection.elements();
   const auto n_pes_here = static_cast<std::size_t>(pe_.machine().n_pes_here());
   // The PEs of a simulated machine share a thread, and may answer rarely.

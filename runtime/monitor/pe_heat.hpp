@@ -32,7 +32,7 @@ class PeHeat final : public ScopeListener {
   PeHeat(const PeHeat&) = delete;
   PeHeat& operator=(const PeHeat&) = delete;
   /// The PE runs no more code.
-  ~PeHeat() override { stop_listening(); }
+  ~PeHeat() override { stop_metering(); }
 
   // On the PE's thread.
 
@@ -62,15 +62,16 @@ class PeHeat final : public ScopeListener {
   /// Adds, and removes, what is watched from now on.
   void watch(const std::vector<HeatQuery>& queries);
   void begin_window();
-  void stop_listening();
   [[nodiscard]] std::vector<HeatCells> close_window();
+  void stop_metering();
   void add(std::uint64_t ticks);
   /// Counts a part of the elements; true if the pass is over and found something new.
   [[nodiscard]] bool count(const HeatQuery& query, Map& map);
 
   Pe& pe_;
   std::map<HeatQuery, Map> maps_;
-  bool open_ = false, listens_ = false;
+  bool open_ = false;                    // of the window; the meter runs
+  bool listens_ = false;                 // to the meter: until the window has seen enough scopes
   std::uint64_t began_ = 0, ended_ = 0;  // ticks; of the window
   // The running scope: when it began, or went on, in ticks and in the thread's time; and its cell.
   std::uint64_t since_ = 0;

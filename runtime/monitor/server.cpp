@@ -57,14 +57,14 @@ Target target_of(std::string_view given) {
   return target;
 }
 /// The heat map that is asked for.
-std::optional<HeatQuery> heat_of(const Target& target) {
+std::optional<HeatMapId> heat_of(const Target& target) {
   const std::string array = target.value("array"), by = target.value("by");
-  HeatQuery query;
+  HeatMapId id;
   const char* end = array.data() + array.size();
-  const auto [stop, error] = std::from_chars(array.data(), end, query.array.value, 16);
+  const auto [stop, error] = std::from_chars(array.data(), end, id.array.value, 16);
   if (error != std::errc() || stop != end || (by != "load" && by != "pe")) return std::nullopt;
-  query.by = by == "load" ? HeatBy::load : HeatBy::pe;
-  return query;
+  id.by = by == "load" ? HeatBy::load : HeatBy::pe;
+  return id;
 }
 
 /// Compares all characters, so that the time tells nothing of where they differ.
@@ -153,18 +153,18 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
                       });
   }
 
-  void watch(const std::optional<HeatQuery>& query) {
-    if (!query)
+  void watch(const std::optional<HeatMapId>& id) {
+    if (!id)
       return reply(http::status::bad_request,
                    "say /heat?array=ID&by=load or by=pe, with an ID that "
                    "frames name\n");
-    const std::vector<HeatQuery> watched = server_.watched();
+    const std::vector<HeatMapId> watched = server_.watched();
     if (watched.size() >= most_heat_maps &&
-        std::find(watched.begin(), watched.end(), *query) == watched.end())
+        std::find(watched.begin(), watched.end(), *id) == watched.end())
       return reply(http::status::service_unavailable,
                    "other browsers watch as many heat maps as a run makes: close one\n");
-    server_.watches(*query, weak_from_this());
-    stream(server_.source().past_heat(*query));
+    server_.watches(*id, weak_from_this());
+    stream(server_.source().past_heat(*id));
   }
 
   /// Answers with events: these, and those that are sent later.
@@ -262,21 +262,21 @@ void Server::publish(const std::vector<Event>& events) {
   }
 }
 
-void Server::publish(const HeatQuery& query, const Event& event) {
+void Server::publish(const HeatMapId& id, const Event& event) {
   const auto message = std::make_shared<const std::string>(as_text(event));
   for (const auto& [watched, listener] : to_heat_) {
-    if (watched != query) continue;
+    if (watched != id) continue;
     if (const auto connection = listener.lock()) connection->send(message);
   }
 }
 
-std::vector<HeatQuery> Server::watched() const {
-  std::vector<HeatQuery> queries;
-  for (const auto& [query, listener] : to_heat_)
-    if (!listener.expired()) queries.push_back(query);
-  std::sort(queries.begin(), queries.end());
-  queries.erase(std::unique(queries.begin(), queries.end()), queries.end());
-  return queries;
+std::vector<HeatMapId> Server::watched() const {
+  std::vector<HeatMapId> ids;
+  for (const auto& [id, listener] : to_heat_)
+    if (!listener.expired()) ids.push_back(id);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
 }
 
 }  // namespace tess::detail

@@ -42,7 +42,7 @@ class Server {
   /// What the server asks of the monitor.
   struct Source {
     std::function<std::vector<Event>()> past;
-    std::function<std::vector<Event>(const HeatQuery&)> past_heat;
+    std::function<std::vector<Event>(const HeatMapId&)> past_heat;
     std::function<void()> ask_report;
   };
 
@@ -53,16 +53,16 @@ class Server {
   /// Sends events to all browsers that listen to them.
   void publish(const std::vector<Event>& events);
   /// Sends the event of a heat map to the browsers that watch it.
-  void publish(const HeatQuery& query, const Event& event);
+  void publish(const HeatMapId& id, const Event& event);
   /// The heat maps that browsers watch.
-  [[nodiscard]] std::vector<HeatQuery> watched() const;
+  [[nodiscard]] std::vector<HeatMapId> watched() const;
 
   // For its connections.
   [[nodiscard]] const Source& source() const { return source_; }
   [[nodiscard]] const std::string& token() const { return token_; }
   void listens(std::weak_ptr<Listener> listener) { to_all_.push_back(std::move(listener)); }
-  void watches(const HeatQuery& query, std::weak_ptr<Listener> listener) {
-    to_heat_.emplace_back(query, std::move(listener));
+  void watches(const HeatMapId& id, std::weak_ptr<Listener> listener) {
+    to_heat_.emplace_back(id, std::move(listener));
   }
 
  private:
@@ -73,7 +73,7 @@ class Server {
   const Source source_;
   boost::asio::ip::tcp::acceptor acceptor_;
   std::vector<std::weak_ptr<Listener>> to_all_;
-  std::vector<std::pair<HeatQuery, std::weak_ptr<Listener>>> to_heat_;
+  std::vector<std::pair<HeatMapId, std::weak_ptr<Listener>>> to_heat_;
 };
 
 /// An event as it stands in the stream.

@@ -54,15 +54,24 @@ struct Pe::Futures {
     void* future = nullptr;  // null: not in use
     std::uint32_t n_used = 0;
   };
+  std::uint32_t first = 0;       // the number of the first place; above those of the run that a
+                                 // restart continues
   std::vector<Place> places{1};  // the first is never used: no future has number 0
   std::vector<std::uint32_t> unused;
+  std::vector<std::pair<std::uint64_t, void*>> before_restart;  // made meanwhile, by their numbers
 
-  /// Null if this number's future is no longer there.
-  [[nodiscard]] Place* find(std::uint64_t id) {
-    const auto at = static_cast<std::uint32_t>(id);
-    if (at >= places.size()) return nullptr;
-    Place& place = places[at];
+  [[nodiscard]] Place* place_of(std::uint64_t id) {
+    const auto number = static_cast<std::uint32_t>(id);
+    if (number < first || number - first >= places.size()) return nullptr;
+    Place& place = places[number - first];
     return place.future != nullptr && place.n_used == id >> 32U ? &place : nullptr;
+  }
+  /// Null if this number's future is no longer there.
+  [[nodiscard]] void** find(std::uint64_t id) {
+    if (Place* const place = place_of(id); place != nullptr) return &place->future;
+    for (auto& [number, future] : before_restart)
+      if (number == id && future != nullptr) return &future;
+    return nullptr;
   }
 };
 
@@ -468,23 +477,52 @@ std::uint64_t Pe::enter_future(void* future) {
   futures_->unused.pop_back();
   Futures::Place& place = futures_->places[at];
   place.future = future;
-  return std::uint64_t{place.n_used} << 32U | at;
+  return std::uint64_t{place.n_used} << 32U | (futures_->first + at);
 }
 
 void Pe::move_future(std::uint64_t id, void* future) {
-  if (Futures::Place* place = futures_->find(id)) place->future = future;
+  if (void** const known = futures_->find(id)) *known = future;
 }
 
 void Pe::leave_future(std::uint64_t id) {
-  Futures::Place* place = futures_->find(id);
-  if (place == nullptr) return;
-  place->future = nullptr;
-  if (++place->n_used != 0) futures_->unused.push_back(static_cast<std::uint32_t>(id));
+  if (Futures::Place* const place = futures_->place_of(id); place != nullptr) {
+    place->future = nullptr;
+    if (++place->n_used != 0)
+      futures_->unused.push_back(static_cast<std::uint32_t>(id) - futures_->first);
+  } else if (void** const known = futures_->find(id); known != nullptr) {
+    *known = nullptr;
+  }
 }
 
 void* Pe::find_future(std::uint64_t id) const {
-  const Futures::Place* place = futures_->find(id);
-  return place == nullptr ? nullptr : place->future;
+  void** const known = futures_->find(id);
+  return known == nullptr ? nullptr : *known;
+}
+
+std::uint32_t Pe::places_of_futures() const {
+  return futures_->first + static_cast<std::uint32_t>(futures_->places.size());
+}
+
+void Pe::begin_futures_behind(std::uint32_t places) {
+  Futures& now = *futures_;
+  for (std::uint32_t at = 0; at < now.places.size(); ++at)
+    if (const Futures::Place& place = now.places[at]; place.future != nullptr)
+      now.before_restart.emplace_back(std::uint64_t{place.n_used} << 32U | (now.first + at),
+                                      place.future);
+  now.places.assign(1, {});
+  now.unused.clear();
+  now.first = places;
+}
+
+void* Pe::require_future(std::uint64_t id) const {
+  void* const future = find_future(id);
+  TESS_CHECK(future != nullptr || static_cast<std::uint32_t>(id) >= futures_->first,
+             "a callback to a future of the run before the restart was called: make the future "
+             "again after the restart, and send its new callback()");
+  TESS_CHECK(future != nullptr,
+             "the result of a future arrived after its coroutine had continued or ended: keep the "
+             "future until its result is there");
+  return future;
 }
 
 std::vector<HostedCollection*> Pe::collections() const {

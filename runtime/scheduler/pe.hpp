@@ -228,6 +228,12 @@ class Pe {
   void leave_future(std::uint64_t id);
   /// Null if the future was destroyed.
   [[nodiscard]] void* find_future(std::uint64_t id) const;
+  /// For restarts: numbers of futures made from now on begin behind those of the saved run, so that a
+  /// callback that was saved finds none of them.
+  [[nodiscard]] std::uint32_t places_of_futures() const;
+  void begin_futures_behind(std::uint32_t places);
+  /// Ends with an error that says why it was destroyed, or never was there.
+  [[nodiscard]] void* require_future(std::uint64_t id) const;
 
   /// Keeps an exception that a coroutine threw after it had waited; it is rethrown at the end of
   /// the message.

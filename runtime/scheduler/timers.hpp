@@ -4,7 +4,7 @@
 // The timers wait here, each with the message that runs it once it is due. Only an alarm for the
 // earliest of them is with the machine, and so a timer that is cancelled leaves nothing behind:
 //
-//     after, every   waiting_ += timer; if it is earlier than all alarms: one more alarm
+//     after, every   the timer waits; if it is earlier than all alarms: one more alarm
 //     alarm          the messages of all that are due go into the queue of this PE
 //
 // A periodic timer belongs to no epoch, and neither epochs nor the run wait for its next tick. What
@@ -53,6 +53,7 @@ class Timers {
   /// The number of timers that run once and have not run yet.
   [[nodiscard]] std::size_t n_waiting() const;
 
+  /// Forgets all timers that wait, without running them: the run is over.
   void drop_all();
 
   // Handlers of the messages.

@@ -138,6 +138,14 @@ TEST_CASE("a result without a value: futures, targets, reductions", "[api]") {
   });
 }
 
+namespace {
+tess::Future<int> told_by(tess::ElementProxy<Node> node) {
+  tess::Future<int> value;
+  node.send<&Node::tell>(value.callback());
+  return value;
+}
+}  // namespace
+
 TEST_CASE("a future is moved, also once its result is there", "[api]") {
   over_seeds([]() -> tess::Task {
     const auto nodes = tess::create<Node>(tess::range(3));
@@ -146,7 +154,9 @@ TEST_CASE("a future is moved, also once its result is there", "[api]") {
     co_await tess::epoch([&] { nodes.broadcast<&Node::large>(5); });
     std::vector<tess::Future<int>> moved;
     for (tess::Future<int>& one : all) moved.push_back(std::move(one));
-    for (tess::Future<int>& one : moved) CHECK(co_await one % 5 == 0);
+    for (std::size_t i = 0; i + 1 < moved.size(); ++i) CHECK(co_await moved[i] % 5 == 0);
+    CHECK(co_await std::move(moved.back()) % 5 == 0);
+    CHECK(co_await told_by(nodes[{2}]) % 5 == 0);
   });
 }
 

@@ -100,6 +100,10 @@ TEST_CASE("each member of a section meets each multicast once, and its reduction
 TEST_CASE("a section ends in mid-use, and later ones lack nothing", "[runtime][protocol]") {
   run_seeds("sections_end");
 }
+TEST_CASE("each element gets from a scan what stands before it, wherever elements go",
+          "[runtime][protocol][scan]") {
+  run_seeds("scans", &tess::fuzz::pes_of_seed, 300);
+}
 TEST_CASE("messages find an element that visits every PE", "[runtime][protocol]") {
   run_seeds("tour");
 }
@@ -176,7 +180,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
         "timers",           "asks",           "payloads",        "floods",
         "groups",           "balance_rounds", "balance_barrier", "balance_rotate",
         "balance_periodic", "balance_epochs", "priorities",      "process_groups",
-        "all_at_once"}) {
+        "all_at_once",      "scans"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

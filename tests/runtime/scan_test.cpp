@@ -68,10 +68,8 @@ class Tile : public tess::Chare<Tile, tess::Index2> {
     }
     for (int scan = n_scans - 1; scan >= 0; --scan) {
       const auto at = static_cast<std::size_t>(scan);
-      tess::Future<std::int64_t>& sum_there = sums[at];
-      tess::Future<double>& mean_there = means[at];
-      const std::int64_t sum = co_await sum_there;
-      const double mean = co_await mean_there;
+      const std::int64_t sum = co_await sums[at];
+      const double mean = co_await means[at];
       n_right_ += sum == 7 + sum_before(scan, rank()) && mean == scan ? 1 : 1000;
     }
   }

@@ -13,6 +13,7 @@ using nlohmann::json;
 using tess::detail::Board;
 using tess::detail::Event;
 using tess::detail::HeatBy;
+using tess::detail::HeatMapId;
 using tess::detail::HeatQuery;
 using tess::detail::PeSample;
 
@@ -113,12 +114,12 @@ TEST_CASE("a heat map that is watched again begins anew", "[runtime][monitor]") 
   const auto machine = machine_of(2);
   Board board(*machine);
   board.arrived(sample(0, 1, 0, 0, 3));  // the array is named
-  const HeatQuery asked{tess::CollectionId{7}, HeatBy::pe, 0};
+  const HeatMapId asked{tess::CollectionId{7}, HeatBy::pe};
   board.watch_heat({asked});
   REQUIRE(board.heat_queries().size() == 1);
   const HeatQuery first = board.heat_queries().front();
   board.take({first, tess::PeId{1}, tess::range(4), {0, 1, 2, 3}, {1, 1, 1, 1}});
-  board.take({{tess::CollectionId{8}, HeatBy::pe, 1}, tess::PeId{0}, tess::range(4), {0}, {9}});
+  board.take({{{tess::CollectionId{8}, HeatBy::pe}, 1}, tess::PeId{0}, tess::range(4), {0}, {9}});
   auto events = board.take_heat_events();
   REQUIRE(events.size() == 1);
   CHECK(events[0].first == asked);
