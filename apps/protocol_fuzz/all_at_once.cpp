@@ -2,7 +2,8 @@
 // when_any, sections that are made, used and destroyed while their members migrate, are created and
 // end, priorities and expedited messages, delayed sends and periodic timers, nested epochs, mailboxes,
 // elements created on demand, a single chare, a group, a process group, read-only data, reductions,
-// a user-defined map, and between the phases checkpoints, with a restart on another number of PEs.
+// scans, a user-defined map, elements of two arrays behind one interface, and between the phases
+// checkpoints, with a restart on another number of PEs.
 //
 // The oracle: each message that must arrive carries a token, and each element adds up the tokens that
 // reached it. After each phase the sums over all collections equal the sum of what was sent. Replies
@@ -45,14 +46,12 @@ struct Hop {
   std::int32_t n_left = 0;
 };
 
-class Citizen : public Chare<Citizen, Index1> {
+class Citizen : public Chare<Citizen, Index1>, public Resident {
  public:
-  static PeId place(Index1 index, std::int32_t n_pes) {
-    return PeId{static_cast<std::int32_t>(mix(static_cast<std::uint64_t>(index.x) + 3) %
-                                          static_cast<std::uint64_t>(n_pes))};
+  void add(std::uint64_t token) override { count_.note(token); }
+  [[nodiscard]] std::uint64_t age(std::uint64_t question) override {
+    return answer_of(question, index().x);
   }
-
-  void add(std::uint64_t token) { count_.note(token); }
   void add_soon(std::uint64_t token) { add(token); }
   void add_inline(std::uint64_t token) { add(token); }
   void receive(Note note) { notes_.put(note); }
@@ -104,6 +103,9 @@ class Citizen : public Chare<Citizen, Index1> {
                                        (orders.phase * 100 + orders.n_left) * 1000 + index().x)));
     if (orders.n_left == city->n_steps) {
       contribute(in_order(concatenate), std::vector<std::int32_t>{index().x}, orders.began);
+      contribute(exclusive_scan(sum, std::int64_t{orders.phase}), std::int64_t{index().x},
+                 self().target<&Citizen::ranked>());
+      phase_ = orders.phase;
       const Note note{orders.phase, token(random)};
       array()[{(index().x + 1) % city->n_citizens}].send<&Citizen::receive>(note);
     }
@@ -112,9 +114,12 @@ class Citizen : public Chare<Citizen, Index1> {
       add(note.token);
       co_return;
     }
-    switch (random.below(9)) {
+    switch (random.below(10)) {
       case 0:
         co_await ask_others(random);
+        break;
+      case 7:
+        co_await call_residents(orders, random);
         break;
       case 1:
         co_await ask_coroutines(random);
@@ -145,18 +150,30 @@ class Citizen : public Chare<Citizen, Index1> {
       self().send<&Citizen::live>(orders);
     }
   }
+  /// The scan at the start of a phase.
+  void ranked(std::int64_t before) {
+    const std::int64_t me = index().x;
+    expect(before == phase_ + me * (me - 1) / 2, "citizen ", me, " gets ", before,
+           " from the scan of phase ", phase_);
+    ++city->n_ranked;
+  }
   void report(Callback<Count> target) { contribute(sum, count_, target); }
 
   using EntryAttributes = Attributes<EntryMethod<&Citizen::add_soon, Priority{-5}>,
                                      EntryMethod<&Citizen::add_inline, inline_when_local>>;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(count_, notes_);
+    ar(count_, notes_, phase_);
   }
 
  private:
   [[nodiscard]] ElementProxy<Citizen> any(Random& random) const {
     return array()[{draw(random, city->n_citizens)}];
+  }
+  /// A citizen, or a singer that does not end.
+  [[nodiscard]] InterfaceProxy<Resident> any_resident(const Orders& orders, Random& random) const {
+    if (random.chance(0.5)) return any(random);
+    return orders.singers[{3 * draw(random, (orders.n_singers + 2) / 3)}];
   }
 
   Task ask_others(Random& random) {
@@ -244,6 +261,17 @@ class Citizen : public Chare<Citizen, Index1> {
       was_dead = is_dead;
     }
   }
+  Task call_residents(Orders& orders, Random& random) {
+    const InterfaceProxy<Resident> one = any_resident(orders, random);
+    one.send<&Resident::add>(token(random));
+    any_resident(orders, random).with(expedited).send<&Resident::add>(token(random));
+    any_resident(orders, random).send_after<&Resident::add>(delay(random), token(random));
+    if (random.chance(0.3))
+      InterfaceArray<Resident>(array()).broadcast<&Resident::add>(token(random, city->n_citizens));
+    const std::uint64_t question = random();
+    const std::uint64_t answer = co_await one.ask<&Resident::age>(question);
+    expect(answer == answer_of(question, one.index().x), "an interface gives another answer");
+  }
   /// A section of its own.
   Task conduct(Orders& orders, Random& random) {
     std::vector<Index1> members{{0}};
@@ -314,6 +342,7 @@ class Citizen : public Chare<Citizen, Index1> {
 
   Count count_;
   Mailbox<&Note::phase> notes_;
+  std::int32_t phase_ = 0;
 };
 
 // --- The main coroutine.
@@ -336,7 +365,7 @@ struct State {
 };
 
 void found_city(State& state, int n_singers) {
-  state.citizens = create<Citizen>(range(city->n_citizens));
+  state.citizens = create<Citizen>(mapped(range(city->n_citizens), ByLot{city->seed}));
   state.singers = create<Singer>(range(n_singers));
   state.spots = create<Spot>(sparse);
   state.spots["first"].insert();
@@ -385,6 +414,8 @@ Task run_phase(State& state) {
     for (int index = first_new; index < state.n_indices; ++index) state.singers[{index}].insert();
   });
   ticks.cancel();
+  expect(city->n_ranked.exchange(0) == city->n_citizens,
+         "an epoch ends before the results of a scan");
   expect(began.await_ready(), "an epoch ends before a reduction of it");
   const std::vector<std::int32_t> all = co_await began;
   expect(all.size() == static_cast<std::size_t>(city->n_citizens) &&
@@ -397,7 +428,7 @@ Task run_phase(State& state) {
   const std::uint64_t question = token(random);
   const std::uint64_t answer = co_await state.mayor.element().ask<&Mayor::answer>(question);
   expect(answer == answer_of(question, -1), "the single chare has another answer");
-  Future<Count> of_citizens, of_spots, of_mayor;
+  Future<Count> of_citizens, of_singers, of_spots, of_mayor;
   Future<Both> of_offices;
   Future<double> half;
   state.citizens.broadcast<&Citizen::report>(of_citizens.callback());
@@ -405,10 +436,11 @@ Task run_phase(State& state) {
   state.mayor.send<&Mayor::report>(of_mayor.callback());
   state.offices.broadcast<&Office::report>(treasuries, of_offices.callback());
   state.singers.broadcast<&Singer::count>(half.callback());
-  const auto [citizens, spots, mayor, offices, singers_by_two] =
-      co_await when_all(of_citizens, of_spots, of_mayor, of_offices, half);
+  state.singers.broadcast<&Singer::report>(of_singers.callback());
+  const auto [citizens, singers, spots, mayor, offices, singers_by_two] =
+      co_await when_all(of_citizens, of_singers, of_spots, of_mayor, of_offices, half);
   state.spent = state.spent + offices[1];
-  const Count arrived = citizens + spots + mayor + offices[0] + state.spent;
+  const Count arrived = citizens + singers + spots + mayor + offices[0] + state.spent;
   state.sent = city->sent;
   state.n_singers = city->n_singers;
   expect(arrived == state.sent, "phase ", phase, ": ", state.sent.n, " tokens were sent, ",

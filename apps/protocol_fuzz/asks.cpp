@@ -162,9 +162,7 @@ class Replier : public Chare<Replier, Index1> {
               "an element is neither asked nor dead, or lives again");
         }
       }
-      if (random.chance(desk->move_chance))
-        migrate_to(PeId{
-            static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+      if (random.chance(desk->move_chance)) migrate_to(any_pe(random));
     }
     ++desk->n_done;
   }

@@ -91,9 +91,7 @@ void Life::live() {
     child.send<&Life::begin>();
   }
   Random random = l.draws(root, path, phase + 100);
-  if (random.chance(l.move_chance))
-    migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+  if (random.chance(l.move_chance)) migrate_to(any_pe(random));
   if (phase_ == l.n_phases(root, path)) {
     destroy();
     return;

@@ -55,14 +55,11 @@ class Listener : public Chare<Listener, Index1> {
   }
 
  private:
-  static PeId draw_pe(Random& random) {
-    return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
-  }
   void move(Random& random) {
     if (heard->destroy_chance > 0 || random.chance(0.5)) {  // otherwise it would be a dead letter
-      migrate_to(draw_pe(random));
+      migrate_to(any_pe(random));
     } else {
-      array()[index()].migrate_to(draw_pe(random));
+      array()[index()].migrate_to(any_pe(random));
     }
   }
   void create_child(Random& random) {
@@ -73,7 +70,7 @@ class Listener : public Chare<Listener, Index1> {
       index = heard->n_first + heard->n_created++;
     }
     if (random.chance(0.3)) {
-      array()[{index}].insert_on(draw_pe(random), true);
+      array()[{index}].insert_on(any_pe(random), true);
     } else if (random.chance(0.5)) {
       array()[{index}].send_or_create_here<&Listener::create>();
     } else {

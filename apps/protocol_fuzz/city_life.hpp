@@ -3,7 +3,10 @@
 #pragma once
 
 #include "apps/protocol_fuzz/trial.hpp"
+#include "runtime/index_map.hpp"
+#include "runtime/interface.hpp"
 #include "runtime/process_group.hpp"
+#include "runtime/scan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +36,7 @@ struct City {
   std::mutex mutex{};
   Count sent{};
   std::map<std::uint64_t, int> hops{};  // by epoch
-  std::atomic<int> n_singers{0}, n_ticks_sent{0}, n_ticks{0}, n_cut{0};
+  std::atomic<int> n_singers{0}, n_ticks_sent{0}, n_ticks{0}, n_cut{0}, n_ranked{0};
 };
 inline City* city = nullptr;
 
@@ -47,11 +50,11 @@ inline std::uint64_t answer_of(std::uint64_t question, int index) {
 inline bool refuses(std::uint64_t question) {
   return question % 5 == 0;
 }
-/// A number that must arrive.
-inline std::uint64_t token(Random& random) {
+/// A number that must arrive, at so many elements.
+inline std::uint64_t token(Random& random, int n_copies = 1) {
   const std::uint64_t drawn = random();
   const std::lock_guard lock(city->mutex);
-  city->sent.note(drawn);
+  for (int i = 0; i < n_copies; ++i) city->sent.note(drawn);
   return drawn;
 }
 inline int draw(Random& random, int n) {
@@ -60,57 +63,51 @@ inline int draw(Random& random, int n) {
 inline Time delay(Random& random) {
   return Time(static_cast<std::int64_t>(random.below(city->longest)));
 }
-inline PeId any_pe(Random& random) {
-  return PeId{draw(random, tess::n_pes())};
-}
 
 // --- What receives tokens.
 
-class Spot : public Chare<Spot, std::string> {
- public:
-  void add(std::uint64_t token) { count_.note(token); }
-  void report(Callback<Count> target) { contribute(sum, count_, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_);
-  }
-
- private:
-  Count count_;
-};
-
-/// The single chare.
-class Mayor : public Chare<Mayor> {
- public:
-  void add(std::uint64_t token) { count_.note(token); }
-  [[nodiscard]] std::uint64_t answer(std::uint64_t question) {
-    count_.note(question);
-    return answer_of(question, -1);
-  }
-  void report(Callback<Count> target) { contribute(sum, count_, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_);
-  }
-
- private:
-  Count count_;
-};
-
-class Treasury {
+class Counting {
  public:
   void add(std::uint64_t token) { count_.note(token); }
   [[nodiscard]] Count count() const { return count_; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(count_);
+  }
 
- private:
+ protected:
   Count count_;
+};
+
+class Spot : public Chare<Spot, std::string>, public Counting {
+ public:
+  void report(Callback<Count> target) { contribute(sum, count(), target); }
+};
+
+/// The single chare.
+class Mayor : public Chare<Mayor>, public Counting {
+ public:
+  [[nodiscard]] std::uint64_t answer(std::uint64_t question) {
+    add(question);
+    return answer_of(question, -1);
+  }
+  void report(Callback<Count> target) { contribute(sum, count(), target); }
+};
+
+class Treasury : public Counting {};
+
+/// What elements of two arrays are, so that they can be called alike.
+class Resident {
+ public:
+  virtual ~Resident() = default;
+  virtual void add(std::uint64_t token) = 0;
+  [[nodiscard]] virtual std::uint64_t age(std::uint64_t question) = 0;
 };
 
 using Both = std::array<Count, 2>;  // the group's and the process group's
 
-class Office : public Group<Office> {
+class Office : public Group<Office>, public Counting {
  public:
-  void add(std::uint64_t token) { count_.note(token); }
   void tick() { ++city->n_ticks; }
   void report(ProcessGroupProxy<Treasury> treasuries, Callback<Both> target) {
     const bool first = pe().value % machine().pes_per_process() == 0;
@@ -118,13 +115,6 @@ class Office : public Group<Office> {
     contribute(sum, Both{count_, first ? treasury : Count{}}, target);
   }
   void absorb(Office&& other) { count_ = count_ + other.count_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_);
-  }
-
- private:
-  Count count_;
 };
 
 // --- Members of sections.
@@ -143,11 +133,14 @@ struct Cue {
   Callback<Chorus> result;
 };
 
-class Singer : public Chare<Singer, Index1> {
+class Singer : public Chare<Singer, Index1>, public Resident {
  public:
   static bool is_mortal(int index) { return index % 3 != 0; }
 
-  [[nodiscard]] std::uint64_t age(std::uint64_t question) { return answer_of(question, index().x); }
+  void add(std::uint64_t token) override { counted_.add(token); }
+  [[nodiscard]] std::uint64_t age(std::uint64_t question) override {
+    return answer_of(question, index().x);
+  }
   void end() {
     if (!std::exchange(ends_, true)) --city->n_singers;
     destroy();
@@ -167,15 +160,17 @@ class Singer : public Chare<Singer, Index1> {
     if (random.chance(city->move_chance)) migrate_to(any_pe(random));
   }
   void count(Callback<double> target) { contribute(HalfOfAll{}, 1, target); }
+  void report(Callback<Count> target) { contribute(sum, counted_.count(), target); }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(results_, n_given_, n_sung_, ends_);
+    ar(counted_, results_, n_given_, n_sung_, ends_);
   }
 
  private:
   std::map<SectionProxy<Singer>, std::vector<Callback<Chorus>>> results_;
   std::map<SectionProxy<Singer>, std::int32_t> n_given_;
+  Counting counted_;
   int n_sung_ = 0;
   bool ends_ = false;
 };

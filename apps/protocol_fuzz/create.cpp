@@ -89,10 +89,7 @@ class Demanded : public Chare<Demanded<Index>, Index> {
     }
     oracle->trial.expect(number_ == token.index, "a message to ", token.index, " met ", number_);
   }
-  void move(Random& random) {
-    this->migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
-  }
+  void move(Random& random) { this->migrate_to(any_pe(random)); }
 
   int number_ = -1;  // until the first message
 };
@@ -140,9 +137,7 @@ class Crowd : public Group<Crowd<Index>> {
         element.insert(token);
         break;
       case 1:
-        element.insert_on(PeId{static_cast<std::int32_t>(
-                              random.below(static_cast<std::uint64_t>(tess::n_pes())))},
-                          token);
+        element.insert_on(any_pe(random), token);
         break;
       case 2:
         element.insert_if_absent(token);

@@ -142,8 +142,7 @@ void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random)
         const std::lock_guard lock(remains->mutex);
         made = remains->n_made[flies.id()]++;
       }
-      const PeId where{
-          static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
+      const PeId where = any_pe(random);
       flies[{1000 + made}].insert_on(where, errand);
       break;
     }
@@ -167,9 +166,7 @@ void Mayfly::run(Errand errand) {
   remains->deliver(array().id(), errand.token);
   Random random(mix(static_cast<std::uint64_t>(errand.token) ^ mix(remains->trial.seed())));
   if (random.chance(remains->end_chance)) array().destroy();
-  if (random.chance(0.3))
-    migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+  if (random.chance(0.3)) migrate_to(any_pe(random));
   if (random.chance(0.05)) destroy();
   if (random.chance(0.05)) start_meeting(array(), errand.clerks);
   if (random.chance(0.2)) sync();
@@ -239,8 +236,7 @@ bool balance(const ArrayProxy<Mayfly>& flies, Random& random) {
 
 Task live_and_end(GroupProxy<Clerk> clerks, std::uint64_t seed) {
   Random random(seed);
-  const PeId other{
-      static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
+  const PeId other = any_pe(random);
   const Errand errand{clerks, static_cast<int>(random.below(1000)),
                       static_cast<int>(random.below(12))};
   ArrayProxy<Mayfly> flies;

@@ -23,8 +23,7 @@ class Mover : public Chare<Mover, Index1> {
   /// Goes to a drawn PE, by one of several ways.
   void go(int round) {
     Random random(mix(places->seed ^ static_cast<std::uint64_t>(round * 4096 + index().x)));
-    const PeId to{
-        static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
+    const PeId to = any_pe(random);
     {
       const std::lock_guard lock(places->mutex);
       places->wanted[index().x] = to;

@@ -114,9 +114,7 @@ class Branch : public Chare<Branch, Index1> {
     co_await epoch([&] { split(Twig{inner, twig.energy / 2, mix(twig.seed)}, 3); });
   }
   void wander(Random& random) {
-    if (random.chance(ledger->move_chance))
-      migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+    if (random.chance(ledger->move_chance)) migrate_to(any_pe(random));
   }
   /// Up to n_most children, which share the energy.
   void split(Twig twig, int n_most) {

@@ -60,9 +60,7 @@ class Wave : public Chare<Wave, Index1> {
       flood->exit_here(tess::my_pe(), static_cast<int>(random.below(100)));
       return;
     }
-    if (random.chance(0.2))
-      migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+    if (random.chance(0.2)) migrate_to(any_pe(random));
     Drop next;
     next.seed = random();
     const Index to{

@@ -58,9 +58,7 @@ class Mortal : public Chare<Mortal<Mode>, Index2> {
 
   void take(int token) {
     Random random(mix(static_cast<std::uint64_t>(token) ^ population->trial.seed()));
-    if (random.chance(0.3))
-      this->migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+    if (random.chance(0.3)) this->migrate_to(any_pe(random));
     ++n_taken_;
     const std::lock_guard lock(population->mutex);
     ++population->delivered[static_cast<std::size_t>(token)];

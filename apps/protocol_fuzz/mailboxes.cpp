@@ -70,10 +70,7 @@ class Bead : public Chare<Bead, Index1> {
   }
 
  private:
-  void move(Random& random) {
-    migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
-  }
+  void move(Random& random) { migrate_to(any_pe(random)); }
 
   std::uint64_t value_ = 0;
   Mailbox<&Side::key> sides_;

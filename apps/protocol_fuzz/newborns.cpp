@@ -43,10 +43,6 @@ struct Nursery {
 };
 const Nursery* nursery = nullptr;
 
-PeId draw_pe(Random& random) {
-  return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
-}
-
 /// What one element gives to a round.
 struct Entry {
   Name name = 0;
@@ -125,7 +121,7 @@ class Cell : public Chare<Cell, Name> {
   void give_all(const Order& order);
   void pass_to_governor(Order order);
   void move(Random& random) {
-    if (random.chance(nursery->move_chance)) migrate_to(draw_pe(random));
+    if (random.chance(nursery->move_chance)) migrate_to(any_pe(random));
   }
 
   bool created_ = false, may_end_ = false;
@@ -145,7 +141,7 @@ void insert_cell(const ArrayProxy<Cell>& cells, Name name, int floor) {
       break;
     case 1:
     case 2:
-      cells[name].insert_on(draw_pe(random), floor);
+      cells[name].insert_on(any_pe(random), floor);
       break;
     case 3:
       cells[name].send_or_create_here<&Cell::create>(floor);
@@ -271,8 +267,8 @@ class Governor : public Group<Governor> {
 void Cell::pass_to_governor(Order order) {
   const GroupProxy<Governor> governors = order.governors;
   Random random = nursery->draws(order.round, index(), 6);
-  governors[draw_pe(random)].send<&Governor::pass_on>(array(),
-                                                      Governor::Passed{std::move(order), index()});
+  governors[any_pe(random)].send<&Governor::pass_on>(array(),
+                                                     Governor::Passed{std::move(order), index()});
 }
 
 void Governor::populate(const ArrayProxy<Cell>& cells, int round, Random& random) {
@@ -282,7 +278,7 @@ void Governor::populate(const ArrayProxy<Cell>& cells, int round, Random& random
     if (random.chance(0.5)) {
       insert_cell(cells, name, round);
     } else {
-      group()[draw_pe(random)].send<&Governor::insert>(cells, Creation{name, round});
+      group()[any_pe(random)].send<&Governor::insert>(cells, Creation{name, round});
     }
   }
 }

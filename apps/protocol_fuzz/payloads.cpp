@@ -91,9 +91,7 @@ class Carrier : public Chare<Carrier, Index1> {
     relay->trial.expect(seed_ == 0 || values_ == numbers(seed_), "a state was garbled on its way");
     Random random(mix(cargo.seed ^ static_cast<std::uint64_t>(left)));
     if (random.chance(0.2)) load(random() | 1U);
-    if (random.chance(0.3))
-      migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+    if (random.chance(0.3)) migrate_to(any_pe(random));
     if (left == 0) {
       ++relay->n_ended;
       return;

@@ -77,10 +77,7 @@ class Player : public Chare<Player, Index1> {
 
  private:
   void create_child(int round);
-  void move(Random& random) {
-    migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
-  }
+  void move(Random& random) { migrate_to(any_pe(random)); }
 
   bool created_ = false;  // an element created on demand does not end before its first message
   int last_round_ = -1;

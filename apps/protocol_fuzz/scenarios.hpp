@@ -21,6 +21,7 @@ void newborns(Trial& trial);             // newborns.cpp
 void refinement(Trial& trial);           // newborns.cpp
 void sections(Trial& trial);             // sections.cpp
 void sections_end(Trial& trial);         // sections_end.cpp
+void scans(Trial& trial);                // scans.cpp
 void tour(Trial& trial);                 // tour.cpp
 void epochs(Trial& trial);               // epochs.cpp
 void pauses(Trial& trial);               // pauses.cpp

@@ -101,10 +101,7 @@ class Singer : public Chare<Singer, Index1> {
                                 ((cue.number * 4 + what) * 1000 + cue.round) * 1000 + index().x))));
   }
   void give(const Cue& cue);
-  void move(Random& random) {
-    migrate_to(
-        PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
-  }
+  void move(Random& random) { migrate_to(any_pe(random)); }
   void end(Random& random) {
     if (index().x == 0 || n_late_ != 0 || !random.chance(concert->end_chance)) return;
     const std::lock_guard lock(concert->mutex);

@@ -49,9 +49,7 @@ class Rower : public Chare<Rower, Index1> {
     Random random(mix(race->seed ^
                       static_cast<std::uint64_t>((stroke.heat * 100 + stroke.round) * 1000 + me)));
     if (stroke.may_end && random.chance(race->end_chance)) stroke.section.destroy();
-    if (random.chance(race->move_chance))
-      migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+    if (random.chance(race->move_chance)) migrate_to(any_pe(random));
   }
   template <class Ar>
   void serialize(Ar& ar) {

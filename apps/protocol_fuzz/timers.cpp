@@ -38,9 +38,7 @@ class Clock : public Chare<Clock, Index1> {
     record_[3] += fuse.id >> 8U;
     Random random(mix(fuse.id));
     if (fuse.energy > 0) set(fuse.energy - 1, random);
-    if (random.chance(shop->move_chance))
-      migrate_to(
-          PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))});
+    if (random.chance(shop->move_chance)) migrate_to(any_pe(random));
   }
   void report(Callback<std::array<std::uint64_t, 4>> target) {
     contribute(sum, record_, std::move(target));

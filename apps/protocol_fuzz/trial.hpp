@@ -96,6 +96,19 @@ class Trial {
   std::vector<std::string> failures_;
 };
 
+/// Any PE of the run.
+[[nodiscard]] inline PeId any_pe(Random& random) {
+  return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
+}
+/// A map of indices to PEs that seems random.
+struct ByLot {
+  std::uint64_t salt = 0;
+  PeId operator()(Index1 index, std::int32_t n_pes) const {
+    return PeId{static_cast<std::int32_t>(mix(salt ^ static_cast<std::uint64_t>(index.x)) %
+                                          static_cast<std::uint64_t>(n_pes))};
+  }
+};
+
 /// The processes that mpirun started, with so many PEs each; MPI is initialised by the first of
 /// these and finalised by its end.
 [[nodiscard]] std::unique_ptr<Machine> make_job_machine(std::int32_t pes_per_process);
