@@ -21,8 +21,10 @@ ninja -C "$build" -t deps 2>/dev/null | awk -v root="$PWD/" '
   /^[^ ]/ { if (line != "") print line; line = $1; sub(/:$/, "", line); next }
   NF == 1 {
     file = $1
+    # A compiler cache writes paths relative to the build folder.
     if (index(file, root) == 1) file = substr(file, length(root) + 1)
-    if (file !~ /^\// && file !~ /^build\//) line = line " " file
+    else if (!sub(/^\.\.\/\.\.\//, "", file)) next
+    if (file !~ /^build\//) line = line " " file
   }
   END { if (line != "") print line }' >"$stamps/reads"
 

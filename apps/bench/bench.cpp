@@ -13,6 +13,13 @@ std::string short_description(const tess::Machine& machine) {
 
 }  // namespace
 
+void work(std::chrono::nanoseconds time) {
+  if (tess::charge(time)) return;
+  const Stopwatch watch;
+  while (watch.nanoseconds() < static_cast<double>(time.count())) {
+  }
+}
+
 Bench::Bench(Options options, std::vector<char*> command_line, const tess::Machine& machine)
     : options_(std::move(options)),
       command_line_(std::move(command_line)),

@@ -10,12 +10,16 @@
 #include "apps/bench/report.hpp"
 #include "runtime/run.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace bench {
+
+/// Works in an entry method: keeps the core busy for this time, or takes it on the simulated machine.
+void work(std::chrono::nanoseconds time);
 
 /// The longest that one sample is meant to last.
 inline constexpr double sample_nanoseconds = 0.3e9;

@@ -1,11 +1,15 @@
 // An overset mesh that moves through a background mesh; on both, a field diffuses. In each step both
 // solve, the small mesh moves, and two transfers couple them: the fringe of the small mesh gets the
-// values of the background, and the background those of the small mesh where it is deep inside.
+// values of the background, and the background those of the small mesh where it is deep inside. With
+// --balance the slabs of both migrate between steps.
 #include "apps/command_line.hpp"
 #include "apps/coupled/slab.hpp"
+#include "runtime/balance.hpp"
 
 #include <cmath>
 #include <fmt/core.h>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace coupled {
@@ -15,6 +19,33 @@ struct Options {
   std::int32_t n = 16;       // cubes on an edge of each box
   std::int32_t n_slabs = 0;  // per mesh; 0: two per PE
   double end = 0.0025;       // time
+  Reaction reaction{};
+  std::optional<tess::BalanceOptions> balance{};
+  std::int32_t balance_every = 5;  // steps
+};
+
+/// The balancers of both meshes. Each counts the load of the other mesh as fixed, so their rounds
+/// take turns: after the one of a mesh, a new phase of the other begins. Otherwise both would correct
+/// the same imbalance.
+class Balancers {
+ public:
+  void add(const tess::BalancerProxy& balancer) { all_.push_back(balancer); }
+  tess::Task round() {
+    if (all_.empty()) co_return;
+    co_await all_[next_].round();
+    next_ = 1 - next_;
+    co_await all_[next_].begin_phase();
+  }
+  [[nodiscard]] std::size_t n_moved() const {
+    std::size_t n = 0;
+    for (const tess::BalancerProxy& balancer : all_)
+      for (const auto& round : balancer.history()) n += round.n_moved;
+    return n;
+  }
+
+ private:
+  std::vector<tess::BalancerProxy> all_;
+  std::size_t next_ = 0;
 };
 
 /// The small box goes round the middle of the cube.
@@ -24,12 +55,20 @@ Point low_at(double fraction) {
 
 tess::Task compute(Options options) {
   const std::int32_t n_slabs = options.n_slabs != 0 ? options.n_slabs : 2 * tess::n_pes();
-  Box big{.n = options.n, .n_slabs = n_slabs};
+  Box big{.n = options.n, .n_slabs = n_slabs, .reaction = options.reaction};
   big.least_depth = 2 * big.spacing();
-  const Box small{
-      .low = low_at(0), .edge = 0.4, .n = options.n, .n_slabs = n_slabs, .has_fringe = true};
+  const Box small{.low = low_at(0),
+                  .edge = 0.4,
+                  .n = options.n,
+                  .n_slabs = n_slabs,
+                  .has_fringe = true,
+                  .reaction = options.reaction};
   const auto background = tess::create<Slab>(tess::range(n_slabs), big);
   const auto overset = tess::create<Slab>(tess::range(n_slabs), small);
+  Balancers balancers;
+  if (options.balance)
+    for (const auto& slabs : {background, overset})
+      balancers.add(tess::start_balancing(slabs, *options.balance));
   tess::m2m::Coupling to_overset(background, overset), to_background(overset, background);
   const auto exchange = [&] {
     background.broadcast<&Slab::exchange>();
@@ -41,12 +80,15 @@ tess::Task compute(Options options) {
   const tess::Time begin = tess::now();
   for (std::int32_t k = 0; k < n_steps; ++k) {
     const Point from = low_at(double(k) / n_steps), to = low_at(double(k + 1) / n_steps);
-    Point velocity{};
-    for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis] = (to[axis] - from[axis]) / dt;
+    const Step at_rest{k * dt, dt, {}};
+    Step moving = at_rest;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      moving.velocity[axis] = (to[axis] - from[axis]) / dt;
+    if (k > 0 && k % options.balance_every == 0) co_await balancers.round();
     co_await tess::epoch(exchange);
     co_await tess::epoch([&] {
-      background.broadcast<&Slab::step>(dt, Point{});
-      overset.broadcast<&Slab::step>(dt, velocity);
+      background.broadcast<&Slab::step>(at_rest);
+      overset.broadcast<&Slab::step>(moving);
     });
     co_await tess::epoch([&] { overset.broadcast<&Slab::move_to>(to); });
     co_await tess::epoch(exchange);
@@ -66,6 +108,9 @@ tess::Task compute(Options options) {
       "from the solution: background {:.3e}, overset {:.3e}; taken {} and {}; hash {:016x}\n",
       options.n, n_slabs, n_steps, seconds, 1e3 * seconds / n_steps, a.error, b.error, a.n_taken,
       b.n_taken, a.hash + b.hash));
+  if (options.balance)
+    tess::print(fmt::format("balanced by {}, every {} steps: {} slabs moved\n",
+                            options.balance->strategy, options.balance_every, balancers.n_moved()));
 }
 
 }  // namespace
@@ -74,13 +119,29 @@ tess::Task compute(Options options) {
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     coupled::Options options;
+    std::string balance;
     apps::CommandLine line(
         "A field that diffuses on a background mesh and on one that moves through it.");
     line.option("--cubes", options.n, "cubes on an edge of each mesh").between(12, 512);
     line.option("--slabs", options.n_slabs, "pieces per mesh (default: two per PE)")
         .between(1, 512);
     line.option("--time", options.end, "time at the end").positive();
+    line.option("--reaction", options.reaction.factor,
+                "burn where the field is warm: factor of Arrhenius's law (default: 0)")
+        .between(0, 1e6);
+    line.option("--substeps", options.reaction.n_substeps, "of the reaction (default: 20)")
+        .between(1, 10'000);
+    line.option("--balance", balance,
+                "slabs migrate between steps: a strategy, as greedy_refine[,when=automatic]");
+    line.option("--balance-every", options.balance_every, "steps between rounds (default: 5)")
+        .between(1, 1'000'000);
     if (!line.parse(argc, argv)) return 0;
+    if (!balance.empty()) {
+      options.balance = tess::parse_balance(balance);
+      if (options.balance->when == tess::BalanceWhen::periodic)
+        tess::fail(tess::ErrorCode::bad_argument, "--balance ", balance,
+                   ": rounds run between steps; leave out when=periodic, and give --balance-every");
+    }
     if (options.n_slabs > options.n + 1)
       tess::fail(tess::ErrorCode::bad_argument, "--slabs: ", options.n_slabs, " pieces of ",
                  options.n + 1, " planes: give at most one per plane");

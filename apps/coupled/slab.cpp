@@ -1,13 +1,21 @@
 #include "apps/coupled/slab.hpp"
 
+#include "apps/charge.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
 namespace coupled {
+namespace {
+
+// As measured.
+constexpr std::chrono::nanoseconds per_node{15}, per_iteration{30};
+
+}  // namespace
 
 double exact(const Point& p, double time) {
   constexpr double pi = std::numbers::pi;
@@ -85,7 +93,13 @@ void Slab::receive_plane(bool from_left, const std::vector<double>& values) {
   }
 }
 
-void Slab::step(double dt, Point velocity) {
+void Slab::step(const Step& by) {
+  diffuse(by);
+  apps::charge(per_node, n_owned());
+  if (box_.reaction.factor > 0) react(by);
+}
+
+void Slab::diffuse(const Step& by) {
   const double h = box_.spacing();
   const std::array<std::size_t, 3> stride{plane(), static_cast<std::size_t>(side()), 1};
   std::vector<double> next = values_;
@@ -97,11 +111,23 @@ void Slab::step(double dt, Point velocity) {
       const double before = is_left ? left_[node] : values_[node - stride[axis]];
       const double after = values_[node + stride[axis]];
       rate += (before - 2 * values_[node] + after) / (h * h) +
-              velocity[axis] * (after - before) / (2 * h);
+              by.velocity[axis] * (after - before) / (2 * h);
     }
-    next[node] += dt * rate;
+    next[node] += by.dt * rate;
   }
   values_ = std::move(next);
+}
+
+void Slab::react(const Step& by) {
+  std::uint64_t n_iterations = 0;
+  for (std::size_t node = 0; node < n_owned(); ++node) {
+    if (is_outermost(node) || values_[node] < Reaction::threshold) continue;
+    Point p = points_[node];  // where the node will be
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += by.dt * by.velocity[axis];
+    values_[node] =
+        box_.reaction.step(values_[node], exact(p, by.time + by.dt), by.dt, n_iterations);
+  }
+  apps::charge(per_iteration, n_iterations);
 }
 
 void Slab::move_to(Point low) {

@@ -1,15 +1,19 @@
 // A piece of a mesh with a field that diffuses: a slab of planes x = const of a box of n³ cubes, each
 // cut into six tetrahedra. The box may move; its field is then solved in the moving frame,
 //
-//     du/dt = κ Δu + v·∇u,   v the velocity of the box,
+//     du/dt = κ Δu + v·∇u - R(u) + R(exact),   v the velocity of the box,
 //
-// with central differences and explicit Euler steps.
+// with central differences and explicit Euler steps; the reaction R (reaction.hpp) is 0 unless asked
+// for.
 #pragma once
 
+#include "apps/coupled/reaction.hpp"
 #include "m2m/coupling.hpp"
 #include "runtime/runtime.hpp"
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace coupled {
@@ -27,12 +31,20 @@ struct Box {
   bool has_fringe = false;
   /// Nodes take values from nodes of the other mesh that are at least as deep in its box.
   double least_depth = 0;
+  Reaction reaction{};
 
   [[nodiscard]] double spacing() const { return edge / n; }
 };
 
 /// exp(-3π²κt) sin πx sin πy sin πz, with κ = 1: zero on the unit cube's faces.
 [[nodiscard]] double exact(const Point& p, double time);
+
+/// A step in time, and the velocity of the box in it.
+struct Step {
+  double time = 0;  ///< at its begin
+  double dt = 0;
+  Point velocity{};
+};
 
 /// What is known at the end.
 struct Outcome {
@@ -53,7 +65,7 @@ class Slab : public tess::Chare<Slab, tess::Index1>, public tess::m2m::Piece<Sla
 
   /// Sends the outer planes to the neighbours.
   void exchange();
-  void step(double dt, Point velocity);
+  void step(const Step& by);
   void move_to(Point low);
   void compare(double time, tess::Callback<Outcome> result);
 
@@ -64,6 +76,9 @@ class Slab : public tess::Chare<Slab, tess::Index1>, public tess::m2m::Piece<Sla
   void received(CouplingId coupling);
 
   void receive_plane(bool from_left, const std::vector<double>& values);
+
+  /// The position for load balancing, in slabs.
+  [[nodiscard]] std::array<double, 3> balance_position() const { return {double(index().x), 0, 0}; }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -82,6 +97,8 @@ class Slab : public tess::Chare<Slab, tess::Index1>, public tess::m2m::Piece<Sla
   /// The node's place in the box, in cubes.
   [[nodiscard]] std::array<std::int32_t, 3> place(std::size_t node) const;
   [[nodiscard]] bool is_outermost(std::size_t node) const;
+  void diffuse(const Step& by);
+  void react(const Step& by);
   void place_points();
   void cut_cubes();
 

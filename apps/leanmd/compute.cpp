@@ -1,18 +1,14 @@
 #include "apps/leanmd/compute.hpp"
 
+#include "apps/charge.hpp"
+
 #include <chrono>
 #include <utility>
 
 namespace leanmd {
 namespace {
 
-/// On a simulated machine with a fixed cost per message pairs of atoms cost time, too, so that times
-/// repeat to the last bit.
-void charge(std::size_t n_pairs) {
-  constexpr std::chrono::nanoseconds per_pair{3};  // as measured
-  if (tess::machine().message_cost() > tess::Time(0))
-    (void)tess::charge(per_pair * static_cast<std::int64_t>(n_pairs));
-}
+constexpr std::chrono::nanoseconds per_pair{3};  // as measured
 
 }  // namespace
 
@@ -37,10 +33,10 @@ void Compute::interact() {
   }
   if (cells.size() == 1) {
     law_.add(cells[0].of_atoms.view(), forces[0]);
-    charge(cells[0].of_atoms.size() * cells[0].of_atoms.size() / 2);
+    apps::charge(per_pair, cells[0].of_atoms.size() * cells[0].of_atoms.size() / 2);
   } else {
     law_.add(cells[0].of_atoms.view(), cells[1].of_atoms.view(), forces[0], forces[1]);
-    charge(cells[0].of_atoms.size() * cells[1].of_atoms.size());
+    apps::charge(per_pair, cells[0].of_atoms.size() * cells[1].of_atoms.size());
   }
   for (std::size_t c = 0; c < cells.size(); ++c)
     contribute(cells[c].section, AddForces{}, std::move(forces[c]), cells[c].forces);

@@ -64,6 +64,23 @@ same "${coupled[@]}" --pes 2 --slabs 5
 same "${coupled[@]}" --pes 3 --slabs 9
 same "${mpirun[@]}" -n 2 "${coupled[@]}" --pes 1 --slabs 4
 same "${coupled[@]}" --sim pes=5,cost=100ns,seed=3 --slabs 7
+# Slabs that migrate between transfers: the same bits, and less time where the work is unequal.
+burning=("${coupled[@]}" --time 0.0015 --reaction 1000)
+answers 'hash' "${burning[@]}" --pes 1 --slabs 1
+want=$(hash_of)
+moves() {
+  timeout 60 "$@" >"$scratch/out" 2>&1 && [[ -n $want && $(hash_of) == "$want" ]] && grep -Eq ': [1-9][0-9]* slabs moved' "$scratch/out"
+  check "$* has not the $want, or moves nothing" $?
+}
+moves "${burning[@]}" --pes 2 --slabs 6 --balance rotate
+moves "${mpirun[@]}" -n 2 "${burning[@]}" --pes 2 --slabs 7 --balance rotate --balance-every 2
+for seed in 1 2 3 4 5 6; do
+  moves "${burning[@]}" --sim "pes=$((seed + 1)),cost=100ns,seed=$seed,migrate=0.2" --slabs $((13 - seed)) --balance random
+done
+virtual() { "$bin/coupled" --cubes 16 --reaction 1000 --sim pes=4,cost=500ns --slabs 16 --substeps 200 "$@" | grep -o '[0-9.]* s,' | grep -o '[0-9.]*'; }
+unequal=$(virtual) equal=$(virtual --balance refine) again=$(virtual --balance refine)
+python3 -c "import sys; sys.exit(0 if $equal < 0.85 * $unequal and $equal == $again else 1)"
+check "balance of coupled gains nothing: $unequal s without, $equal and $again s with it" $?
 overset_error() { "$bin/coupled" --cubes "$1" --pes 2 | grep -o 'overset [0-9.e+-]*' | grep -o '[0-9.e+-]*$'; }
 coarse=$(overset_error 12) fine=$(overset_error 18)
 python3 -c "import sys; sys.exit(0 if 1.9 < $coarse / $fine < 2.7 else 1)"

@@ -17,12 +17,6 @@ same() {
   [[ -n $want && $(hash_of "$scratch/run.json") == "$want" ]] && pass && return
   fail "another result: $*"
 }
-# says TEXT: in the output of the last command.
-says() {
-  grep -q -- "$1" "$scratch/out" && pass && return
-  fail "no line with '$1'"
-  tail -5 "$scratch/out"
-}
 # from_machine_to_machine PROGRAM EVERY FIRST SECOND THIRD LAST OPTIONS…: the runs end after these steps, with checkpoints
 # after each EVERY; the result of the last one is compared. $balance holds options of the second run and of later ones.
 from_machine_to_machine() {

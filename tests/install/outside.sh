@@ -57,6 +57,15 @@ done
 
 [[ " ${components[*]} " != *" runtime "* ]] || prints "20 seeds pass" "$scratch/build/uses_testing"
 
+# Chares of the program, which migrate between the transfers of a coupling.
+if [[ " ${components[*]} " == *" runtime "* && " ${components[*]} " == *" m2m "* ]]; then
+  program=$scratch/build/uses_coupling
+  prints "error below 1e-14: yes" "$program"
+  prints "error below 1e-14: yes" "$program" --pes 3
+  prints "error below 1e-14: yes" "$program" --sim pes=5,seed=3,migrate=0.2
+  [[ -z ${MPIEXEC:-} ]] || prints "error below 1e-14: yes" "$MPIEXEC" --allow-run-as-root --oversubscribe -n 2 "$program" --pes 2
+fi
+
 # The project of README.md, with hello as its main.cpp.
 if [[ $way == installed ]]; then
   cp -r "$here/small" "$scratch/small"

@@ -3,6 +3,7 @@
 #
 #     pass          counts a check that passed
 #     fail WORDS…   counts a check that failed, and prints what failed
+#     says PATTERN  checks that a line of $scratch/out, the output of the last command, matches
 #     exits …       runs a command and checks its exit code and what it says; see below
 #     finish        prints the counts; succeeds if checks have passed and none has failed
 set -uo pipefail
@@ -17,6 +18,11 @@ pass() { passed=$((passed + 1)); }
 fail() {
   failed=$((failed + 1))
   echo "FAILED: $*"
+}
+says() {
+  grep -Eq -- "$1" "$scratch/out" && pass && return
+  fail "no line with '$1'"
+  tail -5 "$scratch/out"
 }
 # exits CODE TEXT COMMAND…: requires this exit code within $limit s, and the text on either output; errors of the command
 # line are one line.

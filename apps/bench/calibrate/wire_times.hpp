@@ -17,8 +17,8 @@ inline constexpr std::size_t packed_bytes = std::size_t{1} << 13U;
 /// Nanoseconds; medians.
 struct WireTimes {
   double ping = 0;  ///< a number, one way, when both PEs do nothing else
-  double large =
-      0;  ///< a vector of large_bytes, one way; 0 within a process, where it is a pointer
+  /// A vector of large_bytes, one way; 0 within a process, where it is a pointer.
+  double large = 0;
   double exchange = 0;  ///< what sending a message and receiving one adds to the work of a busy PE
   double exchange_packed = 0;  ///< the same with vectors of packed_bytes; 0 within a process
 };

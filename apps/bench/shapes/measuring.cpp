@@ -2,7 +2,6 @@
 // measure until the run ends, so each turn is two runs, one without and one with a balancer.
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/balance.hpp"
-#include "runtime/base/ticks.hpp"
 #include "runtime/runtime.hpp"
 
 namespace bench {
@@ -13,13 +12,7 @@ class Worker : public tess::Chare<Worker, tess::Index1> {
  public:
   void work(std::int32_t left) {
     ++n_worked_;
-    const std::chrono::nanoseconds grain(5000);
-    if (!tess::charge(grain)) {
-      const auto ticks = static_cast<std::uint64_t>(5e-6 / tess::detail::seconds_per_tick());
-      const std::uint64_t until = tess::detail::read_ticks() + ticks;
-      while (tess::detail::read_ticks() < until) {
-      }
-    }
+    bench::work(std::chrono::microseconds(5));
     if (left > 0)
       array()[{(index().x + 1) % static_cast<std::int32_t>(array().size())}].send<&Worker::work>(
           left - 1);

@@ -1,7 +1,6 @@
 // How late a timer is: 100 timers of 1 ms, one after the other, on a PE that sleeps meanwhile, and
 // on one that passes messages of 5 us to itself.
 #include "apps/bench/shapes/shapes.hpp"
-#include "runtime/base/ticks.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/timer.hpp"
 
@@ -17,13 +16,7 @@ class Busy : public tess::Chare<Busy, tess::Index1> {
  public:
   void work() {
     if (rests_) return;
-    const std::chrono::nanoseconds grain(5000);
-    if (!tess::charge(grain)) {
-      const auto ticks = static_cast<std::uint64_t>(5e-6 / tess::detail::seconds_per_tick());
-      const std::uint64_t until = tess::detail::read_ticks() + ticks;
-      while (tess::detail::read_ticks() < until) {
-      }
-    }
+    bench::work(std::chrono::microseconds(5));
     array()[index()].send<&Busy::work>();
   }
   void rest() { rests_ = true; }

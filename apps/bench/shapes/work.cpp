@@ -13,10 +13,7 @@ class Labourer : public tess::Chare<Labourer, tess::Index1> {
   /// Contributes the nanoseconds that it worked, in a list with one place for each PE.
   void work(std::int64_t nanoseconds, tess::Callback<std::vector<double>> done) {
     const Stopwatch watch;
-    if (!tess::charge(std::chrono::nanoseconds(nanoseconds))) {
-      while (watch.nanoseconds() < static_cast<double>(nanoseconds)) {
-      }
-    }
+    bench::work(std::chrono::nanoseconds(nanoseconds));
     std::vector<double> worked(static_cast<std::size_t>(tess::n_pes()));
     worked[static_cast<std::size_t>(tess::my_pe().value)] = watch.nanoseconds();
     contribute(tess::sum, std::move(worked), std::move(done));
