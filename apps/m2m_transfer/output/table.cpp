@@ -61,9 +61,10 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair.update(norms_of(r.fields.front().norms));
   pair["found"] = found_of(r.fields.front().found);
   pair["candidates"] = r.n_candidates;
-  pair["seconds"] = {{"read", r.seconds.read},   {"setup", r.seconds.setup},
-                     {"broad", r.seconds.broad}, {"narrow", r.seconds.narrow},
-                     {"apply", r.seconds.apply}, {"transfer", r.seconds.transfer()}};
+  pair["seconds"] = {{"read", r.seconds.read},    {"setup", r.seconds.setup},
+                     {"broad", r.seconds.broad},  {"narrow", r.seconds.narrow},
+                     {"apply", r.seconds.apply},  {"transfer", r.seconds.transfer()},
+                     {"gather", r.seconds.gather}};
   if (r.searches > 1) pair["seconds"]["search_again"] = r.seconds.again;
   pair["searches"] = r.searches;
   pair["kept_sources"] = r.n_kept_sources;

@@ -103,6 +103,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   for (std::size_t p = 0; p < problem.reports.size(); ++p) {
     TransferReport& report = problem.reports[p];
     report.seconds.setup = setup;
+    report.seconds.gather = graph->seconds()[p].gather;
     report.counts = graph->found()[p].tally.counts;
     report.worst = graph->found()[p].worst;
     report.n_candidates = graph->found()[p].tally.n_candidates;

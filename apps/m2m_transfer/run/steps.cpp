@@ -125,8 +125,11 @@ Task GraphRun::finish(const AtEnd& at_end) {
   for (std::size_t p = 0; p < transfers_.size(); ++p) {
     const Pair& pair = problem_.pairs[p];
     Gathered& result = early_[p];
-    if (result.status.empty())
+    if (result.status.empty()) {
+      const Time begin = now();
       co_await gather(meshes_[pair.target], problem_.target_of(pair).mesh.n_points(), result);
+      seconds_[p].gather = seconds_since(begin);
+    }
     at_end(p, result);
     result = {};
   }

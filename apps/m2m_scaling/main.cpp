@@ -1,0 +1,88 @@
+// m2m_scaling SOURCE TARGET: one transfer on simulated machines of more and more PEs.
+//
+//     m2m_scaling kuhn:80 kuhn:81 --pes 1,16,64,256
+//     m2m_scaling kuhn:200 kuhn:201 --pes 64,128,256,512,1024,2048 --out scaling
+#include "apps/command_line.hpp"
+#include "apps/m2m_scaling/report.hpp"
+#include "apps/m2m_transfer/run/measure.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/machine/simulated.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <fmt/core.h>
+#include <vector>
+
+namespace m2m_scaling {
+namespace {
+
+using m2m_transfer::Request;
+
+/// Runs on a machine of its own.
+TransferReport run_case(const Request& request, const tess::SimulatedOptions& machine) {
+  TransferReport report;
+  apps::Progress progress(stderr);
+  tess::Setup setup{tess::make_simulated_machine(machine), {}};
+  const int code = tess::run(setup, [&]() -> tess::Task {
+    m2m_transfer::Problem problem = m2m_transfer::load(request, tess::machine());
+    co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
+    report = problem.reports.front();
+  });
+  if (code != 0) tess::exit(code);
+  return report;
+}
+
+int study(int argc, char** argv) {
+  Request request;
+  std::vector<std::int32_t> pes{1, 4, 16, 64, 256};
+  std::string sim = "latency=2us,bandwidth=10GB/s", out;
+  std::int32_t repeat = 1;
+  apps::CommandLine line("A transfer between two meshes on simulated machines of many PEs",
+                         "m2m_scaling");
+  line.option("SOURCE", request.source, "mesh, as for m2m_transfer");
+  line.option("TARGET", request.target, "mesh, as for m2m_transfer");
+  line.option("--pes", pes, "PEs of the machines").separated_by(',').between(1, 1 << 20);
+  line.option("--sim", sim, "the machine's other parameters, as for m2m_transfer");
+  request.per_pe = 4;
+  line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
+  line.option("--kind", request.kind, "how values follow from the source");
+  line.option("--repeat", repeat, "runs per machine, of which the fastest counts")
+      .between(1, 1000000);
+  line.option("--out", out, "write PREFIX.svg and PREFIX.csv");
+  if (!line.parse(argc, argv, "")) return 0;
+  if (request.source.empty() || request.target.empty())
+    tess::fail(tess::ErrorCode::bad_argument,
+               "give a source and a target mesh, such as kuhn:40 kuhn:41 (--help lists the "
+               "arguments)");
+  tess::SimulatedOptions machine = tess::parse_simulated(sim);
+  std::ranges::sort(pes);
+  fmt::print("{}", head());
+  std::vector<TransferReport> rows;
+  for (const std::int32_t n : pes) {
+    machine.n_pes = n;
+    TransferReport best = run_case(request, machine);
+    for (std::int32_t i = 1; i < repeat; ++i) {
+      TransferReport next = run_case(request, machine);
+      if (distributed_seconds(next) < distributed_seconds(best)) best = std::move(next);
+    }
+    rows.push_back(std::move(best));
+    fmt::print("{}", m2m_scaling::line(rows.back(), rows.front()));
+    std::fflush(stdout);
+  }
+  if (!out.empty()) draw(out, rows);
+  for (const TransferReport& row : rows)
+    if (row.result_hash != rows.front().result_hash || row.counts != rows.front().counts) {
+      fmt::print(stderr, "m2m_scaling: {} PEs give other values than {}\n", row.pes,
+                 rows.front().pes);
+      return 1;
+    }
+  return 0;
+}
+
+}  // namespace
+}  // namespace m2m_scaling
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] { return m2m_scaling::study(argc, argv); });
+}

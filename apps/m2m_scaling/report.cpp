@@ -1,0 +1,71 @@
+#include "apps/m2m_scaling/report.hpp"
+
+#include "apps/plot/chart.hpp"
+
+#include <fmt/format.h>
+#include <functional>
+
+namespace m2m_scaling {
+namespace {
+
+double efficiency(double seconds, const TransferReport& row, double first_seconds,
+                  const TransferReport& first) {
+  return first_seconds * first.pes / (seconds * row.pes);
+}
+
+}  // namespace
+
+double distributed_seconds(const TransferReport& row) {
+  return row.seconds.setup + row.seconds.transfer();
+}
+
+double gathered_seconds(const TransferReport& row) {
+  return distributed_seconds(row) + row.seconds.gather;
+}
+
+std::string head() {
+  return "| PEs | set-up | broad | narrow | apply | together | efficiency | gather | with "
+         "gathering "
+         "| efficiency |\n|---|---|---|---|---|---|---|---|---|---|\n";
+}
+
+std::string line(const TransferReport& row, const TransferReport& first) {
+  const m2m_transfer::PhaseSeconds& s = row.seconds;
+  const double here = distributed_seconds(row), gathered = gathered_seconds(row);
+  return fmt::format(
+      "| {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.0f} % | {:.4f} | {:.4f} | {:.0f} % "
+      "|\n",
+      row.pes, s.setup, s.broad, s.narrow, s.apply, here,
+      100 * efficiency(here, row, distributed_seconds(first), first), s.gather, gathered,
+      100 * efficiency(gathered, row, gathered_seconds(first), first));
+}
+
+void draw(const std::string& prefix, const std::vector<TransferReport>& rows) {
+  plot::Chart chart{.title = rows.front().source + " to " + rows.front().target,
+                    .x_label = "PEs",
+                    .y_label = "seconds",
+                    .x_log = true,
+                    .y_log = true};
+  for (const TransferReport& row : rows) chart.x_ticks.push_back(row.pes);
+  const auto add = [&](const char* name, const std::function<double(const TransferReport&)>& of,
+                       plot::Style style = plot::Style::lines_points) {
+    plot::Series series{.name = name, .style = style};
+    for (const TransferReport& row : rows)
+      series.points.push_back({static_cast<double>(row.pes), of(row)});
+    chart.series.push_back(std::move(series));
+  };
+  add("set-up", [](const TransferReport& r) { return r.seconds.setup; });
+  add("broad", [](const TransferReport& r) { return r.seconds.broad; });
+  add("narrow", [](const TransferReport& r) { return r.seconds.narrow; });
+  add("apply", [](const TransferReport& r) { return r.seconds.apply; });
+  add("together", distributed_seconds);
+  add("together and gathered", gathered_seconds);
+  const TransferReport& first = rows.front();
+  add(
+      "together, ideal",
+      [&](const TransferReport& r) { return distributed_seconds(first) * first.pes / r.pes; },
+      plot::Style::dashes);
+  (void)plot::write_svg(prefix + ".svg", chart);
+}
+
+}  // namespace m2m_scaling
