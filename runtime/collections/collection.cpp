@@ -183,6 +183,10 @@ std::string Collection::elements_before(std::uint32_t number) const {
   return out;
 }
 
+bool Collection::called_empty_section() const {
+  return sections_ && sections_->called_empty();
+}
+
 void Collection::describe_waiting(std::vector<std::string>& lines) const {
   reductions_.describe_waiting(lines);
   if (second_tree_ != nullptr) second_tree_->describe_waiting(lines);

@@ -70,7 +70,10 @@ bool program_owns_mpi() {
 Session::Session(int& argc, char**& argv) {
   int over = 0;
   MPI_Finalized(&over);
-  if (over != 0) fail(ErrorCode::environment, "MPI has ended and cannot be started again");
+  if (over != 0)
+    fail(ErrorCode::environment,
+         "MPI has ended and cannot be started again: initialise it by MPI_Init_thread before "
+         "the first run of several, and finalise it after the last (runtime/CLUSTER.md)");
   int initialised = 0;
   MPI_Initialized(&initialised);
   ours_ = initialised == 0;

@@ -32,6 +32,8 @@ class HostedCollection {
   /// True if a broadcast has reached the collection: then a reduction of its elements may be
   /// awaited.
   [[nodiscard]] virtual bool was_called() const = 0;
+  /// True if a section without members, whose root is here, got a multicast.
+  [[nodiscard]] virtual bool called_empty_section() const = 0;
   /// "Block[3,4]": the text for the index that Pe::constructed_index() points to.
   [[nodiscard]] virtual std::string constructed_text(const void* index) const = 0;
   /// The indices of a dense array; of other collections it has no axes.

@@ -135,6 +135,7 @@ class Runtime final : public Program {
     Waits waits;
     std::uint64_t dead_letters = 0;
     std::vector<EmptyArray> empty;  // arrays without elements on this PE that got a broadcast
+    std::vector<std::string> empty_sections;  // their arrays, as far as they got a multicast
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
     std::uint64_t n_periodic = 0;  // periodic timers on this PE, which are frozen now
     std::uint64_t n_sent = 0;      // messages of epoch 0 that this PE has sent

@@ -76,6 +76,22 @@ TEST_CASE("a reply that nothing waits for is dropped and counted", "[runtime][as
   CHECK(n_late == 4);
 }
 
+TEST_CASE("an epoch does not wait for the deadline of a reply that is there", "[runtime][ask]") {
+  tess::Time waited{0};
+  REQUIRE(run_on(false, [&]() -> tess::Task {
+            const auto scribes = tess::create<Scribe>(tess::range(2));
+            const tess::Time began = tess::now();
+            int twice = 0;
+            co_await tess::epoch([&]() -> tess::Task {
+              twice = co_await scribes[{1}].ask<&Scribe::twice>(21).within(1h);
+            });
+            CHECK(twice == 42);
+            waited = tess::now() - began;
+          }) == 0);
+  CHECK(waited > 0ns);
+  CHECK(waited < 1s);
+}
+
 TEST_CASE("what comes second in when_any is not lost", "[runtime][ask]") {
   std::string late, both;
   int value = 0;

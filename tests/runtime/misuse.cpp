@@ -137,6 +137,14 @@ tess::Task sum_of_none() {
   (void)co_await sum;
 }
 
+tess::Task sum_of_empty_section() {
+  const auto blocks = tess::create<Block>(tess::range(3));
+  const auto none = tess::create_section(blocks, {});
+  tess::Future<int> sum;
+  none.broadcast<&Block::give>(sum.callback());
+  (void)co_await sum;
+}
+
 tess::Task sum_scaled() {
   const auto blocks = tess::create<Block>(tess::range(3));
   tess::Future<int> sum;
@@ -195,6 +203,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"short_sum", [] { const tess::Task task = sum_all<Short>(); }},
     {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},
     {"sum_of_none", [] { const tess::Task task = sum_of_none(); }},
+    {"sum_of_empty_section", [] { const tess::Task task = sum_of_empty_section(); }},
     {"array_after_end", [] { const tess::Task task = use_after_end(); }},
     {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
 };
