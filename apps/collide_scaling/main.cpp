@@ -53,7 +53,7 @@ int study(int argc, char** argv) {
       .between(2, 100000);
   line.option("--thinned", thinned,
               "weak: one of so many triangles is there, at so many times the cost: 1, 4, 16 "
-              "(default: 4 for more than 32 million triangles)")
+              "(default: 4 for more than 128 million triangles)")
       .between(1, 64);
   line.option("--balance", balances, "strategies, or none (strong: none,greedy_refine)")
       .separated_by(',');
@@ -81,7 +81,7 @@ int study(int argc, char** argv) {
       given.n_pes = n;
       given.balance = balance;
       const std::uint64_t n_all = given.n_triangles * static_cast<std::uint64_t>(n);
-      given.thinned = thinned != 0 ? thinned : !given.is_strong && n_all > 32'000'000 ? 4 : 1;
+      given.thinned = thinned != 0 ? thinned : !given.is_strong && n_all > 128'000'000 ? 4 : 1;
       rows.push_back(run_case(given));
       fmt::print("{}", collide_scaling::line(rows.back(), rows.front()));
       std::fflush(stdout);

@@ -183,8 +183,8 @@ std::string Collection::elements_before(std::uint32_t number) const {
   return out;
 }
 
-bool Collection::called_empty_section() const {
-  return sections_ && sections_->called_empty();
+std::pair<bool, bool> Collection::has_nothing_to_reduce() const {
+  return {n_local() == 0 && broadcasts_.applied() != 0, sections_ && sections_->any_empty()};
 }
 
 void Collection::describe_waiting(std::vector<std::string>& lines) const {

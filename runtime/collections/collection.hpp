@@ -204,8 +204,7 @@ class Collection : public HostedCollection {
   /// True if elements can be packed and rebuilt elsewhere.
   [[nodiscard]] virtual bool migratable() const = 0;
   [[nodiscard]] virtual std::string index_text_of(const Element& element) const = 0;
-  [[nodiscard]] bool was_called() const override { return broadcasts_.applied() != 0; }
-  [[nodiscard]] bool called_empty_section() const override;
+  [[nodiscard]] std::pair<bool, bool> has_nothing_to_reduce() const override;
   void describe_waiting(std::vector<std::string>& lines) const override;
   /// The first few local elements that have not contributed to all reductions below `number`, as
   /// text.

@@ -89,12 +89,6 @@ class SectionListsOf final : public SectionLists {
   std::vector<SectionId> save(Writer& ar) const override;
   void restore(Reader& ar) override;
   void describe_waiting(std::vector<std::string>& lines) const override;
-  [[nodiscard]] bool called_empty() const override {
-    return std::any_of(lists_.begin(), lists_.end(), [](const auto& of) {
-      const Root& root = of.second.root;
-      return root.created && root.n_alive == 0 && root.last_number > 0;
-    });
-  }
 
   [[nodiscard]] static SectionListsOf& of(Array& array) {
     auto& lists = array.sections().lists();

@@ -162,6 +162,8 @@ class SectionTotal {
     std::int64_t n_members = 0;
   };
   [[nodiscard]] bool first_incomplete(Incomplete& found) const;
+  /// It has begun, and all members have been removed.
+  [[nodiscard]] bool empty() const { return begun_ && members_of(next_complete_) == 0; }
 
  private:
   [[nodiscard]] std::int64_t members_of(std::uint32_t number) const;

@@ -386,6 +386,10 @@ void Sections::end_all() {
   parts_.clear();
 }
 
+bool Sections::any_empty() const {
+  return std::ranges::any_of(parts_, [](const auto& of) { return of.second->total.empty(); });
+}
+
 void Sections::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [id, part] : parts_) {
     for (const SectionPart::Member& member : part->members)

@@ -43,8 +43,6 @@ class SectionLists {
   virtual std::vector<SectionId> save(Writer& ar) const = 0;
   virtual void restore(Reader& ar) = 0;
   virtual void describe_waiting(std::vector<std::string>& lines) const = 0;
-  /// A section whose root is here has no members, and got a multicast.
-  [[nodiscard]] virtual bool called_empty() const = 0;
 };
 
 /// One section on one PE.
@@ -160,7 +158,8 @@ class Sections {
   void end_all();
 
   void describe_waiting(std::vector<std::string>& lines) const;
-  [[nodiscard]] bool called_empty() const { return lists_ && lists_->called_empty(); }
+  /// A section whose root is here has no members.
+  [[nodiscard]] bool any_empty() const;
 
  private:
   friend class SectionPart;

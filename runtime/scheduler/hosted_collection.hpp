@@ -29,11 +29,9 @@ class HostedCollection {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// The number of elements on this PE.
   [[nodiscard]] std::size_t n_local() const { return n_local_; }
-  /// True if a broadcast has reached the collection: then a reduction of its elements may be
-  /// awaited.
-  [[nodiscard]] virtual bool was_called() const = 0;
-  /// True if a section without members, whose root is here, got a multicast.
-  [[nodiscard]] virtual bool called_empty_section() const = 0;
+  /// First: the collection has no elements here, and was called by a broadcast, so that its
+  /// reduction may be awaited. Second: a section whose root is here has no members.
+  [[nodiscard]] virtual std::pair<bool, bool> has_nothing_to_reduce() const = 0;
   /// "Block[3,4]": the text for the index that Pe::constructed_index() points to.
   [[nodiscard]] virtual std::string constructed_text(const void* index) const = 0;
   /// The indices of a dense array; of other collections it has no axes.

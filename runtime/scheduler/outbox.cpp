@@ -48,7 +48,8 @@ void Outbox::put(Envelope* message) {
   Lane& to = lane(process);
   const bool charged = message->action->traffic == Traffic::user && message->counted;
   if (charged && to.under_way >= limit_) [[unlikely]] {
-    to.waiting.push(message, message->prioritised ? message->action->priority_of(*message) : 0);
+    if (!to.waiting) to.waiting = std::make_unique<ReadyQueue>();
+    to.waiting->push(message, message->prioritised ? message->action->priority_of(*message) : 0);
   } else {
     pack(to, process, message, charged);
   }
@@ -64,8 +65,7 @@ std::uint64_t Outbox::owe(PeId sender, std::uint32_t credit) {
 void Outbox::repaid(ProcessId process, std::uint64_t credit) {
   Lane& to = lane(process);
   to.under_way -= credit;
-  while (to.under_way < limit_ && !to.waiting.empty())
-    pack(to, process, static_cast<Envelope*>(to.waiting.pop()), true);
+  while (to.under_way < limit_ && to.n_waiting() > 0) pack(to, process, to.pop(), true);
 }
 
 bool Outbox::go_on_one(ProcessId process) {
@@ -79,7 +79,7 @@ bool Outbox::go_on_one(ProcessId process) {
 
 void Outbox::drop_all() {
   for (Lane& to : lanes_) {
-    while (!to.waiting.empty()) discard(static_cast<Envelope*>(to.waiting.pop()));
+    while (to.n_waiting() > 0) discard(to.pop());
     to.producers.clear();
   }
 }

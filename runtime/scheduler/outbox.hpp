@@ -31,8 +31,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <list>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -96,20 +97,22 @@ class Outbox {
   [[nodiscard]] bool awaited(ProcessId process) const { return !lane(process).producers.empty(); }
 
   /// The number of messages that wait for credit.
-  [[nodiscard]] std::size_t n_waiting(ProcessId process) const {
-    return lane(process).waiting.size();
-  }
+  [[nodiscard]] std::size_t n_waiting(ProcessId process) const { return lane(process).n_waiting(); }
 
   /// Frees the messages that wait.
   void drop_all();
 
  private:
-  /// The messages to one process.
+  /// The messages to one process. There are as many lanes as processes, most of them idle.
   struct Lane {
     Buffer packed;
     std::uint64_t under_way = 0;  // credit
-    ReadyQueue waiting;           // waiting for credit; empty while under_way < limit_
-    std::deque<std::function<void()>> producers;  // waiting for room
+    /// Waiting for credit: none while under_way < limit_. Made for the first.
+    std::unique_ptr<ReadyQueue> waiting;
+    std::list<std::function<void()>> producers;  // waiting for room
+
+    [[nodiscard]] std::size_t n_waiting() const { return waiting ? waiting->size() : 0; }
+    [[nodiscard]] Envelope* pop() { return static_cast<Envelope*>(waiting->pop()); }
   };
 
   [[nodiscard]] Lane& lane(ProcessId process) {

@@ -280,16 +280,15 @@ void Runtime::quiescent(Pe& pe) {
 
 void Runtime::on_census_asked(Pe& pe) {
   std::vector<EmptyArray> empty;
-  std::vector<std::string> empty_sections;
   for (HostedCollection* collection : pe.collections()) {
-    if (collection->n_local() == 0 && collection->was_called())
-      empty.push_back({collection->id(), collection->name()});
-    if (collection->called_empty_section()) empty_sections.push_back(collection->name());
+    const auto [array, section] = collection->has_nothing_to_reduce();
+    if (array) empty.push_back({collection->id(), collection->name()});
+    if (section) empty.push_back({{}, "a section of " + collection->name()});
   }
   send_uncounted<&census_arrives>(
       pe, PeId{0},
-      Census{pe.census(), pe.statistics().dead_letters, std::move(empty), std::move(empty_sections),
-             pe.stopped(), pe.timers().freeze(), pe.completion().run_sent(), pe.audit_rows()});
+      Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
+             pe.timers().freeze(), pe.completion().run_sent(), pe.audit_rows()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
@@ -298,9 +297,8 @@ void Runtime::on_census(Pe& pe, Census&& census) {
   census_.audit.insert(census_.audit.end(), census.audit.begin(), census.audit.end());
   census_.dead_letters += census.dead_letters;
   for (EmptyArray& array : census.empty)
-    if (++empty_on_[array.id] == pe.n_pes()) census_.empty.push_back(std::move(array));
-  for (std::string& array : census.empty_sections)
-    census_.empty_sections.push_back(std::move(array));
+    if (array.id == CollectionId{} || ++empty_on_[array.id] == pe.n_pes())
+      census_.empty.push_back(std::move(array));
   census_.exits = census_.exits || census.exits;
   census_.n_periodic += census.n_periodic;
   census_.n_sent += census.n_sent;
@@ -326,9 +324,6 @@ void Runtime::end_with_census(Pe& pe) {
     // A waiter for such a result does not know the array that it comes from.
     for (const EmptyArray& array : census_.empty)
       report += text("\n  note: ", array.name, " has no elements: its reductions have no result");
-    for (const std::string& array : census_.empty_sections)
-      report +=
-          text("\n  note: a section of ", array, " has no members: its reductions have no result");
     error_line(report);
     end_with(pe, 1);
     return;

@@ -128,14 +128,13 @@ class Runtime final : public Program {
 
   // Control messages.
   struct EmptyArray {
-    CollectionId id{};
+    CollectionId id{};  // none: a section, which has no elements anywhere
     std::string name;
   };
   struct Census {
     Waits waits;
     std::uint64_t dead_letters = 0;
-    std::vector<EmptyArray> empty;  // arrays without elements on this PE that got a broadcast
-    std::vector<std::string> empty_sections;  // their arrays, as far as they got a multicast
+    std::vector<EmptyArray> empty;  // what has nothing to reduce on this PE
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
     std::uint64_t n_periodic = 0;  // periodic timers on this PE, which are frozen now
     std::uint64_t n_sent = 0;      // messages of epoch 0 that this PE has sent

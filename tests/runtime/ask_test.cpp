@@ -31,8 +31,18 @@ class Scribe : public tess::Chare<Scribe> {
   }
   /// Both are there: the note that is not taken stays.
   tess::Task read_both(tess::Callback<std::string> target) {
+    write_both();
+    const auto first = co_await tess::when_any(box_.take(2), box_.take(3));
+    std::string seen = std::get<0>(first).text;
+    seen += (co_await box_.take(3)).text;
+    target(std::move(seen));
+  }
+  void write_both() {
     write({2, "b"});
     write({3, "c"});
+  }
+  /// Both come in one message, while it waits for either.
+  tess::Task wait_for_both(tess::Callback<std::string> target) {
     const auto first = co_await tess::when_any(box_.take(2), box_.take(3));
     std::string seen = std::get<0>(first).text;
     seen += (co_await box_.take(3)).text;
@@ -93,7 +103,7 @@ TEST_CASE("an epoch does not wait for the deadline of a reply that is there", "[
 }
 
 TEST_CASE("what comes second in when_any is not lost", "[runtime][ask]") {
-  std::string late, both;
+  std::string late, both, met;
   int value = 0;
   bool was_there = true;
   REQUIRE(run_on(false, [&]() -> tess::Task {
@@ -104,6 +114,10 @@ TEST_CASE("what comes second in when_any is not lost", "[runtime][ask]") {
             late = co_await seen;
             scribes[{0}].send<&Scribe::read_both>(pair.callback());
             both = co_await pair;
+            tess::Future<std::string> other;
+            scribes[{0}].send<&Scribe::wait_for_both>(other.callback());
+            scribes[{0}].send_after<&Scribe::write_both>(1ms);
+            met = co_await other;
             tess::Future<int> future;
             tess::after(2ms, future.callback(), 7);
             const auto first = co_await tess::when_any(future, tess::sleep(1ms));
@@ -112,6 +126,7 @@ TEST_CASE("what comes second in when_any is not lost", "[runtime][ask]") {
           }) == 0);
   CHECK(late == "late news");
   CHECK(both == "bc");
+  CHECK(met == "bc");
   CHECK_FALSE(was_there);
   CHECK(value == 7);
 }

@@ -59,7 +59,7 @@ here negative_argument "an argument is -1, but the entry method takes 0 to 18446
 here array_after_end "the array of this proxy was destroyed on PE 0"
 here group_after_end "this group was destroyed on PE 0"
 everywhere sum_of_none "waits for a future of int" "Block has no elements: its reductions have no result"
-everywhere sum_of_empty_section "waits for a future of int" "a section of Block has no members: its reductions have no result"
+everywhere sum_of_empty_section "waits for a future of int" "a section of Block has no elements: its reductions have no result"
 everywhere place_77 "place() of .*Placed<77> puts the element \[4\] on PE 77, but the run has 2 PEs"
 here place_-2 "place() of .*Placed<-2> puts the element \[0\] on PE -2, but the run has 2 PEs"
 here section_twice "the list of a section of .*Block has the index \[0\] twice"

@@ -5,6 +5,7 @@
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
+#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 
 #include <numeric>
