@@ -3,6 +3,7 @@
 #include "m2m/mesh_parts.hpp"
 #include "m2m/parallel/cell_worker.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -56,12 +57,10 @@ ArrayProxy<CellWorker> scatter_cells(const TetMesh& mesh, const std::vector<Fiel
 void choose_coupling(TransferOptions& options, CellForm form) {
   if (options.kind == TransferKind::nearest) return;  // between centroids
   options.source_values = form == CellForm::constant ? Centring::cells : Centring::corners;
-  if (is_conservative(options.kind)) {
-    options.kind = TransferKind::conservative;
+  if (is_conservative(options.kind))
     options.target_values = Centring::cells;
-  } else {
+  else
     options.kind = TransferKind::linear;
-  }
 }
 
 }  // namespace
@@ -77,6 +76,10 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
     outcome->fields.push_back({field.name, field.n_components,
                                std::vector<double>(target.n_tets() * field.n_components, 0.0)});
   }
+  if (std::holds_alternative<Nearest>(options.policy) && options.kind != TransferKind::nearest)
+    fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
+         " has no nearest cell for what lies outside: choose policy keep or value for fields in "
+         "elements, or kind nearest");
   if (options.clamp && options.kind == TransferKind::second_order)
     options.kind = TransferKind::limited;
   const CellForm form = form_of(options.kind);

@@ -1,7 +1,7 @@
 // Fields in elements, moved by each kind between meshes of each type of element.
 #include "m2m/cell_transfer.hpp"
 
-#include "m2m/kuhn.hpp"
+#include "m2m/parallel/cell_worker.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
@@ -88,6 +88,16 @@ Task attempt_cells(const CellCase& c, std::string* message) {
   try {
     co_await transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
                             {.policy = c.policy, .kind = c.kind}, &outcome);
+  } catch (const Error& error) {
+    *message = error.what();
+  }
+}
+
+/// Options are looked at before anything is sent, so the arrays may be empty.
+Task refused(CouplingOptions options, std::string* message) {
+  Coupling<CellWorker, CellWorker> coupling({}, {}, options);
+  try {
+    co_await coupling.search();
   } catch (const Error& error) {
     *message = error.what();
   }
@@ -191,8 +201,37 @@ TEST_CASE("cells outside follow the policy, and a policy without a nearest cell 
           return attempt_cells({kind, &source, &target, 2, Nearest{}}, &message);
         })
         .require_success();
-    CHECK_THAT(message, Catch::Contains("kind") && Catch::Contains("has no nearest vertex"));
+    CHECK_THAT(message,
+               Catch::Contains(std::string("kind ") + name_of(kind) + " has no nearest cell"));
   }
   const CellOutcome nearest = moved_cells({TransferKind::nearest, &source, &target, 2}, 1);
   CHECK(*std::min_element(nearest.fields[0].values.begin(), nearest.fields[0].values.end()) != 0);
+}
+
+TEST_CASE("couplings refuse kinds and centrings that do not go together by name", "[m2m][cells]") {
+  const auto refusal = [](TransferKind kind, Centring source, Centring target) {
+    std::string message;
+    const test::Machine machine{.pes = 1, .seed = 1};
+    machine
+        .run([&]() -> Task {
+          CouplingOptions options;
+          options.kind = kind;
+          options.source_values = source;
+          options.target_values = target;
+          return refused(options, &message);
+        })
+        .require_success();
+    return message;
+  };
+  for (const TransferKind kind : {TransferKind::second_order, TransferKind::nearest})
+    for (const Centring source : {Centring::cells, Centring::corners})
+      CHECK_THAT(refusal(kind, source, Centring::nodes),
+                 Catch::Contains(std::string("kind ") + name_of(kind) + " takes values at nodes") &&
+                     Catch::Contains("choose linear or a conservative kind"));
+  for (const TransferKind kind : {TransferKind::linear, TransferKind::limited})
+    CHECK_THAT(refusal(kind, Centring::nodes, Centring::cells),
+               Catch::Contains(std::string("kind ") + name_of(kind) + " gives values at points") &&
+                   Catch::Contains("centroids"));
+  CHECK_THAT(refusal(TransferKind::conservative, Centring::nodes, Centring::corners),
+             Catch::Contains("choose nodes or cells"));
 }

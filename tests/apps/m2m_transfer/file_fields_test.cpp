@@ -244,6 +244,5 @@ TEST_CASE("fields in elements are moved to elements at all steps, and written as
   CHECK_THAT(refusal(request), Catch::Contains("--fields names a field in elements"));
   request.weights.clear();
   request.policy = "nearest";
-  CHECK_THAT(refusal(request), Catch::Contains("kind linear with source values in cells has no "
-                                               "nearest vertex"));
+  CHECK_THAT(refusal(request), Catch::Contains("kind linear has no nearest cell"));
 }
