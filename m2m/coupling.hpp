@@ -62,7 +62,8 @@ struct CouplingOptions {
   /// Keeps values within those of the vertices of the donor. It matters for points that snap within
   /// rounding, whose values extrapolate, and for second_order, which then is `limited`.
   bool clamp = false;
-  /// What the values belong to. Kinds that are not conservative: nodes. Targets: nodes or cells.
+  /// What the values belong to. Sources: anything for linear and conservative kinds, nodes for the
+  /// others. Targets: nodes, or cells for conservative kinds.
   Centring source_values = Centring::nodes;
   Centring target_values = Centring::nodes;
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
@@ -185,11 +186,22 @@ void Coupling<S, T>::check_options() const {
     if (options_.target_values == Centring::corners)
       fail(ErrorCode::bad_argument,
            "target values at corners are not offered: choose nodes or cells");
-  } else if (options_.source_values != Centring::nodes ||
-             options_.target_values != Centring::nodes) {
-    fail(ErrorCode::bad_argument, "kind ", name_of(options_.kind),
-         " interpolates between nodes: choose a conservative kind for values in cells");
+    return;
   }
+  if (options_.target_values != Centring::nodes)
+    fail(ErrorCode::bad_argument, "kind ", name_of(options_.kind),
+         " gives values at points: show the centroids of the cells as the target's points, or "
+         "choose a conservative kind for target values in cells");
+  if (options_.source_values == Centring::nodes) return;
+  if (options_.kind != TransferKind::linear)
+    fail(ErrorCode::bad_argument, "kind ", name_of(options_.kind),
+         " takes values at nodes: choose linear or a conservative kind for source values in cells "
+         "or at their corners");
+  if (std::holds_alternative<Nearest>(options_.policy))
+    fail(
+        ErrorCode::bad_argument, "kind ", name_of(options_.kind),
+        " with source values in cells has no nearest vertex for points outside: choose policy keep "
+        "or value, or a tolerance");
 }
 
 template <class S, class T>

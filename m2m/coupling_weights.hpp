@@ -37,6 +37,9 @@ Task collect_weights(Coupling<S, T> coupling, std::int64_t n_sources, std::int64
       setup.id != CouplingId{},
       "weights of a coupling are collected before its first search: co_await search() first");
   require_weights(setup.kind, setup.clamp);
+  TESS_CHECK(setup.source_values == Centring::nodes,
+             "weights are of values at points, and the coupling's source values are in ",
+             rows_of(setup.source_values));
   GroupProxy<RowBook> book;
   co_await epoch([&] { book = create_group<RowBook>(); });
   co_await epoch([&] {

@@ -44,6 +44,12 @@ enum class Centring : std::uint8_t {
   corners,  ///< four values per tetrahedron, 4 t + corner: linear with jumps between tetrahedra
 };
 
+/// What has a row of values, for messages.
+[[nodiscard]] constexpr const char* rows_of(Centring centring) noexcept {
+  constexpr std::array names{"points", "tetrahedra", "corners of tetrahedra"};
+  return names[static_cast<std::size_t>(centring)];
+}
+
 /// The layers of tetrahedra around a part that a kind needs, so that the result does not depend on
 /// the partition: in the source, for gradients; in the target, for masses and loads.
 [[nodiscard]] constexpr std::int32_t source_halo_layers(TransferKind kind) noexcept {

@@ -195,6 +195,10 @@ int drive(Setup& setup, const DriverOptions& options) {
   const int code = tess::run(setup, [&]() -> Task {
     if (!options.round_trips.empty()) return drift_table(options, progress);
     if (moves_file_fields(options)) {
+      if (options.request.steps != 1)
+        fail(ErrorCode::bad_argument,
+             "--steps applies donors again to formulas; leave it out for fields and weights of "
+             "files (--step chooses the steps of a file)");
       if (!options.request.pairs.empty() || !options.request.moves.empty())
         fail(
             ErrorCode::bad_argument,

@@ -4,6 +4,7 @@
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/plot/write_file.hpp"
+#include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/field_file.hpp"
@@ -34,10 +35,14 @@ std::vector<std::string> split_names(const std::vector<std::string>& lists) {
   return names;
 }
 
-bool has_vertex_field(const FieldFile& file, const std::string& name) {
-  return std::ranges::any_of(file.fields(), [&](const FileField& field) {
-    return field.place == FieldPlace::vertices && field.name == name;
-  });
+/// Where the file has the field; at vertices if it has two of the name.
+std::optional<FieldPlace> place_of(const FieldFile& file, const std::string& name) {
+  for (const FieldPlace place : {FieldPlace::vertices, FieldPlace::tets})
+    if (std::ranges::any_of(file.fields(), [&](const FileField& field) {
+          return field.place == place && field.name == name;
+        }))
+      return place;
+  return std::nullopt;
 }
 
 bool is_formula(const std::string& name) {
@@ -61,9 +66,10 @@ class SourceFields {
     if (!request.source.starts_with("kuhn:")) file_.emplace(request.source);
     bool from_file = false;
     for (const std::string& name : names_) {
-      const bool is_there = file_ && has_vertex_field(*file_, name);
-      from_file = from_file || is_there;
-      formulas_.push_back(is_there ? std::nullopt : formula_of(name));
+      const std::optional<FieldPlace> place = file_ ? place_of(*file_, name) : std::nullopt;
+      from_file = from_file || place;
+      places_.push_back(place.value_or(FieldPlace::vertices));
+      formulas_.push_back(place ? std::nullopt : formula_of(name));
     }
     if (from_file)
       choose_steps(request.step);
@@ -78,12 +84,19 @@ class SourceFields {
   [[nodiscard]] double time_of(std::size_t step) const {
     return file_ && step < file_->n_steps() ? file_->times()[step] : 0;
   }
-  [[nodiscard]] std::vector<Field> at(std::size_t step) const {
+  /// Those at vertices, formulas among them, or those in elements; in the order of their names.
+  [[nodiscard]] std::vector<Field> at(std::size_t step, FieldPlace place) const {
     std::vector<Field> fields;
-    for (std::size_t f = 0; f < names_.size(); ++f)
-      fields.push_back(formulas_[f] ? sample(mesh_, names_[f], *formulas_[f])
-                                    : file_->vertex_field(mesh_, names_[f], step));
+    for (std::size_t f = 0; f < names_.size(); ++f) {
+      if (places_[f] != place) continue;
+      fields.push_back(formulas_[f]                    ? sample(mesh_, names_[f], *formulas_[f])
+                       : place == FieldPlace::vertices ? file_->vertex_field(mesh_, names_[f], step)
+                                                       : file_->tet_field(mesh_, names_[f], step));
+    }
     return fields;
+  }
+  [[nodiscard]] bool has(FieldPlace place) const {
+    return std::ranges::find(places_, place) != places_.end();
   }
 
  private:
@@ -111,15 +124,34 @@ class SourceFields {
   const TetMesh& mesh_;
   std::vector<std::string> names_;
   std::optional<FieldFile> file_;
+  std::vector<FieldPlace> places_;
   std::vector<std::optional<Formula>> formulas_;  // none: from the file
   std::vector<std::size_t> steps_;
 };
 
-/// The steps of a batch with their fields, as one list.
+/// Fields of some steps as one list: those of the first step, then those of the second, …
+struct FieldsOfSteps {
+  std::vector<Field> fields{};
+  std::size_t n_each = 0;  // per step
+  /// Returns the components that a step adds.
+  std::size_t add(std::vector<Field> more) {
+    n_each = more.size();
+    std::size_t n_components = 0;
+    for (Field& field : more) {
+      n_components += field.n_components;
+      fields.push_back(std::move(field));
+    }
+    return n_components;
+  }
+  [[nodiscard]] std::vector<Field> of_step(const std::vector<Field>& all, std::size_t k) const {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(k * n_each);
+    return {first, first + static_cast<std::ptrdiff_t>(n_each)};
+  }
+};
+
 struct Batch {
   std::vector<std::size_t> steps{};
-  std::vector<Field> fields{};  // those of the first step, then those of the second, …
-  std::size_t n_each = 0;       // fields per step
+  FieldsOfSteps vertices{}, cells{};
 };
 
 /// The target vertices: what they have before the transfer, and what they get.
@@ -137,11 +169,11 @@ class ResultFile {
   ResultFile(const std::string& path, const TetMesh& mesh) : path_(path), mesh_(mesh) {
     if (!path.empty() && !is_vtu(path)) steps_.emplace(path, mesh);
   }
-  void add(double time, std::span<const Field> fields) {
+  void add(double time, std::span<const Field> fields, std::span<const Field> cells) {
     if (steps_)
-      steps_->add(time, fields);
+      steps_->add(time, fields, cells);
     else if (!path_.empty())
-      write_vtu(path_, mesh_, fields, {}, time);
+      write_vtu(path_, mesh_, fields, cells, time);
   }
   void finish() {
     if (steps_) steps_->finish();
@@ -168,8 +200,8 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
   const PartitionMethod method = parse_partition_method(run.request.partition);
   DistributedMesh source, target;
   co_await epoch([&] {
-    source =
-        scatter(run.source, batch.fields, run.request.n_chares, method, source_halo_layers(kind));
+    source = scatter(run.source, batch.vertices.fields, run.request.n_chares, method,
+                     source_halo_layers(kind));
     target = scatter(run.target, values, run.request.n_chares, method, target_halo_layers(kind));
   });
   Transfer transfer(source, target, run.options);
@@ -197,8 +229,8 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
       row += field.n_components;
     }
   }
+  co_await epoch([&] { transfer.destroy(); });
   co_await epoch([&] {
-    transfer.destroy();
     source.destroy();
     target.destroy();
   });
@@ -209,8 +241,31 @@ void apply_batch(const Run& run, const Batch& batch, std::vector<Field>& values)
   for (std::size_t f = 0; f < values.size(); ++f) {
     if (const auto* given = std::get_if<UseValue>(&run.options.policy))
       std::ranges::fill(values[f].values, given->value);
-    apply(run.matrix, batch.fields[f].values, values[f].n_components, values[f].values);
+    apply(run.matrix, batch.vertices.fields[f].values, values[f].n_components, values[f].values);
   }
+}
+
+/// A search and one application of all fields in elements.
+Task transfer_cell_batch(const Run& run, const Batch& batch, CellOutcome& cells,
+                         FileFieldsReport& report) {
+  co_await transfer_cells(run.source, batch.cells.fields, run.target, run.request.n_chares,
+                          parse_partition_method(run.request.partition), run.options, &cells);
+  report.cell_counts = cells.search.tally.counts;
+  report.has_cells = true;
+}
+
+void name_fields(const Batch& batch, FileFieldsReport& report) {
+  const auto add = [&](const FieldsOfSteps& some, const char* place) {
+    for (std::size_t f = 0; f < some.n_each; ++f) {
+      const Field& field = some.fields[f];
+      report.fields.push_back(
+          field.n_components == 1
+              ? field.name + place
+              : fmt::format("{} ({} components){}", field.name, field.n_components, place));
+    }
+  };
+  add(batch.vertices, "");
+  add(batch.cells, " (in elements)");
 }
 
 void read_matrix(Run& run, FileFieldsReport& report) {
@@ -248,8 +303,7 @@ bool is_for_files(const FileFieldsRequest& request) {
   try {
     const FieldFile file(request.source);
     for (const std::string& name : split_names(request.fields))
-      if (has_vertex_field(file, name) || (!file.fields().empty() && !is_formula(name)))
-        return true;
+      if (place_of(file, name) || (!file.fields().empty() && !is_formula(name))) return true;
   } catch (const Error&) {  // the run reads the file again, and reports what is wrong
   }
   return false;
@@ -272,6 +326,10 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
          fields.steps().size(), "; give a file that ends in .exo, or one --step");
+  if (fields.has(FieldPlace::tets) && !(request.weights + request.from_weights).empty())
+    fail(ErrorCode::bad_argument,
+         "weights are of values at vertices, and --fields names a field in elements; leave it out, "
+         "or --weights and --from-weights");
   if (!request.from_weights.empty()) read_matrix(run, *report);
   ResultFile out(request.out, run.target);
   std::size_t next = 0;
@@ -280,46 +338,41 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
     std::size_t n_components = 0;
     do {
       const std::size_t step = fields.steps()[next++];
-      std::vector<Field> more = fields.at(step);
-      batch.n_each = more.size();
       batch.steps.push_back(step);
-      std::size_t each = 0;
-      for (Field& field : more) {
-        each += field.n_components;
-        batch.fields.push_back(std::move(field));
-      }
+      const std::size_t each = batch.vertices.add(fields.at(step, FieldPlace::vertices)) +
+                               batch.cells.add(fields.at(step, FieldPlace::tets));
       n_components += each;
       if (n_components + each > batch_components) break;
     } while (next < fields.steps().size());
-    if (report->fields.empty())
-      for (std::size_t f = 0; f < batch.n_each; ++f) {
-        const Field& field = batch.fields[f];
-        report->fields.push_back(
-            field.n_components == 1
-                ? field.name
-                : fmt::format("{} ({} components)", field.name, field.n_components));
-      }
-    std::vector<Field> values = start_values(batch.fields, run.target.n_points());
-    if (request.from_weights.empty()) {
-      co_await transfer_batch(run, batch, values, *report);
-    } else {
+    if (report->fields.empty()) name_fields(batch, *report);
+    std::vector<Field> values = start_values(batch.vertices.fields, run.target.n_points());
+    if (!request.from_weights.empty()) {
       progress.phase("apply");
       apply_batch(run, batch, values);
+    } else if (fields.has(FieldPlace::vertices)) {
+      co_await transfer_batch(run, batch, values, *report);
     }
+    CellOutcome cells;
+    if (fields.has(FieldPlace::tets)) co_await transfer_cell_batch(run, batch, cells, *report);
     progress.phase("writing");
     for (std::size_t k = 0; k < batch.steps.size(); ++k) {
-      const auto first = values.begin() + static_cast<std::ptrdiff_t>(k * batch.n_each);
-      std::vector<Field> result(first, first + static_cast<std::ptrdiff_t>(batch.n_each));
-      std::uint64_t hash = result_hash({});
-      std::size_t n_nan = 0;
-      for (const Field& field : result) {
-        hash = result_hash(field.values, hash);
-        n_nan = std::max(n_nan, count_nan_rows(field.values, field.n_components));
-      }
+      std::vector<Field> result = batch.vertices.of_step(values, k);
+      std::vector<Field> in_cells = batch.cells.of_step(cells.fields, k);
       const double time = fields.time_of(batch.steps[k]);
-      report->steps.push_back({batch.steps[k], time, n_nan, hash});
+      MovedStep step{batch.steps[k], time, 0, 0, result_hash({})};
+      for (const Field& field : result) {
+        step.result_hash = result_hash(field.values, step.result_hash);
+        step.n_nan = std::max(step.n_nan, count_nan_rows(field.values, field.n_components));
+      }
+      for (const Field& field : in_cells) {
+        step.result_hash = result_hash(field.values, step.result_hash);
+        step.n_nan_cells =
+            std::max(step.n_nan_cells, count_nan_rows(field.values, field.n_components));
+      }
+      report->steps.push_back(step);
       if (!run.status.empty()) result.push_back(status_field(run.status));
-      out.add(time, result);
+      if (report->has_cells) in_cells.push_back(status_field(cells.status));
+      out.add(time, result, in_cells);
     }
   }
   out.finish();
@@ -336,6 +389,9 @@ std::string table(const FileFieldsReport& r) {
   if (r.searched)
     out += fmt::format("  {:<12} {} inside, {} boundary, {} snapped, {} outside\n", "found",
                        r.counts[0], r.counts[1], r.counts[2], r.counts[3]);
+  if (r.has_cells)
+    out += fmt::format("  {:<12} {} inside, {} boundary, {} snapped, {} outside\n", "cells found",
+                       r.cell_counts[0], r.cell_counts[1], r.cell_counts[2], r.cell_counts[3]);
   for (const std::string& place : texts_of(r.worst))
     out += fmt::format("  {:<12} {}\n", "farthest", place);
   if (r.n_weights > 0)
@@ -343,9 +399,10 @@ std::string table(const FileFieldsReport& r) {
         fmt::format("  {:<12} {} {}\n", "weights", r.n_weights,
                     r.searched ? "written" : fmt::format("read, {} vertices without", r.n_without));
   for (const MovedStep& step : r.steps)
-    out += fmt::format("  {:<12} {:016x}{}\n",
-                       fmt::format("step {} at {:.6g}", step.step, step.time), step.result_hash,
-                       step.n_nan == 0 ? "" : fmt::format(", NaN at {} vertices", step.n_nan));
+    out += fmt::format(
+        "  {:<12} {:016x}{}{}\n", fmt::format("step {} at {:.6g}", step.step, step.time),
+        step.result_hash, step.n_nan == 0 ? "" : fmt::format(", NaN at {} vertices", step.n_nan),
+        step.n_nan_cells == 0 ? "" : fmt::format(", NaN in {} cells", step.n_nan_cells));
   return out;
 }
 
@@ -357,14 +414,20 @@ std::string json(const FileFieldsReport& r) {
                   {"snapped", r.counts[2]},
                   {"outside", r.counts[3]},
                   {"farthest", json_of(r.worst)}});
-  else
+  else if (!r.has_cells)
     whole["without_weights"] = r.n_without;
+  if (r.has_cells)
+    whole.update({{"cells_inside", r.cell_counts[0]},
+                  {"cells_boundary", r.cell_counts[1]},
+                  {"cells_snapped", r.cell_counts[2]},
+                  {"cells_outside", r.cell_counts[3]}});
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
   whole["steps"] = nlohmann::ordered_json::array();
   for (const MovedStep& step : r.steps)
     whole["steps"].push_back({{"step", step.step},
                               {"time", step.time},
                               {"nan_vertices", step.n_nan},
+                              {"nan_cells", step.n_nan_cells},
                               {"result_hash", fmt::format("{:016x}", step.result_hash)}});
   return whole.dump(2) + "\n";
 }

@@ -20,11 +20,12 @@ namespace m2m_transfer {
 /// The options, as on the command line.
 struct FileFieldsRequest {
   std::string source{}, target{};
-  std::vector<std::string> fields{};  ///< of the source file, or formulas; each may list several
-  std::string step{};                 ///< a number, "all", or empty: the last one
-  std::string weights{};              ///< file to write them to
-  std::string from_weights{};         ///< file to read them from, in place of a search
-  std::string out{};                  ///< ExodusII with all steps, or .vtu with one
+  /// At vertices or in elements of the source file, or formulas; each may list several.
+  std::vector<std::string> fields{};
+  std::string step{};          ///< a number, "all", or empty: the last one
+  std::string weights{};       ///< file to write them to
+  std::string from_weights{};  ///< file to read them from, in place of a search
+  std::string out{};           ///< ExodusII with all steps, or .vtu with one
   std::string policy = "keep", kind = "linear", partition = "curve";
   std::int32_t n_chares = 8;  ///< per mesh
   double voxel = 0;           ///< edge; 0: chosen
@@ -36,16 +37,19 @@ struct MovedStep {
   std::size_t step = 0;
   double time = 0;
   std::size_t n_nan = 0;          ///< vertices with a NaN, of the field that has most
-  std::uint64_t result_hash = 0;  ///< over the fields in order
+  std::size_t n_nan_cells = 0;    ///< the same in cells
+  std::uint64_t result_hash = 0;  ///< over the fields at vertices in order, then those in cells
 };
 struct FileFieldsReport {
   std::string source, target;
-  std::vector<std::string> fields;        ///< with their components
-  bool searched = false;                  ///< otherwise the weights were read
-  std::array<std::uint64_t, 4> counts{};  ///< per Status, after a search
-  WorstPlaces worst;                      ///< the same
-  std::uint64_t n_without = 0;            ///< target vertices without weights, if they were read
-  std::uint64_t n_weights = 0;            ///< read or written
+  std::vector<std::string> fields;             ///< with their components
+  bool searched = false;                       ///< otherwise the weights were read
+  std::array<std::uint64_t, 4> counts{};       ///< per Status, after a search
+  WorstPlaces worst;                           ///< the same
+  bool has_cells = false;                      ///< fields in elements were moved
+  std::array<std::uint64_t, 4> cell_counts{};  ///< per Status of target cells, then
+  std::uint64_t n_without = 0;  ///< target vertices without weights, if they were read
+  std::uint64_t n_weights = 0;  ///< read or written
   std::vector<MovedStep> steps;
 };
 

@@ -32,8 +32,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "written, otherwise at once");
   line.option(
       "--field,--fields", request.fields,
-      "gaussian, linear, sin, an expression in x, y, z, or a field of the source file; several "
-      "as --fields sin,x*y");
+      "gaussian, linear, sin, an expression in x, y, z, or a field of the source file at vertices "
+      "or in elements (moved to the target's elements); several as --fields sin,x*y");
   line.option("--chares", request.n_chares,
               "chares per mesh (default: --per-pe times the number of PEs)")
       .between(1, 1 << 20);

@@ -66,10 +66,7 @@ std::size_t OverlapSource::components_of(const MeshView& mesh,
   const Centring centring = setup.source_values;
   const std::size_t n_rows = n_unknowns(mesh, centring);
   if (n_rows == 0) return 1;
-  TESS_CHECK(values.size() % n_rows == 0, "a piece with ", n_rows, " ",
-             centring == Centring::nodes   ? "points"
-             : centring == Centring::cells ? "tetrahedra"
-                                           : "corners of tetrahedra",
+  TESS_CHECK(values.size() % n_rows == 0, "a piece with ", n_rows, " ", rows_of(centring),
              " gives ", values.size(), " values: give as many rows, ghosts included");
   return values.size() / n_rows;
 }

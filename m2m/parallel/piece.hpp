@@ -60,9 +60,10 @@ class Piece : public OverlapPiece<C> {
     SourceSide& from = couplings.source(id);
     const std::span<const double> values = detail::values_of<Give>(self(), id);
     const MeshView mesh = self().mesh_view();
-    TESS_CHECK(mesh.points.empty() || values.size() % mesh.points.size() == 0, "a piece of ",
-               mesh.points.size(), " points gives ", values.size(),
-               " values: give points × components");
+    const std::size_t n_rows = n_unknowns(mesh, from.setup.source_values);
+    TESS_CHECK(n_rows == 0 || values.size() % n_rows == 0, "a piece with ", n_rows, " ",
+               rows_of(from.setup.source_values), " gives ", values.size(),
+               " values: give as many rows, ghosts included");
     from.give(mesh, values, detail::channel_of<Take>(),
               [&](collide::OwnerId target, GivenValues given) {
                 given.from = me();

@@ -26,6 +26,12 @@ double clamped(double value, const Donor& donor, const double* values, std::size
   return value < low ? low : value > high ? high : value;
 }
 
+/// The same place for a field in tetrahedra: rows of values in place of vertices.
+Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
+  if (centring == Centring::cells) return donor_at(tet);
+  return {{4 * tet, 4 * tet + 1, 4 * tet + 2, 4 * tet + 3}, weights};
+}
+
 }  // namespace
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
@@ -43,6 +49,9 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
 
 DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
   BestDonors best = best_donors(mesh, cover_, query.boxes, query.points, setup.tolerance);
+  if (setup.source_values != Centring::nodes)
+    for (std::size_t i = 0; i < best.donors.size(); ++i)
+      best.donors[i] = in_tet(best.tets[i], best.donors[i].weights, setup.source_values);
   drafts_[query.from] = std::move(best.donors);
   return {setup.id, {}, std::move(best.points), std::move(best.candidates), best.n_tested};
 }

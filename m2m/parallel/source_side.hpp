@@ -3,6 +3,7 @@
 // were chosen.
 #pragma once
 
+#include "m2m/conservative/overlap_rows.hpp"
 #include "m2m/mesh_view.hpp"
 #include "m2m/parallel/messages.hpp"
 #include "m2m/search/cover.hpp"
@@ -30,13 +31,15 @@ class SourceSide {
   void choose(Choice choice);
   [[nodiscard]] bool has_kept_cover() const { return stays_ == SameMesh::Answer::same; }
   /// Calls send(target piece, values) for every target piece that gets values from this one.
-  /// `values`: of all points of the piece, n_points × n_components, row-major.
+  /// `values`: of all points of the piece, n_points × n_components, row-major; or a row per
+  /// tetrahedron or corner, as the coupling's source_values say.
   template <class Send>
   void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
             const Send& send) {
-    if (mesh.points.empty()) return;
+    const std::size_t n_rows = n_unknowns(mesh, setup.source_values);
+    if (n_rows == 0) return;
     prepare(mesh);
-    const std::size_t n_components = values.size() / mesh.points.size();
+    const std::size_t n_components = values.size() / n_rows;
     const std::vector<Point> slopes = gradients(values, n_components);
     const std::uint32_t round = rounds_[channel]++;
     for (const auto& [target, donors] : donors_)

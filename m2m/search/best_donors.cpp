@@ -12,13 +12,15 @@ constexpr std::size_t batch = 1024;
 struct Best {
   std::vector<Candidate> candidates{};  // per point
   std::vector<Donor> donors{};
+  std::vector<std::int32_t> tets{};
 
-  explicit Best(std::size_t n) : candidates(n), donors(n) {}
-  void offer(std::size_t point, const Candidate& candidate, const Tet& tet,
-             const Weights& weights) {
+  explicit Best(std::size_t n) : candidates(n), donors(n), tets(n) {}
+  void offer(std::size_t point, const Candidate& candidate, std::span<const Tet> all,
+             std::size_t tet, const Weights& weights) {
     if (!better(candidate, candidates[point])) return;
     candidates[point] = candidate;
-    donors[point] = {tet, weights};
+    donors[point] = {all[tet], weights};
+    tets[point] = static_cast<std::int32_t>(tet);
   }
 };
 
@@ -52,7 +54,7 @@ class DonorSearch {
       const PointPair& pair = waiting_[static_cast<std::size_t>(f.pair)];
       const auto tet = static_cast<std::size_t>(pair.tet);
       best_.offer(static_cast<std::size_t>(pair.point),
-                  candidate_of(f.location, mesh_.tet_ids[tet]), mesh_.tets[tet],
+                  candidate_of(f.location, mesh_.tet_ids[tet]), mesh_.tets, tet,
                   f.location.weights);
     }
     n_tested_ += n_waiting_;
@@ -88,7 +90,7 @@ void snap(const MeshView& mesh, const Cover& cover, std::span<const std::uint32_
                                                           corners_of(mesh.points, mesh.tets[tet]));
                   if (near.distance > tolerance) return;
                   best.offer(outside[pairs.grid().numbers()[at]],
-                             {near.distance, mesh.tet_ids[tet], Status::snapped}, mesh.tets[tet],
+                             {near.distance, mesh.tet_ids[tet], Status::snapped}, mesh.tets, tet,
                              near.weights);
                 });
 }
@@ -111,12 +113,14 @@ BestDonors best_donors(const MeshView& mesh, const Cover& cover,
   out.points.reserve(points.size());
   out.candidates.reserve(points.size());
   out.donors.reserve(points.size());
+  out.tets.reserve(points.size());
   for (std::size_t point = 0; point < points.size(); ++point) {
     const std::uint32_t at = position[point];
     if (best.candidates[at].status == Status::outside) continue;
     out.points.push_back(static_cast<std::uint32_t>(point));
     out.candidates.push_back(best.candidates[at]);
     out.donors.push_back(best.donors[at]);
+    out.tets.push_back(best.tets[at]);
   }
   return out;
 }

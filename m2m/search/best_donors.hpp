@@ -16,6 +16,7 @@ struct BestDonors {
   std::vector<std::uint32_t> points;  ///< ascending
   std::vector<Candidate> candidates;  ///< per point found
   std::vector<Donor> donors;          ///< per point found
+  std::vector<std::int32_t> tets;     ///< per point found, in the part
   std::uint64_t n_tested = 0;         ///< pairs of a tetrahedron and a point in its box
 };
 

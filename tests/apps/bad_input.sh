@@ -57,6 +57,7 @@ refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy n
 refuses SOURCE "${transfer[@]}"
 refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
 refuses "'A:D' is no pair" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3 --pairs A:B,A:D
+refuses "--steps applies donors again to formulas" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
 refuses "'sideways(1)' is no motion" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --move 'sideways(1)'
 refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --move 'translate(1,0,0)'
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1

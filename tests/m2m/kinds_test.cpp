@@ -2,6 +2,7 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/testing.hpp"
+#include "tests/m2m/element_meshes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -61,6 +62,37 @@ KindResult result_of(const KindCase& c, std::uint64_t seed) {
   return result;
 }
 
+struct KindCut {
+  TransferKind kind{};
+  std::int32_t n_parts = 1;
+};
+Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
+                     std::vector<double>& values) {
+  Field field{"f", 1, {}};
+  for (const Point& p : from.points) field.values.push_back(test::linear_at(p));
+  DistributedMesh source, target;
+  co_await epoch([&] {
+    source =
+        scatter(from, {field}, cut.n_parts, PartitionMethod::curve, source_halo_layers(cut.kind));
+    target = scatter(to, {{"f", 1, std::vector<double>(to.n_points())}}, cut.n_parts,
+                     PartitionMethod::curve, target_halo_layers(cut.kind));
+  });
+  co_await transfer(source, target, {.kind = cut.kind}, nullptr);
+  Future<Outcome> outcome;
+  target.workers.broadcast<&Worker::gather>(outcome.callback());
+  const Outcome all = co_await outcome;
+  values.assign(to.n_points(), 0);
+  for (std::size_t i = 0; i < all.points.size(); ++i)
+    values[static_cast<std::size_t>(all.points[i])] = all.values[i];
+}
+std::vector<double> linear_result(const TetMesh& from, const TetMesh& to, KindCut cut,
+                                  std::uint64_t seed) {
+  const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
+  std::vector<double> values;
+  machine.run([&]() -> Task { return transfer_linear(from, to, cut, values); }).require_success();
+  return values;
+}
+
 }  // namespace
 
 TEST_CASE("each kind gives the same bits for any number of parts and any schedule",
@@ -95,4 +127,23 @@ TEST_CASE("a limited transfer stays within the values of a step, a second-order 
   };
   CHECK(range(TransferKind::limited) == std::pair(-1.0, 1.0));
   CHECK(range(TransferKind::second_order).second > 1.01);
+}
+
+TEST_CASE("every kind takes and gives values at the vertices of every type of element",
+          "[m2m][kinds]") {
+  for (const ElementType from_type : test::all_element_types)
+    for (const ElementType to_type : test::all_element_types) {
+      const TetMesh from = test::element_mesh(from_type, 3), to = test::element_mesh(to_type, 4);
+      for (const TransferKind kind : all_transfer_kinds) {
+        INFO(name_of(kind) << " from " << from.name << " to " << to.name);
+        const bool smooths =
+            kind == TransferKind::nearest || kind == TransferKind::conservative_lumped;
+        const std::vector<double> one = linear_result(from, to, {kind, 1}, 4);
+        double error = 0;
+        for (std::size_t v = 0; v < to.n_points(); ++v)
+          error = std::max(error, std::abs(one[v] - test::linear_at(to.points[v])));
+        CHECK(error < (smooths ? (2 + 3 + 5) * 1.2 / 3 : 1e-12));
+        CHECK(linear_result(from, to, {kind, 5}, 3) == one);
+      }
+    }
 }

@@ -36,6 +36,30 @@ std::string source_file(const Scratch& scratch) {
   return path;
 }
 
+/// Steps with `temp` at vertices, and `q` and `flux` in elements: linear functions of place times
+/// step + 1, at the centroids.
+std::string element_file(const Scratch& scratch, std::size_t n) {
+  const std::string path = scratch.path("elements.exo");
+  const TetMesh mesh = kuhn_mesh({4, 0.2});
+  ExodusSteps out(path, mesh);
+  for (std::size_t step = 0; step < n; ++step) {
+    const double factor = static_cast<double>(step) + 1;
+    Field temp{"temp", 1, {}}, q{"q", 1, {}}, flux{"flux", 3, {}};
+    for (const Point& p : mesh.points) temp.values.push_back(factor * p[0]);
+    for (const Tet& tet : mesh.tets) {
+      Point mean{};
+      for (const VertexId v : tet)
+        for (std::size_t k = 0; k < 3; ++k)
+          mean[k] += mesh.points[static_cast<std::size_t>(v)][k] / 4;
+      q.values.push_back(factor * (mean[0] - 2 * mean[2]));
+      for (const double x : mean) flux.values.push_back(factor * x);
+    }
+    out.add(0.5 * factor, std::array{temp}, std::array{q, flux});
+  }
+  out.finish();
+  return path;
+}
+
 FileFieldsReport moved(const FileFieldsRequest& request, std::int32_t n_pes = 2) {
   FileFieldsReport report;
   apps::Progress progress(nullptr);
@@ -154,4 +178,71 @@ TEST_CASE("fields, steps and weights that do not exist are refused by name", "[m
   CHECK(is_for_files(formula));
   formula.source = "kuhn:3";
   CHECK_FALSE(is_for_files(formula));
+}
+
+TEST_CASE("fields in elements are moved to elements at all steps, and written as such",
+          "[m2m][driver]") {
+  const Scratch scratch;
+  constexpr std::size_t n = 20;
+  FileFieldsRequest request;
+  request.source = element_file(scratch, n);
+  request.target = "kuhn:5@0.1";
+  request.fields = {"q,temp", "flux"};
+  request.step = "all";
+  CHECK(is_for_files(request));
+  for (const char* kind : {"second-order", "conservative"}) {
+    INFO(kind);
+    request.kind = kind;
+    request.out = scratch.path("out.exo");
+    const FileFieldsReport report = moved(request);
+    CHECK(report.fields ==
+          std::vector<std::string>{"temp", "q (in elements)", "flux (3 components) (in elements)"});
+    CHECK(report.cell_counts[0] + report.cell_counts[1] == 6 * 5 * 5 * 5);
+    REQUIRE(report.steps.size() == n);
+    CHECK(hashes(moved(request, 1)) == hashes(report));
+
+    const TetMesh target = read_mesh(request.out);
+    const FieldFile file(request.out);
+    REQUIRE(file.n_steps() == n);
+    for (const std::size_t step : {0U, 7U, 19U}) {
+      CHECK(file.times()[step] == 0.5 * static_cast<double>(step + 1));
+      const Field q = file.tet_field(target, "q", step),
+                  flux = file.tet_field(target, "flux", step);
+      double error = 0;
+      for (std::size_t t = 0; t < target.n_tets(); ++t)
+        error = std::max(error,
+                         std::abs(q.values[t] - (flux.values[3 * t] - 2 * flux.values[3 * t + 2])));
+      for (std::size_t t = 0; t < target.n_tets(); ++t) {
+        double x = 0;
+        for (const VertexId v : target.tets[t])
+          x += target.points[static_cast<std::size_t>(v)][0] / 4;
+        error = std::max(error, std::abs(flux.values[3 * t] - static_cast<double>(step + 1) * x));
+      }
+      CHECK(error < 1e-11);
+      std::uint64_t hash = result_hash(file.vertex_field(target, "temp", step).values);
+      for (const Field& field : {q, flux}) hash = result_hash(field.values, hash);
+      CHECK(hash == report.steps[step].result_hash);
+      CHECK(file.tet_field(target, "status", step).values ==
+            file.tet_field(target, "status", 0).values);
+    }
+  }
+
+  request.fields = {"q"};
+  request.step = "3";
+  request.out = scratch.path("one.vtu");
+  const FileFieldsReport one = moved(request);
+  CHECK_FALSE(one.searched);
+  const FieldFile file(request.out);
+  CHECK(result_hash(file.tet_field(read_mesh(request.out), "q", 0).values) ==
+        one.steps[0].result_hash);
+  CHECK(table(one).find("cells found") != std::string::npos);
+  CHECK(json(one).find("cells_inside") != std::string::npos);
+
+  request.out.clear();
+  request.weights = scratch.path("w.nc");
+  request.kind = "linear";
+  CHECK_THAT(refusal(request), Catch::Contains("--fields names a field in elements"));
+  request.weights.clear();
+  request.policy = "nearest";
+  CHECK_THAT(refusal(request), Catch::Contains("kind linear has no nearest cell"));
 }

@@ -1,0 +1,88 @@
+// Meshes of a box made of one type of element each, as the readers split them.
+#pragma once
+
+#include "m2m/elements/split_element.hpp"
+#include "m2m/mesh.hpp"
+
+#include <array>
+#include <map>
+#include <vector>
+
+namespace tess::test {
+
+inline constexpr std::array all_element_types{m2m::ElementType::tet4, m2m::ElementType::tet10,
+                                              m2m::ElementType::hex8, m2m::ElementType::wedge6,
+                                              m2m::ElementType::pyramid5};
+
+/// The unit cube of n³ bricks whose sides grow along each axis, so that ten-node tetrahedra are
+/// curved: n³ hexahedra, or 6 n³ tetrahedra, 2 n³ wedges or 6 n³ pyramids.
+inline m2m::TetMesh element_mesh(m2m::ElementType type, int n) {
+  using m2m::ElementType;
+  using Grid = std::array<int, 3>;  // in half bricks
+  m2m::TetMesh mesh;
+  mesh.name = m2m::name_of(type);
+  m2m::ElementSplitter splitter(mesh);
+  std::map<Grid, m2m::VertexId> known;
+  const auto vertex = [&](const Grid& at) {
+    const auto [entry, is_new] = known.try_emplace(at, static_cast<m2m::VertexId>(known.size()));
+    if (is_new) {
+      m2m::Point p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double x = at[k] / (2.0 * n);
+        p[k] = x + 0.15 * x * (1 - x);
+      }
+      mesh.points.push_back(p);
+    }
+    return entry->second;
+  };
+  const auto add = [&](const std::vector<Grid>& nodes) {
+    std::vector<m2m::VertexId> vertices;
+    for (const Grid& at : nodes) vertices.push_back(vertex(at));
+    splitter.add(type, vertices);
+  };
+  const auto middle = [](const Grid& a, const Grid& b) {
+    return Grid{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+  };
+  for (int i = 0; i < 2 * n; i += 2)
+    for (int j = 0; j < 2 * n; j += 2)
+      for (int k = 0; k < 2 * n; k += 2) {
+        const std::array<Grid, 8> v{{{i, j, k},
+                                     {i + 2, j, k},
+                                     {i + 2, j + 2, k},
+                                     {i, j + 2, k},
+                                     {i, j, k + 2},
+                                     {i + 2, j, k + 2},
+                                     {i + 2, j + 2, k + 2},
+                                     {i, j + 2, k + 2}}};
+        if (type == ElementType::hex8) {
+          add({v.begin(), v.end()});
+        } else if (type == ElementType::wedge6) {
+          add({v[0], v[1], v[2], v[4], v[5], v[6]});
+          add({v[0], v[2], v[3], v[4], v[6], v[7]});
+        } else if (type == ElementType::pyramid5) {
+          constexpr std::size_t faces[6][4] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
+                                               {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+          for (const auto& f : faces)
+            add({v[f[0]], v[f[1]], v[f[2]], v[f[3]], {i + 1, j + 1, k + 1}});
+        } else {
+          constexpr std::size_t corners[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                                 {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+          for (const auto& c : corners) {
+            std::vector<Grid> nodes{v[c[0]], v[c[1]], v[c[2]], v[c[3]]};
+            constexpr std::size_t edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+            if (type == ElementType::tet10)
+              for (const auto& e : edges) nodes.push_back(middle(nodes[e[0]], nodes[e[1]]));
+            add(nodes);
+          }
+        }
+      }
+  splitter.finish();
+  return mesh;
+}
+
+/// 1 + 2x - 3y + 5z
+inline double linear_at(const m2m::Point& p) {
+  return 1 + 2 * p[0] - 3 * p[1] + 5 * p[2];
+}
+
+}  // namespace tess::test
