@@ -52,8 +52,8 @@ struct Value {
   [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const {
     std::string unit;
     const double value = number(&unit);
-    if (!unit.empty() || value < static_cast<double>(least) ||
-        value > static_cast<double>(most) || value != std::floor(value))
+    if (!unit.empty() || value < static_cast<double>(least) || value > static_cast<double>(most) ||
+        value != std::floor(value))
       fail(ErrorCode::bad_argument, place, ": ", text, " is not a whole number of ", least, " … ",
            most);
     return static_cast<std::int64_t>(value);

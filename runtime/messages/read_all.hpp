@@ -27,10 +27,10 @@ auto read_all(Reader& body, const What& what, const Read& read) {
                  text(what(), ": ", error.what(), "; does serialize() read what it writes?"));
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception& error) {  // nobody could catch it: no entry method runs here
-    check_failed("read back", __FILE__, __LINE__,
-                 text(what(), ": serialize() threw while it read ", n_bytes, " bytes: ",
-                      error.what()));
+  } catch (const std::exception& error) {  // no entry method runs that could catch it
+    check_failed(
+        "read back", __FILE__, __LINE__,
+        text(what(), ": serialize() threw while it read ", n_bytes, " bytes: ", error.what()));
   }
 }
 
