@@ -85,7 +85,10 @@ class Array final : public ArrayOf<typename C::Index> {
   /// Constructs the elements of the initial range whose home is this PE.
   template <class... Args>
   void make_initial(const Args&... args) {
-    if constexpr (Coordinates<Index>) {
+    // A class without a default constructor may have a sparse array: it has no initial elements.
+    constexpr bool constructs =
+        sizeof...(Args) > 0 || OnePerPe<C> || std::is_default_constructible_v<C>;
+    if constexpr (Coordinates<Index> && constructs) {
       const auto size = static_cast<std::int64_t>(this->range().size());
       std::int64_t first = 0, last = size;
       if constexpr (OnePerPe<C>) {
@@ -627,7 +630,8 @@ class ArrayProxy {
     return static_cast<Of*>(here().find(index));
   }
 
-  /// The number of elements that the array was created with.
+  /// The number of elements that the array was created with. On a PE that the proxy reached before
+  /// the array it is not known, which ends the job: create the array inside an awaited epoch.
   [[nodiscard]] std::int64_t size() const {
     return static_cast<std::int64_t>(here().range().size());
   }
@@ -664,7 +668,10 @@ class ArrayProxy {
     detail::Collection* collection = detail::find_collection(current_pe(), id_);
     TESS_CHECK(collection != nullptr, "the array of this proxy ",
                current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
-               current_pe().id());
+               current_pe().id(),
+               current_pe().ended(id_)
+                   ? ""
+                   : ": create it inside an awaited epoch, or send its size with the proxy");
     return *static_cast<detail::Array<C>*>(collection);
   }
 
@@ -803,6 +810,11 @@ template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
   detail::check_creation<C, Args...>(range);
   return ArrayProxy<C>(detail::create_collection<C>(range, std::forward<Args>(args)...));
+}
+/// The same of tess::sparse: no elements yet. The arguments of constructors are those of insert().
+template <class C>
+ArrayProxy<C> create(const Sparse& range) {
+  return ArrayProxy<C>(detail::create_collection<C>(range));
 }
 
 }  // namespace tess

@@ -114,7 +114,8 @@ class GroupProxy {
     G* member = local_or_null();
     TESS_CHECK(member != nullptr, "this group ",
                current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
-               current_pe().id());
+               current_pe().id(),
+               current_pe().ended(id_) ? "" : ": create it inside an awaited epoch");
     return *member;
   }
 

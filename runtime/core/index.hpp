@@ -173,7 +173,10 @@ template <class... Extent>
 }
 
 /// The range of a sparse array: it has no elements at first; all are inserted or created on demand.
-inline constexpr Range sparse{};
+struct Sparse {
+  constexpr operator Range() const { return {}; }
+};
+inline constexpr Sparse sparse{};
 
 /// The rank of an index within a range in row-major order, or −1 outside.
 template <Coordinates Index>

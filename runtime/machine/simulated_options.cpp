@@ -49,10 +49,11 @@ struct Value {
            " is not a rate (a number with MB/s or GB/s)");
     return value * factor;
   }
-  [[nodiscard]] std::int64_t whole(double least, double most) const {
+  [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const {
     std::string unit;
     const double value = number(&unit);
-    if (!unit.empty() || value < least || value > most || value != std::floor(value))
+    if (!unit.empty() || value < static_cast<double>(least) || value > static_cast<double>(most) ||
+        value != std::floor(value))
       fail(ErrorCode::bad_argument, place, ": ", text, " is not a whole number of ", least, " … ",
            most);
     return static_cast<std::int64_t>(value);
@@ -99,7 +100,7 @@ bool take_of_run(const std::string& key, const Value& value, SimulatedOptions& o
   } else if (key == "per-process") {
     options.pes_per_process = static_cast<std::int32_t>(value.whole(1, 1 << 20));
   } else if (key == "seed") {
-    options.seed = static_cast<std::uint64_t>(value.whole(0, 9e15));
+    options.seed = static_cast<std::uint64_t>(value.whole(0, 9'000'000'000'000'000));
   } else if (key == "cost") {
     options.cost.reset();
     if (value.text != "measured") options.cost = value.time();

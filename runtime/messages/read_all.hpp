@@ -7,6 +7,8 @@
 #include "runtime/core/serialize.hpp"
 
 #include <cstdint>
+#include <exception>
+#include <new>
 #include <string_view>
 
 namespace tess::detail {
@@ -23,6 +25,12 @@ auto read_all(Reader& body, const What& what, const Read& read) {
   } catch (const Error& error) {
     check_failed("read back", __FILE__, __LINE__,
                  text(what(), ": ", error.what(), "; does serialize() read what it writes?"));
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {  // no entry method runs that could catch it
+    check_failed(
+        "read back", __FILE__, __LINE__,
+        text(what(), ": serialize() threw while it read ", n_bytes, " bytes: ", error.what()));
   }
 }
 

@@ -76,6 +76,16 @@ class Greeter : public tess::Group<Greeter> {
   }
 };
 
+/// Has no default constructor.
+class Named : public tess::Chare<Named> {
+ public:
+  explicit Named(std::string name) : name_(std::move(name)) {}
+  [[nodiscard]] std::string name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
 class Cube : public tess::Chare<Cube, tess::Index3> {};
 
 }  // namespace
@@ -175,6 +185,19 @@ TEST_CASE("an entry method has any number of arguments, and overloads", "[api]")
     nodes[{3}].send<&Node::tell>(last.callback());
     CHECK(co_await first == 12);
     CHECK(co_await last == 5);
+  });
+}
+
+TEST_CASE("a chare without a default constructor, alone and in a sparse array", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto anna = tess::create_one<Named>(std::string("Anna"));
+    const auto otto = tess::create_one_on<Named>(tess::PeId{3}, std::string("Otto"));
+    const auto others = tess::create<Named>(tess::sparse);
+    others[{7}].insert(std::string("Ida"));
+    const std::string a = co_await anna.ask<&Named::name>();
+    const std::string b = co_await otto.ask<&Named::name>();
+    const std::string c = co_await others[{7}].ask<&Named::name>();
+    CHECK(a + b + c == "AnnaOttoIda");
   });
 }
 

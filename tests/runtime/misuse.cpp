@@ -32,6 +32,17 @@ struct Uneven {
 using Short = Uneven<0>;
 using Long = Uneven<1>;
 
+/// Throws what is no tess::Error where it is read.
+struct Refused {
+  int value = 3;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(value);
+    if (Ar::is_reading) throw std::runtime_error("the value is refused");
+  }
+  friend Refused operator+(Refused a, const Refused& /*b*/) { return a; }
+};
+
 struct Scaled {
   int by = 1;
   int operator()(int a, int b) const { return by * (a + b); }
@@ -201,9 +212,23 @@ const std::map<std::string, std::function<void()>> misuses{
     {"short_broadcast", &hear_all<Short>},
     {"long_broadcast", &hear_all<Long>},
     {"short_sum", [] { const tess::Task task = sum_all<Short>(); }},
+    {"refused_element", &carry<Refused>},
+    {"refused_argument", &hear<Refused>},
+    {"refused_broadcast", &hear_all<Refused>},
+    {"refused_sum", [] { const tess::Task task = sum_all<Refused>(); }},
     {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},
     {"sum_of_none", [] { const tess::Task task = sum_of_none(); }},
     {"sum_of_empty_section", [] { const tess::Task task = sum_of_empty_section(); }},
+    {"array_not_known",
+     [] {
+       const tess::ArrayProxy<Block> early(tess::CollectionId{99});
+       (void)early.size();
+     }},
+    {"group_not_known",
+     [] {
+       const tess::GroupProxy<Member> early(tess::CollectionId{99});
+       early.local().nothing();
+     }},
     {"array_after_end", [] { const tess::Task task = use_after_end(); }},
     {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
 };

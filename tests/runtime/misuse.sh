@@ -56,6 +56,8 @@ everywhere different_targets "contributions to one reduction have different targ
 here different_operations "operations .*Scaled of different state"
 here empty_proxy "a message to an empty ElementProxy<.*Block>: assign array\\[index\\] to it first"
 here negative_argument "an argument is -1, but the entry method takes 0 to 18446744073709551615"
+here array_not_known "the array of this proxy is not known yet on PE 0: create it inside an awaited epoch"
+here group_not_known "this group is not known yet on PE 0: create it inside an awaited epoch"
 here array_after_end "the array of this proxy was destroyed on PE 0"
 here group_after_end "this group was destroyed on PE 0"
 everywhere sum_of_none "waits for a future of int" "Block has no elements: its reductions have no result"
@@ -72,6 +74,12 @@ for kind in short long; do
   says simulated ${kind}_broadcast "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
   says simulated ${kind}_sum "MergedPartial<Uneven<[01]>, Sum, Uneven<[01]> *>: " "serialize()"
 done
+# What throws while it is read, where no entry method runs that could be named.
+says simulated refused_element "Refused>\[0\]: serialize() threw while it read .*: the value is refused\|Refused: "
+for kind in argument broadcast sum; do
+  says simulated refused_$kind "Refused.*: serialize() threw while it read [0-9]* bytes: the value is refused"
+done
+says processes refused_argument "Refused>::hear.*: the value is refused"
 says processes short_element "Uneven<0> \?>\[0\]\|Uneven<0>: " "serialize()"
 
 finish

@@ -70,6 +70,8 @@ TEST_CASE("a bad option of the simulated machine is named", "[runtime][simulated
     INFO(bad);
     CHECK_THROWS_AS(tess::parse_simulated(bad), tess::Error);
   }
+  CHECK_THROWS_WITH(tess::parse_simulated("pes=0"),
+                    Catch::Matchers::EndsWith("0 is not a whole number of 1 … 1048576"));
 }
 
 TEST_CASE("the memory for messages is read with its unit", "[runtime]") {
