@@ -5,17 +5,16 @@
 #include <cstddef>
 #include <new>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 namespace tess::detail {
+
+inline constexpr std::size_t huge_page_bytes = std::size_t{2} << 20U;
+/// Memory for a large table, aligned to huge pages and advised to consist of them.
+[[nodiscard]] void* allocate_huge_pages(std::size_t n_bytes);
+void free_huge_pages(void* memory) noexcept;
 
 template <class T>
 struct HugePageAllocator {
   using value_type = T;
-  static constexpr std::size_t page_bytes = std::size_t{2} << 20U;
-
   HugePageAllocator() = default;
   // Containers convert allocators implicitly.
   template <class Other>
@@ -24,19 +23,14 @@ struct HugePageAllocator {
 
   [[nodiscard]] T* allocate(std::size_t n) {
     const std::size_t n_bytes = n * sizeof(T);
-    if (n_bytes < 2 * page_bytes) return static_cast<T*>(::operator new(n_bytes));
-    void* const memory = ::operator new(n_bytes, std::align_val_t{page_bytes});
-#if defined(__linux__)
-    (void)madvise(memory, n_bytes,
-                  MADV_HUGEPAGE);  // only advice: the memory is usable if it is refused
-#endif
-    return static_cast<T*>(memory);
+    if (n_bytes < 2 * huge_page_bytes) return static_cast<T*>(::operator new(n_bytes));
+    return static_cast<T*>(allocate_huge_pages(n_bytes));
   }
   void deallocate(T* at, std::size_t n) {
-    if (n * sizeof(T) < 2 * page_bytes) {
+    if (n * sizeof(T) < 2 * huge_page_bytes) {
       ::operator delete(at);
     } else {
-      ::operator delete(at, std::align_val_t{page_bytes});
+      free_huge_pages(at);
     }
   }
   friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <exception>
-#include <new>
 #include <string_view>
 
 namespace tess::detail {
@@ -22,15 +21,10 @@ auto read_all(Reader& body, const What& what, const Read& read) {
     TESS_CHECK(body.remaining() == 0, what(), ": ", body.remaining(), " of ", n_bytes,
                " bytes are left when it is read back; does serialize() read what it writes?");
     return value;
-  } catch (const Error& error) {
-    check_failed("read back", __FILE__, __LINE__,
-                 text(what(), ": ", error.what(), "; does serialize() read what it writes?"));
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::exception& error) {  // no entry method runs that could catch it
-    check_failed(
-        "read back", __FILE__, __LINE__,
-        text(what(), ": serialize() threw while it read ", n_bytes, " bytes: ", error.what()));
+    check_failed("read back", __FILE__, __LINE__,
+                 text(what(), ": serialize() threw while it read ", n_bytes,
+                      " bytes: ", error.what(), "; does it read what it writes?"));
   }
 }
 
