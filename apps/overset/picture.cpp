@@ -11,6 +11,7 @@ using tess::m2m::Aabb;
 using tess::m2m::Blanking;
 using tess::m2m::Tet;
 using tess::m2m::TetMesh;
+using tess::m2m::VertexId;
 
 constexpr double width = 800;
 

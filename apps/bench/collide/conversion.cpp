@@ -9,6 +9,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 namespace bench {
 namespace {
