@@ -9,6 +9,7 @@ namespace {
 
 using tess::m2m::Aabb;
 using tess::m2m::Blanking;
+using tess::m2m::Point;
 using tess::m2m::Tet;
 using tess::m2m::TetMesh;
 using tess::m2m::VertexId;
