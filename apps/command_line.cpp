@@ -43,7 +43,10 @@ CommandLine::~CommandLine() = default;
 
 template <class T>
 Option CommandLine::option(const std::string& name, T& value, const std::string& meaning) {
-  return Option(app_->add_option(name, value, meaning));
+  CLI::Option* const option = app_->add_option(name, value, meaning);
+  // What follows "--fields sin" is the first of the arguments without a name, not a second field.
+  if (name.starts_with("-")) option->allow_extra_args(false);
+  return Option(option);
 }
 
 Option CommandLine::flag(const std::string& name, bool& value, const std::string& meaning) {

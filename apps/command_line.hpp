@@ -44,7 +44,8 @@ class CommandLine {
   CommandLine& operator=(const CommandLine&) = delete;
 
   /// "--name", or "NAME" by its place; `value` is the default and takes what is given. T: integers
-  /// of 32 and 64 bits, double, std::string, and vectors or optionals of some of them.
+  /// of 32 and 64 bits, double, std::string, and vectors or optionals of some of them. A vector
+  /// takes one value each time that its "--name" is given; see also separated_by().
   template <class T>
   Option option(const std::string& name, T& value, const std::string& meaning);
   Option flag(const std::string& name, bool& value, const std::string& meaning);

@@ -4,6 +4,7 @@
 #include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
 #include "apps/m2m_transfer/output/picture.hpp"
+#include "apps/m2m_transfer/output/result_format.hpp"
 #include "apps/m2m_transfer/output/table.hpp"
 #include "apps/m2m_transfer/run/drift.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
@@ -13,7 +14,6 @@
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/read_mesh.hpp"
-#include "m2m/write_exodus.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -40,7 +40,7 @@ void write_meshes(const std::string& path, const Problem& problem) {
     std::filesystem::path own(path);
     if (n_written > 1)
       own.replace_extension(std::string{'.', letter_of(m)} + own.extension().string());
-    write_exodus(own.string(), problem.meshes[m].mesh, problem.meshes[m].fields);
+    write_result(own.string(), problem.meshes[m].mesh, problem.meshes[m].fields);
   }
 }
 

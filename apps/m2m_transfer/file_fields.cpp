@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
+#include "apps/m2m_transfer/output/result_format.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
@@ -52,10 +53,6 @@ bool is_formula(const std::string& name) {
   } catch (const Error&) {
     return false;
   }
-}
-
-bool is_vtu(const std::string& path) {
-  return path.ends_with(".vtu");
 }
 
 /// The fields of the source, read or sampled one step at a time.

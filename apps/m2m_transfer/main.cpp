@@ -66,9 +66,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "move a mesh before every step but the first, and search again: --move "
               "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
               "point, or 'B:translate(0.1,0,0)'; repeat for several");
-  line.option("--out", options.out,
-              "write the target mesh with the fields and the status to this ExodusII file; with "
-              "several targets to FILE.B.exo, FILE.C.exo");
+  line.option(
+      "--out", options.out,
+      "write the target mesh with the fields and the status to this file: VTU if it ends in "
+      ".vtu, otherwise ExodusII; with several targets to FILE.B.exo, FILE.C.exo");
   line.option("--step", options.step,
               "step of the fields that the source file has: a number from 0 on, or all (default: "
               "the last); --out then holds all steps");

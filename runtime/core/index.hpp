@@ -174,7 +174,7 @@ template <class... Extent>
 
 /// The range of a sparse array: it has no elements at first; all are inserted or created on demand.
 struct Sparse {
-  constexpr operator Range() const { return {}; }
+  constexpr operator Range() const { return {}; }  // NOLINT(google-explicit-constructor)
 };
 inline constexpr Sparse sparse{};
 

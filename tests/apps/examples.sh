@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# examples.sh BIN: hello, ring, stencil, coupled and overset on threads, under mpirun and on the simulated machine, with their answers.
+# examples.sh BIN: hello, ring, stencil, coupled, overset and m2m_transfer on threads, under mpirun and on the simulated machine, with their answers.
 source "$(dirname "$0")/../support/checks.sh"
 bin=$1
 
@@ -112,5 +112,15 @@ timeout 100 "$bin/overset" --study h --pes 2 >"$scratch/out" 2>&1 && tail -1 "$s
 check "overset is not second order" $?
 # The program compares winding numbers with solid angles.
 answers "^ +101568 +[0-9.]+ +[0-9]+ +522754$" "$bin/overset" --study wall --pes 1
+
+# m2m_transfer: what it writes as ExodusII and as VTU it reads again, with the same values.
+transfer=("$bin/m2m_transfer" --fields linear --pes 1)
+for format in exo vtu; do
+  timeout 60 "${transfer[@]}" kuhn:3 kuhn:4 --out "$scratch/result.$format" >"$scratch/out" 2>&1 &&
+    "${transfer[@]}" "$scratch/result.$format" kuhn:5 2>&1 | grep step >"$scratch/again.$format"
+  check "result.$format cannot be read again" $?
+done
+head -c 5 "$scratch/result.vtu" | grep -q '<?xml\|<VTKF' && cmp -s "$scratch/again.exo" "$scratch/again.vtu"
+check "result.vtu has another format, or other values" $?
 
 finish
