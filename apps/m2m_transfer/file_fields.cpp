@@ -3,7 +3,7 @@
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
-#include "apps/m2m_transfer/output/result_format.hpp"
+#include "apps/m2m_transfer/result_format.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
