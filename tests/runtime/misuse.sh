@@ -74,12 +74,12 @@ for kind in short long; do
   says simulated ${kind}_broadcast "Uneven<[01]> *>::hear\|Uneven<[01]>: " "serialize()"
   says simulated ${kind}_sum "MergedPartial<Uneven<[01]>, Sum, Uneven<[01]> *>: " "serialize()"
 done
-# What throws while it is read, where no entry method runs that could be named.
+# What throws while it is read, where no entry method runs that could be named. (With TESS_CHECKS=all it throws where it is sent.)
 says simulated refused_element "Refused>\[0\]: serialize() threw while it read .*: the value is refused\|Refused: "
 for kind in argument broadcast sum; do
-  says simulated refused_$kind "Refused.*: serialize() threw while it read [0-9]* bytes: the value is refused"
+  says simulated refused_$kind "Refused.*: serialize() threw while it read [0-9]* bytes: the value is refused\|uncaught exception: the value is refused"
 done
-says processes refused_argument "Refused>::hear.*: the value is refused"
+says processes refused_argument "Refused>::hear.*: the value is refused\|uncaught exception: the value is refused"
 says processes short_element "Uneven<0> \?>\[0\]\|Uneven<0>: " "serialize()"
 
 finish
