@@ -18,6 +18,14 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # A source that another includes looks like a header to this warning.
   target_compile_options(tess_options INTERFACE -Wno-subobject-linkage)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  # Loops over lanes combine comparisons without branches.
+  target_compile_options(tess_options INTERFACE -Wno-bitwise-instead-of-logical)
+  if(CMAKE_UNITY_BUILD)
+    # A name at the top of one source is not around the others that are compiled with it.
+    target_compile_options(tess_options INTERFACE -Wno-shadow)
+  endif()
+endif()
 if(TESS_WARNINGS_AS_ERRORS)
   target_compile_options(tess_options INTERFACE -Werror)
 endif()

@@ -209,10 +209,10 @@ struct AskCall final
                                               "elements that exist, or catch this error")});
   }
   [[nodiscard]] static std::string name(const Index& index) {
-    const std::string entry = plain_name(naming::value<F>());
-    const auto colons = entry.rfind("::");
+    const std::string method = plain_name(naming::value<F>());
+    const auto colons = method.rfind("::");
     return text(plain_name(name_of_type<C>), index_text(index), ".",
-                colons == std::string::npos ? entry : entry.substr(colons + 2));
+                colons == std::string::npos ? method : method.substr(colons + 2));
   }
   static std::int64_t priority_of(const Envelope& envelope)
     requires std::is_base_of_v<PrioritisedPlace, Place>

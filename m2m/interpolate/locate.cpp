@@ -9,10 +9,6 @@
 namespace tess::m2m {
 namespace {
 
-/// The faces opposite to the corners, oriented so that for a point inside all four volumes have the
-/// sign of the tetrahedron.
-constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-
 /// Bounds the rounding error of a volume relative to the product of the reaches along x, y and z: a
 /// volume is a sum of six products, and none of them exceeds the product of the reaches.
 constexpr double volume_bound = 6 * orientation_bound;
@@ -56,8 +52,8 @@ bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& v
   const double reach = tolerance(corners);
   for (std::size_t i = 0; i < 4; ++i) {
     if (volume[i] == 0 || (volume[i] < 0) == (total < 0)) continue;
-    const double area =
-        twice_area(corners[faces[i][0]], corners[faces[i][1]], corners[faces[i][2]]);
+    const double area = twice_area(corners[faces_of_tet[i][0]], corners[faces_of_tet[i][1]],
+                                   corners[faces_of_tet[i][2]]);
     if (!(std::abs(volume[i]) <= reach * area)) return false;
   }
   return overlap(search_box(corners), collide::box_of(p), collide::Touching::counts);
@@ -77,7 +73,8 @@ std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corne
   double total = 0;
   const auto volumes = [&](auto&& orient) {
     for (std::size_t i = 0; i < 4; ++i) {
-      volume[i] = orient(p, corners[faces[i][0]], corners[faces[i][1]], corners[faces[i][2]]);
+      volume[i] = orient(p, corners[faces_of_tet[i][0]], corners[faces_of_tet[i][1]],
+                         corners[faces_of_tet[i][2]]);
     }
     total = (volume[0] + volume[1]) + (volume[2] + volume[3]);
   };

@@ -1,5 +1,7 @@
 #include "m2m/interpolate/nearest_point.hpp"
 
+#include "m2m/interpolate/orientation.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -59,8 +61,7 @@ NearestPoint nearest_point(const Point& p, const std::array<Point, 4>& corners) 
       const Point q{c[i][0] + t * edge[0], c[i][1] + t * edge[1], c[i][2] + t * edge[2]};
       best.offer(inner_product(q, q), at);
     }
-  constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  for (const auto& [i, j, k] : faces) {
+  for (const auto& [i, j, k] : faces_of_tet) {
     const Point normal = outer_product(vector_between(c[j], c[i]), vector_between(c[k], c[i]));
     // The areas, times 2 |normal|, of the triangles that the foot of p forms with the edges.
     const double a = inner_product(normal, outer_product(c[j], c[k])),

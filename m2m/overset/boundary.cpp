@@ -9,9 +9,6 @@
 namespace tess::m2m {
 namespace {
 
-/// The corners of the face opposite to each corner, outward from a tetrahedron that is not inverted.
-constexpr std::array<std::array<std::size_t, 3>, 4> faces_of_tet{
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 /// Side 1 of ExodusII is opposite to corner 2, and so on (m2m/mesh.hpp).
 constexpr std::array<std::size_t, 4> corner_of_side{2, 0, 1, 3};
 

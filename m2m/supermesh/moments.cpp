@@ -18,14 +18,12 @@ struct Heights {
 /// `sixfold`: six times the volume of `cutting`, with its sign. A height is six times the volume of
 /// the tetrahedron over the face, so four heights of a point add up to |sixfold|.
 Heights heights_above(const Corners& carried, const Corners& cutting, double sixfold) {
-  // For a point inside, all four have the sign of the tetrahedron.
-  constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   Heights result{};
   for (std::size_t f = 0; f < 4; ++f) {
     bool any = false;
     for (std::size_t v = 0; v < 4; ++v) {
-      const double volume =
-          orientation(carried[v], cutting[faces[f][0]], cutting[faces[f][1]], cutting[faces[f][2]]);
+      const double volume = orientation(carried[v], cutting[faces_of_tet[f][0]],
+                                        cutting[faces_of_tet[f][1]], cutting[faces_of_tet[f][2]]);
       const double height = sixfold > 0 ? volume : -volume;
       result.above[v][f] = height;
       any = any || height > 0;
