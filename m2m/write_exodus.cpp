@@ -76,6 +76,7 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
 
   [[nodiscard]] int id() const { return id_; }
+  [[nodiscard]] bool is_open() const { return id_ >= 0; }
   void check(int code, const char* call) const {
     if (code >= 0) return;
     fail(ErrorCode::environment, path_, ": ", call, " failed with code ", code,
@@ -93,7 +94,7 @@ class PartFile {
   }
 
  private:
-  const std::string& path_;
+  std::string path_;
   std::string part_;
   int id_ = -1;
 };
@@ -243,7 +244,7 @@ std::string names_of(const std::vector<Variable>& variables) {
 }  // namespace
 
 struct ExodusSteps::Writing {
-  const std::string& path;
+  std::string path;
   const TetMesh& mesh;
   std::vector<Block> blocks;
   PartFile file;
@@ -262,6 +263,7 @@ ExodusSteps::~ExodusSteps() = default;
 void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
                       std::span<const Field> tet_fields) {
   Writing& to = *writing_;
+  TESS_CHECK(to.file.is_open(), to.path, ": a step is added to a file that finish() has closed");
   std::vector<Variable> nodal = variables(vertex_fields, to.mesh.n_points(), to.path);
   std::vector<Variable> element = variables(tet_fields, to.mesh.n_tets(), to.path);
   if (!(time > to.last_time))
@@ -294,6 +296,7 @@ void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
 
 void ExodusSteps::finish() {
   Writing& to = *writing_;
+  TESS_CHECK(to.file.is_open(), to.path, ": finish() is called twice");
   if (to.n_steps == 0) put_mesh(to.file, to.mesh, to.blocks);
   to.file.finish();
 }

@@ -23,8 +23,8 @@ namespace tess::m2m {
 /// reentrant: one thread at a time.
 class ExodusSteps {
  public:
-  /// Writes the mesh with its blocks, side sets and node sets. `path` and `mesh` must outlive the
-  /// object. Throws Error (bad_file, environment) with the path if the file cannot be written.
+  /// Writes the mesh with its blocks, side sets and node sets. `mesh` must outlive the object.
+  /// Throws Error (bad_file, environment) with the path if the file cannot be written.
   ExodusSteps(const std::string& path, const TetMesh& mesh);
   /// Without finish() no file remains.
   ~ExodusSteps();
@@ -39,7 +39,7 @@ class ExodusSteps {
   void add(double time, std::span<const Field> vertex_fields,
            std::span<const Field> tet_fields = {});
 
-  /// Gives the file its name. Throws Error if that fails.
+  /// Gives the file its name; call it once, after the last step. Throws Error if that fails.
   void finish();
 
  private:
