@@ -46,6 +46,10 @@ std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_row
         fail(ErrorCode::bad_value, path, ": field name '", name, "' has ", name.size(),
              " characters; choose a name of 1 to ", longest_name);
       }
+      for (const Variable& other : result)
+        if (other.name == name)
+          fail(ErrorCode::bad_value, path, ": two fields have the variable '", name,
+               "'; give each field a name of its own");
       result.push_back({std::move(name), f, c});
     }
   }
