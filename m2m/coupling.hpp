@@ -23,7 +23,8 @@
 //
 // A search finds the donors of every target point, once; apply() moves a field, any number of
 // times. If a mesh moves, search again. Values travel from piece to piece; no PE collects them. Any
-// number of couplings may exist and be in flight. A piece may be source and target of several.
+// number of couplings may exist and be in flight. A piece may be source and target of several. The
+// arrays have one to three dimensions, dense or sparse.
 //
 // apply() is a broadcast to the source pieces in an epoch. Pieces can also start on their own,
 // without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a
@@ -45,6 +46,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -69,6 +71,13 @@ struct CouplingOptions {
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
   std::function<void(const char*)> on_phase{};
 };
+
+namespace detail {
+template <class C>
+concept IsPiece = std::derived_from<C, Piece<C>> && requires(const C& chare) {
+  { chare.mesh_view() } -> std::same_as<MeshView>;
+};
+}  // namespace detail
 
 /// Times and counts of a search. Times are wall-clock seconds on the calling PE.
 struct SearchSummary {
@@ -146,6 +155,11 @@ class Coupling {
 
 template <class S, class T>
 Task Coupling<S, T>::search(SearchSummary* summary) {
+  static_assert(detail::IsPiece<S> && detail::IsPiece<T>,
+                "a chare of a coupling derives from tess::m2m::Piece<of itself>, and has a public "
+                "member function MeshView mesh_view() const");
+  static_assert(collide::CanOwn<typename S::Index> && collide::CanOwn<typename T::Index>,
+                "the pieces of a coupling are elements of arrays of one to three dimensions");
   enter("broad");
   const Time start = now();
   if (setup_.id == CouplingId{}) co_await set_up();

@@ -138,7 +138,7 @@ class OverlapPiece {
   void take_if_alone(CouplingId id) {
     const OverlapTarget& to = couplings.overlap_target(id);
     if (to.n_sources() != 0) return;
-    fill_outside(to.setup.policy, to.status(), detail::values_of<Take>(chare(), id));
+    fill_outside(to.setup.policy, to.status(), detail::memory_of<Take>(chare(), id));
     notify(id);
   }
 
@@ -156,7 +156,7 @@ class OverlapPiece {
           .template send<&OverlapPiece<C>::template m2m_take_ghosts<Take>>(std::move(ghosts));
     };
     while (to.advance(channel, send)) {
-      to.write(channel, detail::values_of<Take>(chare(), id));
+      to.write(channel, detail::memory_of<Take>(chare(), id));
       notify(id);
     }
   }

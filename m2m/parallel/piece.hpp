@@ -77,7 +77,7 @@ class Piece : public OverlapPiece<C> {
     if (couplings.is_conservative_target(id)) return this->template take_if_alone<Take>(id);
     const TargetSide& to = couplings.target(id);
     if (to.n_sources() != 0) return;
-    fill_outside(to.setup.policy, to.status(), detail::values_of<Take>(chare(), id));
+    fill_outside(to.setup.policy, to.status(), detail::memory_of<Take>(chare(), id));
     notify(id);
   }
   template <auto Take>
@@ -87,7 +87,7 @@ class Piece : public OverlapPiece<C> {
     TargetSide& to = couplings.target(id);
     to.add(std::move(rows));
     while (to.has_next(from)) {
-      to.take_next(from, detail::values_of<Take>(chare(), id));
+      to.take_next(from, detail::memory_of<Take>(chare(), id));
       notify(id);
     }
   }
