@@ -84,11 +84,9 @@ struct Couplings {
   [[nodiscard]] SourceSide& source(CouplingId id);
   [[nodiscard]] TargetSide& target(CouplingId id);
   [[nodiscard]] const TargetSide& target(CouplingId id) const;
-  [[nodiscard]] OverlapSource& overlap_source(CouplingId id) { return overlap_sources.at(id); }
-  [[nodiscard]] OverlapTarget& overlap_target(CouplingId id) { return overlap_targets.at(id); }
-  [[nodiscard]] const OverlapTarget& overlap_target(CouplingId id) const {
-    return overlap_targets.at(id);
-  }
+  [[nodiscard]] OverlapSource& overlap_source(CouplingId id);
+  [[nodiscard]] OverlapTarget& overlap_target(CouplingId id);
+  [[nodiscard]] const OverlapTarget& overlap_target(CouplingId id) const;
   void release(CouplingId id);
 
   template <class Ar>
