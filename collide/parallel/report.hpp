@@ -29,7 +29,8 @@ struct Hits {
 /// The receivers of hits.
 struct Report {
   Callback<Hits> call;  ///< called per (voxel, owner, other) with hits
-  /// If set, only the owner of the object of this model receives a hit; otherwise both owners do.
+  /// If set, only the owner of the object of this model receives a hit; otherwise both owners do,
+  /// and an owner of both objects once: `mine` is either of them.
   std::optional<ModelId> only;
 
   template <class Ar>
