@@ -140,7 +140,8 @@ class Coupling {
   template <auto Give, auto Take>
   Task apply();
 
-  /// Frees what the pieces and PEs hold of this coupling. The enclosing epoch includes this.
+  /// Frees what the pieces and PEs hold of this coupling; a search makes it again. The enclosing
+  /// epoch includes this. Arrays of pieces are destroyed in a later epoch.
   void destroy() {
     if (setup_.id == CouplingId{}) return;
     source_.template broadcast<&Piece<S>::m2m_release>(setup_.id);
