@@ -16,6 +16,8 @@
 //     const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
 //     co_await tess::collide::run_collision(collider, report);
 //
+// The report has a name before the co_await: g++ 12 destroys an aggregate twice that is written in one.
+//
 // submit() is a call to the local Manager. Before a collision, the main coroutine awaits an epoch
 // in which the clients submit. run_collision() collides what was submitted: it chooses the voxels
 // from all objects, and is done when the owners have handled all hits. A voxel starts as soon as

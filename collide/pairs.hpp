@@ -56,7 +56,7 @@ struct PairStatistics {
 
 struct PairOptions {
   Touching touching = Touching::counts;
-  /// One model per object, for searches within one set; pairs within a model are not tested.
+  /// One model per object, for searches within one set only; pairs within a model are not tested.
   /// Empty: all pairs are tested.
   std::span<const std::uint32_t> models = {};
   bool within_model = false;  ///< with models: tests pairs within a model, too

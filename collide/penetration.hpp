@@ -47,7 +47,7 @@ struct PenetratingPoint {
 };
 
 /// The corners of some triangles that are inside of `model`, each position once, in lexicographic
-/// order. `which`: positions in `triangles`.
+/// order. `which`: positions in `triangles`; throws Error (bad_value) for one that is none.
 [[nodiscard]] std::vector<PenetratingPoint> penetrating_points(std::span<const Triangle> triangles,
                                                                std::span<const std::uint32_t> which,
                                                                const ClosedModel& model);

@@ -22,8 +22,11 @@
 //       }
 //
 // A search finds the donors of every target point, once; apply() moves a field, any number of
-// times. If a mesh moves, search again. Values travel from piece to piece; no PE collects them. Any
-// number of couplings may exist and be in flight. A piece may be source and target of several.
+// times. Search again if a mesh moves or changes, and if pieces are inserted or destroyed: before
+// that, a target piece waits for the values of a source piece that is gone, and keeps its own.
+// Values travel from piece to piece; no PE collects them. Any
+// number of couplings may exist and be in flight. A piece may be source and target of several. The
+// arrays have one to three dimensions, dense or sparse.
 //
 // apply() is a broadcast to the source pieces in an epoch. Pieces can also start on their own,
 // without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a
@@ -45,6 +48,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -69,6 +73,33 @@ struct CouplingOptions {
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
   std::function<void(const char*)> on_phase{};
 };
+
+namespace detail {
+/// What a handle has started that is not done; a copy of the handle has started nothing.
+struct UnderWay {
+  int n_searches = 0, n_applications = 0;
+
+  UnderWay() = default;
+  UnderWay(const UnderWay& /*of_another_handle*/) {}
+  UnderWay& operator=(const UnderWay& /*of_another_handle*/) { return *this; }
+};
+/// One of them, while it lives.
+class Counted {
+ public:
+  explicit Counted(int& n) : n_(n) { ++n_; }
+  ~Counted() { --n_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+
+ private:
+  int& n_;
+};
+
+template <class C>
+concept IsPiece = std::derived_from<C, Piece<C>> && requires(const C& chare) {
+  { chare.mesh_view() } -> std::same_as<MeshView>;
+};
+}  // namespace detail
 
 /// Times and counts of a search. Times are wall-clock seconds on the calling PE.
 struct SearchSummary {
@@ -96,7 +127,7 @@ class Coupling {
   [[nodiscard]] const CouplingSetup& setup() const { return setup_; }
 
   /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no
-  /// application of this coupling is under way. `summary` may be null.
+  /// other search and no application of this coupling is under way. `summary` may be null.
   Task search(SearchSummary* summary = nullptr);
 
   /// Gives the field that Give shows to the memory that Take shows, for example
@@ -109,7 +140,8 @@ class Coupling {
   template <auto Give, auto Take>
   Task apply();
 
-  /// Frees what the pieces and PEs hold of this coupling. The enclosing epoch includes this.
+  /// Frees what the pieces and PEs hold of this coupling; a search makes it again. The enclosing
+  /// epoch includes this. Arrays of pieces are destroyed in a later epoch.
   void destroy() {
     if (setup_.id == CouplingId{}) return;
     source_.template broadcast<&Piece<S>::m2m_release>(setup_.id);
@@ -142,10 +174,20 @@ class Coupling {
   ArrayProxy<T> target_;
   CouplingOptions options_;
   CouplingSetup setup_;
+  detail::UnderWay under_way_;
 };
 
 template <class S, class T>
 Task Coupling<S, T>::search(SearchSummary* summary) {
+  static_assert(detail::IsPiece<S> && detail::IsPiece<T>,
+                "a chare of a coupling derives from tess::m2m::Piece<of itself>, and has a public "
+                "member function MeshView mesh_view() const");
+  static_assert(collide::CanOwn<typename S::Index> && collide::CanOwn<typename T::Index>,
+                "the pieces of a coupling are elements of arrays of one to three dimensions");
+  TESS_CHECK(under_way_.n_searches == 0 && under_way_.n_applications == 0,
+             "a coupling searches while a search or an application of it is under way: co_await "
+             "that first");
+  const detail::Counted counted(under_way_.n_searches);
   enter("broad");
   const Time start = now();
   if (setup_.id == CouplingId{}) co_await set_up();
@@ -283,6 +325,9 @@ Task Coupling<S, T>::apply() {
   TESS_CHECK(setup_.id != CouplingId{},
              "a coupling is applied before its first search: "
              "co_await search() first");
+  TESS_CHECK(under_way_.n_searches == 0,
+             "a coupling is applied while a search of it is under way: co_await that first");
+  const detail::Counted counted(under_way_.n_applications);
   const CouplingId id = setup_.id;
   co_await epoch([&] {
     source_.template broadcast<&Piece<S>::template m2m_give<T, Give, Take>>(id);

@@ -121,6 +121,8 @@ PlacerSetup setup_of(std::string shown_name, PlaceOptions options) {
   if (options.n_parts < 1)
     fail(ErrorCode::bad_argument, "cannot cut a mesh into ", options.n_parts,
          " parts; choose at least 1");
+  if (options.halo_layers < 0)
+    fail(ErrorCode::bad_argument, "a halo of ", options.halo_layers, " layers; choose 0 or more");
   for (const FormulaField& field : options.fields) (void)make_formula(field.name, field.domain);
   PlacerSetup setup;
   setup.shown_name = std::move(shown_name);

@@ -23,6 +23,7 @@
 
 namespace tess::m2m {
 
+/// Give the options a name first: g++ 12 fails on an aggregate in a `co_await` expression.
 struct PlaceOptions {
   std::int32_t n_parts = 1;
   std::int32_t halo_layers = 0;

@@ -1,5 +1,7 @@
 #include "m2m/rigid_motion.hpp"
 
+#include "runtime/core/error.hpp"
+
 #include <array>
 #include <cmath>
 
@@ -11,6 +13,9 @@ void move_points(std::span<Point> points, const RigidMotion& motion) {
   if (motion.angle != 0) {
     const auto& [a, b, c] = motion.axis;
     const double length = std::sqrt(a * a + b * b + c * c);
+    if (!(length > 0 && std::isfinite(length)))
+      fail(ErrorCode::bad_argument, "a rotation about the axis (", a, ", ", b, ", ", c,
+           ") has no direction; give an axis of positive, finite length");
     const double x = a / length, y = b / length, z = c / length;
     const double s = std::sin(motion.angle), k = std::cos(motion.angle), r = 1 - k;
     matrix = {{{k + r * x * x, r * x * y - s * z, r * x * z + s * y},

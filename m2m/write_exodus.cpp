@@ -46,6 +46,10 @@ std::vector<Variable> variables(std::span<const Field> fields, std::size_t n_row
         fail(ErrorCode::bad_value, path, ": field name '", name, "' has ", name.size(),
              " characters; choose a name of 1 to ", longest_name);
       }
+      for (const Variable& other : result)
+        if (other.name == name)
+          fail(ErrorCode::bad_value, path, ": two fields have the variable '", name,
+               "'; give each field a name of its own");
       result.push_back({std::move(name), f, c});
     }
   }
@@ -76,6 +80,7 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
 
   [[nodiscard]] int id() const { return id_; }
+  [[nodiscard]] bool is_open() const { return id_ >= 0; }
   void check(int code, const char* call) const {
     if (code >= 0) return;
     fail(ErrorCode::environment, path_, ": ", call, " failed with code ", code,
@@ -93,7 +98,7 @@ class PartFile {
   }
 
  private:
-  const std::string& path_;
+  std::string path_;
   std::string part_;
   int id_ = -1;
 };
@@ -243,7 +248,7 @@ std::string names_of(const std::vector<Variable>& variables) {
 }  // namespace
 
 struct ExodusSteps::Writing {
-  const std::string& path;
+  std::string path;
   const TetMesh& mesh;
   std::vector<Block> blocks;
   PartFile file;
@@ -262,6 +267,7 @@ ExodusSteps::~ExodusSteps() = default;
 void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
                       std::span<const Field> tet_fields) {
   Writing& to = *writing_;
+  TESS_CHECK(to.file.is_open(), to.path, ": a step is added to a file that finish() has closed");
   std::vector<Variable> nodal = variables(vertex_fields, to.mesh.n_points(), to.path);
   std::vector<Variable> element = variables(tet_fields, to.mesh.n_tets(), to.path);
   if (!(time > to.last_time))
@@ -294,6 +300,7 @@ void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
 
 void ExodusSteps::finish() {
   Writing& to = *writing_;
+  TESS_CHECK(to.file.is_open(), to.path, ": finish() is called twice");
   if (to.n_steps == 0) put_mesh(to.file, to.mesh, to.blocks);
   to.file.finish();
 }

@@ -23,8 +23,8 @@ namespace tess::m2m {
 /// reentrant: one thread at a time.
 class ExodusSteps {
  public:
-  /// Writes the mesh with its blocks, side sets and node sets. `path` and `mesh` must outlive the
-  /// object. Throws Error (bad_file, environment) with the path if the file cannot be written.
+  /// Writes the mesh with its blocks, side sets and node sets. `mesh` must outlive the object.
+  /// Throws Error (bad_file, environment) with the path if the file cannot be written.
   ExodusSteps(const std::string& path, const TetMesh& mesh);
   /// Without finish() no file remains.
   ~ExodusSteps();
@@ -34,12 +34,12 @@ class ExodusSteps {
   /// Adds a step. `vertex_fields` (n_points rows) become nodal variables, `tet_fields` (n_tets rows)
   /// element variables. A field of three components becomes NAME_x, NAME_y, NAME_z; any other number
   /// of components gives NAME_1, NAME_2, … The first step decides the names and components; all
-  /// steps have the same. Throws Error (bad_value) if a name is not usable or the time is not after
-  /// the last one, (environment) if the disk is full.
+  /// steps have the same. Throws Error (bad_value) if a name is not usable or given twice, or if the
+  /// time is not after the last one, (environment) if the disk is full.
   void add(double time, std::span<const Field> vertex_fields,
            std::span<const Field> tet_fields = {});
 
-  /// Gives the file its name. Throws Error if that fails.
+  /// Gives the file its name; call it once, after the last step. Throws Error if that fails.
   void finish();
 
  private:

@@ -34,6 +34,10 @@ class Head {
                  ": expected ", n_rows, " × ", field.n_components, " values, got ",
                  field.values.size());
       if (field.name.empty()) fail(ErrorCode::bad_value, path, ": a field has no name; name it");
+      for (const Field* other = all.data(); other != &field; ++other)
+        if (other->name == field.name)
+          fail(ErrorCode::bad_value, path, ": two fields have the name '", field.name,
+               "'; give each field a name of its own");
       array("Float64", field.name, field.n_components, field.values.size() * sizeof(double));
     }
     line(fmt::format("      </{}>", section));

@@ -11,10 +11,10 @@ namespace tess::dn {
 struct Frame {
   std::array<Vec3, 3> axes{
       {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< images of the unit vectors; orthonormal
-  Vec3 position;                           ///< of the object's origin
+  Vec3 position{};                         ///< of the object's origin
   double scale = 1;                        ///< world units per unit of the object
-  Vec3 velocity;                           ///< of the object's origin
-  Vec3 angular_velocity;                   ///< radians per second, about the object's origin
+  Vec3 velocity{};                         ///< of the object's origin
+  Vec3 angular_velocity{};                 ///< radians per second, about the object's origin
   double scale_rate = 0;                   ///< change of `scale` per second, about the origin
 
   [[nodiscard]] bool is_moving() const {

@@ -41,15 +41,15 @@ struct Points {
 /// Room for the results, one per point; a span is empty if its result is not asked for. Either all
 /// three components of the normal are asked for or none.
 struct Answers {
-  std::span<float> distance;
-  std::span<float> nx, ny, nz;
+  std::span<float> distance{};
+  std::span<float> nx{}, ny{}, nz{};
 };
 
 /// Distances are `out_of_reach` outside the grid and for NaN points. Normals have unit length, or
 /// are zero where there is none: outside, on the medial axis, beyond the thickness. The trilinear
 /// look-up ends at the outer voxels' centres, the others at their faces. Throws Error(bad_argument)
-/// if normals are asked of a field that stores none (the tangent look-up always reads them), and
-/// for a trilinear look-up of a compressed field.
+/// if normals are asked of a field that stores none (the tangent look-up always reads them), for a
+/// trilinear look-up of a compressed field, and for a field that was not built.
 void look_up(const Field& field, LookUp kind, const Points& points, const Answers& answers);
 
 inline constexpr float out_of_reach = 3.0e38F;

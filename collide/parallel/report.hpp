@@ -5,6 +5,7 @@
 #include "collide/hit.hpp"
 #include "runtime/runtime.hpp"
 
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -28,7 +29,8 @@ struct Hits {
 /// The receivers of hits.
 struct Report {
   Callback<Hits> call;  ///< called per (voxel, owner, other) with hits
-  /// If set, only the owner of the object of this model receives a hit; otherwise both owners do.
+  /// If set, only the owner of the object of this model receives a hit; otherwise both owners do,
+  /// and an owner of both objects once: `mine` is either of them.
   std::optional<ModelId> only;
 
   template <class Ar>
@@ -52,6 +54,11 @@ struct Report {
   return owner_of(Index1{pe.value});
 }
 
+/// An index that an owner id can hold.
+template <class Index>
+concept CanOwn =
+    std::same_as<Index, Index1> || std::same_as<Index, Index2> || std::same_as<Index, Index3>;
+
 namespace detail {
 inline void set_index(Index1& index, OwnerId owner) {
   index.x = static_cast<std::int32_t>(static_cast<std::uint64_t>(owner));
@@ -66,6 +73,8 @@ void set_index(Index3& index, OwnerId owner);
 /// The index that owner_of() was given.
 template <class Index = Index1>
 [[nodiscard]] Index index_of(OwnerId owner) {
+  static_assert(CanOwn<Index>,
+                "an owner of objects is an element of an array of one to three dimensions");
   Index index;
   detail::set_index(index, owner);
   return index;

@@ -96,8 +96,12 @@ std::vector<PenetratingPoint> penetrating_points(std::span<const Triangle> trian
                                                  const ClosedModel& model) {
   std::vector<Point> points;
   points.reserve(3 * which.size());
-  for (const std::uint32_t t : which)
+  for (const std::uint32_t t : which) {
+    if (t >= triangles.size())
+      fail(ErrorCode::bad_value, "a triangle at position ", t, " of ", triangles.size(),
+           " is asked for penetration; positions count from 0");
     points.insert(points.end(), triangles[t].corners.begin(), triangles[t].corners.end());
+  }
   sort_unique(points);
   std::vector<PenetratingPoint> out;
   for (const Point& p : points)

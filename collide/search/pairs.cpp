@@ -192,6 +192,10 @@ struct Models {
   int n = 0;
   std::uint32_t second = 0;
 };
+/// Whether models leave pairs out.
+bool divides(const PairOptions& options) {
+  return !options.models.empty() && !options.within_model;
+}
 Models count(std::span<const std::uint32_t> models) {
   Models out{models.empty() ? 0 : 1, 0};
   for (const std::uint32_t model : models) {
@@ -208,7 +212,7 @@ template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& options, PairSink sink) {
   check_voxel_size(options);
   check_count(boxes.size());
-  const bool by_model = !options.models.empty() && !options.within_model;
+  const bool by_model = divides(options);
   if (by_model && options.models.size() != boxes.size())
     fail(ErrorCode::bad_value, "pairs: ", options.models.size(), " models for ", boxes.size(),
          " objects; give one per object");
@@ -235,6 +239,9 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
 template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
                   const PairOptions& options, PairSink sink) {
+  if (divides(options))
+    fail(ErrorCode::bad_value, "pairs: ", options.models.size(),
+         " models for a search across two sets; models divide one set, pass the objects as one");
   check_voxel_size(options);
   check_count(a.size());
   check_count(b.size());

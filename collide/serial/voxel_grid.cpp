@@ -14,7 +14,8 @@ VoxelGrid::VoxelGrid(const Point& origin, const Point& size)
            " is not finite; give finite numbers");
     if (!(size[k] > 0) || !std::isfinite(size[k]) || !std::isfinite(per_voxel_[k]))
       fail(ErrorCode::bad_value, "voxel grid: voxel size ", size[k], " on axis ", k,
-           " and its inverse must be positive and finite");
+           " and its inverse must be positive and finite; give a size for each axis, or 0 for all: "
+           "chosen");
     for (const std::size_t lane : {k, k + 3}) {
       constants_.origin[lane] = origin[k];
       constants_.per_voxel[lane] = per_voxel_[k];

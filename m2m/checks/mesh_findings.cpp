@@ -18,6 +18,11 @@ bool can_be_used(double x) {
   return std::abs(x) <= largest_coordinate;  // false for NaN
 }
 
+/// An application may leave its mesh without a name.
+std::string shown(const std::string& name) {
+  return name.empty() ? "the mesh" : name;
+}
+
 /// Keeps the finding with the least id.
 template <class Finding>
 void keep_first(Finding& a, const Finding& b, GlobalId Finding::*id) {
@@ -76,18 +81,18 @@ void MeshFindings::refuse_bad_ids(const std::string& name, GlobalId n_points) co
   if (bad_point.point >= 0) {
     const auto axis = std::find_if_not(bad_point.at.begin(), bad_point.at.end(), can_be_used) -
                       bad_point.at.begin();
-    fail(ErrorCode::bad_mesh, name, ": vertex ", bad_point.point, " has ", "xyz"[axis], " = ",
-         bad_point.at[static_cast<std::size_t>(axis)],
+    fail(ErrorCode::bad_mesh, shown(name), ": vertex ", bad_point.point, " has ", "xyz"[axis],
+         " = ", bad_point.at[static_cast<std::size_t>(axis)],
          "; coordinates must be finite and at most 1e100: repair or rescale the mesh");
   }
   if (bad_corner.tet >= 0)
-    fail(ErrorCode::bad_mesh, name, ": tetrahedron ", bad_corner.tet, " names vertex ",
+    fail(ErrorCode::bad_mesh, shown(name), ": tetrahedron ", bad_corner.tet, " names vertex ",
          bad_corner.corner, " (counted from 0) of ", n_points, " vertices; write the mesh again");
 }
 
 void MeshFindings::refuse_bad_shapes(const std::string& name, std::uint64_t n_tets) const {
   const auto refuse = [&](const auto&... reason) {
-    fail(ErrorCode::bad_mesh, name, ": ", n_collapsed, " of ", n_tets,
+    fail(ErrorCode::bad_mesh, shown(name), ": ", n_collapsed, " of ", n_tets,
          " tetrahedra have collapsed: the first is ", collapsed.longest, " long", reason...);
   };
   if (n_collapsed > n_tets / 10) {
@@ -107,10 +112,10 @@ void MeshFindings::refuse_bad_shapes(const std::string& name, std::uint64_t n_te
 void refuse_bad_counts(const std::string& name, std::uint64_t n_points, std::uint64_t n_tets,
                        const std::string& others) {
   if (n_tets == 0)
-    fail(ErrorCode::bad_mesh, name, ": has no tetrahedra",
+    fail(ErrorCode::bad_mesh, shown(name), ": has no tetrahedra",
          others.empty() ? "" : " (but " + others + ")", "; give a volume mesh");
   if (n_points > static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max()))
-    fail(ErrorCode::bad_mesh, name, ": has ", n_points,
+    fail(ErrorCode::bad_mesh, shown(name), ": has ", n_points,
          " vertices; at most 2147483647 fit in one mesh, split it");
 }
 

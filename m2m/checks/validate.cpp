@@ -65,9 +65,9 @@ void validate(const MeshView& mesh) {
   if (mesh.n_owned < 0 || mesh.n_owned > n)
     fail(ErrorCode::bad_mesh, "a piece owns ", mesh.n_owned, " of ", n,
          " points; n_owned counts points of the piece");
-  if (mesh.n_own_tets > static_cast<std::int64_t>(mesh.tets.size()))
+  if (mesh.n_own_tets < -1 || mesh.n_own_tets > static_cast<std::int64_t>(mesh.tets.size()))
     fail(ErrorCode::bad_mesh, "a piece has ", mesh.n_own_tets, " own tetrahedra of ",
-         mesh.tets.size(), "; n_own_tets counts tetrahedra of the piece");
+         mesh.tets.size(), "; n_own_tets counts tetrahedra of the piece, or is -1 for all");
   if (mesh.tet_ids.size() != mesh.tets.size() || mesh.point_ids.size() != mesh.points.size())
     fail(ErrorCode::bad_mesh, "a piece of ", n, " points and ", mesh.tets.size(),
          " tetrahedra has ", mesh.point_ids.size(), " point_ids and ", mesh.tet_ids.size(),
@@ -80,8 +80,8 @@ void validate(const MeshView& mesh) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i)
       for (const double x : mesh.points[i])
         if (is_bad(x))
-          fail(ErrorCode::bad_mesh, "point ", i, " of a piece has the coordinate ", x,
-               "; coordinates must be finite and at most 1e100");
+          fail(ErrorCode::bad_mesh, "point ", i, " of a piece, with the id ", mesh.point_ids[i],
+               ", has the coordinate ", x, "; coordinates must be finite and at most 1e100");
   const auto out_of_range = [n](VertexId v) { return (v < 0) | (v >= n); };
   for (const Tet& tet : mesh.tets)
     bad |=
@@ -90,8 +90,10 @@ void validate(const MeshView& mesh) {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       for (const VertexId v : mesh.tets[t])
         if (out_of_range(v))
-          fail(ErrorCode::bad_mesh, "tetrahedron ", t, " of a piece names point ", v,
-               ", but the piece has ", n, " points");
+          fail(ErrorCode::bad_mesh, "tetrahedron ", t, " of a piece, with the id ", mesh.tet_ids[t],
+               ", names point ", v, ", but the piece has ", n,
+               " points; indices count from 0"
+               " within the piece");
 }
 
 }  // namespace tess::m2m

@@ -61,8 +61,9 @@ void Blanking::settle(const MeshView& mesh, std::span<const Status> status,
                       std::int32_t mesh_number) {
   TESS_CHECK(mesh_number > 0, "the number of a mesh is at least 1, got ", mesh_number);
   TESS_CHECK(status.size() == iblank_.size() && status.size() == std::size_t(mesh.n_owned),
-             "expected the status of ", iblank_.size(), " points, got ", status.size(),
-             ": call cut() after the piece has changed");
+             "got the status of ", status.size(), " points of a piece that owns ", mesh.n_owned,
+             ", and cut() has given roles to ", iblank_.size(),
+             ": call cut() before settle(), and again after the piece has changed");
   for (std::size_t v = 0; v < status.size(); ++v) {
     if (roles_[v] != Role::fringe || status[v] == Status::outside) continue;
     const double quality = quality_of(offered_[2 * v + 1]);

@@ -4,22 +4,35 @@
 
 namespace tess::m2m {
 
-SourceSide& Couplings::source(CouplingId id) {
-  const auto at = sources.find(id);
-  TESS_CHECK(at != sources.end(),
-             "this piece is no source of the coupling: await search() first, and serialise "
-             "`couplings` if pieces migrate");
+namespace {
+
+template <class Sides>
+auto& side_of(Sides& sides, CouplingId id, const char* side) {
+  const auto at = sides.find(id);
+  TESS_CHECK(at != sides.end(), "this piece is no ", side,
+             " of the coupling: await search() first, and serialise `couplings` if pieces migrate");
   return at->second;
+}
+
+}  // namespace
+
+SourceSide& Couplings::source(CouplingId id) {
+  return side_of(sources, id, "source");
 }
 TargetSide& Couplings::target(CouplingId id) {
-  return const_cast<TargetSide&>(static_cast<const Couplings&>(*this).target(id));
+  return side_of(targets, id, "target");
 }
 const TargetSide& Couplings::target(CouplingId id) const {
-  const auto at = targets.find(id);
-  TESS_CHECK(at != targets.end(),
-             "this piece is no target of the coupling: await search() first, and serialise "
-             "`couplings` if pieces migrate");
-  return at->second;
+  return side_of(targets, id, "target");
+}
+OverlapSource& Couplings::overlap_source(CouplingId id) {
+  return side_of(overlap_sources, id, "source");
+}
+OverlapTarget& Couplings::overlap_target(CouplingId id) {
+  return side_of(overlap_targets, id, "target");
+}
+const OverlapTarget& Couplings::overlap_target(CouplingId id) const {
+  return side_of(overlap_targets, id, "target");
 }
 
 void Couplings::release(CouplingId id) {

@@ -9,6 +9,8 @@
 #include "runtime/runtime.hpp"
 
 #include <map>
+#include <ranges>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -20,14 +22,35 @@ namespace detail {
 inline constexpr collide::ModelId source_model{1};
 inline constexpr collide::ModelId target_model{2};
 
-/// Calls a chare's accessor to its values, which may take the coupling.
+/// Calls a chare's accessor, which may take the coupling.
 template <auto F, class C>
-auto values_of(C& chare, CouplingId coupling) {
+decltype(auto) call_accessor(C& chare, CouplingId coupling) {
   if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
     return (chare.*F)(coupling);
   } else {
+    static_assert(std::is_invocable_v<decltype(F), C&>,
+                  "an accessor to a coupling's values takes nothing, or the CouplingId");
     return (chare.*F)();
   }
+}
+template <class Result, class Span>
+concept ShowsMemory = std::ranges::borrowed_range<Result> && std::is_convertible_v<Result, Span>;
+
+/// The values that a chare gives.
+template <auto Give, class C>
+std::span<const double> values_of(C& chare, CouplingId coupling) {
+  static_assert(
+      ShowsMemory<decltype(call_accessor<Give>(chare, coupling)), std::span<const double>>,
+      "a coupling gives values that the chare keeps: return std::span<const double>, not "
+      "a vector, which would end before it is read");
+  return call_accessor<Give>(chare, coupling);
+}
+/// The memory of a chare that takes values.
+template <auto Take, class C>
+std::span<double> memory_of(C& chare, CouplingId coupling) {
+  static_assert(ShowsMemory<decltype(call_accessor<Take>(chare, coupling)), std::span<double>>,
+                "a coupling takes values into memory of the chare: return std::span<double>");
+  return call_accessor<Take>(chare, coupling);
 }
 
 /// A piece of class C by its owner id.
@@ -61,11 +84,9 @@ struct Couplings {
   [[nodiscard]] SourceSide& source(CouplingId id);
   [[nodiscard]] TargetSide& target(CouplingId id);
   [[nodiscard]] const TargetSide& target(CouplingId id) const;
-  [[nodiscard]] OverlapSource& overlap_source(CouplingId id) { return overlap_sources.at(id); }
-  [[nodiscard]] OverlapTarget& overlap_target(CouplingId id) { return overlap_targets.at(id); }
-  [[nodiscard]] const OverlapTarget& overlap_target(CouplingId id) const {
-    return overlap_targets.at(id);
-  }
+  [[nodiscard]] OverlapSource& overlap_source(CouplingId id);
+  [[nodiscard]] OverlapTarget& overlap_target(CouplingId id);
+  [[nodiscard]] const OverlapTarget& overlap_target(CouplingId id) const;
   void release(CouplingId id);
 
   template <class Ar>

@@ -33,12 +33,12 @@ class OverlapPiece {
   void m2m_submit_overlap_source(const CouplingSetup& setup) {
     OverlapSource& from = couplings.overlap_sources[setup.id];
     from.setup = setup;
-    setup.collider.submit({me(), detail::source_model, from.start_search(self().mesh_view())});
+    setup.collider.submit({me(), detail::source_model, from.start_search(chare().mesh_view())});
   }
   void m2m_submit_overlap_target(const CouplingSetup& setup) {
     OverlapTarget& to = couplings.overlap_targets[setup.id];
     to.setup = setup;
-    const MeshView mesh = self().mesh_view();
+    const MeshView mesh = chare().mesh_view();
     setup.collider.submit({me(), detail::target_model, to.start_search(mesh)});
     if (setup.target_values != Centring::nodes) return;
     std::vector<std::vector<PointReport>> by_pe(static_cast<std::size_t>(n_pes()));
@@ -54,7 +54,7 @@ class OverlapPiece {
   template <class S>
   void m2m_ask_overlaps(CouplingId id) {
     OverlapTarget& to = couplings.overlap_target(id);
-    for (auto& [source, query] : to.queries(self().mesh_view())) {
+    for (auto& [source, query] : to.queries(chare().mesh_view())) {
       query.from = me();
       detail::piece_of<S>(to.setup.source, source)
           .template send<&OverlapPiece<S>::template m2m_answer_overlaps<C>>(std::move(query));
@@ -63,7 +63,7 @@ class OverlapPiece {
   template <class T>
   void m2m_answer_overlaps(const OverlapQuery& query) {
     OverlapSource& from = couplings.overlap_source(query.coupling);
-    OverlapAnswer answer = from.answer(self().mesh_view(), query);
+    OverlapAnswer answer = from.answer(chare().mesh_view(), query);
     answer.from = me();
     detail::piece_of<T>(from.setup.target, query.from)
         .template send<&OverlapPiece<T>::m2m_receive_overlaps>(std::move(answer));
@@ -83,7 +83,7 @@ class OverlapPiece {
   template <class T>
   void m2m_part(const SharedRows& shared) {
     OverlapSource& from = couplings.overlap_source(shared.coupling);
-    PartialRows partial = from.share(self().mesh_view(), shared);
+    PartialRows partial = from.share(chare().mesh_view(), shared);
     partial.from = me();
     detail::piece_of<T>(from.setup.target, shared.from)
         .template send<&OverlapPiece<T>::m2m_receive_rows>(std::move(partial));
@@ -94,7 +94,7 @@ class OverlapPiece {
   }
   void m2m_finish_search(CouplingId id) {
     OverlapTarget& to = couplings.overlap_target(id);
-    for (const collide::OwnerId piece : to.finish_search(self().mesh_view()))
+    for (const collide::OwnerId piece : to.finish_search(chare().mesh_view()))
       detail::piece_of<C>(to.setup.target, piece)
           .template send<&OverlapPiece<C>::m2m_greet>(id, me());
     to.setup.ledger.local().add(to.tally());
@@ -117,17 +117,17 @@ class OverlapPiece {
   }
 
  protected:
-  [[nodiscard]] C& self() { return static_cast<C&>(*this); }
-  [[nodiscard]] collide::OwnerId me() { return collide::owner_of(self().index()); }
+  [[nodiscard]] C& chare() { return static_cast<C&>(*this); }
+  [[nodiscard]] collide::OwnerId me() { return collide::owner_of(chare().index()); }
   void notify(CouplingId id) {
-    if constexpr (requires(C& chare) { chare.received(id); }) self().received(id);
+    if constexpr (requires(C& of_user) { of_user.received(id); }) chare().received(id);
   }
 
   template <class T, auto Give, auto Take>
   void give_loads(CouplingId id) {
     OverlapSource& from = couplings.overlap_source(id);
     from.give(
-        self().mesh_view(), detail::values_of<Give>(self(), id), detail::channel_of<Take>(),
+        chare().mesh_view(), detail::values_of<Give>(chare(), id), detail::channel_of<Take>(),
         [&](collide::OwnerId target, GivenValues loads) {
           loads.from = me();
           detail::piece_of<T>(from.setup.target, target)
@@ -138,7 +138,7 @@ class OverlapPiece {
   void take_if_alone(CouplingId id) {
     const OverlapTarget& to = couplings.overlap_target(id);
     if (to.n_sources() != 0) return;
-    fill_outside(to.setup.policy, to.status(), detail::values_of<Take>(self(), id));
+    fill_outside(to.setup.policy, to.status(), detail::memory_of<Take>(chare(), id));
     notify(id);
   }
 
@@ -156,7 +156,7 @@ class OverlapPiece {
           .template send<&OverlapPiece<C>::template m2m_take_ghosts<Take>>(std::move(ghosts));
     };
     while (to.advance(channel, send)) {
-      to.write(channel, detail::values_of<Take>(self(), id));
+      to.write(channel, detail::memory_of<Take>(chare(), id));
       notify(id);
     }
   }

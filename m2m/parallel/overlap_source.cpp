@@ -11,6 +11,7 @@ std::vector<Aabb> OverlapSource::start_search(const MeshView& mesh) {
   validate(mesh);
   given_.clear();
   rounds_.clear();
+  rows_of_search_.set(mesh, setup.source_values);
   cover_ = cover_tets(mesh.points, mesh.own_tets());
   return cover_.boxes;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "m2m/parallel/overlap_messages.hpp"
+#include "m2m/parallel/rows_of_search.hpp"
 
 #include <map>
 
@@ -23,6 +24,7 @@ class OverlapSource {
   template <class Send>
   void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
             const Send& send) {
+    rows_of_search_.check(n_unknowns(mesh, setup.source_values));
     cover_ = {};
     const std::size_t n_components = components_of(mesh, values);
     const std::uint32_t round = rounds_[channel]++;
@@ -32,7 +34,7 @@ class OverlapSource {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, given_, rounds_);
+    ar(setup, rows_of_search_, cover_, given_, rounds_);
   }
 
  private:
@@ -49,6 +51,7 @@ class OverlapSource {
   [[nodiscard]] std::vector<double> loads(const Given& given, std::span<const double> values,
                                           std::size_t n_components) const;
 
+  RowsOfSearch rows_of_search_;
   Cover cover_;
   std::map<collide::OwnerId, Given> given_;  // per target piece
   std::map<std::uint64_t, std::uint32_t> rounds_;

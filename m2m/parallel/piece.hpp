@@ -58,8 +58,8 @@ class Piece : public OverlapPiece<C> {
   void m2m_give(CouplingId id) {
     if (couplings.is_conservative_source(id)) return this->template give_loads<T, Give, Take>(id);
     SourceSide& from = couplings.source(id);
-    const std::span<const double> values = detail::values_of<Give>(self(), id);
-    const MeshView mesh = self().mesh_view();
+    const std::span<const double> values = detail::values_of<Give>(chare(), id);
+    const MeshView mesh = chare().mesh_view();
     const std::size_t n_rows = n_unknowns(mesh, from.setup.source_values);
     TESS_CHECK(n_rows == 0 || values.size() % n_rows == 0, "a piece with ", n_rows, " ",
                rows_of(from.setup.source_values), " gives ", values.size(),
@@ -77,7 +77,7 @@ class Piece : public OverlapPiece<C> {
     if (couplings.is_conservative_target(id)) return this->template take_if_alone<Take>(id);
     const TargetSide& to = couplings.target(id);
     if (to.n_sources() != 0) return;
-    fill_outside(to.setup.policy, to.status(), detail::values_of<Take>(self(), id));
+    fill_outside(to.setup.policy, to.status(), detail::memory_of<Take>(chare(), id));
     notify(id);
   }
   template <auto Take>
@@ -87,7 +87,7 @@ class Piece : public OverlapPiece<C> {
     TargetSide& to = couplings.target(id);
     to.add(std::move(rows));
     while (to.has_next(from)) {
-      to.take_next(from, detail::values_of<Take>(self(), id));
+      to.take_next(from, detail::memory_of<Take>(chare(), id));
       notify(id);
     }
   }
@@ -95,7 +95,7 @@ class Piece : public OverlapPiece<C> {
   /// Gives the weights of the donors to the pieces of the coupling's target (coupling_weights.hpp).
   template <class T>
   void m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
-    const MeshView mesh = self().mesh_view();
+    const MeshView mesh = chare().mesh_view();
     SourceSide& from = couplings.source(id);
     from.give_rows(mesh, [&](collide::OwnerId target, const Rows<double>& rows) {
       GivenRows given{id, me(), book, {}};
@@ -108,7 +108,7 @@ class Piece : public OverlapPiece<C> {
     });
   }
   void m2m_take_rows(GivenRows given) {
-    const MeshView mesh = self().mesh_view();
+    const MeshView mesh = chare().mesh_view();
     for (const std::int32_t row : couplings.target(given.coupling).rows_from(given.from))
       given.rows.targets.push_back(mesh.point_ids[static_cast<std::size_t>(row)]);
     given.book.local().add(given.rows);
@@ -117,14 +117,14 @@ class Piece : public OverlapPiece<C> {
   void m2m_submit_source(const CouplingSetup& setup) {
     SourceSide& from = couplings.sources[setup.id];
     from.setup = setup;
-    const MeshView mesh = self().mesh_view();
+    const MeshView mesh = chare().mesh_view();
     setup.collider.submit({me(), detail::source_model, from.start_search(mesh)});
     if (from.has_kept_cover()) setup.ledger.local().add(Tally{.n_kept_sources = 1});
   }
   void m2m_submit_target(const CouplingSetup& setup) {
     TargetSide& to = couplings.targets[setup.id];
     to.setup = setup;
-    setup.collider.submit({me(), detail::target_model, to.start_search(self().mesh_view())});
+    setup.collider.submit({me(), detail::target_model, to.start_search(chare().mesh_view())});
   }
   void m2m_hits(CouplingId id, const collide::Hits& hits) {
     if (couplings.is_conservative_target(id))
@@ -136,7 +136,7 @@ class Piece : public OverlapPiece<C> {
   template <class S>
   void m2m_ask(CouplingId id) {
     TargetSide& to = couplings.target(id);
-    for (auto& [source, query] : to.donor_queries(self().mesh_view())) {
+    for (auto& [source, query] : to.donor_queries(chare().mesh_view())) {
       query.from = me();
       at<S>(to.setup.source, source)
           .template send<&Piece<S>::template m2m_answer<C>>(std::move(query));
@@ -146,7 +146,7 @@ class Piece : public OverlapPiece<C> {
   template <class T>
   void m2m_answer(const DonorQuery& query) {
     SourceSide& from = couplings.source(query.coupling);
-    DonorAnswer answer = from.answer(self().mesh_view(), query);
+    DonorAnswer answer = from.answer(chare().mesh_view(), query);
     answer.from = me();
     at<T>(from.setup.target, query.from)
         .template send<&Piece<T>::template m2m_receive_donors<C>>(std::move(answer));
@@ -158,21 +158,21 @@ class Piece : public OverlapPiece<C> {
     ask_on<S>(to);
   }
   void m2m_name_source(CouplingId id) {
-    const Aabb box = collide::box_around(self().mesh_view().owned());
+    const Aabb box = collide::box_around(chare().mesh_view().owned());
     couplings.source(id).setup.ledger.local().add(SourcePiece{me(), box});
   }
   template <class S>
   void m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources) {
     TargetSide& to = couplings.target(id);
     if (!to.waits()) return;
-    to.name_sources(self().mesh_view(), sources);
+    to.name_sources(chare().mesh_view(), sources);
     ask_on<S>(to);
   }
   template <class T>
   void m2m_answer_nearest(NearestQuery query) {
     SourceSide& from = couplings.source(query.coupling);
     const collide::OwnerId target = query.from;
-    NearestAnswer answer = from.answer(self().mesh_view(), std::move(query));
+    NearestAnswer answer = from.answer(chare().mesh_view(), std::move(query));
     answer.from = me();
     at<T>(from.setup.target, target)
         .template send<&Piece<T>::template m2m_receive_nearest<C>>(std::move(answer));
@@ -191,7 +191,7 @@ class Piece : public OverlapPiece<C> {
   friend C;
   Piece() = default;
 
-  using OverlapPiece<C>::self;
+  using OverlapPiece<C>::chare;
   using OverlapPiece<C>::me;
   using OverlapPiece<C>::notify;
   template <class Other>
@@ -203,14 +203,14 @@ class Piece : public OverlapPiece<C> {
   void ask_on(TargetSide& to) {
     if (!to.has_all_answers()) return;
     if (to.needs_sources()) return to.setup.ledger.local().add_waiting();
-    auto queries = to.nearest_queries(self().mesh_view());
+    auto queries = to.nearest_queries(chare().mesh_view());
     for (auto& [source, query] : queries) {
       query.from = me();
       at<S>(to.setup.source, source)
           .template send<&Piece<S>::template m2m_answer_nearest<C>>(std::move(query));
     }
     if (!queries.empty()) return;
-    for (auto& [source, choice] : to.choices(self().mesh_view())) {
+    for (auto& [source, choice] : to.choices(chare().mesh_view())) {
       choice.from = me();
       at<S>(to.setup.source, source).template send<&Piece<S>::m2m_choose>(std::move(choice));
     }

@@ -27,7 +27,7 @@ struct DistributedMesh {
 /// Partitions the mesh by tetrahedra, creates the Workers, spread evenly over all PEs, and sends
 /// each its part with the rows of the fields. The mesh is in place when the enclosing epoch is
 /// done. Some kinds need halo layers around sources or targets
-/// (transfer_kind.hpp).
+/// (transfer_kind.hpp). The errors are those of mesh_parts().
 [[nodiscard]] DistributedMesh scatter(const TetMesh& mesh, const std::vector<Field>& fields,
                                       std::int32_t n_parts, PartitionMethod method,
                                       std::int32_t halo_layers = 0);

@@ -40,6 +40,7 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   donors_.clear();
   rounds_.clear();
   gradient_vertices_.clear();
+  rows_of_search_.set(mesh, setup.source_values);
   stays_ = same_.ask(mesh);
   if (stays_ == SameMesh::Answer::same) return cover_.boxes;
   nearest_.reset();

@@ -6,6 +6,7 @@
 #include "m2m/conservative/overlap_rows.hpp"
 #include "m2m/mesh_view.hpp"
 #include "m2m/parallel/messages.hpp"
+#include "m2m/parallel/rows_of_search.hpp"
 #include "m2m/search/cover.hpp"
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/search/same_mesh.hpp"
@@ -37,6 +38,7 @@ class SourceSide {
   void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
             const Send& send) {
     const std::size_t n_rows = n_unknowns(mesh, setup.source_values);
+    rows_of_search_.check(n_rows);
     if (n_rows == 0) return;
     prepare(mesh);
     const std::size_t n_components = values.size() / n_rows;
@@ -60,7 +62,8 @@ class SourceSide {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, same_, stays_, cover_, drafts_, donors_, rounds_, gradient_vertices_, gradient_rows_);
+    ar(setup, same_, stays_, rows_of_search_, cover_, drafts_, donors_, rounds_, gradient_vertices_,
+       gradient_rows_);
   }
 
  private:
@@ -78,6 +81,7 @@ class SourceSide {
 
   SameMesh same_;
   SameMesh::Answer stays_ = SameMesh::Answer::moved;  // in the last search
+  RowsOfSearch rows_of_search_;
   Cover cover_;
   std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered
   std::map<collide::OwnerId, std::vector<Donor>> donors_;  // per target piece, as chosen

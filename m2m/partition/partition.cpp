@@ -1,5 +1,6 @@
 #include "m2m/partition/partition.hpp"
 
+#include "m2m/checks/mesh_findings.hpp"
 #include "m2m/partition/curve_cut.hpp"
 #include "runtime/core/error.hpp"
 
@@ -58,6 +59,14 @@ void need_mpi() {
 void check(int code, const char* call) {
   if (code != ZOLTAN_OK && code != ZOLTAN_WARN)
     fail(ErrorCode::environment, "Zoltan: ", call, " failed with code ", code);
+}
+
+/// A mesh that an application makes may not have passed validate().
+void refuse_bad_ids(const TetMesh& mesh) {
+  MeshFindings findings;
+  findings.add_points(0, mesh.points);
+  findings.add_corners(0, mesh.tets, static_cast<GlobalId>(mesh.n_points()));
+  findings.refuse_bad_ids(mesh.name, static_cast<GlobalId>(mesh.n_points()));
 }
 
 std::vector<std::int32_t> parts_on_curve(const TetMesh& mesh, std::int32_t n_parts) {
@@ -142,8 +151,9 @@ std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
     fail(ErrorCode::bad_mesh, mesh.name, ": has ", mesh.n_tets(),
          " tetrahedra, but Zoltan accepts at most 2147483647 from one process; split the mesh");
   }
+  refuse_bad_ids(mesh);
   std::vector<std::int32_t> parts(mesh.n_tets(), 0);
-  if (n_parts == 1) return parts;
+  if (n_parts == 1 || mesh.tets.empty()) return parts;
   if (method == PartitionMethod::curve) return parts_on_curve(mesh, n_parts);
   std::vector<Point> centres = centroids(mesh);
   const std::lock_guard in_turn(zoltan_turn());

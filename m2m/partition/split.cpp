@@ -2,6 +2,7 @@
 
 #include "m2m/topology/tets_of_vertices.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
@@ -48,6 +49,8 @@ void add_layer(const TetMesh& mesh, const TetsOfVertices& around, MeshPart& part
 
 std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> parts,
                             std::int32_t n_parts, std::int32_t halo_layers) {
+  if (halo_layers < 0)
+    fail(ErrorCode::bad_argument, "a halo of ", halo_layers, " layers; choose 0 or more");
   TESS_CHECK(parts.size() == mesh.n_tets(), "expected ", mesh.n_tets(),
              " entries, one per tetrahedron, got ", parts.size());
   constexpr std::int32_t no_owner = std::numeric_limits<std::int32_t>::max();

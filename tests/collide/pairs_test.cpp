@@ -317,5 +317,9 @@ TEST_CASE("a bad box, voxel size or list of models is an error that names it", "
     REQUIRE_THAT(refused(good, 0, {.voxel_size = bad}), Catch::Contains("is no size"));
   const std::vector<std::uint32_t> models(49);
   REQUIRE_THAT(refused(good, 0, {.models = models}), Catch::Contains("49 models for 50 objects"));
+  const std::vector<Aabb> both(49, good);
+  const std::span<const Aabb> set(both);
+  REQUIRE_THROWS_WITH(for_each_pair(set, set, {.models = models}, [&](auto, auto) { ++n_found; }),
+                      Catch::Contains("49 models for a search across two sets"));
   REQUIRE(n_found == 0);
 }

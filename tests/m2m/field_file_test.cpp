@@ -3,6 +3,7 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
+#include "m2m/write_vtu.hpp"
 #include "tests/m2m/damage.hpp"
 #include "tests/m2m/field_values.hpp"
 #include "tests/m2m/gmsh_text.hpp"
@@ -12,6 +13,7 @@
 #include <array>
 #include <exodusII.h>
 #include <fmt/core.h>
+#include <memory>
 #include <optional>
 
 using namespace tess::m2m;
@@ -198,6 +200,40 @@ TEST_CASE("steps with other fields or an earlier time are refused, and no file r
         Catch::Contains("step 1 has the variables b_x, b_y, b_z and none, but step 0 had a"));
   }
   CHECK(scratch.n_files() == 0);
+}
+
+TEST_CASE("two fields of one name are refused, and no file remains", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2});
+  const Field scalar = awkward_field("v_x", mesh.n_points(), 1, 1);
+  const Field vector = awkward_field("v", mesh.n_points(), 3, 1);
+  const Field in_tets = awkward_field("v", mesh.n_tets(), 3, 1);
+  CHECK_THAT(message_of([&] {
+               write_exodus(scratch.path("a.exo"), mesh, std::array{scalar, vector});
+             }),
+             Catch::Contains("a.exo: two fields have the variable 'v_x'"));
+  CHECK_THAT(message_of([&] {
+               write_vtu(scratch.path("a.vtu"), mesh, std::array{vector, scalar, vector});
+             }),
+             Catch::Contains("a.vtu: two fields have the name 'v'"));
+  CHECK(scratch.n_files() == 0);
+  CHECK_NOTHROW(write_exodus(scratch.path("a.exo"), mesh, std::array{vector}, std::array{in_tets}));
+  CHECK_NOTHROW(write_vtu(scratch.path("a.vtu"), mesh, std::array{vector}, std::array{in_tets}));
+}
+
+TEST_CASE("a file of steps keeps its own copy of the path", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2});
+  const Field a = awkward_field("a", mesh.n_points(), 1, 1);
+  auto path = std::make_unique<std::string>(scratch.path("steps_of_a_path_that_ends.exo"));
+  const std::string copy = *path;
+  ExodusSteps out(*path, mesh);
+  std::fill(path->begin(), path->end(), 'x');
+  path.reset();
+  out.add(1, std::array{a});
+  CHECK_THAT(message_of([&] { out.add(1, std::array{a}); }), Catch::StartsWith(copy + ": step 1"));
+  out.finish();
+  CHECK(bits_of(FieldFile(copy).vertex_field(mesh, "a", 0).values) == bits_of(a.values));
 }
 
 TEST_CASE("values of split elements are those of the whole element; skipped ones are left out",

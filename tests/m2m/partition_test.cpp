@@ -6,6 +6,7 @@
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace tess::m2m;
 using tess::test::message_of;
@@ -26,6 +27,9 @@ TEST_CASE("parts are balanced, and the same in every call", "[m2m][partition]") 
     }
   }
   CHECK_NOTHROW(partition(kuhn_mesh({1}), 20, PartitionMethod::rcb));
+  CHECK_THAT(
+      message_of([&] { (void)split(mesh, partition(mesh, 2, PartitionMethod::rcb), 2, -1); }),
+      Catch::Equals("a halo of -1 layers; choose 0 or more"));
   CHECK_THAT(message_of([&] { (void)partition(mesh, 0, PartitionMethod::rcb); }),
              Catch::Contains("into 0 parts"));
   CHECK_THAT(message_of([&] { (void)parse_partition_method("metis"); }),
@@ -88,5 +92,31 @@ TEST_CASE("a split has every tetrahedron once, and one owner per vertex, which l
           FAIL("vertex " << v << " is not owned by its lowest part");
       }
     }
+  }
+}
+
+TEST_CASE("a mesh that no validate() has seen is cut only if its corners exist",
+          "[m2m][partition]") {
+  for (const PartitionMethod method :
+       {PartitionMethod::curve, PartitionMethod::rcb, PartitionMethod::hsfc}) {
+    for (const std::int32_t n_parts : {1, 3}) {
+      TetMesh mesh = kuhn_mesh({2});
+      mesh.name = "";
+      mesh.tets[5][2] = 1 << 30;
+      CHECK_THAT(
+          message_of([&] { (void)partition(mesh, n_parts, method); }),
+          Catch::Equals("the mesh: tetrahedron 5 names vertex 1073741824 (counted from 0) of "
+                        "27 vertices; write the mesh again"));
+      mesh = kuhn_mesh({2});
+      mesh.points[7][1] = std::nan("");
+      CHECK_THAT(message_of([&] { (void)partition(mesh, n_parts, method); }),
+                 Catch::Contains("vertex 7 has y = nan"));
+    }
+    TetMesh cloud;
+    cloud.points = kuhn_mesh({2}).points;
+    const auto parts = split(cloud, partition(cloud, 3, method), 3);
+    std::int64_t n_owned = 0;
+    for (const MeshPart& part : parts) n_owned += part.n_owned;
+    CHECK(n_owned == 27);
   }
 }

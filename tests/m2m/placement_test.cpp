@@ -264,6 +264,7 @@ TEST_CASE("all PEs together refuse a bad mesh with the message of validate()", "
   REQUIRE_FALSE(want.empty());
   for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(good, n_pes, options) == want);
   CHECK_THAT(refusal(good, 2, {0}), Catch::Contains("into 0 parts"));
+  CHECK_THAT(refusal(good, 2, {2, -1}), Catch::Contains("a halo of -1 layers"));
 }
 
 TEST_CASE("a set of vertices numbers them in ascending order", "[m2m][placement]") {

@@ -36,8 +36,9 @@ Task one_transfer(const Scene& scene, double& error, TransferSummary& result) {
   };
   co_await epoch(place);
 
+  const TransferOptions options{.policy = Nearest{}};
   TransferSummary summary;
-  co_await transfer(source, target, {.policy = Nearest{}}, &summary);
+  co_await transfer(source, target, options, &summary);
 
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());

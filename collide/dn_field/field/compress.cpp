@@ -230,6 +230,8 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
   if (block_shift != 0 && (block_shift < min_shift || block_shift > max_shift))
     fail(ErrorCode::bad_argument, "blocks of 2^", block_shift, " voxels; the exponent must be ",
          min_shift, " to ", max_shift, ", or 0 for the best");
+  if (field.planes != nullptr)
+    fail(ErrorCode::bad_argument, "the field is compressed already; compress the flat one");
   if (field.normal.empty())
     fail(ErrorCode::bad_argument,
          "a field without normals cannot be compressed; build it with them");

@@ -57,6 +57,10 @@ bool check(const Field& field, LookUp kind, const Points& points, const Answers&
                "expected room for ", count, " normals on each axis, or none");
   TESS_CHECK(field.grid.size() < (std::size_t{1} << 31U), "voxels are numbered in 31 bits");
   if (count == 0 || (answers.distance.empty() && answers.nx.empty())) return false;
+  if (field.planes == nullptr &&
+      (field.distance.empty() || field.distance.size() != field.grid.size()))
+    fail(ErrorCode::bad_argument, "a look-up in a field of ", field.grid.size(), " voxels with ",
+         field.distance.size(), " distances; build the field");
   if ((!answers.nx.empty() || kind == LookUp::tangent) && field.content() == Content::distance)
     fail(ErrorCode::bad_argument, "normals are asked of a field of ", field.grid.size(),
          " voxels that stores none; build it with distance and normal");

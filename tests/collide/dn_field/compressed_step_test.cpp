@@ -172,6 +172,7 @@ TEST_CASE("compressed fields that cannot serve are refused with a reason",
   distances.normal = {};
   CHECK(refusal(tangent, {{&distances, {}}}).find("no normals") != std::string::npos);
   CHECK_THROWS_WITH(compress(distances, {0.01, 0.05}), Catch::Contains("without normals"));
+  CHECK_THROWS_WITH(compress(compressed, {0.01, 0.05}), Catch::Contains("is compressed already"));
 }
 
 }  // namespace

@@ -41,6 +41,19 @@ TEST_CASE(
   CHECK(inside > 100);
 }
 
+TEST_CASE("a look-up in a field that was not built is refused", "[dn_field]") {
+  const std::vector<float> x(3);
+  std::vector<float> found(3);
+  Field field;
+  const auto look = [&](LookUp kind) { look_up(field, kind, {x, x, x}, {.distance = found}); };
+  for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
+    field = {};
+    CHECK_THROWS_WITH(look(kind), Catch::Contains("a field of 0 voxels with 0 distances"));
+    field.grid = {{0, 0, 0}, 1, {2, 2, 2}};
+    CHECK_THROWS_WITH(look(kind), Catch::Contains("a field of 8 voxels with 0 distances"));
+  }
+}
+
 TEST_CASE("between opposite normals the blend is zero, and of unit length a thousandth beside it",
           "[dn_field]") {
   Field field;

@@ -191,6 +191,8 @@ TEST_CASE("only corners of the triangles that were named are tested, each once",
   CHECK(found[0].penetration.depth == 0.25);
   const std::vector<std::uint32_t> lower{0, 1};  // the face x = -1
   CHECK(penetrating_points(a, lower, b).empty());
+  const std::vector<std::uint32_t> beyond{0, 12};
+  CHECK_THROWS_WITH(penetrating_points(a, beyond, b), Catch::Contains("at position 12 of 12"));
 }
 
 TEST_CASE("an open surface is refused, and the edge is named", "[collide][queries]") {

@@ -94,6 +94,8 @@ TEST_CASE("errors name bad boxes, coordinates and voxel sizes", "[collide]") {
   REQUIRE(VoxelGrid(1).cell_of({2147483647.5, -2147483648.0, -5e-324}) ==
           Cell{2147483647, -2147483647 - 1, -1});
   REQUIRE_THROWS_AS(VoxelGrid(0), Error);
+  REQUIRE_THROWS_WITH(VoxelGrid({0, 0, 0}, {1, 0, 1}),
+                      Catch::Contains("size 0 on axis 1") && Catch::Contains("or 0 for all"));
   REQUIRE_THROWS_AS(VoxelGrid(nan), Error);
   REQUIRE_THROWS_AS(VoxelGrid(1e-310), Error);
 }

@@ -12,8 +12,9 @@ Task move() {
     source = scatter(from, {f}, 4, PartitionMethod::rcb);
     target = scatter(to, {{"g", 1, std::vector<double>(to.n_points())}}, 4, PartitionMethod::rcb);
   });
+  const TransferOptions options{.policy = Nearest{}};
   TransferSummary summary;
-  co_await transfer(source, target, {.policy = Nearest{}}, &summary);
+  co_await transfer(source, target, options, &summary);
   const auto& n = summary.tally.counts;
   print("inside ", n[0], ", boundary ", n[1], "\n");
 }

@@ -15,7 +15,7 @@ namespace {
 struct OneTet {
   std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Tet> tets{{0, 1, 2, 3}};
-  std::vector<GlobalId> point_ids{0, 1, 2, 3}, tet_ids{0};
+  std::vector<GlobalId> point_ids{10, 11, 12, 13}, tet_ids{70};
   std::int64_t n_owned = 4, n_own_tets = -1;
 
   [[nodiscard]] std::string complaint() const {
@@ -36,12 +36,13 @@ TEST_CASE("a piece with bad coordinates, indices or counts is refused by name", 
                            -std::numeric_limits<double>::infinity(), 2e100}) {
     OneTet piece;
     piece.points[2][1] = bad;
-    CHECK(piece.complaint().find("point 2") != std::string::npos);
+    CHECK(piece.complaint().find("point 2 of a piece, with the id 12, has") != std::string::npos);
   }
   for (const VertexId bad : {-1, 4}) {
     OneTet piece;
     piece.tets[0][3] = bad;
-    CHECK(piece.complaint().find("tetrahedron 0 of a piece names point") != std::string::npos);
+    CHECK(piece.complaint().find("tetrahedron 0 of a piece, with the id 70, names point") !=
+          std::string::npos);
   }
   OneTet too_many;
   too_many.n_owned = 5;
@@ -49,6 +50,8 @@ TEST_CASE("a piece with bad coordinates, indices or counts is refused by name", 
   OneTet halo;
   halo.n_own_tets = 2;
   CHECK(halo.complaint().find("2 own tetrahedra of 1") != std::string::npos);
+  halo.n_own_tets = -2;
+  CHECK(halo.complaint().find("-2 own tetrahedra of 1") != std::string::npos);
   OneTet no_ids;
   no_ids.tet_ids.clear();
   CHECK(no_ids.complaint().find("0 tet_ids") != std::string::npos);

@@ -1,0 +1,108 @@
+// Misuses of couplings, each of which must end the job with one clear line and an exit code other
+// than 0; run by misuse.sh.
+//
+//     test_coupling_misuse NAME_OF_THE_MISUSE KIND
+#include "m2m/coupling.hpp"
+#include "m2m/kuhn.hpp"
+#include "m2m/mesh_parts.hpp"
+
+#include <string>
+
+namespace {
+
+using namespace tess;
+using namespace tess::m2m;
+
+class Patch : public Chare<Patch>, public Piece<Patch> {
+ public:
+  void load(const MeshPart& part) {
+    part_ = part;
+    values_.assign(part.points.size(), 1);
+  }
+  [[nodiscard]] MeshView mesh_view() const { return view_of(part_); }
+  [[nodiscard]] std::span<const double> give() const { return values_; }
+  [[nodiscard]] std::span<double> take() {
+    return std::span(values_).first(static_cast<std::size_t>(part_.n_owned));
+  }
+  /// Keeps a tetrahedron with its corners.
+  void shrink() {
+    const Tet tet = part_.tets[0];
+    MeshPart small;
+    for (const VertexId v : tet) {
+      small.points.push_back(part_.points[static_cast<std::size_t>(v)]);
+      small.point_ids.push_back(part_.point_ids[static_cast<std::size_t>(v)]);
+    }
+    small.tets = {{0, 1, 2, 3}};
+    small.tet_ids = {part_.tet_ids[0]};
+    small.n_owned = 4;
+    small.n_own_tets = 1;
+    load(small);
+  }
+  void vanish() { load({}); }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(part_, values_);  // without `couplings`
+  }
+
+ private:
+  MeshPart part_;
+  std::vector<double> values_;
+};
+
+ArrayProxy<Patch> patches(std::int32_t n_cubes, std::int32_t n) {
+  const auto array = create<Patch>(range(n));
+  const auto parts = mesh_parts(kuhn_mesh({n_cubes}), n, PartitionMethod::curve, 2);
+  for (std::int32_t k = 0; k < n; ++k)
+    array[{k}].send<&Patch::load>(parts[static_cast<std::size_t>(k)]);
+  return array;
+}
+
+Task misuse(std::string name, TransferKind kind) {
+  ArrayProxy<Patch> source, target;
+  co_await epoch([&] { source = patches(4, 3), target = patches(3, 2); });
+  CouplingOptions options;
+  options.kind = kind;
+  Coupling coupling(source, target, options);
+  if (name == "two_first_searches") {
+    const Task first = coupling.search();
+    co_await coupling.search();
+  }
+  co_await coupling.search();
+  if (name == "two_searches") {
+    const Task first = coupling.search();
+    co_await coupling.search();
+  }
+  if (name == "search_meanwhile") {
+    const Task first = coupling.apply<&Patch::give, &Patch::take>();
+    co_await coupling.search();
+  }
+  if (name == "apply_meanwhile") {
+    const Task first = coupling.search();
+    co_await coupling.apply<&Patch::give, &Patch::take>();
+  }
+  if (name == "shrunk") co_await epoch([&] { source.broadcast<&Patch::shrink>(); });
+  if (name == "vanished") co_await epoch([&] { source.broadcast<&Patch::vanish>(); });
+  if (name == "source_moved" || name == "target_moved") {
+    const ArrayProxy<Patch> moved = name == "source_moved" ? source : target;
+    co_await epoch([&] {
+      moved[{0}].migrate_to(PeId{1});
+      moved[{1}].migrate_to(PeId{0});
+    });
+  }
+  co_await coupling.apply<&Patch::give, &Patch::take>();
+  print("no misuse\n");
+}
+
+int run_misuse(int argc, char** argv) {
+  Setup setup = take_options(argc, argv);
+  const std::string name = argc > 1 ? argv[1] : "";
+  const TransferKind kind = parse_transfer_kind(argc > 2 ? argv[2] : "");
+  return run(setup, [&]() -> Task { return misuse(name, kind); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] { return run_misuse(argc, argv); });
+}

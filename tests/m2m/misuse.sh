@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Each misuse of a coupling ends the job with exit code 1 and a line that says what is wrong.
+#
+#     misuse.sh PROGRAM
+source "$(dirname "$0")/../support/checks.sh"
+program=$1
+
+# ends MISUSE TEXT: for kinds of each sort, in one process and between processes.
+ends() {
+  for kind in linear second-order conservative conservative-bounded; do
+    exits 1 "$2" "$program" "$1" "$kind" --sim pes=2,per-process=1,cost=100ns
+  done
+}
+
+exits 0 "no misuse" "$program" none linear --pes 2
+exits 0 "no misuse" "$program" none conservative --pes 2
+ends two_first_searches "a coupling searches while a search or an application of it is under way: co_await that first"
+ends two_searches "a coupling searches while a search or an application of it is under way: co_await that first"
+ends search_meanwhile "a coupling searches while a search or an application of it is under way: co_await that first"
+ends apply_meanwhile "a coupling is applied while a search of it is under way: co_await that first"
+ends shrunk "a piece has 4 rows of values, and had [0-9]* in the last search of the coupling: search again when points or tetrahedra change"
+ends vanished "a piece has 0 rows of values, and had [0-9]* in the last search"
+ends source_moved "this piece is no source of the coupling: await search() first, and serialise .couplings. if pieces migrate"
+ends target_moved "this piece is no target of the coupling: await search() first, and serialise .couplings. if pieces migrate"
+
+finish

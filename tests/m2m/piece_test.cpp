@@ -1,0 +1,70 @@
+// A piece is a chare: it uses what a chare has, under the same names.
+#include "m2m/coupling.hpp"
+#include "m2m/kuhn.hpp"
+#include "m2m/mesh_parts.hpp"
+#include "runtime/machine/simulated.hpp"
+#include "tests/support/catch.hpp"
+
+#include <vector>
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+/// Takes values, and then counts itself by a message to itself.
+class Counted : public Chare<Counted, Index1>, public Piece<Counted> {
+ public:
+  void load(const MeshPart& part) {
+    part_ = part;
+    values_.assign(part.points.size(), index().x);
+  }
+  [[nodiscard]] MeshView mesh_view() const { return view_of(part_); }
+  [[nodiscard]] std::span<const double> give() const { return values_; }
+  [[nodiscard]] std::span<double> take() {
+    return std::span(values_).first(static_cast<std::size_t>(part_.n_owned));
+  }
+  void received(CouplingId /*coupling*/) { self().send<&Counted::count>(); }
+  void count() { ++n_received_; }
+  void total(Callback<int> target) { contribute(sum, n_received_, std::move(target)); }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(couplings, part_, values_, n_received_);
+  }
+
+ private:
+  MeshPart part_;
+  std::vector<double> values_;
+  int n_received_ = 0;
+};
+
+ArrayProxy<Counted> counted(std::int32_t n) {
+  const auto array = create<Counted>(range(n));
+  const auto parts = mesh_parts(kuhn_mesh({3}), n, PartitionMethod::curve);
+  for (std::int32_t k = 0; k < n; ++k)
+    array[{k}].send<&Counted::load>(parts[static_cast<std::size_t>(k)]);
+  return array;
+}
+
+Task apply_three_times(int& n_received) {
+  ArrayProxy<Counted> source, target;
+  co_await epoch([&] { source = counted(2), target = counted(5); });
+  Coupling coupling(source, target);
+  co_await coupling.search();
+  for (int k = 0; k < 3; ++k) co_await coupling.apply<&Counted::give, &Counted::take>();
+  Future<int> total;
+  target.broadcast<&Counted::total>(total.callback());
+  n_received = co_await total;
+}
+
+}  // namespace
+
+TEST_CASE("a piece sends to itself as any chare does", "[m2m]") {
+  int n_received = 0;
+  SimulatedOptions machine;
+  machine.n_pes = 3;
+  Setup setup{make_simulated_machine(machine), {}};
+  REQUIRE(run(setup, [&]() -> Task { return apply_three_times(n_received); }) == 0);
+  CHECK(n_received == 3 * 5);
+}
