@@ -2,7 +2,7 @@
 
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/run.hpp"
+#include "runtime/here.hpp"
 
 namespace apps {
 

@@ -2,6 +2,7 @@
 
 #include "apps/plot/chart.hpp"
 #include "apps/plot/fit.hpp"
+#include "runtime/here.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
