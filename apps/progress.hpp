@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <concepts>
 #include <condition_variable>
 #include <cstdint>
 #include <cstdio>
@@ -34,8 +35,10 @@ class Progress {
     phase_.store(name, std::memory_order_relaxed);  // partner: show(); nothing else is read by it
   }
   /// Work enters its part `part` (from 1) of `n_parts`. Any thread.
-  void part(std::uint32_t part, std::uint32_t n_parts) noexcept {
-    part_.store(std::uint64_t{part} << 32U | n_parts, std::memory_order_relaxed);
+  template <std::integral Part, std::integral N>
+  void part(Part part, N n_parts) noexcept {
+    part_.store(static_cast<std::uint64_t>(part) << 32U | static_cast<std::uint32_t>(n_parts),
+                std::memory_order_relaxed);
   }
   /// Removes the line, so that other text can be printed; it may come again.
   void clear();

@@ -19,6 +19,11 @@ BlockIndex BlockIndex::at(std::int32_t level, const std::array<std::int32_t, 3>&
   return index;
 }
 
+double BlockIndex::along() const {
+  const std::uint64_t n = std::uint64_t{1} << 3U * static_cast<std::uint32_t>(level());
+  return static_cast<double>(path - n) / static_cast<double>(n);
+}
+
 BlockIndex BlockIndex::neighbour(Face face) const {
   std::array<std::int32_t, 3> place = coordinates();
   std::int32_t& along = place[static_cast<std::size_t>(face / 2)];

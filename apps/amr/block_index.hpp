@@ -48,6 +48,8 @@ struct BlockIndex {
   /// The place among the 2^level blocks of this level along each axis.
   [[nodiscard]] std::array<std::int32_t, 3> coordinates() const;
   [[nodiscard]] static BlockIndex at(std::int32_t level, const std::array<std::int32_t, 3>& place);
+  /// The place of its first descendants along the curve of all paths, from 0 to 1.
+  [[nodiscard]] double along() const;
   /// The block of the same level behind a face; the cube is periodic.
   [[nodiscard]] BlockIndex neighbour(Face face) const;
 

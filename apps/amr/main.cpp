@@ -2,12 +2,12 @@
 #include "apps/amr/report.hpp"
 #include "apps/amr/stability.hpp"
 #include "apps/command_line.hpp"
-#include "apps/plot/write_file.hpp"
 #include "apps/progress.hpp"
+#include "apps/row_files.hpp"
+#include "apps/wrong_answer.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <fmt/format.h>
 
 namespace amr {
@@ -15,7 +15,7 @@ namespace {
 
 struct Options {
   Settings settings;
-  std::string json, plot;
+  apps::RowFiles files;
   bool study = false, stability = false, uncorrected = false;
 };
 
@@ -41,8 +41,8 @@ std::vector<Settings> runs_of(const Options& options) {
   return all;
 }
 
-tess::Task run_all(Options options, bool speaks) {
-  apps::Progress progress(speaks ? stderr : nullptr);
+tess::Task run_all(Options options) {
+  apps::Progress progress(stderr);
   std::vector<Settings> runs = runs_of(options);
   std::vector<Row> rows;
   tess::print_text(tess::machine().describe() + "\n" + head());
@@ -51,22 +51,19 @@ tess::Task run_all(Options options, bool speaks) {
     Outcome outcome;
     co_await simulate(settings, outcome, [&](std::int32_t step) {
       progress.phase("steps");
-      progress.part(static_cast<std::uint32_t>(step) + 1,
-                    static_cast<std::uint32_t>(settings.problem.n_steps));
+      progress.part(step + 1, settings.problem.n_steps);
     });
     progress.clear();
     rows.push_back({settings, outcome});
     tess::print_text(line(rows.back()));
     if (const std::string why = fault(outcome); !why.empty()) {
-      std::fprintf(stderr, "amr: wrong answer: %s\n", why.c_str());
-      tess::exit(1);
+      apps::end_with("amr: wrong answer: " + why);
       co_return;
     }
   }
   if (!options.study)
     tess::print_text(fmt::format("result_hash {:016x}\n", rows.front().outcome.end.norms.hash));
-  if (!options.json.empty()) write_json(options.json, rows, tess::machine().describe());
-  if (!options.plot.empty()) draw(options.plot, rows);
+  options.files.write(json_of(rows), chart_of(rows));
 }
 
 tess::Task check_stability(Options options) {
@@ -112,8 +109,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   line.flag("--study", options.study,
             "orders 1 to 3 with each greatest level, and uniform trees: error against run time");
   line.flag("--stability", options.stability, "cases at the edge, each against what must hold");
-  line.option("--json", options.json, "write the rows to this file");
-  line.option("--plot", options.plot, "with --study: draw them to this SVG file");
+  options.files.add_options(line);
   settings.checkpoints.add_options(line);
   if (!line.parse(argc, argv)) return 0;
   settings.checkpoints.check(
@@ -129,25 +125,17 @@ int start(tess::Setup& setup, int argc, char** argv) {
       tess::fail(tess::ErrorCode::bad_argument, "--balance ", balance,
                  ": rounds run after changes of the tree; leave out when=periodic");
   }
-  if (!options.plot.empty()) {
-    if (!options.study)
-      tess::fail(tess::ErrorCode::bad_argument, "--plot ", options.plot, ": needs --study");
-    (void)plot::data_path(options.plot);
-  }
   if (options.study && options.stability)
     tess::fail(tess::ErrorCode::bad_argument, "--study and --stability: choose one");
   if ((options.study || options.stability) && settings.checkpoints.are_used())
     tess::fail(tess::ErrorCode::bad_argument,
                "--checkpoint and --restart: not for --study and --stability");
-  if (options.stability && !options.json.empty())
-    tess::fail(tess::ErrorCode::bad_argument, "--json ", options.json,
+  if (options.stability && line.is_given("--json"))
+    tess::fail(tess::ErrorCode::bad_argument, "--json ", line.value("--json"),
                ": --stability prints its rows only");
-  plot::require_writable("--json", options.json);
-  plot::require_writable("--plot", options.plot);
-  const bool speaks = setup.machine->process() == tess::ProcessId{0};
-  return tess::run(setup, [&] {
-    return options.stability ? check_stability(options) : run_all(options, speaks);
-  });
+  options.files.check(options.study);
+  return tess::run(setup,
+                   [&] { return options.stability ? check_stability(options) : run_all(options); });
 }
 
 }  // namespace

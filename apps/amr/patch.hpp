@@ -17,6 +17,7 @@
 #pragma once
 
 #include "apps/amr/block_index.hpp"
+#include "apps/amr/census.hpp"
 #include "apps/amr/problem.hpp"
 
 #include <vector>
@@ -24,14 +25,6 @@
 namespace amr {
 
 using Quanta = std::int64_t;
-
-/// What is known of cells at the end. Integers, so that sums do not depend on their order.
-struct Norms {
-  std::int64_t mass = 0;        ///< quanta
-  std::int64_t l1 = 0, l2 = 0;  ///< of the integrals of |error| and error², 2^-60 each
-  double linf = 0, largest = 0, least = 0;
-  std::uint64_t hash = 0;
-};
 
 class Patch {
  public:

@@ -22,6 +22,9 @@ struct Problem {
   std::int32_t n_steps = 0;  ///< 0: set by complete()
   double dt = 0;
 
+  [[nodiscard]] std::int64_t cells_per_block() const {
+    return std::int64_t{n_cells} * n_cells * n_cells;
+  }
   /// The edge of a cell of a level.
   [[nodiscard]] double spacing(std::int32_t level) const { return 1.0 / (n_cells << level); }
   /// Chooses the steps by `cfl` and `end`. Throws tess::Error for what cannot be computed.

@@ -1,11 +1,7 @@
 #include "apps/amr/report.hpp"
 
-#include "apps/plot/chart.hpp"
-#include "apps/plot/write_file.hpp"
-
 #include <algorithm>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace amr {
 namespace {
@@ -43,7 +39,7 @@ std::string fault(const Outcome& outcome) {
   return fmt::format("the mass changed by {} of {} quanta", change, outcome.mass_at_start);
 }
 
-void write_json(const std::string& path, const std::vector<Row>& rows, const std::string& machine) {
+nlohmann::ordered_json json_of(const std::vector<Row>& rows) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const auto& [settings, o] : rows) {
     const Problem& p = settings.problem;
@@ -71,11 +67,10 @@ void write_json(const std::string& path, const std::vector<Row>& rows, const std
                    {"mass_change_quanta", o.end.norms.mass - o.mass_at_start},
                    {"result_hash", fmt::format("{:016x}", o.end.norms.hash)}});
   }
-  const nlohmann::ordered_json file = {{"machine", machine}, {"results", std::move(all)}};
-  plot::write_file(path, file.dump(2) + "\n");
+  return all;
 }
 
-void draw(const std::string& path, const std::vector<Row>& rows) {
+plot::Chart chart_of(const std::vector<Row>& rows) {
   plot::Chart chart{.title = "error against run time, from the coarsest to the finest tree",
                     .x_label = "seconds",
                     .y_label = "L1 error",
@@ -91,7 +86,7 @@ void draw(const std::string& path, const std::vector<Row>& rows) {
         same != chart.series.end() ? *same : chart.series.emplace_back(plot::Series{.name = name});
     series.points.push_back({row.outcome.seconds, row.outcome.l1()});
   }
-  (void)plot::write_svg(path, chart);
+  return chart;
 }
 
 }  // namespace amr

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "apps/amr/simulate.hpp"
+#include "apps/plot/chart.hpp"
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,8 +20,8 @@ struct Row {
 /// Empty if the mass is what it was, to the quantum.
 [[nodiscard]] std::string fault(const Outcome& outcome);
 
-void write_json(const std::string& path, const std::vector<Row>& rows, const std::string& machine);
+[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Row>& rows);
 /// Error against run time, a line per order; and uniform trees of order 2.
-void draw(const std::string& path, const std::vector<Row>& rows);
+[[nodiscard]] plot::Chart chart_of(const std::vector<Row>& rows);
 
 }  // namespace amr

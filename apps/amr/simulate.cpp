@@ -17,10 +17,6 @@ struct State {
   Blocks blocks{};
   std::int32_t step = 0;  // done
   Outcome outcome;        // so far
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(problem, change_every, blocks, step, outcome);
-  }
 };
 
 /// Each leaf chooses its level, and the tree changes.
@@ -44,14 +40,12 @@ tess::Task take_census(Blocks blocks, double time, Outcome& outcome) {
 /// Uniform blocks of the least level, then as fine as the field at time 0 demands.
 tess::Task plant(Blocks blocks, const Problem& problem, Outcome& outcome) {
   const std::int32_t edge = 1 << problem.least_level;
-  const auto n_cells = static_cast<std::size_t>(problem.n_cells);
   co_await tess::epoch([&] {
     for (std::int32_t i = 0; i < edge * edge * edge; ++i) {
       const BlockIndex index =
           BlockIndex::at(problem.least_level, {i % edge, i / edge % edge, i / edge / edge});
-      Birth birth{.problem = problem};
-      birth.masses.resize(n_cells * n_cells * n_cells);
-      blocks[index].send_or_create_home<&Block::begin>(std::move(birth));
+      std::vector<Quanta> masses(static_cast<std::size_t>(problem.cells_per_block()));
+      blocks[index].send_or_create_home<&Block::begin>(Birth{problem, -1, {}, std::move(masses)});
     }
   });
   for (std::int32_t level = problem.least_level;; ++level) {
@@ -60,6 +54,7 @@ tess::Task plant(Blocks blocks, const Problem& problem, Outcome& outcome) {
     if (level == problem.most_level) break;
     co_await change_tree(blocks);
   }
+  outcome.mass_at_start = outcome.end.norms.mass;
 }
 
 }  // namespace
@@ -70,7 +65,7 @@ double Outcome::l2() const {
 
 tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std::int32_t)> part) {
   Problem& problem = settings.problem;
-  State state{.problem = problem, .change_every = settings.change_every, .outcome = {}};
+  State state{problem, settings.change_every, {}, 0, {}};
   const bool restarts = settings.checkpoints.restarts();
   if (restarts) {
     co_await settings.checkpoints.restart(state, problem.n_steps);
@@ -81,16 +76,13 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
   }
   const Blocks blocks = state.blocks;
   outcome = state.outcome;
-  std::optional<tess::BalancerProxy> balancer;
+  tess::BalancerProxy balancer;
   if (settings.balance) balancer = tess::start_balancing(blocks, *settings.balance);
-  if (!restarts) {
+  if (restarts)
+    co_await balancer.place_again();
+  else
     co_await plant(blocks, problem, outcome);
-    outcome.mass_at_start = outcome.end.norms.mass;
-  } else if (balancer) {
-    co_await balancer->place_again();
-  }
-  const std::int64_t cells_per_block =
-      std::int64_t{problem.n_cells} * problem.n_cells * problem.n_cells;
+
   while (state.step < problem.n_steps) {
     const tess::Time begin = tess::now();
     const std::int32_t from = state.step;
@@ -99,20 +91,17 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
     if (from > 0) {
       co_await change_tree(blocks);
       co_await take_census(blocks, from * problem.dt, outcome);
-      if (balancer) {
-        co_await balancer->round();
-      }
+      co_await balancer.round();
     }
     co_await tess::epoch([&] { blocks.broadcast<&Block::advance>(from, n); });
-    outcome.cell_steps += outcome.end.n_blocks * cells_per_block * n;
+    outcome.cell_steps += outcome.end.n_blocks * problem.cells_per_block() * n;
     outcome.seconds += tess::seconds(tess::now() - begin);
     state.step = from + n;
     state.outcome = outcome;
     co_await settings.checkpoints.save_if_due(state, from, problem.n_steps);
   }
   co_await take_census(blocks, problem.n_steps * problem.dt, outcome);
-  if (balancer)
-    for (const auto& round : balancer->history()) outcome.n_moved += round.n_moved;
+  for (const auto& round : balancer.history()) outcome.n_moved += round.n_moved;
   blocks.destroy();
 }
 

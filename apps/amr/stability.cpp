@@ -28,12 +28,14 @@ tess::Task run(Problem problem, Outcome& outcome, bool& kept) {
   kept = outcome.end.norms.mass == outcome.mass_at_start;
 }
 
+using Holds = bool (*)(const Outcome& found, const Outcome& other);
+
 /// A case, or a case and another that it is compared with.
 struct Case {
   std::string name, expected;
   Problem problem;
-  std::optional<Problem> other{};
-  bool (*holds)(const Outcome& found, const Outcome& other);
+  Holds holds;
+  std::optional<Problem> other;
 };
 
 /// Equal errors and blocks, up to some quanta of rounding.
@@ -46,92 +48,68 @@ bool bounded(const Outcome& found, const Outcome& /*other*/) {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
+  const auto add = [&](std::string name, std::string expected, const Problem& problem, Holds holds,
+                       std::optional<Problem> other = {}) {
+    all.push_back({std::move(name), std::move(expected), problem, holds, std::move(other)});
+  };
+  const char* const within = "values within bounds";
   const Problem usual = small(2, 3);
 
-  Problem shift = small(2, 2);
-  shift.cfl = 1;
-  shift.velocity = {1, -1, 1};
+  Problem now = small(2, 2);
+  now.cfl = 1;
+  now.velocity = {1, -1, 1};
   for (const std::int32_t order : {1, 2, 3}) {
-    shift.order = order;
-    all.push_back({.name = fmt::format("cfl 1, uniform, along the diagonal, order {}", order),
-                   .expected = "an exact shift",
-                   .problem = shift,
-                   .holds = [](const Outcome& found, const Outcome&) {
-                     return found.end.norms.linf < 1e-9;
-                   }});
+    now.order = order;
+    add(fmt::format("cfl 1, uniform, along the diagonal, order {}", order), "an exact shift", now,
+        [](const Outcome& found, const Outcome&) { return found.end.norms.linf < 1e-9; });
   }
-  Problem edge = usual;
-  edge.centre = {0.975, 0.0, 0.025};
-  Problem inside = edge;
-  inside.centre = {0.475, 0.5, 0.525};
-  all.push_back({.name = "front at the periodic boundary",
-                 .expected = "as in the middle",
-                 .problem = edge,
-                 .other = inside,
-                 .holds = &like});
-  Problem mirrored = usual;
+  now = usual;
+  now.centre = {0.975, 0.0, 0.025};
+  Problem other = usual;
+  other.centre = {0.475, 0.5, 0.525};
+  add("front at the periodic boundary", "as in the middle", now, &like, other);
+  now = usual;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    mirrored.centre[axis] = 1 - usual.centre[axis];
-    mirrored.velocity[axis] = -usual.velocity[axis];
+    now.centre[axis] = 1 - usual.centre[axis];
+    now.velocity[axis] = -usual.velocity[axis];
   }
-  all.push_back({.name = "velocity and place mirrored",
-                 .expected = "the same errors",
-                 .problem = mirrored,
-                 .other = usual,
-                 .holds = &like});
-  Problem refined = usual;
-  refined.width = 0.2;
-  refined.refine = 1e-7;
-  Problem uniform = refined;
-  uniform.least_level = uniform.most_level;
-  all.push_back({.name = "refined everywhere",
-                 .expected = "the bits of a uniform tree",
-                 .problem = refined,
-                 .other = uniform,
-                 .holds = [](const Outcome& found, const Outcome& other) {
-                   return found.end.norms.hash == other.end.norms.hash && found.n_destroyed > 0;
-                 }});
-  Problem odd = usual;
-  odd.n_cells = 10;
-  all.push_back({.name = "10 cells along an edge: volumes are no powers of two",
-                 .expected = "values within bounds",
-                 .problem = odd,
-                 .holds = &bounded});
-  all.push_back({.name = "max level 0: one block, its own neighbour",
-                 .expected = "one block, values within bounds",
-                 .problem = small(0, 0),
-                 .holds = [](const Outcome& found, const Outcome& other) {
-                   return found.n_created == 1 && bounded(found, other);
-                 }});
-  Problem from_root = small(0, 3);
-  all.push_back({.name = "levels 0 to 3: the root is destroyed",
-                 .expected = "more than one level, values within bounds",
-                 .problem = from_root,
-                 .holds = [](const Outcome& found, const Outcome& other) {
-                   return found.n_destroyed > 0 && found.end.of_level[0] == 0 &&
-                          bounded(found, other);
-                 }});
+  add("velocity and place mirrored", "the same errors", now, &like, usual);
+  now = usual;
+  now.width = 0.2;
+  now.refine = 1e-7;
+  other = now;
+  other.least_level = other.most_level;
+  const Holds has_its_bits = [](const Outcome& found, const Outcome& uniform) {
+    return found.end.norms.hash == uniform.end.norms.hash && found.n_destroyed > 0;
+  };
+  add("refined everywhere", "the bits of a uniform tree", now, has_its_bits, other);
+  now = usual;
+  now.n_cells = 10;
+  add("10 cells along an edge: volumes are no powers of two", within, now, &bounded);
+  add("max level 0: one block, its own neighbour", "one block, values within bounds", small(0, 0),
+      [](const Outcome& found, const Outcome& none) {
+        return found.n_created == 1 && bounded(found, none);
+      });
+  add("levels 0 to 3: the root is destroyed", "more than one level, values within bounds",
+      small(0, 3), [](const Outcome& found, const Outcome& none) {
+        return found.n_destroyed > 0 && found.end.of_level[0] == 0 && bounded(found, none);
+      });
+  now = usual;
+  now.width = 0.012;  // less than a cell of the finest level
   for (const std::int32_t order : {1, 2, 3}) {
-    Problem thin = usual;
-    thin.order = order;
-    thin.width = 0.012;  // less than a cell of the finest level
-    all.push_back({.name = fmt::format("thin front: 0.77 cells wide, order {}", order),
-                   .expected = "values within bounds",
-                   .problem = thin,
-                   .holds = [](const Outcome& found, const Outcome&) {
-                     return found.end.norms.least > -0.2 && found.end.norms.largest < 1;
-                   }});
+    now.order = order;
+    add(fmt::format("thin front: 0.77 cells wide, order {}", order), within, now,
+        [](const Outcome& found, const Outcome&) {
+          return found.end.norms.least > -0.2 && found.end.norms.largest < 1;
+        });
   }
+  now = usual;
+  now.end = 1;
   for (const double cfl : {0.999, 1.0})
     for (const std::int32_t order : {1, 2, 3}) {
-      Problem fast = usual;
-      fast.order = order;
-      fast.cfl = cfl;
-      fast.end = 1;
-      all.push_back({.name = fmt::format("cfl {}, once around, order {}", cfl, order),
-                     .expected = "values within bounds",
-                     .problem = fast,
-                     .holds = &bounded});
+      now.order = order;
+      now.cfl = cfl;
+      add(fmt::format("cfl {}, once around, order {}", cfl, order), within, now, &bounded);
     }
   return all;
 }

@@ -39,7 +39,7 @@ std::optional<double> false_positive_rate(const Problem& problem) {
 }
 
 void show(apps::Progress& progress, const char* phase, int part, int n_parts) {
-  progress.part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+  progress.part(part, n_parts);
   progress.phase(phase);
 }
 

@@ -7,9 +7,8 @@
 #include "apps/lb_lab/sweep.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
 #include "apps/plot/write_file.hpp"
+#include "apps/wrong_answer.hpp"
 #include "runtime/runtime.hpp"
-
-#include <cstdio>
 
 namespace lb_lab {
 namespace {
@@ -25,10 +24,7 @@ tess::Task measure(Settings settings, double steps_a_second) {
   co_await run_all(sweep, steps_a_second);
   print_best(sweep);
   if (!sweep.settings.json.empty()) write_json(sweep.settings.json, sweep);
-  if (!sweep.wrong.empty()) {
-    std::fprintf(stderr, "lb_lab: wrong answer: %s\n", sweep.wrong.c_str());
-    tess::exit(1);
-  }
+  if (!sweep.wrong.empty()) apps::end_with("lb_lab: wrong answer: " + sweep.wrong);
 }
 
 void add_options(apps::CommandLine& line, Settings& s) {

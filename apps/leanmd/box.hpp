@@ -66,5 +66,10 @@ struct Box {
   if (b < a) std::swap(a, b);
   return {{a.x, a.y, a.z, b.x, b.y, b.z}};
 }
+/// One if the pair is a cell and itself, otherwise two.
+[[nodiscard]] inline std::size_t n_cells_of(const tess::Index6& pair) {
+  const auto& x = pair.x;
+  return x[0] == x[3] && x[1] == x[4] && x[2] == x[5] ? 1 : 2;
+}
 
 }  // namespace leanmd

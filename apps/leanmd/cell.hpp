@@ -7,47 +7,10 @@
 // fast) keeps its atoms where they are until the end of the run, which reports it.
 #pragma once
 
+#include "apps/leanmd/atoms.hpp"
 #include "apps/leanmd/compute.hpp"
-#include "apps/leanmd/motion.hpp"
-
-#include <string>
-#include <utility>
 
 namespace leanmd {
-
-/// What all elements know.
-struct Problem {
-  Box box;
-  double cutoff = 2.5;
-  double dt = 0.004;
-  double skin = 0.4;                ///< an atom moves at most half of it between two exchanges
-  std::int32_t exchange_every = 5;  ///< steps between exchanges of atoms
-  std::int32_t every = 20;          ///< steps between reports, and between balance barriers
-};
-
-/// Why a run cannot continue: the first reason is kept.
-struct Trouble {
-  enum class Kind : std::uint8_t { too_close, too_fast, too_far };
-  std::int32_t step = -1;  ///< -1: none
-  Kind kind{};
-  double value = 0;  ///< distance or speed
-  std::int64_t atom = 0;
-
-  friend auto operator<=>(const Trouble&, const Trouble&) = default;
-  [[nodiscard]] explicit operator bool() const { return step >= 0; }
-};
-
-/// Sums over all cells of a run of some steps. All but the trouble are exact.
-struct Totals {
-  std::vector<Vector> energies;  ///< per step: kinetic, potential, both together; in quanta
-  Vector momentum{};
-  std::int64_t n_atoms = 0;
-  std::uint64_t hash = 0;
-  Trouble trouble;
-};
-struct AddTotals {
-  Totals operator()(Totals a, const Totals& b) const;
-};
 
 /// Some steps: after the last the totals go to `done`. The energies are those of first … last.
 struct Run {
@@ -55,58 +18,47 @@ struct Run {
   tess::Callback<Totals> done;
 };
 
+/// Atoms that enter a cell at a step.
+struct Arrivals {
+  std::int32_t step = 0;
+  std::vector<Atom> atoms;
+};
+
 class Cell : public tess::Chare<Cell, tess::Index3> {
  public:
   Cell() = default;
-  Cell(const Problem& problem, tess::ArrayProxy<Compute> computes)
-      : problem_(problem), motion_(problem.box.edge, problem.dt), all_computes_(computes) {}
+  Cell(const Problem& problem, tess::ArrayProxy<Compute> all_computes)
+      : problem_(problem), all_computes_(all_computes), atoms_(problem) {}
 
-  // Before the first run, in this order: an epoch each.
-  void fill(std::vector<Atom> atoms) { atoms_ = std::move(atoms); }
+  // Before the first run.
+  void fill(const std::vector<Atom>& atoms) { atoms_.add(atoms); }
   void create_computes();
-  void create_section();
 
   void begin(Run run);
   tess::Task step(std::int32_t step);
-  /// Reverses all velocities.
-  void reverse();
-  /// All atoms with the forces on them, to `result`.
-  using AtomForce = std::pair<Atom, Vector>;
-  void show(const tess::Callback<std::vector<AtomForce>>& result);
+  void receive_forces(Forces forces) { forces_.put(std::move(forces)); }
+  void receive_atoms(Arrivals arrivals) { arrivals_.put(std::move(arrivals)); }
 
-  // Messages of a step.
-  struct Arrivals {
-    std::int32_t step = 0;
-    std::vector<Atom> atoms;
-  };
-  void receive_forces(Forces forces) { forces_box_.put(std::move(forces)); }
-  void receive_atoms(Arrivals arrivals) { arrivals_box_.put(std::move(arrivals)); }
+  void reverse() { atoms_.reverse(); }
+  /// All atoms with the forces on them, to `result`.
+  void show(const tess::Callback<std::vector<AtomForce>>& result) {
+    contribute(tess::concatenate, atoms_.with_forces(), result);
+  }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(problem_, motion_, all_computes_, computes_, atoms_, forces_, moved_, run_, totals_,
-       forces_box_, arrivals_box_);
+    ar(problem_, all_computes_, computes_, atoms_, run_, energies_, forces_, arrivals_);
   }
 
  private:
-  [[nodiscard]] std::vector<tess::Index3> partners() const;
-  void advance(std::int32_t step);
-  void send_leavers(std::int32_t step);
-  void check_forces();
-  [[nodiscard]] Vector energies() const;
-  void sum_up();
-
   Problem problem_;
-  Motion motion_;
   tess::ArrayProxy<Compute> all_computes_;
   tess::SectionProxy<Compute> computes_;  // those of this cell
-  std::vector<Atom> atoms_;
-  Forces forces_;     // on them, in their order
-  double moved_ = 0;  // bound of the way of any atom since the last exchange
+  Atoms atoms_;
   Run run_;
-  Totals totals_;
-  tess::Mailbox<&Forces::step> forces_box_;
-  tess::Mailbox<&Arrivals::step> arrivals_box_;
+  std::vector<Vector> energies_;  // of its steps so far
+  tess::Mailbox<&Forces::step> forces_;
+  tess::Mailbox<&Arrivals::step> arrivals_;
 };
 
 }  // namespace leanmd

@@ -12,31 +12,31 @@ constexpr std::chrono::nanoseconds per_pair{3};  // as measured
 
 }  // namespace
 
-std::size_t Compute::n_cells() const {
-  const auto& x = index().x;
-  return x[0] == x[3] && x[1] == x[4] && x[2] == x[5] ? 1 : 2;
-}
-
 // A cell sends its next coordinates when it has the forces of this step, so none are more than one
 // step ahead, and those of the next step come only after this element has contributed to this one.
 void Compute::take(Coordinates coordinates) {
   waiting_.push_back(std::move(coordinates));
-  if (!at_barrier_ && waiting_.size() == n_cells()) interact();
+  interact_if_complete();
 }
 
-void Compute::interact() {
+void Compute::resume_from_sync() {
+  at_barrier_ = false;
+  interact_if_complete();
+}
+
+void Compute::interact_if_complete() {
+  if (at_barrier_ || waiting_.size() < n_cells_of(index())) return;
   const std::vector<Coordinates> cells = std::exchange(waiting_, {});
-  std::vector<Forces> forces(cells.size());
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    forces[c].step = cells[c].step;
-    forces[c].on.resize(cells[c].of_atoms.size());
-  }
+  std::vector<Forces> forces;
+  for (const Coordinates& cell : cells)
+    forces.push_back({.step = cell.step, .on = std::vector<Vector>(cell.of_atoms.size())});
+  const auto first = cells.front().of_atoms.view(), last = cells.back().of_atoms.view();
   if (cells.size() == 1) {
-    law_.add(cells[0].of_atoms.view(), forces[0]);
-    apps::charge(per_pair, cells[0].of_atoms.size() * cells[0].of_atoms.size() / 2);
+    law_.add(first, forces[0]);
+    apps::charge(per_pair, first.size() * first.size() / 2);
   } else {
-    law_.add(cells[0].of_atoms.view(), cells[1].of_atoms.view(), forces[0], forces[1]);
-    apps::charge(per_pair, cells[0].of_atoms.size() * cells[1].of_atoms.size());
+    law_.add(first, last, forces[0], forces[1]);
+    apps::charge(per_pair, first.size() * last.size());
   }
   for (std::size_t c = 0; c < cells.size(); ++c)
     contribute(cells[c].section, AddForces{}, std::move(forces[c]), cells[c].forces);
@@ -44,11 +44,6 @@ void Compute::interact() {
     at_barrier_ = true;
     at_sync();
   }
-}
-
-void Compute::resume_from_sync() {
-  at_barrier_ = false;
-  if (waiting_.size() == n_cells()) interact();
 }
 
 }  // namespace leanmd

@@ -47,8 +47,7 @@ class Compute : public tess::Chare<Compute, tess::Index6> {
   }
 
  private:
-  [[nodiscard]] std::size_t n_cells() const;
-  void interact();
+  void interact_if_complete();
 
   LennardJones law_;
   std::int32_t sync_every_ = 0;

@@ -4,9 +4,9 @@
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
 #include "apps/plot/write_file.hpp"
+#include "apps/wrong_answer.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <fmt/ranges.h>
 
 namespace leanmd {
@@ -21,13 +21,6 @@ struct Settings {
   bool study = false, stability = false, explain = false;
 };
 
-/// Reports an error of a run, after the results.
-void end_with(const std::string& error) {
-  if (error.empty()) return;
-  std::fprintf(stderr, "leanmd: %s\n", error.c_str());
-  tess::exit(1);
-}
-
 tess::Task run_once(Settings s) {
   if (s.explain) tess::print(explain(s.options, s.state.n_atoms));
   std::vector<Atom> atoms;
@@ -38,7 +31,7 @@ tess::Task run_once(Settings s) {
   s.options.progress->clear();
   tess::print(table(s.options, outcome));
   if (!s.json.empty() && outcome.error.empty()) plot::write_file(s.json, json(s.options, outcome));
-  end_with(outcome.error);
+  if (!outcome.error.empty()) apps::end_with("leanmd: " + outcome.error);
 }
 
 tess::Task run_study(Settings s) {
@@ -56,7 +49,7 @@ tess::Task run_stability(Settings s) {
   s.options.progress->clear();
   tess::print(stability_table(rows));
   for (const StabilityRow& row : rows)
-    if (!row.ok) end_with(row.name + " failed");
+    if (!row.ok) apps::end_with("leanmd: " + row.name + " failed");
 }
 
 template <class... Text>
@@ -99,8 +92,7 @@ void check(Settings& s) {
     refuse("--explain: describes the options, but --restart takes the checkpoint's");
   if (!s.plot.empty() && !s.study) refuse("--plot ", s.plot, ": is for --study");
   plot::require_writable("--json", s.json);
-  if (!s.plot.empty()) (void)plot::data_path(s.plot);
-  plot::require_writable("--plot", s.plot);
+  plot::require_picture("--plot", s.plot);
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {

@@ -1,5 +1,7 @@
 #include "apps/leanmd/report.hpp"
 
+#include "runtime/here.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>

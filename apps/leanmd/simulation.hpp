@@ -2,13 +2,10 @@
 #pragma once
 
 #include "apps/checkpoints.hpp"
-#include "apps/leanmd/cell.hpp"
+#include "apps/leanmd/outcome.hpp"
 #include "apps/progress.hpp"
-#include "runtime/balance.hpp"
 
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace leanmd {
 
@@ -22,22 +19,6 @@ struct Options {
   bool reverse = false;
   apps::Progress* progress = nullptr;
   apps::Checkpoints checkpoints;
-};
-
-struct Outcome {
-  std::vector<Vector> energies;  ///< as Totals::energies, from step 0 on
-  std::int64_t n_atoms = 0;      ///< at the end
-  std::uint64_t first_hash = 0, hash = 0;
-  std::int64_t wrong_forces = -1;  ///< atoms whose force is not that of all pairs; -1: not compared
-  std::string error;  ///< why the run ended early, or what is wrong with its result; empty: none
-  double seconds = 0;
-  std::vector<tess::balance::Round> rounds;
-
-  /// Per atom, in units of energy: the total energy at the start, and its greatest change.
-  [[nodiscard]] double energy() const;
-  [[nodiscard]] double drift() const;
-  /// The greatest kinetic energy per atom.
-  [[nodiscard]] double kinetic() const;
 };
 
 /// Called on PE 0. The outcome is the same on every machine and for any cells. A restart needs no

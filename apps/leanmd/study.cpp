@@ -1,6 +1,8 @@
 #include "apps/leanmd/study.hpp"
 
 #include "apps/plot/chart.hpp"
+#include "apps/plot/fit.hpp"
+#include "runtime/here.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -26,13 +28,10 @@ tess::Task study(Options options, InitialState state, std::vector<StudyRow>& row
 }
 
 double fitted_order(const std::vector<StudyRow>& rows) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const StudyRow& row : rows) {
-    if (!row.error.empty() || row.drift <= 0) continue;
-    const double u = std::log(row.dt), v = std::log(row.drift);
-    n += 1, x += u, y += v, xx += u * u, xy += u * v;
-  }
-  return n < 2 ? 0 : (n * xy - x * y) / (n * xx - x * x);
+  std::vector<plot::Point> drifts;
+  for (const StudyRow& row : rows)
+    if (row.error.empty()) drifts.push_back({row.dt, row.drift});
+  return plot::fitted_power(drifts).value_or(0);
 }
 
 std::string study_table(const std::vector<StudyRow>& rows) {

@@ -119,8 +119,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (Request& request : requests) {
-    progress.part(static_cast<std::uint32_t>(reports.size() + 1),
-                  static_cast<std::uint32_t>(requests.size()));
+    progress.part(reports.size() + 1, requests.size());
     request.repeat = options.repeat.value_or(3);
     Problem problem = read(request, progress);
     if (options.explain) {

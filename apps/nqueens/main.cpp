@@ -3,12 +3,12 @@
 #include "apps/command_line.hpp"
 #include "apps/nqueens/parts.hpp"
 #include "apps/nqueens/report.hpp"
-#include "apps/plot/write_file.hpp"
 #include "apps/progress.hpp"
+#include "apps/row_files.hpp"
+#include "apps/wrong_answer.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 
 namespace nqueens {
@@ -18,9 +18,10 @@ struct Options {
   Problem problem;
   std::optional<std::int32_t> grain;
   std::optional<std::uint64_t> expected;
-  std::string form = "group", priority = "path", json, plot;
+  std::string form = "group", priority = "path";
   std::int32_t repeat = 1;
   bool study = false;
+  apps::RowFiles files;
   apps::Checkpoints checkpoints;
 };
 
@@ -39,15 +40,14 @@ std::vector<Problem> problems_of(const Options& options) {
   return all;
 }
 
-tess::Task measure(Options options, bool speaks) {
-  apps::Progress progress(speaks ? stderr : nullptr);
+tess::Task measure(Options options) {
+  apps::Progress progress(stderr);
   progress.phase("searching");
   const std::vector<Problem> problems = problems_of(options);
   std::vector<Row> rows;
   tess::print_text(tess::machine().describe() + "\n" + head());
   for (const Problem& problem : problems) {
-    progress.part(static_cast<std::uint32_t>(rows.size()) + 1,
-                  static_cast<std::uint32_t>(problems.size()));
+    progress.part(rows.size() + 1, problems.size());
     Row row{.problem = problem, .outcome = {}};
     for (std::int32_t k = 0; k < options.repeat; ++k) {
       Outcome outcome;
@@ -64,13 +64,11 @@ tess::Task measure(Options options, bool speaks) {
     tess::print_text(line(rows.back()));
     const std::uint64_t expected = options.expected.value_or(known_count(row.problem.n));
     if (const std::string why = fault(row, expected); !why.empty()) {
-      std::fprintf(stderr, "nqueens: wrong answer: %s\n", why.c_str());
-      tess::exit(1);
+      apps::end_with("nqueens: wrong answer: " + why);
       co_return;
     }
   }
-  if (!options.json.empty()) write_json(options.json, rows, tess::machine().describe());
-  if (!options.plot.empty()) draw(options.plot, rows);
+  options.files.write(json_of(rows), chart_of(rows));
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {
@@ -93,8 +91,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "exit with 1 unless there are so many solutions (default: the known number)");
   line.option("--repeat", options.repeat, "runs, of which the fastest counts").between(1, 1000);
   line.flag("--study", options.study, "every grain in both forms: time, tasks, efficiency");
-  line.option("--json", options.json, "write the rows to this file");
-  line.option("--plot", options.plot, "with --study: draw them to this SVG file");
+  options.files.add_options(line);
   options.checkpoints.add_options(line);
   if (!line.parse(argc, argv)) return 0;
   options.checkpoints.check(line, {"N", "--first"});
@@ -108,18 +105,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
     tess::fail(tess::ErrorCode::bad_argument, "--grain: ", problem.grain, " of ", problem.n,
                " rows leaves more than ", most_path_rows, " for tasks: give at least ",
                problem.n - most_path_rows);
-  if (!options.plot.empty()) {
-    if (!options.study)
-      tess::fail(tess::ErrorCode::bad_argument, "--plot ", options.plot, ": needs --study");
-    (void)plot::data_path(options.plot);
-  }
   if (options.study && (options.grain || problem.first))
     tess::fail(tess::ErrorCode::bad_argument,
                "--study tries all grains and counts: leave out --grain and --first");
-  plot::require_writable("--json", options.json);
-  plot::require_writable("--plot", options.plot);
-  const bool speaks = setup.machine->process() == tess::ProcessId{0};
-  return tess::run(setup, [&] { return measure(options, speaks); });
+  options.files.check(options.study);
+  return tess::run(setup, [&] { return measure(options); });
 }
 
 }  // namespace

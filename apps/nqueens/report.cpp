@@ -1,11 +1,8 @@
 #include "apps/nqueens/report.hpp"
 
-#include "apps/plot/chart.hpp"
-#include "apps/plot/write_file.hpp"
 #include "runtime/runtime.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace nqueens {
 namespace {
@@ -52,7 +49,7 @@ std::string fault(const Row& row, std::uint64_t expected) {
   return fmt::format("{} is not the first solution", to_text(outcome.solution, problem.n));
 }
 
-void write_json(const std::string& path, const std::vector<Row>& rows, const std::string& machine) {
+nlohmann::ordered_json json_of(const std::vector<Row>& rows) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const auto& [problem, outcome, efficiency] : rows) {
     nlohmann::ordered_json one = {{"n", problem.n},
@@ -71,11 +68,10 @@ void write_json(const std::string& path, const std::vector<Row>& rows, const std
     if (efficiency > 0) one["efficiency"] = efficiency;
     all.push_back(std::move(one));
   }
-  const nlohmann::ordered_json file = {{"machine", machine}, {"results", std::move(all)}};
-  plot::write_file(path, file.dump(2) + "\n");
+  return all;
 }
 
-void draw(const std::string& path, const std::vector<Row>& rows) {
+plot::Chart chart_of(const std::vector<Row>& rows) {
   plot::Chart chart{
       .title = fmt::format("{} queens, {} PEs", rows.front().problem.n, tess::n_pes()),
       .x_label = "tasks (messages)",
@@ -87,7 +83,7 @@ void draw(const std::string& path, const std::vector<Row>& rows) {
     chart.series.back().points.push_back(
         {static_cast<double>(row.outcome.n_tasks), row.efficiency});
   }
-  (void)plot::write_svg(path, chart);
+  return chart;
 }
 
 }  // namespace nqueens

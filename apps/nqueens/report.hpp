@@ -2,7 +2,9 @@
 #pragma once
 
 #include "apps/nqueens/search.hpp"
+#include "apps/plot/chart.hpp"
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -21,8 +23,8 @@ struct Row {
 /// Empty if the answer is right; `expected` is the number of solutions.
 [[nodiscard]] std::string fault(const Row& row, std::uint64_t expected);
 
-void write_json(const std::string& path, const std::vector<Row>& rows, const std::string& machine);
+[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Row>& rows);
 /// Efficiency against the number of tasks, a line per form.
-void draw(const std::string& path, const std::vector<Row>& rows);
+[[nodiscard]] plot::Chart chart_of(const std::vector<Row>& rows);
 
 }  // namespace nqueens

@@ -40,6 +40,11 @@ void require_writable(const std::string& option, const std::string& path) {
                "; give the path of a file in a folder that can be written");
 }
 
+void require_picture(const std::string& option, const std::string& path) {
+  if (!path.empty()) (void)data_path(path);
+  require_writable(option, path);
+}
+
 void write_file(const std::string& path, std::string_view content) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   bool whole = file != nullptr;

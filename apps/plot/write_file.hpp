@@ -14,6 +14,9 @@ namespace plot {
 /// cannot be written: called before long work. An empty path is not checked.
 void require_writable(const std::string& option, const std::string& path);
 
+/// The same for a picture, NAME.svg.
+void require_picture(const std::string& option, const std::string& path);
+
 /// Throws tess::Error (environment) that names the path and why it cannot be written.
 void write_file(const std::string& path, std::string_view content);
 

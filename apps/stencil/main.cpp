@@ -86,10 +86,6 @@ struct State {
   Grid grid;
   tess::ArrayProxy<Block> blocks;
   std::int32_t step = 0;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(grid, blocks, step);
-  }
 };
 
 struct Options {

@@ -1,7 +1,8 @@
 #include "apps/task_bench/experiment.hpp"
 
+#include "apps/wrong_answer.hpp"
+
 #include <algorithm>
-#include <cstdio>
 #include <deque>
 #include <fmt/format.h>
 
@@ -70,14 +71,10 @@ tess::Task Bench::run(std::optional<std::int64_t> iterations, double* seconds) {
 void Bench::check(std::size_t graph, const Count& count) const {
   const Totals& expected = totals_[graph];
   if (count.n_tasks == expected.n_tasks && count.n_inputs == expected.n_dependences) return;
-  std::fprintf(stderr,
-               "task_bench: wrong answer: %s ran %llu tasks with %llu inputs, the graph has %llu "
-               "and %llu\n",
-               name_of(graphs_[graph].type).c_str(), static_cast<unsigned long long>(count.n_tasks),
-               static_cast<unsigned long long>(count.n_inputs),
-               static_cast<unsigned long long>(expected.n_tasks),
-               static_cast<unsigned long long>(expected.n_dependences));
-  tess::exit(1);
+  apps::end_with(fmt::format(
+      "task_bench: wrong answer: {} ran {} tasks with {} inputs, the graph has {} and {}",
+      name_of(graphs_[graph].type), count.n_tasks, count.n_inputs, expected.n_tasks,
+      expected.n_dependences));
 }
 
 Row Bench::row_of(std::optional<std::int64_t> iterations, double seconds) const {

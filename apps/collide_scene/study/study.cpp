@@ -47,8 +47,7 @@ std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Pr
   for (std::uint32_t kind = 0; kind < n_kinds; ++kind) {
     const std::size_t chosen = rows.size();
     for (const double factor : factors) {
-      progress.part(static_cast<std::uint32_t>(rows.size() + 1),
-                    n_kinds * static_cast<std::uint32_t>(factors.size()));
+      progress.part(rows.size() + 1, n_kinds * factors.size());
       progress.phase("study: voxel sizes");
       StudyRow row;
       row.objects = kind == 0 ? "boxes" : "triangles";

@@ -48,9 +48,7 @@ Task GraphRun::search() {
 
 Task GraphRun::steps() {
   for (std::int32_t step = 0; step < problem_.steps; ++step) {
-    if (problem_.steps > 1)
-      progress_.part(static_cast<std::uint32_t>(step + 1),
-                     static_cast<std::uint32_t>(problem_.steps));
+    if (problem_.steps > 1) progress_.part(step + 1, problem_.steps);
     if (step != 0) co_await move_meshes();
     progress_.phase("apply");
     co_await apply_levels(step + 1 == problem_.steps);

@@ -55,7 +55,7 @@ bool names_a_donor(const Case& c, std::size_t v, double value) {
 Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, apps::Progress& progress,
              Answers& answers) {
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    progress.part(static_cast<std::uint32_t>(k + 1), static_cast<std::uint32_t>(cases.size()));
+    progress.part(k + 1, cases.size());
     if (!refusal(cases[k]).empty()) continue;
     Answer answer;
     co_await answer_of(cases[k], n_parts, answer);

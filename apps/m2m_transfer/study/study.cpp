@@ -1,11 +1,11 @@
 #include "apps/m2m_transfer/study/study.hpp"
 
 #include "apps/m2m_transfer/input/lists.hpp"
+#include "apps/plot/fit.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -85,25 +85,6 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
   return requests;
 }
 
-std::optional<double> fitted_power(const std::vector<plot::Point>& points) {
-  std::vector<plot::Point> logs;
-  for (const auto& [x, y] : points)
-    if (std::isfinite(x) && std::isfinite(y) && x > 0 && y > 0)
-      logs.push_back({std::log(x), std::log(y)});
-  plot::Point mean;
-  for (const plot::Point& s : logs) {
-    mean.x += s.x / static_cast<double>(logs.size());
-    mean.y += s.y / static_cast<double>(logs.size());
-  }
-  double spread = 0, common = 0;
-  for (const plot::Point& s : logs) {
-    spread += (s.x - mean.x) * (s.x - mean.x);
-    common += (s.x - mean.x) * (s.y - mean.y);
-  }
-  if (logs.size() < 2 || spread < 1e-12) return std::nullopt;
-  return common / spread;
-}
-
 std::vector<Trend> trends(const Study& study) {
   std::vector<Trend> all;
   for (auto first = study.reports.begin(); first != study.reports.end();) {
@@ -123,10 +104,10 @@ std::vector<Trend> trends(const Study& study) {
       }
       Trend trend{first->fields[f].name, first->kind, first->policy, exact, {}, {}, {}, {}};
       if (!exact) {
-        trend.l2_of_edge = fitted_power(l2_edge);
-        trend.linf_of_edge = fitted_power(linf_edge);
-        trend.l2_of_seconds = fitted_power(l2_seconds);
-        trend.linf_of_seconds = fitted_power(linf_seconds);
+        trend.l2_of_edge = plot::fitted_power(l2_edge);
+        trend.linf_of_edge = plot::fitted_power(linf_edge);
+        trend.l2_of_seconds = plot::fitted_power(l2_seconds);
+        trend.linf_of_seconds = plot::fitted_power(linf_seconds);
       }
       all.push_back(std::move(trend));
     }

@@ -35,10 +35,6 @@ struct Study {
                                               const std::vector<std::string>& policies,
                                               const std::vector<std::string>& kinds);
 
-/// The exponent p of the best fit y = c x^p (least squares of the logarithms), over the points that
-/// are finite and positive. Empty if these have fewer than two different x.
-[[nodiscard]] std::optional<double> fitted_power(const std::vector<plot::Point>& points);
-
 /// The convergence of the error of one field of one kind under one policy.
 struct Trend {
   std::string field, kind, policy;

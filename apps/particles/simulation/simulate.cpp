@@ -64,8 +64,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     if (options.progress != nullptr) options.progress->phase(phase);
   };
   const auto now_at_part = [&](int part, int n_parts) {
-    if (options.progress != nullptr)
-      options.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+    if (options.progress != nullptr) options.progress->part(part, n_parts);
   };
   const auto hand_out = [&] {
     const std::int32_t each = tess::machine().pes_per_process();

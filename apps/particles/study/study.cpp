@@ -57,7 +57,7 @@ class Study {
  private:
   void show(const char* phase, std::size_t part = 0, std::size_t n_parts = 0) const {
     if (options_.progress == nullptr) return;
-    options_.progress->part(static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(n_parts));
+    options_.progress->part(part, n_parts);
     options_.progress->phase(phase);
   }
 

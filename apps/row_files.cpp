@@ -1,0 +1,27 @@
+#include "apps/row_files.hpp"
+
+#include "apps/plot/write_file.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/here.hpp"
+
+namespace apps {
+
+void RowFiles::add_options(CommandLine& line) {
+  line.option("--json", json_, "write the rows to this file");
+  line.option("--plot", picture_, "with --study: draw them to this SVG file");
+}
+
+void RowFiles::check(bool is_study) const {
+  if (!picture_.empty() && !is_study)
+    tess::fail(tess::ErrorCode::bad_argument, "--plot ", picture_, ": needs --study");
+  plot::require_writable("--json", json_);
+  plot::require_picture("--plot", picture_);
+}
+
+void RowFiles::write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const {
+  const nlohmann::ordered_json file{{"machine", tess::machine().describe()}, {"results", rows}};
+  if (!json_.empty()) plot::write_file(json_, file.dump(2) + "\n");
+  if (!picture_.empty()) (void)plot::write_svg(picture_, chart);
+}
+
+}  // namespace apps

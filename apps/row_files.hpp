@@ -1,0 +1,25 @@
+// Where a program writes the rows of its runs: --json, and --plot for the rows of a study.
+#pragma once
+
+#include "apps/command_line.hpp"
+#include "apps/plot/chart.hpp"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace apps {
+
+class RowFiles {
+ public:
+  void add_options(CommandLine& line);
+  /// Throws tess::Error for a file that cannot be written, and for a picture without a study.
+  void check(bool is_study) const;
+
+  /// What is asked for: the rows with the machine that they are from, and the picture.
+  void write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const;
+
+ private:
+  std::string json_, picture_;
+};
+
+}  // namespace apps
