@@ -1,6 +1,10 @@
 #include "collide/parallel/voxel_home.hpp"
 
+#include "runtime/core/hash.hpp"
+
 #include <boost/unordered/unordered_flat_map.hpp>
+
+#include <algorithm>
 
 namespace tess::collide {
 namespace {
@@ -9,8 +13,19 @@ namespace {
 struct Totals {
   VoxelRecord all;
   std::uint32_t n_senders = 0;
-  std::uint32_t most = 0;  // objects of the PE that makes it
+  std::uint32_t most = 0;  // objects of one PE
   std::uint32_t maker = 0;
+  std::uint64_t rank = 0;  // of the maker
+
+  /// A PE makes the voxel only if few objects have to be sent to it. Of such PEs each gets its share
+  /// of the voxels: the hash ranks them, differently for each voxel.
+  void offer(const VoxelRecord& record, std::uint32_t pe) {
+    if (2 * std::uint64_t{record.n_natives + record.n_visitors} < most) return;
+    const std::uint64_t own_rank = mix(IndexHash<Index4>{}(record.voxel) ^ mix(pe + 1));
+    if (own_rank < rank) return;
+    rank = own_rank;
+    maker = pe;
+  }
 };
 
 bool can_have_pairs(const VoxelRecord& all, WithinModel within_model) {
@@ -38,19 +53,16 @@ std::vector<std::vector<VoxelAnswer>> answers_to(
       const auto [at, is_new] = voxels.try_emplace(record.voxel, Totals{record});
       Totals& voxel = at->second;
       ++voxel.n_senders;
-      const std::uint32_t n = record.n_natives + record.n_visitors;
-      // Of equal PEs the one that the hash says, so that they share the voxels.
-      const bool prefers_later = (IndexHash<Index4>{}(record.voxel) >> 20 & 1U) != 0;
-      if (n > voxel.most || (n == voxel.most && prefers_later)) {
-        voxel.most = n;
-        voxel.maker = pe;
-      }
+      voxel.most = std::max(voxel.most, record.n_natives + record.n_visitors);
       if (is_new) continue;
       voxel.all.n_natives += record.n_natives;
       voxel.all.n_visitors += record.n_visitors;
       if (record.several_models != 0 || record.model != voxel.all.model)
         voxel.all.several_models = 1;
     }
+  for (std::uint32_t pe = 0; pe < records.size(); ++pe)
+    for (const VoxelRecord& record : records[pe])
+      voxels.find(record.voxel)->second.offer(record, pe);
   for (std::uint32_t pe = 0; pe < records.size(); ++pe)
     for (const VoxelRecord& record : records[pe]) {
       const Totals& voxel = voxels.find(record.voxel)->second;

@@ -8,6 +8,7 @@
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/core.h>
 #include <thread>
 
@@ -16,7 +17,7 @@ namespace {
 
 using namespace tess::collide;
 
-/// What each client, of which there is one per PE, has of the scene.
+/// What each client has of the scene: a client per PE a strip of all models, or a client per model.
 enum class Division { strips, models };
 
 /// A row: a case on a number of PEs.
@@ -33,12 +34,18 @@ constexpr Setting settings[] = {
     {"wave_self", "chares_1", "a collider on one PE", 1},
     {"wave_self", "chares_2", "elapsed time on two PEs", 2},
     {"planes", "chares_1", "a collider on one PE", 1},
+    {"planes", "chares_1_models", "a collider on one PE; each of two clients has one plane", 1,
+     Division::models},
     {"planes", "chares_2", "elapsed time on two PEs; each client has a strip of both planes", 2},
-    {"planes", "chares_2_models", "the same; each client has one plane", 2, Division::models},
+    {"planes", "chares_2_models", "elapsed time on two PEs; each has a client with one plane", 2,
+     Division::models},
 };
 
 bool is_possible(const Setting& setting) {
   return static_cast<unsigned>(setting.n_pes) <= std::thread::hardware_concurrency();
+}
+std::int32_t n_clients_of(const Setting& setting) {
+  return setting.division == Division::models ? 2 : setting.n_pes;
 }
 std::string name_of(const Setting& setting) {
   return fmt::format("{}_{}", setting.of_case, setting.row);
@@ -72,7 +79,7 @@ class Client : public tess::Chare<Client, tess::Index1> {
 /// Sends each client its boxes.
 void hand_out(const Problem& problem, const Setting& setting,
               const tess::ArrayProxy<Client>& clients) {
-  const auto n_clients = static_cast<std::size_t>(setting.n_pes);
+  const auto n_clients = static_cast<std::size_t>(n_clients_of(setting));
   const auto send = [&](std::size_t client, std::uint32_t model, std::size_t begin,
                         std::size_t end) {
     const auto at = [&](std::size_t i) {
@@ -103,7 +110,7 @@ tess::Task collide(const Problem& problem, const Setting& setting, double& nanos
   tess::ArrayProxy<Client> clients;
   co_await tess::epoch([&] {
     collider = make_collider({.rules = {problem.touching, within}});
-    clients = tess::create<Client>(tess::range(setting.n_pes));
+    clients = tess::create<Client>(tess::range(n_clients_of(setting)));
   });
   const tess::collide::Report report{report_to<&Client::receive>(clients), {}};
   for (int i = 0; i < 2; ++i) {
@@ -142,11 +149,12 @@ void measure(Output& output, const Case& of, const std::vector<Setting>& chosen)
       samples[k].add(nanoseconds / n);
     }
   }
-  double on_one_pe = 0;
+  std::array<double, 2> on_one_pe{};  // by division
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (chosen[k].n_pes == 1) on_one_pe = samples[k].median();
+    double& on_one = on_one_pe[static_cast<std::size_t>(chosen[k].division)];
+    if (chosen[k].n_pes == 1) on_one = samples[k].median();
     output.row(of.name, name_of(chosen[k]), samples[k], "ns",
-               chosen[k].n_pes == 1 ? on_serial.median() : on_one_pe / chosen[k].n_pes,
+               chosen[k].n_pes == 1 ? on_serial.median() : on_one / chosen[k].n_pes,
                Origin{chosen[k].n_pes == 1 ? "threads: 1 PE" : "threads: 2 PEs", chosen[k].n_pes});
   }
 }
