@@ -13,13 +13,17 @@
 // a hop, nothing else. A member that gets an ordinary message reports its place to the root. Once the
 // stale entries are a sixteenth of the members the root makes new lists: their next generation. A PE
 // keeps a generation until it has delivered all its multicasts (Retire gives their number).
+//
+// What the root knows of the members is in SectionRoster, the lists of one PE in SectionGeneration.
 #pragma once
 
 #include "runtime/base/spanning_tree.hpp"
 #include "runtime/collections/array_of.hpp"
 #include "runtime/collections/call.hpp"
+#include "runtime/collections/section_generation.hpp"
+#include "runtime/collections/section_messages.hpp"
+#include "runtime/collections/section_roster.hpp"
 #include "runtime/collections/sections.hpp"
-#include "runtime/core/algorithm.hpp"
 
 #include <map>
 #include <memory>
@@ -35,19 +39,6 @@ struct AnyChare {
   using Index = IndexType;
 };
 
-struct JoinSection {
-  SectionId section;
-  std::uint32_t ordinal = 0;
-};
-struct SectionToken {
-  SectionId section;
-  SectionCall call;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(section, call);
-  }
-};
-
 template <class Index>
 class SectionListsOf final : public SectionLists {
  public:
@@ -55,28 +46,8 @@ class SectionListsOf final : public SectionLists {
 
   explicit SectionListsOf(Array& array) : array_(array) {}
 
-  struct Create {
-    SectionId section;
-    EpochId epoch;
-    std::vector<Index> indices;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(section, epoch, indices);
-    }
-    std::uint64_t drop(Pe& pe) const {
-      pe.completion().processed(epoch);
-      return 0;
-    }
-  };
-  struct Start {
-    SectionId section;
-    SectionCall call;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(section, call);
-    }
-    std::uint64_t drop(Pe& pe) const { return call.numbered.drop(pe); }
-  };
+  using Create = SectionCreate<Index>;
+  using Start = SectionStart;
   static void create_arrives(Array& array, Create&& m) { of(array).on_create(std::move(m)); }
   static void start_arrives(Array& array, Start&& m) { of(array).on_start(std::move(m)); }
 
@@ -97,68 +68,20 @@ class SectionListsOf final : public SectionLists {
   }
 
  private:
-  struct Entry {
-    std::uint32_t ordinal = 0;
-    Index index{};
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(ordinal, index);
-    }
-  };
-  /// The members that a PE delivers to.
-  struct PeList {
-    PeId pe;
-    std::vector<Entry> entries;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(pe, entries);
-    }
-  };
-  struct Setup {
-    SectionId section;
-    std::uint64_t generation = 0;
-    std::vector<PeList> subtree;  // the first is the receiver's
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(section, generation, subtree);
-    }
-  };
-  struct Multicast {
-    SectionId section;
-    std::uint64_t generation = 0;
-    SectionCall call;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(section, generation, call);
-    }
-    std::uint64_t drop(Pe& pe) const { return call.numbered.drop(pe); }
-  };
-  struct Retire {
-    SectionId section;
-    std::uint64_t generation = 0;
-    std::uint64_t n_calls = 0;
-  };
-  /// A member was seen on a PE: it has joined there, or an ordinary message met it there.
-  struct Seen {
-    SectionId section;
-    std::uint32_t ordinal = 0;
-    Place place;
-  };
-  /// There is no element of this index; it was destroyed before it could join.
-  struct Lost {
-    SectionId section;
-    std::uint32_t ordinal = 0;
-  };
+  using Entry = SectionEntry<Index>;
+  using Generation = SectionGeneration<Index>;
+  using PeList = SectionPeList<Index>;
+  using Setup = SectionSetup<Index>;
   static void setup_arrives(Array& array, Setup&& m) { of(array).on_setup(std::move(m)); }
-  static void multicast_arrives(Array& array, Multicast&& m) {
+  static void multicast_arrives(Array& array, SectionMulticast&& m) {
     of(array).on_multicast(std::move(m));
   }
-  static void retire_arrives(Array& array, Retire&& m) { of(array).on_retire(m); }
-  static void seen_arrives(Array& array, Seen&& m) { of(array).on_seen(m); }
-  static void lost_arrives(Array& array, Lost&& m) { of(array).on_lost(m); }
+  static void retire_arrives(Array& array, SectionRetire&& m) { of(array).on_retire(m); }
+  static void seen_arrives(Array& array, SectionSeen&& m) { of(array).on_seen(m); }
+  static void lost_arrives(Array& array, SectionLost&& m) { of(array).on_lost(m); }
 
-  struct JoinCall final : TypedMessage<JoinCall, AnyChare<Index>, std::tuple<JoinSection>> {
-    using Base = TypedMessage<JoinCall, AnyChare<Index>, std::tuple<JoinSection>>;
+  struct JoinCall final : TypedMessage<JoinCall, AnyChare<Index>, std::tuple<SectionJoin>> {
+    using Base = TypedMessage<JoinCall, AnyChare<Index>, std::tuple<SectionJoin>>;
     using Base::Base;
     static void invoke(Element& element, ElementMessage<Index>& message);
     static void undelivered(Pe& pe, ElementMessage<Index>& message);
@@ -174,41 +97,19 @@ class SectionListsOf final : public SectionLists {
                                                    &TokenCall::invoke, nullptr, Traffic::control};
   };
 
-  enum class State : std::uint8_t { unjoined, joined, gone };
-  struct RootMember {
-    Index index{};
-    Place place;
-    State state = State::unjoined;
-    bool listed = false;
-  };
   struct Root {
-    bool created = false;
-    std::vector<RootMember> members;  // by ordinal
-    std::size_t n_unjoined = 0, n_alive = 0;
-    std::size_t n_outside = 0;  // joined and not listed
-    std::size_t n_stale = 0;    // changes since the lists were made
+    SectionRoster roster;
+    std::vector<Index> indices;  // of the members
     std::uint64_t last_number = 0;
     std::uint64_t generation = 0;
     std::uint64_t n_calls = 0;         // of this generation
     std::vector<SectionCall> kept;     // for members that have not joined
     std::vector<SectionCall> waiting;  // calls that arrived before the list
   };
-  /// One generation of lists on one PE.
-  struct Generation {
-    bool known = false;  // Setup has arrived
-    std::vector<Entry> entries;
-    std::vector<PeId> children;
-    std::uint64_t n_done = 0;
-    bool retired = false;
-    std::uint64_t n_calls = 0;       // once retired
-    std::vector<SectionCall> early;  // multicasts that arrived before Setup
-  };
   struct Lists {
     Root root;  // used on the root
     std::map<std::uint64_t, Generation> generations;
   };
-
-  static constexpr std::size_t most_stale = 16;  // one of so many members
 
   [[nodiscard]] Sections& sections() { return array_.sections(); }
   [[nodiscard]] Completion& completion() { return array_.pe().completion(); }
@@ -220,14 +121,13 @@ class SectionListsOf final : public SectionLists {
   void on_create(Create&& create);
   void on_start(Start&& start);
   void on_setup(Setup&& setup);
-  void on_multicast(Multicast&& multicast);
-  void on_retire(const Retire& retire);
-  void on_seen(const Seen& seen);
-  void on_lost(const Lost& lost);
+  void on_multicast(SectionMulticast&& multicast);
+  void on_retire(const SectionRetire& retire);
+  void on_seen(const SectionSeen& seen);
+  void on_lost(const SectionLost& lost);
 
   void multicast(SectionId id, Root& root, SectionCall&& call);
   void make_lists(SectionId id, Root& root);
-  void release_kept(Root& root);
   void deliver(SectionId id, std::uint64_t number, const Generation& generation,
                const SectionCall& call);
   /// Sends a multicast to one member as an ordinary message, which is counted as sent.
@@ -254,7 +154,7 @@ void SectionListsOf<Index>::JoinCall::undelivered(Pe& pe, ElementMessage<Index>&
   const auto& [join] = static_cast<JoinCall&>(message).arguments;
   send_to_collection<&lost_arrives>(pe, message.collection,
                                     root_of(CollectionId{join.section.value}, pe.n_pes()),
-                                    Lost{join.section, join.ordinal});
+                                    SectionLost{join.section, join.ordinal});
 }
 
 template <class Index>
@@ -276,7 +176,7 @@ template <class Index>
 void SectionListsOf<Index>::report_place(Array& array, SectionId id, std::uint32_t ordinal,
                                          Element& element) {
   send_to_collection<&seen_arrives>(array, array.sections().root(id),
-                                    Seen{id, ordinal, array.place_of(element)});
+                                    SectionSeen{id, ordinal, array.place_of(element)});
 }
 
 template <class Index>
@@ -296,19 +196,17 @@ void SectionListsOf<Index>::on_create(Create&& create) {
     return;
   }
   Root& root = lists->root;
-  root.created = true;
-  root.n_unjoined = root.n_alive = create.indices.size();
   SectionPart& part = *sections().part(create.section);
   part.total.begin(create.indices.size());
-  root.members.reserve(create.indices.size());
-  for (std::uint32_t ordinal = 0; Index & index : create.indices) {
+  root.roster.create(create.indices.size());
+  root.indices = std::move(create.indices);
+  for (std::uint32_t ordinal = 0; const Index& index : root.indices) {
     completion().sent(create.epoch);
     auto* join =
-        JoinCall::make(array_.pe(), array_.id(), index, JoinSection{create.section, ordinal++});
+        JoinCall::make(array_.pe(), array_.id(), index, SectionJoin{create.section, ordinal++});
     join->epoch = create.epoch;
     join->demand = Demand::member;
     array_.post(join);
-    root.members.push_back(RootMember{std::move(index), {}, State::unjoined, false});
   }
   for (SectionCall& call : std::exchange(root.waiting, {}))
     multicast(create.section, root, std::move(call));
@@ -321,7 +219,7 @@ void SectionListsOf<Index>::on_start(Start&& start) {
   Lists* const lists = this->lists(start.section);
   if (lists == nullptr) {
     array_.pe().statistics().dead_letters += start.drop(array_.pe());
-  } else if (!lists->root.created) {
+  } else if (!lists->root.roster.created()) {
     lists->root.waiting.push_back(std::move(start.call));
   } else {
     multicast(start.section, lists->root, std::move(start.call));
@@ -331,18 +229,18 @@ void SectionListsOf<Index>::on_start(Start&& start) {
 /// A call that is counted as sent gets its number.
 template <class Index>
 void SectionListsOf<Index>::multicast(SectionId id, Root& root, SectionCall&& call) {
-  if (most_stale * root.n_stale >= root.n_alive && root.n_stale > 0) make_lists(id, root);
+  if (root.roster.wants_lists()) make_lists(id, root);
   call.numbered.number = ++root.last_number;
   const EpochId epoch = call.numbered.epoch;
-  if (root.n_unjoined > 0) {
-    for (std::size_t i = 0; i < root.n_unjoined; ++i) completion().sent(epoch);
+  if (const std::size_t n = root.roster.n_unjoined(); n > 0) {
+    for (std::size_t i = 0; i < n; ++i) completion().sent(epoch);
     root.kept.push_back(call);
   }
-  if (root.n_outside > 0) {
-    for (const RootMember& member : root.members) {
-      if (member.state != State::joined || member.listed) continue;
+  if (root.roster.any_outside()) {
+    for (std::size_t ordinal = 0; ordinal < root.indices.size(); ++ordinal) {
+      if (!root.roster.members()[ordinal].outside()) continue;
       completion().sent(epoch);
-      send_token(id, member.index, call);
+      send_token(id, root.indices[ordinal], call);
     }
   }
   if (root.generation == 0) {
@@ -350,25 +248,22 @@ void SectionListsOf<Index>::multicast(SectionId id, Root& root, SectionCall&& ca
     return;
   }
   ++root.n_calls;
-  on_multicast(Multicast{id, root.generation, std::move(call)});
+  on_multicast(SectionMulticast{id, root.generation, std::move(call)});
 }
 
 template <class Index>
 void SectionListsOf<Index>::make_lists(SectionId id, Root& root) {
-  if (root.generation != 0) on_retire(Retire{id, root.generation, root.n_calls});
+  if (root.generation != 0) on_retire(SectionRetire{id, root.generation, root.n_calls});
   ++root.generation;
-  root.n_calls = root.n_stale = root.n_outside = 0;
-  std::map<PeId, std::vector<Entry>> by_pe;
-  for (std::uint32_t ordinal = 0; RootMember & member : root.members) {
-    member.listed = member.state == State::joined;
-    if (member.listed) by_pe[member.place.pe].push_back(Entry{ordinal, member.index});
-    ++ordinal;
+  root.n_calls = 0;
+  Setup setup{id, root.generation, {PeList{array_.pe().id(), {}}}};
+  for (const auto& [pe, ordinals] : root.roster.new_lists()) {
+    PeList& list =
+        pe == array_.pe().id() ? setup.subtree.front() : setup.subtree.emplace_back(PeList{pe, {}});
+    list.entries.reserve(ordinals.size());
+    for (const std::uint32_t ordinal : ordinals)
+      list.entries.push_back({ordinal, root.indices[ordinal]});
   }
-  Setup setup{id, root.generation, {}};
-  const PeId here = array_.pe().id();
-  setup.subtree.push_back(PeList{here, std::move(by_pe[here])});
-  by_pe.erase(here);
-  for (auto& [pe, entries] : by_pe) setup.subtree.push_back(PeList{pe, std::move(entries)});
   on_setup(std::move(setup));
 }
 
@@ -393,24 +288,20 @@ void SectionListsOf<Index>::on_setup(Setup&& setup) {
               {std::make_move_iterator(first), std::make_move_iterator(last)}});
   }
   SectionPart& part = *sections().part(setup.section);
-  if (setup.generation > part.generation) {
-    std::vector<std::uint32_t> ordinals;
-    ordinals.reserve(generation.entries.size());
-    for (const Entry& entry : generation.entries) ordinals.push_back(entry.ordinal);
-    sections().list(part, setup.generation, std::move(ordinals));
-  }
+  if (setup.generation > part.generation)
+    sections().list(part, setup.generation, generation.ordinals());
   if (generation.retired)
     for (const PeId child : generation.children)
       send_to_collection<&retire_arrives>(
-          array_, child, Retire{setup.section, setup.generation, generation.n_calls});
+          array_, child, SectionRetire{setup.section, setup.generation, generation.n_calls});
   for (SectionCall& call : std::exchange(generation.early, {}))
-    on_multicast(Multicast{setup.section, setup.generation, std::move(call)});
+    on_multicast(SectionMulticast{setup.section, setup.generation, std::move(call)});
   if (const auto at = lists->generations.find(setup.generation); at != lists->generations.end())
     finish(*lists, setup.generation);
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_multicast(Multicast&& multicast) {
+void SectionListsOf<Index>::on_multicast(SectionMulticast&& multicast) {
   Lists* const lists = this->lists(multicast.section);
   const EpochId epoch = multicast.call.numbered.epoch;
   if (lists == nullptr) {
@@ -444,9 +335,7 @@ void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
   };
   if (number == part.generation && part.n_listed == generation.entries.size()) {
     for (const std::uint32_t ordinal : sections().deliver_listed(part, call))
-      forward(
-          *std::lower_bound(generation.entries.begin(), generation.entries.end(), ordinal,
-                            [](const Entry& entry, std::uint32_t o) { return entry.ordinal < o; }));
+      forward(generation.entry(ordinal));
     return;
   }
   std::vector<const Entry*> here;
@@ -469,7 +358,7 @@ void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_retire(const Retire& retire) {
+void SectionListsOf<Index>::on_retire(const SectionRetire& retire) {
   Lists* const lists = this->lists(retire.section);
   if (lists == nullptr) return;
   Generation& generation = lists->generations[retire.generation];
@@ -484,37 +373,22 @@ void SectionListsOf<Index>::on_retire(const Retire& retire) {
 template <class Index>
 void SectionListsOf<Index>::finish(Lists& lists, std::uint64_t generation) {
   const auto at = lists.generations.find(generation);
-  if (at->second.known && at->second.retired && at->second.n_done == at->second.n_calls)
-    lists.generations.erase(at);
+  if (at->second.finished()) lists.generations.erase(at);
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_seen(const Seen& seen) {
+void SectionListsOf<Index>::on_seen(const SectionSeen& seen) {
   Lists* const lists = this->lists(seen.section);
   if (lists == nullptr) return;
   Root& root = lists->root;
-  RootMember& member = root.members[seen.ordinal];
-  if (member.state == State::gone) return;
-  if (seen.place.version > member.place.version) member.place = seen.place;
-  ++root.n_stale;
-  if (member.state == State::joined) return;
-  member.state = State::joined;
-  ++root.n_outside;
-  --root.n_unjoined;
-  for (const SectionCall& call : root.kept) send_token(seen.section, member.index, call);
-  if (root.n_unjoined == 0) root.kept.clear();
-}
-
-/// A member that has not joined is gone: the multicasts kept for it are not sent.
-template <class Index>
-void SectionListsOf<Index>::release_kept(Root& root) {
-  --root.n_unjoined;
-  for (const SectionCall& call : root.kept) completion().processed(call.numbered.epoch);
-  if (root.n_unjoined == 0) root.kept.clear();
+  if (!root.roster.seen(seen.ordinal, seen.place)) return;
+  const Index& index = root.indices[seen.ordinal];
+  for (const SectionCall& call : root.kept) send_token(seen.section, index, call);
+  if (root.roster.n_unjoined() == 0) root.kept.clear();
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_lost(const Lost& lost) {
+void SectionListsOf<Index>::on_lost(const SectionLost& lost) {
   Lists* const lists = this->lists(lost.section);
   if (lists == nullptr) return;
   gone(lost.section, lost.ordinal, 0);
@@ -526,16 +400,10 @@ void SectionListsOf<Index>::on_lost(const Lost& lost) {
 template <class Index>
 void SectionListsOf<Index>::gone(SectionId section, std::uint32_t ordinal, std::uint32_t /*next*/) {
   Root& root = lists_.at(section.value).root;
-  RootMember& member = root.members[ordinal];
-  --root.n_alive;
-  if (member.state == State::unjoined) {
-    release_kept(root);  // this message has overtaken the one that it has joined
-  } else if (member.listed) {
-    ++root.n_stale;
-  } else {
-    --root.n_outside;
-  }
-  member.state = State::gone;
+  if (!root.roster.gone(ordinal)) return;
+  // The multicasts that are kept for it are not sent.
+  for (const SectionCall& call : root.kept) completion().processed(call.numbered.epoch);
+  if (root.roster.n_unjoined() == 0) root.kept.clear();
 }
 
 template <class Index>
@@ -544,7 +412,8 @@ void SectionListsOf<Index>::end(SectionId section) {
   if (at == lists_.end()) return;
   const Root& root = at->second.root;
   for (const SectionCall& call : root.kept)
-    for (std::size_t i = 0; i < root.n_unjoined; ++i) completion().processed(call.numbered.epoch);
+    for (std::size_t i = 0; i < root.roster.n_unjoined(); ++i)
+      completion().processed(call.numbered.epoch);
   for (const SectionCall& call : root.waiting) completion().processed(call.numbered.epoch);
   for (const auto& [number, generation] : at->second.generations)
     for (const SectionCall& call : generation.early) completion().processed(call.numbered.epoch);
@@ -560,12 +429,14 @@ template <class Index>
 std::vector<SectionId> SectionListsOf<Index>::save(Writer& ar) const {
   std::vector<SectionId> ids;
   for (const auto& [id, of] : lists_)
-    if (of.root.created) ids.push_back(SectionId{id});
+    if (of.root.roster.created()) ids.push_back(SectionId{id});
   ar(static_cast<std::uint64_t>(ids.size()));
   for (const SectionId id : ids) {
+    const Root& root = lists_.at(id.value).root;
     std::vector<Index> indices;
-    for (const RootMember& member : lists_.at(id.value).root.members)
-      if (member.state != State::gone) indices.push_back(member.index);
+    for (std::size_t ordinal = 0; ordinal < root.indices.size(); ++ordinal)
+      if (root.roster.members()[ordinal].state != SectionRoster::State::gone)
+        indices.push_back(root.indices[ordinal]);
     ar(id, indices);
   }
   return ids;
@@ -583,13 +454,13 @@ void SectionListsOf<Index>::restore(Reader& ar) {
 template <class Index>
 void SectionListsOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [id, of] : lists_) {
-    if (of.root.n_unjoined == 0 || of.root.kept.empty()) continue;
-    const auto missing =
-        std::find_if(of.root.members.begin(), of.root.members.end(),
-                     [](const RootMember& one) { return one.state == State::unjoined; });
+    const SectionRoster& roster = of.root.roster;
+    if (roster.n_unjoined() == 0 || of.root.kept.empty()) continue;
+    std::size_t missing = 0;
+    while (roster.members()[missing].state != SectionRoster::State::unjoined) ++missing;
     lines.push_back(text(of.root.kept.size(), " multicasts of a section of ", array_.name(),
-                         " wait for ", array_.name(), index_text(missing->index),
-                         of.root.n_unjoined > 1 ? " and others" : "", ", which does not exist"));
+                         " wait for ", array_.name(), index_text(of.root.indices[missing]),
+                         roster.n_unjoined() > 1 ? " and others" : "", ", which does not exist"));
   }
 }
 

@@ -3,15 +3,14 @@
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
 #include "runtime/report/pe_watch.hpp"
-#include "runtime/report/waiting.hpp"
 #include "runtime/scheduler/auditing.hpp"
 #include "runtime/scheduler/block.hpp"
+#include "runtime/scheduler/collection_table.hpp"
 #include "runtime/scheduler/element_mover.hpp"
+#include "runtime/scheduler/future_table.hpp"
 #include "runtime/scheduler/idle_time.hpp"
 #include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/runtime.hpp"
-
-#include <boost/unordered/unordered_flat_map.hpp>
 
 #include <algorithm>
 #include <new>
@@ -39,42 +38,6 @@ Pe& current_pe() {
   return *the_current_pe;
 }
 
-struct Pe::Tables {
-  template <class Value>
-  using ById = boost::unordered_flat_map<CollectionId, Value, std::hash<CollectionId>>;
-
-  ById<std::unique_ptr<HostedCollection>> collections;
-  ById<std::vector<Envelope*>> early;  // messages that arrived before their collection
-};
-
-/// A place is used again: the number of a future is its place, and above it how often the place had
-/// been used before.
-struct Pe::Futures {
-  struct Place {
-    void* future = nullptr;  // null: not in use
-    std::uint32_t n_used = 0;
-  };
-  std::uint32_t first = 0;       // the number of the first place; above those of the run that a
-                                 // restart continues
-  std::vector<Place> places{1};  // the first is never used: no future has number 0
-  std::vector<std::uint32_t> unused;
-  std::vector<std::pair<std::uint64_t, void*>> before_restart;  // made meanwhile, by their numbers
-
-  [[nodiscard]] Place* place_of(std::uint64_t id) {
-    const auto number = static_cast<std::uint32_t>(id);
-    if (number < first || number - first >= places.size()) return nullptr;
-    Place& place = places[number - first];
-    return place.future != nullptr && place.n_used == id >> 32U ? &place : nullptr;
-  }
-  /// Null if this number's future is no longer there.
-  [[nodiscard]] void** find(std::uint64_t id) {
-    if (Place* const place = place_of(id); place != nullptr) return &place->future;
-    for (auto& [number, future] : before_restart)
-      if (number == id && future != nullptr) return &future;
-    return nullptr;
-  }
-};
-
 Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t seed,
        const MessageOptions& messages)
     : id_(id),
@@ -89,13 +52,13 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       n_here_(machine.pes_per_process()),
       bundle_ticks_(static_cast<std::uint64_t>(bundle_seconds / seconds_per_tick())),
       packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),
-      futures_(std::make_unique<Futures>()),
+      futures_(std::make_unique<FutureTable>()),
       completion_messages_(*this),
       completion_(completion_messages_, id_, n_pes_),
       random_(mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
       outbox_(std::make_unique<Outbox>(id, machine, messages, statistics_.bytes_sent)),
       bundles_(machine.takes_bundles() ? static_cast<std::size_t>(n_here_) : 0),
-      tables_(std::make_unique<Tables>()) {}
+      collection_table_(std::make_unique<CollectionTable>()) {}
 
 Pe::~Pe() = default;
 
@@ -400,10 +363,7 @@ bool Pe::idle() {
 
 void Pe::drop_all() {
   while (!ready_.empty()) discard(static_cast<Envelope*>(ready_.pop()));
-  for (auto& [id, messages] : tables_->early) {
-    for (Envelope* message : messages) discard(message);
-  }
-  tables_->early.clear();
+  for (Envelope* message : collection_table_->take_all_early()) discard(message);
   for (Bundle*& bundle : bundles_) {
     if (bundle == nullptr) continue;
     for (std::uint32_t i = 0; i < bundle->n; ++i)
@@ -417,23 +377,18 @@ void Pe::drop_all() {
 }
 
 HostedCollection* Pe::find_slow(CollectionId id) {
-  const auto at = tables_->collections.find(id);
-  if (at == tables_->collections.end()) return nullptr;
+  HostedCollection* const collection = collection_table_->find(id);
+  if (collection == nullptr) return nullptr;
   last_id_ = id;
-  last_ = at->second.get();
-  return last_;
+  last_ = collection;
+  return collection;
 }
 
 void Pe::add(std::unique_ptr<HostedCollection> collection) {
   const CollectionId id = collection->id();
-  TESS_CHECK(!tables_->collections.contains(id), id, " exists already on ", id_);
-  tables_->collections.emplace(id, std::move(collection));
+  TESS_CHECK(collection_table_->find(id) == nullptr, id, " exists already on ", id_);
   last_id_ = CollectionId{~std::uint64_t{0}};
-  const auto early = tables_->early.find(id);
-  if (early == tables_->early.end()) return;
-  const std::vector<Envelope*> messages = std::move(early->second);
-  tables_->early.erase(early);
-  for (Envelope* message : messages) send_here(message);
+  for (Envelope* message : collection_table_->add(std::move(collection))) send_here(message);
 }
 
 void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&)) {
@@ -444,13 +399,11 @@ void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe
     discard(message);
     return;
   }
-  tables_->early[id].push_back(message);
+  collection_table_->keep_early(id, message);
 }
 
 std::unique_ptr<HostedCollection> Pe::take_out(CollectionId id) {
-  const auto at = tables_->collections.find(id);
-  std::unique_ptr<HostedCollection> collection = std::move(at->second);
-  tables_->collections.erase(at);
+  std::unique_ptr<HostedCollection> collection = collection_table_->take_out(id);
   last_id_ = CollectionId{~std::uint64_t{0}};
   ended_.add(id);
   return collection;
@@ -469,126 +422,35 @@ Pe::Ending Pe::take_ending(CollectionId id) {
 }
 
 std::uint64_t Pe::enter_future(void* future) {
-  if (futures_->unused.empty()) {
-    futures_->unused.push_back(static_cast<std::uint32_t>(futures_->places.size()));
-    futures_->places.emplace_back();
-  }
-  const std::uint32_t at = futures_->unused.back();
-  futures_->unused.pop_back();
-  Futures::Place& place = futures_->places[at];
-  place.future = future;
-  return std::uint64_t{place.n_used} << 32U | (futures_->first + at);
+  return futures_->enter(future);
 }
-
 void Pe::move_future(std::uint64_t id, void* future) {
-  if (void** const known = futures_->find(id)) *known = future;
+  futures_->move(id, future);
 }
-
 void Pe::leave_future(std::uint64_t id) {
-  if (Futures::Place* const place = futures_->place_of(id); place != nullptr) {
-    place->future = nullptr;
-    if (++place->n_used != 0)
-      futures_->unused.push_back(static_cast<std::uint32_t>(id) - futures_->first);
-  } else if (void** const known = futures_->find(id); known != nullptr) {
-    *known = nullptr;
-  }
+  futures_->leave(id);
 }
-
 void* Pe::find_future(std::uint64_t id) const {
-  void** const known = futures_->find(id);
-  return known == nullptr ? nullptr : *known;
+  return futures_->find(id);
 }
-
-std::uint32_t Pe::places_of_futures() const {
-  return futures_->first + static_cast<std::uint32_t>(futures_->places.size());
-}
-
-void Pe::begin_futures_behind(std::uint32_t places) {
-  Futures& now = *futures_;
-  for (std::uint32_t at = 0; at < now.places.size(); ++at)
-    if (const Futures::Place& place = now.places[at]; place.future != nullptr)
-      now.before_restart.emplace_back(std::uint64_t{place.n_used} << 32U | (now.first + at),
-                                      place.future);
-  now.places.assign(1, {});
-  now.unused.clear();
-  now.first = places;
-}
-
 void* Pe::require_future(std::uint64_t id) const {
-  void* const future = find_future(id);
-  TESS_CHECK(future != nullptr || static_cast<std::uint32_t>(id) >= futures_->first,
-             "a callback to a future of the run before the restart was called: make the future "
-             "again after the restart, and send its new callback()");
-  TESS_CHECK(future != nullptr,
-             "the result of a future arrived after its coroutine had continued or ended: keep the "
-             "future until its result is there");
-  return future;
+  return futures_->require(id);
+}
+std::uint32_t Pe::places_of_futures() const {
+  return futures_->n_places();
+}
+void Pe::begin_futures_behind(std::uint32_t places) {
+  futures_->begin_behind(places);
 }
 
 std::vector<HostedCollection*> Pe::collections() const {
-  std::vector<HostedCollection*> all;
-  for (const auto& [id, collection] : tables_->collections) all.push_back(collection.get());
-  return all;
+  return collection_table_->all();
 }
 
 PeId Pe::forced_migration(const AfterMessage& after) {
   if (mover_ != nullptr) return mover_->move(after);
   if (migration_chance_ == 0 || !random_.chance(migration_chance_)) return id_;
   return PeId{static_cast<std::int32_t>(random_.below(static_cast<std::uint64_t>(n_pes_)))};
-}
-
-Waits Pe::census(std::span<void* const> except) const {
-  Waits waits;
-  const ElementWords& words = runtime_.element_words();
-  for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
-    const Suspended& one = *at;
-    if (std::find(except.begin(), except.end(), one.frame) != except.end()) continue;
-    NamedElement asker{"main", "the main program"};
-    std::string state, code = "run()";
-    if (one.element != nullptr) {
-      asker = {words.key(*one.element), words.text(*one.element)};
-      state = words.state(*one.element);
-      if (one.action != nullptr) code = plain_name(one.action->name());
-    }
-    WaitReason reason = one.waits_for();
-    waits.add(WaitRank::coroutine, text(asker.text, " on ", id_, state.empty() ? "" : ", ", state,
-                                        ": ", code, " waits for ", reason.text));
-    for (NamedElement& asked : reason.asked) waits.add_need({asker, std::move(asked)});
-  }
-  std::vector<std::string> lines;
-  for (const auto& [id, collection] : tables_->collections) collection->describe_waiting(lines);
-  for (std::string& line : lines) waits.add(WaitRank::collective, std::move(line));
-  for (const Ending& one : ending_)
-    waits.add(WaitRank::collective, text(one.collection->name(), " on ", id_,
-                                         " was destroyed, but coroutines of its elements wait"));
-  for (const auto& [id, messages] : tables_->early)
-    waits.add(WaitRank::message, text(messages.size(), " messages on ", id_, " wait for ", id,
-                                      ", which was never created"));
-  lines.clear();
-  completion_.describe_open(lines);
-  for (std::string& line : lines) waits.add(WaitRank::epoch, std::move(line));
-  return waits;
-}
-
-Waits Pe::census_of_running() const {
-  Waits waits = census();
-  std::size_t n_ready = 0;  // without those that end the run or ask for this census
-  ready_.for_each(
-      [&](const Link* one) { n_ready += static_cast<const Envelope*>(one)->counted ? 1U : 0U; });
-  if (n_ready != 0)
-    waits.add(WaitRank::queue,
-              text(id_, n_ready == 1 ? ": 1 message is" : text(": ", n_ready, " messages are"),
-                   " ready to run"));
-  for (std::int32_t process = 0; process < machine_.n_processes(); ++process) {
-    if (const std::size_t n = outbox_->n_waiting(ProcessId{process}); n != 0)
-      waits.add(WaitRank::queue,
-                text(id_, n == 1 ? ": 1 message waits" : text(": ", n, " messages wait"),
-                     " for room to ", ProcessId{process}));
-  }
-  if (const std::size_t n = timers_.n_waiting(); n != 0)
-    waits.add(WaitRank::queue,
-              text(id_, n == 1 ? ": 1 timer is" : text(": ", n, " timers are"), " set"));
-  return waits;
 }
 
 }  // namespace tess::detail

@@ -31,7 +31,9 @@ namespace tess::detail {
 
 class TessElement;
 using Element = TessElement;
+class CollectionTable;
 class ElementMover;
+class FutureTable;
 class IdleTime;
 class Outbox;
 class PeWatch;
@@ -335,9 +337,8 @@ class Pe {
   bool stopped_ = false;
   bool dropping_ = false;
   std::exception_ptr kept_exception_;
-  struct Futures;
-  const std::unique_ptr<Futures> futures_;  // outlives the elements below, whose members they are
-  std::string place_;                       // where the pending exception was thrown
+  const std::unique_ptr<FutureTable> futures_;  // outlives the elements, whose members they are
+  std::string place_;                           // where the pending exception was thrown
   const void* constructed_index_ = nullptr;
   unsigned n_nested_ = 0;
   HostedCollection* constructing_collection_ = nullptr;
@@ -371,8 +372,7 @@ class Pe {
   CollectionId last_id_{~std::uint64_t{0}};
   HostedCollection* last_ = nullptr;
   CollectionNumbers collection_numbers_;
-  struct Tables;
-  const std::unique_ptr<Tables> tables_;  // hash tables, which are costly to compile
+  const std::unique_ptr<CollectionTable> collection_table_;
   EndedCollections ended_;
   std::vector<Ending> ending_;
   Timers timers_{*this};

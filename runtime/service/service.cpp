@@ -4,6 +4,7 @@
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/service/hang_watch.hpp"
 #include "runtime/service/job_report.hpp"
+#include "runtime/service/process_census.hpp"
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -117,16 +118,12 @@ class Service::Loop {
   }
 
   /// A PE answers; `round` 0: to whatever census ends the run.
-  void take(std::uint64_t round, PeId pe, Waits waits, std::vector<AuditRow> counted) {
+  void take(std::uint64_t round, PeId pe, Waits waits, const std::vector<AuditRow>& counted) {
     const std::lock_guard lock(mutex_);
-    if (!census_ || (round != 0 && round != census_->round)) return;
-    auto& answer = census_->answers.at(static_cast<std::size_t>(pe.value - first_pe().value));
-    if (answer) return;
-    answer = std::move(waits);
-    census_->counted.insert(census_->counted.end(), counted.begin(), counted.end());
-    if (--census_->n_missing != 0) return;
+    if (!census_ || (round != 0 && round != census_->round())) return;
+    if (!census_->take(pe, std::move(waits), counted)) return;
     if (ending_) return report();
-    boost::asio::post(io_, [this, of = census_->round] { close_census(of); });
+    boost::asio::post(io_, [this, of = census_->round()] { close_census(of); });
   }
 
   void ends_by_signal(int signal, PeId pe, Waits waits) {
@@ -203,16 +200,6 @@ class Service::Loop {
   }
 
  private:
-  struct Census {
-    int signal = 0;
-    std::uint64_t round = 0;
-    std::uint64_t job_round = 0;
-    std::vector<std::optional<Waits>> answers;  // by PE of this process
-    std::vector<AuditRow> counted;
-    std::size_t n_missing = 0;
-    bool reported = false;
-  };
-
   // Called under the lock.
 
   void start() {
@@ -254,21 +241,16 @@ class Service::Loop {
   }
 
   void new_census(int signal, std::uint64_t job_round = 0) {
-    census_ = Census{};
-    census_->signal = signal;
-    census_->round = ++n_rounds_;
-    census_->job_round = job_round;
-    census_->n_missing = static_cast<std::size_t>(machine_.n_pes_here());
-    census_->answers.resize(census_->n_missing);
+    census_.emplace(signal, ++n_rounds_, job_round, first_pe(), machine_.n_pes_here());
   }
   void begin_census(int signal, std::uint64_t job_round = 0) {
     new_census(signal, job_round);
-    send_to_pes<&census_is_asked>(CensusAsked{census_->round});
+    send_to_pes<&census_is_asked>(CensusAsked{census_->round()});
     limit_census();
   }
   void limit_census() {
-    after(answers_due_, answer_time, [this, round = census_->round] {
-      if (census_->round == round) report();
+    after(answers_due_, answer_time, [this, round = census_->round()] {
+      if (census_->round() == round) report();
     });
   }
   void begin_job(int signal) {
@@ -321,7 +303,7 @@ class Service::Loop {
 
   void close_census(std::uint64_t round) {
     const std::lock_guard lock(mutex_);
-    if (!closed_ && !ending_ && census_->round == round) report();
+    if (!closed_ && !ending_ && census_->round() == round) report();
   }
   void answer(const JobAsk& ask) {
     const std::lock_guard lock(mutex_);
@@ -332,8 +314,8 @@ class Service::Loop {
       busy.job_round = ask.round;
       busy.active = true;
       send_report(std::move(busy));
-    } else if (census_ && !census_->reported) {
-      census_->job_round = ask.round;  // the signal came here, too
+    } else if (census_ && !census_->reported()) {
+      census_->serve_job(ask.round);  // the signal came here, too
     } else {
       begin_census(ask.signal, ask.round);
     }
@@ -378,7 +360,7 @@ class Service::Loop {
   std::mutex mutex_;  // guards what follows
   std::multimap<Clock::time_point, std::pair<PeId, Envelope*>> later_;
   std::optional<HangWatch> watch_;
-  std::optional<Census> census_;
+  std::optional<ProcessCensus> census_;
   std::uint64_t n_rounds_ = 0;
   std::optional<JobReport> job_;  // process 0 collects the report of the job
   int job_signal_ = 0;
@@ -396,27 +378,14 @@ class Service::Loop {
 };
 
 void Service::Loop::report() {
-  if (std::exchange(census_->reported, true)) return;
-  ProcessReport of;
-  of.process = machine_.process();
-  of.job_round = census_->job_round;
-  for (std::size_t i = 0; i < census_->answers.size(); ++i) {
-    if (auto& answer = census_->answers[i]; answer) {
-      of.waits.merge(std::move(*answer));
-      continue;
-    }
-    const PeId pe{first_pe().value + static_cast<std::int32_t>(i)};
-    of.silent.push_back(pe);
-    of.waits.add(WaitRank::handler, text(pe, " has not answered within ", answer_time.count(),
-                                         " ms: ", runtime_.running_text(pe)));
-  }
-  of.audit = std::move(census_->counted);
+  if (census_->reported()) return;
+  ProcessReport of = census_->finish(runtime_, answer_time);
   if (ending_) {
     const std::string where = n_processes() > 1 ? text("on ", machine_.process(), ", ") : "";
     runtime_.error_line(
-        text("tessera: ", name_of_signal(census_->signal), " ends the run; ", where,
+        text("tessera: ", name_of_signal(census_->signal()), " ends the run; ", where,
              of.waits.empty() ? "nothing waits" : list_of_waiting(std::move(of.waits))));
-    send_to_pes<&signal_exit_arrives>(SignalExit{census_->signal});
+    send_to_pes<&signal_exit_arrives>(SignalExit{census_->signal()});
   } else if (!leads()) {
     send_report(std::move(of));
   } else if (job_) {

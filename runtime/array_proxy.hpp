@@ -1,0 +1,149 @@
+// The proxy of a whole array: a small value that can be stored, sent, and used on every PE. It gives
+// the proxies of elements, broadcasts to all of them, and ends the array. Programs include
+// runtime/array.hpp.
+#pragma once
+
+#include "runtime/element_proxy.hpp"
+
+#include <type_traits>
+#include <utility>
+
+namespace tess {
+
+namespace detail {
+/// Calls entry method F of all elements with the value of a callback, which may be no value.
+template <auto F, class Proxy, class T>
+void broadcast_value(const Proxy& all, T&& value) {
+  if constexpr (std::is_same_v<T, NoValue>) {
+    all.template broadcast<F>();
+  } else {
+    all.template broadcast<F>(std::forward<T>(value));
+  }
+}
+}  // namespace detail
+
+/// The proxy of a whole array.
+template <class C>
+class ArrayProxy {
+ public:
+  ArrayProxy() = default;
+  explicit ArrayProxy(CollectionId id) : id_(id) {}
+
+  [[nodiscard]] CollectionId id() const { return id_; }
+  /// The element of this index. (A template, so that a proxy may be a member of a class before C is
+  /// complete.)
+  template <class Of = C>
+  [[nodiscard]] ElementProxy<Of> operator[](const typename Of::Index& index) const {
+    return ElementProxy<Of>(id_, index);
+  }
+  /// {1} would be (1, 0) otherwise.
+  template <class Of = C>
+    requires(n_axes_of<typename Of::Index> > 1)
+  void operator[](std::int32_t /*x*/) const {
+    static_assert(sizeof(Of) == 0, "an index has a number for each axis: array[{x, y}]");
+  }
+  template <class Of = C>
+  void operator[](const typename detail::FewerAxes<n_axes_of<typename Of::Index>>::type&) const =
+      delete;
+
+  /// The element of this index if it is on this PE now, otherwise null. It may leave or be destroyed
+  /// once the current message is done.
+  template <class Of = C>
+  [[nodiscard]] Of* local(const typename Of::Index& index) const {
+    return static_cast<Of*>(here().find(index));
+  }
+
+  /// The number of elements that the array was created with. On a PE that the proxy reached before
+  /// the array it is not known, which ends the job: create the array inside an awaited epoch.
+  [[nodiscard]] std::int64_t size() const {
+    return static_cast<std::int64_t>(here().range().size());
+  }
+  [[nodiscard]] const Range& range() const { return here().range(); }
+
+  /// Calls entry method F of every element that exists when the broadcast reaches its PE.
+  template <auto F, class... Args>
+  void broadcast(Args&&... args) const {
+    broadcast_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
+  }
+  /// The same array for broadcasts with a priority.
+  [[nodiscard]] PrioritisedArray<C> with(Priority priority) const { return {*this, priority}; }
+
+  /// Ends the array: on every PE its elements are destroyed and its memory is freed, including that
+  /// of its balancer. Messages, broadcasts, contributions and elements that are still under way to
+  /// it are dropped where they arrive; messages and broadcasts count as dead letters. An element
+  /// with a waiting coroutine gets no more messages and is destroyed once the coroutine is done.
+  /// The current epoch waits until all PEs have freed the array. Ending an array again has no
+  /// effect.
+  void destroy() const { detail::end_collection(id_); }
+  /// True if the array was destroyed and this PE has freed its part, or does so once the waiting
+  /// coroutines of its elements are done.
+  [[nodiscard]] bool ended() const { return current_pe().ended(id_); }
+
+  /// A target for results: entry method F of all elements.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    using T = typename decltype(detail::target_value<F, NoValue>())::type;
+    return detail::make_target<T>(target_kind<F, T>, std::in_place, id_);
+  }
+
+  /// The part of the array on this PE with its local elements, for libraries and tests.
+  [[nodiscard]] detail::Array<C>& here() const {
+    detail::Collection* collection = detail::find_collection(current_pe(), id_);
+    TESS_CHECK(collection != nullptr, "the array of this proxy ",
+               current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
+               current_pe().id(),
+               current_pe().ended(id_)
+                   ? ""
+                   : ": create it inside an awaited epoch, or send its size with the proxy");
+    return *static_cast<detail::Array<C>*>(collection);
+  }
+
+  friend auto operator<=>(const ArrayProxy&, const ArrayProxy&) = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_);
+  }
+
+ private:
+  friend class PrioritisedArray<C>;
+
+  template <auto F, class Of, class... Args>
+  void broadcast_as(Of of, Args&&... args) const {
+    static_assert(detail::check_broadcast<C, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    auto arguments = detail::as_parameters<Arguments>(std::forward<Args>(args)...);
+    if constexpr (std::is_same_v<Of, Priority>) {
+      detail::start_broadcast(id_, detail::SharedCall(new detail::PrioritisedCallOfAll<C, F>(
+                                       of, std::move(arguments))));
+    } else {
+      detail::start_broadcast(
+          id_, detail::SharedCall(new detail::CallOfAll<C, F>(std::move(arguments))));
+    }
+  }
+
+  template <auto F, class T>
+  static void call_target(const Callback<T>& callback, T&& value) {
+    detail::broadcast_value<F>(ArrayProxy(from_bytes<CollectionId>(callback.where())),
+                               std::forward<T>(value));
+  }
+  template <auto F, class T>
+  static std::string describe_target(const Callback<T>& /*callback*/) {
+    return text(plain_name(naming::value<F>()), " of all elements of ",
+                plain_name(name_of_type<C>));
+  }
+  template <auto F, class T>
+  static inline const typename Callback<T>::Kind target_kind{
+      naming::name_of<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>,
+      &ArrayProxy::describe_target<F, T>};
+
+  CollectionId id_{};
+};
+
+}  // namespace tess
+
+template <class C>
+struct std::hash<tess::ArrayProxy<C>> {
+  std::size_t operator()(const tess::ArrayProxy<C>& proxy) const {
+    return std::hash<tess::CollectionId>()(proxy.id());
+  }
+};
