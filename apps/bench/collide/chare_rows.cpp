@@ -2,6 +2,7 @@
 
 #include "apps/bench/collide/method.hpp"
 #include "apps/bench/collide/one_core.hpp"
+#include "apps/bench/collide/peak_memory.hpp"
 #include "collide/collider.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/threads.hpp"
@@ -126,6 +127,26 @@ tess::Task collide(const Problem& problem, const Setting& setting, double& nanos
   }
 }
 
+/// Throws tess::Error if the collider finds another number of pairs.
+double nanoseconds_of(const Problem& problem, const Setting& setting, std::uint64_t expected) {
+  double nanoseconds = 0;
+  std::uint64_t n_pairs = 0;
+  tess::Setup setup{tess::make_threads_machine(setting.n_pes), {}};
+  const int code = tess::run(
+      setup, [&]() -> tess::Task { return collide(problem, setting, nanoseconds, n_pairs); });
+  if (code != 0 || n_pairs != expected)
+    tess::fail(tess::ErrorCode::bad_value, "benchmark: wrong result: ", name_of(setting),
+               ": exit code ", code, ", ", n_pairs, " pairs instead of ", expected);
+  return nanoseconds;
+}
+
+/// The peak memory of two collisions, beside the boxes of the clients.
+double bytes_of(const Problem& problem, const Setting& setting, std::uint64_t expected) {
+  const std::size_t peak = peak_bytes([&] { (void)nanoseconds_of(problem, setting, expected); });
+  const std::size_t input = problem.boxes.size() * sizeof(Aabb);
+  return static_cast<double>(peak - std::min(input, peak));
+}
+
 void measure(Output& output, const Case& of, const std::vector<Setting>& chosen) {
   const Problem problem = make_problem(of);
   const auto n = static_cast<double>(problem.boxes.size());
@@ -137,17 +158,8 @@ void measure(Output& output, const Case& of, const std::vector<Setting>& chosen)
     const ProcessWatch watch;
     static_cast<void>(serial->count());
     on_serial.add(watch.nanoseconds() / n);
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-      double nanoseconds = 0;
-      std::uint64_t n_pairs = 0;
-      tess::Setup setup{tess::make_threads_machine(chosen[k].n_pes), {}};
-      const int code = tess::run(
-          setup, [&]() -> tess::Task { return collide(problem, chosen[k], nanoseconds, n_pairs); });
-      if (code != 0 || n_pairs != expected)
-        tess::fail(tess::ErrorCode::bad_value, "benchmark: wrong result: ", name_of(chosen[k]),
-                   ": exit code ", code, ", ", n_pairs, " pairs instead of ", expected);
-      samples[k].add(nanoseconds / n);
-    }
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      samples[k].add(nanoseconds_of(problem, chosen[k], expected) / n);
   }
   std::array<double, 2> on_one_pe{};  // by division
   for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -156,6 +168,9 @@ void measure(Output& output, const Case& of, const std::vector<Setting>& chosen)
     output.row(of.name, name_of(chosen[k]), samples[k], "ns",
                chosen[k].n_pes == 1 ? on_serial.median() : on_one / chosen[k].n_pes,
                Origin{chosen[k].n_pes == 1 ? "threads: 1 PE" : "threads: 2 PEs", chosen[k].n_pes});
+    const std::string bytes = name_of(chosen[k]) + "_bytes";
+    if (chosen[k].n_pes == 1 && output.wants(of.name, bytes))
+      output.row(of.name, bytes, bytes_of(problem, chosen[k], expected) / n, "bytes");
   }
 }
 
@@ -164,8 +179,13 @@ void measure(Output& output, const Case& of, const std::vector<Setting>& chosen)
 std::vector<std::pair<std::string, std::string>> chare_row_texts(const std::string& of_case) {
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Setting& setting : settings)
-    if (of_case == setting.of_case && is_possible(setting))
+    if (of_case == setting.of_case && is_possible(setting)) {
       rows.emplace_back(name_of(setting), fmt::format("ns per object: {}", setting.meaning));
+      if (setting.n_pes == 1)
+        rows.emplace_back(
+            name_of(setting) + "_bytes",
+            "bytes per object at the peak of two collisions, beside the clients' boxes");
+    }
   return rows;
 }
 
@@ -174,7 +194,8 @@ void chare_rows(Output& output) {
     std::vector<Setting> chosen;
     for (const Setting& setting : settings)
       if (each.name == setting.of_case && is_possible(setting) &&
-          output.wants(each.name, name_of(setting)))
+          (output.wants(each.name, name_of(setting)) ||
+           output.wants(each.name, name_of(setting) + "_bytes")))
         chosen.push_back(setting);
     if (!chosen.empty()) measure(output, output.options().quick ? smaller(each, 64) : each, chosen);
   }
