@@ -9,6 +9,7 @@
 #include "runtime/runtime.hpp"
 
 #include <map>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -20,10 +21,12 @@ namespace detail {
 inline constexpr collide::ModelId source_model{1};
 inline constexpr collide::ModelId target_model{2};
 
-/// Calls a chare's accessor to its values, which may take the coupling.
+/// A chare's values: of its accessor, which may take the coupling, or in its public member vector.
 template <auto F, class C>
 auto values_of(C& chare, CouplingId coupling) {
-  if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
+  if constexpr (std::is_member_object_pointer_v<decltype(F)>) {
+    return std::span(chare.*F);
+  } else if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
     return (chare.*F)(coupling);
   } else {
     return (chare.*F)();
