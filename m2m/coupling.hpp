@@ -136,7 +136,7 @@ class Coupling {
   ///     source_values are cells, a row per tetrahedron, or four if they are corners
   ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs;
   ///     if target_values are cells, a row per own tetrahedron
-  /// Each may take the CouplingId.
+  /// Each may take the CouplingId. Each may also be a public std::vector<double>, such as &S::field.
   template <auto Give, auto Take>
   Task apply();
 

@@ -22,10 +22,12 @@ namespace detail {
 inline constexpr collide::ModelId source_model{1};
 inline constexpr collide::ModelId target_model{2};
 
-/// Calls a chare's accessor, which may take the coupling.
+/// A chare's public member, or what its accessor returns, which may take the coupling.
 template <auto F, class C>
 decltype(auto) call_accessor(C& chare, CouplingId coupling) {
-  if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
+  if constexpr (std::is_member_object_pointer_v<decltype(F)>) {
+    return (chare.*F);
+  } else if constexpr (std::is_invocable_v<decltype(F), C&, CouplingId>) {
     return (chare.*F)(coupling);
   } else {
     static_assert(std::is_invocable_v<decltype(F), C&>,

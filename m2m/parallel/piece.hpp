@@ -23,6 +23,9 @@
 
 namespace tess::m2m {
 
+template <class C>
+class MeshPiece;
+
 /// A second base class of a chare that holds a piece of a mesh. The chare has a member function
 /// `MeshView mesh_view() const`; if it migrates, it serialises `couplings`. If it has a member
 /// function `received(CouplingId)`, that is called after new values were written.
@@ -189,6 +192,7 @@ class Piece : public OverlapPiece<C> {
 
  private:
   friend C;
+  friend MeshPiece<C>;
   Piece() = default;
 
   using OverlapPiece<C>::chare;

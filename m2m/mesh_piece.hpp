@@ -1,0 +1,68 @@
+// Chares that hold one part each of a mesh which the program cuts. MeshPiece is a Piece
+// (coupling.hpp) that has the mesh, and create_pieces() gives each chare its part.
+//
+// Sample: tests/install/outside/coupling.cpp
+//
+//     struct Patch : tess::Chare<Patch>, MeshPiece<Patch> {
+//       void loaded() {
+//         for (const Point& p : mesh.points) field.push_back(exact(p, 0));
+//       }
+//       // …
+//         ar(couplings, mesh, field);
+//       }
+//       std::vector<double> field;
+//     };
+//       // …
+//       return create_pieces<Patch>(mesh, 4);
+//       // …
+//         co_await down.apply<&Patch::field, &Patch::field>();
+//
+// The ghosts of a piece are targets as well, so that what it takes it can also give. Each gets the
+// value that the piece which owns the point gets. A piece of a conservative coupling shows
+// view_of(mesh) in a mesh_view() of its own.
+#pragma once
+
+#include "m2m/mesh_parts.hpp"
+#include "m2m/parallel/piece.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <vector>
+
+namespace tess::m2m {
+
+/// A second base class of a chare that holds a part of a mesh. The chare has a member function
+/// `void loaded()`, which is called when the part is there.
+template <class C>
+class MeshPiece : public Piece<C> {
+ public:
+  MeshPart mesh;  ///< serialised by the chare if it migrates
+
+  [[nodiscard]] MeshView mesh_view() const {
+    return {mesh.points, mesh.tets, mesh.point_ids, mesh.tet_ids, std::ssize(mesh.points)};
+  }
+  /// Takes its part, and calls the member function loaded() of the chare.
+  void m2m_load(const MeshPart& part) {
+    mesh = part;
+    static_cast<C&>(*this).loaded();
+  }
+
+ private:
+  friend C;
+  MeshPiece() = default;
+};
+
+/// An array of `n` chares of class C, a MeshPiece with a one-dimensional index. Each gets its part of
+/// the mesh before the enclosing epoch ends. Throws as mesh_parts() does.
+template <class C>
+[[nodiscard]] ArrayProxy<C> create_pieces(const TetMesh& mesh, std::int32_t n,
+                                          PartitionMethod method = PartitionMethod::curve) {
+  const std::vector<MeshPart> parts = mesh_parts(mesh, n, method);
+  const ArrayProxy<C> array = create<C>(range(n));
+  for (std::int32_t k = 0; k < n; ++k)
+    array[{k}].template send<&MeshPiece<C>::m2m_load>(parts[static_cast<std::size_t>(k)]);
+  return array;
+}
+
+}  // namespace tess::m2m
