@@ -59,7 +59,9 @@ void add_options(apps::CommandLine& line, Settings& s) {
               "json.br: compressed with brotli, as vt does by default; or json")
       .one_of({"json.br", "json"});
   line.option("--replay", s.replay,
-              "run the strategies on saved snapshots (vt's LBDatafile, .json or .json.br) instead");
+              "run the strategies on saved snapshots instead: vt's LBDatafile, .json or .json.br, "
+              "one file or all of a directory")
+      .takes(1, 1 << 20);
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
   line.option("--fold", s.fold, "how elements are placed on another number of PEs: block, modulo");
