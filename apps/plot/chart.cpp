@@ -110,6 +110,8 @@ std::string script(const Chart& chart) {
                    colours[i % colours.size()]);
     if (series.style == Style::lines_points || series.style == Style::points)
       fmt::format_to(to, " pointtype {} pointsize 0.7", 1 + i % 13);
+    if (series.style == Style::lines && i >= colours.size())
+      out += " dashtype 4";  // no marks tell it from the line of the same colour
   }
   out += '\n';
   return out;
