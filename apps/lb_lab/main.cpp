@@ -55,11 +55,33 @@ void add_options(apps::CommandLine& line, Settings& s) {
               "json.br: compressed with brotli, as vt does by default; or json")
       .one_of({"json.br", "json"});
   line.option("--replay", s.replay,
-              "run the strategies on saved snapshots (vt's LBDatafile, .json or .json.br) instead");
+              "run the strategies on saved snapshots instead: vt's LBDatafile, .json or .json.br, "
+              "one file or all of a directory")
+      .takes(1, 1 << 20);
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
   line.option("--fold", s.fold, "how elements are placed on another number of PEs: block, modulo");
   line.flag("--explain", s.explain, "print what this run uses and what it leaves out");
+}
+
+/// A replay reads snapshots and prints a table; it runs nothing, so it has no use for the options
+/// of runs, nor a run for those of replays.
+void require_one_purpose(const apps::CommandLine& line, bool replays) {
+  if (!replays) {
+    for (const char* const name : {"--pes-of-replay", "--fold"})
+      if (line.is_given(name))
+        tess::fail(tess::ErrorCode::bad_argument, name,
+                   ": is an option of --replay; give the snapshots to replay, or leave it out");
+    return;
+  }
+  for (const char* const name :
+       {"--workload", "--per-pe", "--period", "--iterations", "--grain", "--when", "--prediction",
+        "--cell-bytes", "--message-bytes", "--repeat", "--json", "--plot", "--save-snapshot",
+        "--snapshot-format", "--explain"})
+    if (line.is_given(name))
+      tess::fail(tess::ErrorCode::bad_argument, name,
+                 ": is an option of runs, and --replay prints a table of saved snapshots only; "
+                 "leave one of them out");
 }
 
 int start(tess::Setup& setup, int argc, char** argv) {
@@ -74,6 +96,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
     if (prints) tess::print_text(list_text());
     return 0;
   }
+  require_one_purpose(line, !settings.replay.empty());
   if (!settings.replay.empty()) {
     const std::string report = replay(settings);
     if (prints) tess::print_text(report);

@@ -5,11 +5,13 @@
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -50,6 +52,21 @@ std::string_view with(Style style) {
 constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#000000", "#999999"};
 
+/// The axis ends with the data, not at a round number without a label. On a logarithmic axis gnuplot's
+/// ends are rounded, and may be inside the outermost labels, which it then omits.
+std::string x_range(const Chart& chart) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Series& series : chart.series) {
+    for (const Point& p : series.points) {
+      if (!can_be_drawn(chart, p)) continue;
+      low = std::min(low, p.x);
+      high = std::max(high, p.x);
+    }
+  }
+  if (!chart.x_log || !(low < high)) return "set xrange [*:*] noextend\n";
+  return fmt::format("set xrange [{}:{}] noextend\n", low * (1 - 1e-9), high * (1 + 1e-9));
+}
+
 /// The points of each series as a block of data, then one plot command that names the blocks: no
 /// file name and no text of ours stands where gnuplot would interpret it.
 std::string script(const Chart& chart) {
@@ -67,7 +84,7 @@ std::string script(const Chart& chart) {
   if (chart.equal_axes) out += "set size ratio -1\n";
   if (!chart.x_ticks.empty()) {
     fmt::format_to(to, "set xtics ({})\n", fmt::join(chart.x_ticks, ","));
-    out += "set xrange [*:*] noextend\n";  // no further, to a round number without a label
+    out += x_range(chart);
   }
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     fmt::format_to(to, "$data{} << END\n", i);
@@ -93,6 +110,8 @@ std::string script(const Chart& chart) {
                    colours[i % colours.size()]);
     if (series.style == Style::lines_points || series.style == Style::points)
       fmt::format_to(to, " pointtype {} pointsize 0.7", 1 + i % 13);
+    if (series.style == Style::lines && i >= colours.size())
+      out += " dashtype 4";  // no marks tell it from the line of the same colour
   }
   out += '\n';
   return out;

@@ -120,6 +120,7 @@ for program in hello ring m2m_transfer; do
 done
 
 lab=("$bin/lb_lab" --json "$scratch/result.json" --sim pes=4)
+replays=("$bin/lb_lab" --sim pes=4)
 refuses moving_hot_spot "${lab[@]}" --workload nonsense
 refuses greedy_refine "${lab[@]}" --strategy nonsense
 refuses --per-pe "${lab[@]}" --per-pe 1,0
@@ -130,9 +131,12 @@ refuses --when "${lab[@]}" --when sometimes
 refuses moving_average "${lab[@]}" --prediction nonsense
 refuses --speed "${lab[@]}" --speed 1,1,0.5
 refuses --speed "${lab[@]}" --speed 1,1,0.5,0
-refuses missing.json "${lab[@]}" --replay "$scratch/missing.json"
-refuses empty.exo "${lab[@]}" --replay "$scratch/empty.exo"
-refuses modulo "${lab[@]}" --replay "$scratch/empty.exo" --fold nonsense
+refuses "--json: .*--replay" "${lab[@]}" --replay "$scratch/empty.exo"
+refuses "--workload: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --workload linear
+refuses "--fold: .*--replay" "${lab[@]}" --fold modulo
+refuses missing.json "${replays[@]}" --replay "$scratch/missing.json"
+refuses empty.exo "${replays[@]}" --replay "$scratch/empty.exo"
+refuses modulo "${replays[@]}" --replay "$scratch/empty.exo" --fold nonsense
 refuses --plot "${lab[@]}" --plot "$scratch/empty.exo/plots"
 refuses --json "$bin/lb_lab" --sim pes=4 --json "$scratch/missing/result.json"
 refuses --nonsense "${lab[@]}" --nonsense
@@ -143,19 +147,19 @@ refuses "3 limits for 4 PEs" "${lab[@]}" --memory-limit 1,2,3
 "$bin/lb_lab" --sim pes=2,cost=1us --strategy greedy --per-pe 4 --iterations 4 --period 2 --save-snapshot "$scratch/saved" >/dev/null || fail "--save-snapshot"
 saved=$scratch/saved/linear-4-greedy/data.0.json.br
 head -c $(($(stat -c %s "$saved") / 2)) "$saved" >"$scratch/cut.json.br"
-refuses "cut.json.br: is truncated" "${lab[@]}" --replay "$scratch/cut.json.br"
+refuses "cut.json.br: is truncated" "${replays[@]}" --replay "$scratch/cut.json.br"
 { head -c 40 "$saved"; printf '\xff\xff\xff\xff\xff\xff\xff\xff'; tail -c +49 "$saved"; } >"$scratch/damaged.json.br"
-refuses "damaged.json.br: " "${lab[@]}" --replay "$scratch/damaged.json.br"
+refuses "damaged.json.br: " "${replays[@]}" --replay "$scratch/damaged.json.br"
 echo '{"phases": []}' >"$scratch/plain.json.br"
-refuses "plain.json.br: is damaged, or not compressed" "${lab[@]}" --replay "$scratch/plain.json.br"
+refuses "plain.json.br: is damaged, or not compressed" "${replays[@]}" --replay "$scratch/plain.json.br"
 cp "$saved" "$scratch/packed.json"
-refuses "packed.json: .*end in .br" "${lab[@]}" --replay "$scratch/packed.json"
+refuses "packed.json: .*end in .br" "${replays[@]}" --replay "$scratch/packed.json"
 base64 -d >"$scratch/bomb.json.br" <<<'z///f/glQOKxQCD3/p/////wSwDEYQGA7v0/////4ZcAiMMiAN37f/7//8MvARCHBQC69//518GCXwIgDgsAdCpYAA=='
-refuses "bomb.json.br: its 67 bytes unpack to more than 67108864" "${lab[@]}" --replay "$scratch/bomb.json.br"
+refuses "bomb.json.br: its 67 bytes unpack to more than 67108864" "${replays[@]}" --replay "$scratch/bomb.json.br"
 
 # Strategies that need positions, where there are none.
 echo '{"phases":[{"id":0,"tasks":[{"entity":{"id":7,"home":0,"migratable":true,"type":"object"},"node":0,"time":1.0}]}]}' >"$scratch/nowhere.json"
-refuses "--strategy rcb: .*positions.*nowhere.json" "${lab[@]}" --replay "$scratch/nowhere.json" --strategy rcb
+refuses "--strategy rcb: .*positions.*nowhere.json" "${replays[@]}" --replay "$scratch/nowhere.json" --strategy rcb
 
 # A hexahedron of second order, and a truncated ExodusII file.
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 17 2 0 0 1 2 3 4 5 6 7 8 1 2 3 4 5 6 7 8 1 2 3 4\n$EndElements\n' >"$scratch/hex.msh"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# examples.sh BIN: hello, ring, stencil, coupled, overset and m2m_transfer on threads, under mpirun and on the simulated machine, with their answers.
+# examples.sh BIN: hello, ring, stencil, coupled, overset, m2m_transfer and lb_lab on threads, under mpirun and on the simulated machine, with their answers.
 source "$(dirname "$0")/../support/checks.sh"
 bin=$1
 
@@ -122,5 +122,13 @@ for format in exo vtu; do
 done
 head -c 5 "$scratch/result.vtu" | grep -q '<?xml\|<VTKF' && cmp -s "$scratch/again.exo" "$scratch/again.vtu"
 check "result.vtu has another format, or other values" $?
+
+# lb_lab: what a run saved is replayed: all files behind one --replay, as the shell names them for a *, or --replay repeated.
+lab=("$bin/lb_lab" --strategy greedy)
+timeout 60 "${lab[@]}" --workload linear --per-pe 4 --iterations 10 --period 5 --sim pes=4,cost=1us --save-snapshot "$scratch/snapshots" >"$scratch/out" 2>&1
+check "lb_lab saves no snapshots" $?
+files=("$scratch"/snapshots/linear-4-greedy/data.*.json.br)
+answers '^ +0 +4 +16 greedy +1\.[0-9]+ +1\.0' "${lab[@]}" --replay "${files[@]}" --pes 1
+answers '^ +0 +4 +16 greedy ' "${lab[@]}" --replay "${files[0]}" --replay "${files[1]}" --replay "${files[@]:2}" --pes 1
 
 finish

@@ -112,6 +112,32 @@ TEST_CASE("points that do not fit on the axes are left out, and the others are d
   if (has_gnuplot()) CHECK(n_texts(read_xml(slurp(scratch.path("a.svg"))), "0.25") == 1);
 }
 
+TEST_CASE("a logarithmic axis is labelled at its ends, too", "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  // Edge lengths of two boxes: their logarithms are rounded towards each other.
+  Chart chart{.title = "ends", .x_log = true};
+  chart.x_ticks = {0.12500000000000006, 0.24999999999999997};
+  chart.series.push_back({"edges", {{chart.x_ticks[0], 7}, {chart.x_ticks[1], 8}}});
+  REQUIRE(write_svg(scratch.path("a.svg"), chart));
+  const auto elements = read_xml(slurp(scratch.path("a.svg")));
+  CHECK(n_texts(elements, "0.125") == 1);
+  CHECK(n_texts(elements, "0.25") == 1);
+}
+
+TEST_CASE("lines without marks differ where colours repeat", "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  Chart chart{.title = "strategies"};
+  const auto has_dashes = [&] {
+    REQUIRE(write_svg(scratch.path("a.svg"), chart));
+    return slurp(scratch.path("a.svg")).find("stroke-dasharray") != std::string::npos;
+  };
+  for (int i = 0; i < 8; ++i)
+    chart.series.push_back({std::to_string(i), {{0, 1.0 * i}, {1, 2.0 * i}}, Style::lines});
+  CHECK_FALSE(has_dashes());
+  chart.series.push_back({"8", {{0, 8}, {1, 16}}, Style::lines});
+  CHECK(has_dashes());
+}
+
 TEST_CASE("the error names a path that cannot be written", "[apps][plot]") {
   const Scratch scratch;
   const std::string path = scratch.path("absent") + "/a.svg";
