@@ -22,12 +22,11 @@ namespace {
 using collide_fuzz::Look;
 using collide_fuzz::Outcome;
 
-// The command that repeats the running trial, for a run that ends the process.
-std::string repeat;
+// What is written if a signal ends the process: the command that repeats the running trial.
+std::string last_words;
 
-void on_crash(int signal) {
-  const std::string line = "collide_fuzz: repeat with: " + repeat + "\n";
-  [[maybe_unused]] const auto n = ::write(STDERR_FILENO, line.data(), line.size());
+void on_signal(int signal) {
+  [[maybe_unused]] const auto n = ::write(STDERR_FILENO, last_words.data(), last_words.size());
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -38,7 +37,8 @@ struct Tally {
 
   template <class Trial>
   void add(const Look& look, const char* kind, const Trial& trial) {
-    repeat = fmt::format("collide_fuzz --seeds {} --only {}", look.seed, kind);
+    const std::string repeat = fmt::format("collide_fuzz --seeds {} --only {}", look.seed, kind);
+    last_words = fmt::format("collide_fuzz: repeat with: {}\n", repeat);
     Outcome outcome;
     try {
       outcome = trial();
@@ -63,7 +63,8 @@ int fuzz(int argc, char** argv) {
   line.option("--only", only, "serial, or chares (default: both)").one_of({"serial", "chares"});
   if (!line.parse(argc, argv, "")) return 0;
   const apps::Seeds seeds = apps::parse_seeds(given_seeds);
-  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(signal, &on_crash);
+  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT, SIGHUP})
+    std::signal(signal, &on_signal);
   Tally tally;
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     const Look look = collide_fuzz::look_of(seed);
