@@ -99,6 +99,10 @@ for list in tests/mutants/*.mutants; do
   done <"$list"
   flush
 done
+if ((n + ${#survivors[@]} == 0)); then
+  echo "mutants.sh: no bug is named like ${patterns[*]}: see the lists in tests/mutants" >&2
+  exit 2
+fi
 echo "$n bugs planted, ${#survivors[@]} not caught"
 for one in ${survivors[@]+"${survivors[@]}"}; do echo "  not caught: $one"; done
 ((${#survivors[@]} == 0))
