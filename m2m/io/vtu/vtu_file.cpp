@@ -1,7 +1,7 @@
-#include "m2m/io/vtu_file.hpp"
+#include "m2m/io/vtu/vtu_file.hpp"
 
 #include "m2m/io/field_reader.hpp"
-#include "m2m/io/xml_scanner.hpp"
+#include "m2m/io/vtu/xml_scanner.hpp"
 
 #include <algorithm>
 #include <array>

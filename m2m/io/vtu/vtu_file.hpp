@@ -3,7 +3,7 @@
 // and compressed by zlib; other compressors are refused by name.
 #pragma once
 
-#include "m2m/io/vtu_data.hpp"
+#include "m2m/io/vtu/vtu_data.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cstddef>

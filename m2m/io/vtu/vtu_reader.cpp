@@ -1,8 +1,8 @@
-#include "m2m/io/vtu_reader.hpp"
+#include "m2m/io/vtu/vtu_reader.hpp"
 
 #include "m2m/io/field_reader.hpp"
-#include "m2m/io/vtu_cells.hpp"
-#include "m2m/io/vtu_file.hpp"
+#include "m2m/io/vtu/vtu_cells.hpp"
+#include "m2m/io/vtu/vtu_file.hpp"
 
 #include <algorithm>
 #include <array>

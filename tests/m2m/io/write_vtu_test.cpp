@@ -3,8 +3,8 @@
 #include "m2m/field_file.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
-#include "tests/m2m/damage.hpp"
 #include "tests/m2m/field_values.hpp"
+#include "tests/m2m/io/damage.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -342,7 +342,7 @@ TEST_CASE("VTK reads what is written, and every encoding that VTK writes is read
   const std::array in_tets{awkward_field("rho", mesh.n_tets(), 1, 2)};
   write_vtu(scratch.path("out.vtu"), mesh, at_vertices, in_tets, 0.5);
   const std::string command =
-      fmt::format("/usr/bin/python3 {}/rewrite_vtu.py {}", TESS_M2M_TESTS, scratch.path(""));
+      fmt::format("/usr/bin/python3 {}/io/rewrite_vtu.py {}", TESS_M2M_TESTS, scratch.path(""));
   REQUIRE(std::system(command.c_str()) == 0);
   for (const char* mode : {"ascii", "binary", "appended_raw", "appended_base64"}) {
     for (const char* more : {"", "_zlib", "_wide", "_big"}) {

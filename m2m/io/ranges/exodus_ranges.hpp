@@ -1,7 +1,7 @@
 // Ranges of an ExodusII file.
 #pragma once
 
-#include "m2m/io/mesh_ranges.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 
 #include <memory>
 #include <string>

@@ -1,8 +1,8 @@
-#include "m2m/io/exodus_reader.hpp"
+#include "m2m/io/exodus/exodus_reader.hpp"
 
-#include "m2m/io/exodus_elements.hpp"
-#include "m2m/io/exodus_file.hpp"
-#include "m2m/io/exodus_turn.hpp"
+#include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
+#include "m2m/io/exodus/exodus_turn.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-#include "m2m/io/gmsh_reader.hpp"
+#include "m2m/io/gmsh/gmsh_reader.hpp"
 
-#include "m2m/io/gmsh_elements.hpp"
-#include "m2m/io/gmsh_format.hpp"
-#include "m2m/io/gmsh_scanner.hpp"
+#include "m2m/io/gmsh/gmsh_elements.hpp"
+#include "m2m/io/gmsh/gmsh_format.hpp"
+#include "m2m/io/gmsh/gmsh_scanner.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
-#include "m2m/io/mesh_ranges.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 
-#include "m2m/io/exodus_ranges.hpp"
 #include "m2m/io/file_bytes.hpp"
-#include "m2m/io/gmsh_ranges.hpp"
+#include "m2m/io/ranges/exodus_ranges.hpp"
+#include "m2m/io/ranges/gmsh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 

@@ -1,8 +1,8 @@
-#include "m2m/io/gmsh_ranges.hpp"
+#include "m2m/io/ranges/gmsh_ranges.hpp"
 
 #include "m2m/io/file_bytes.hpp"
-#include "m2m/io/gmsh_elements.hpp"
-#include "m2m/io/gmsh_scanner.hpp"
+#include "m2m/io/gmsh/gmsh_elements.hpp"
+#include "m2m/io/gmsh/gmsh_scanner.hpp"
 
 #include <algorithm>
 #include <array>

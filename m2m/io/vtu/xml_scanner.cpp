@@ -1,4 +1,4 @@
-#include "m2m/io/xml_scanner.hpp"
+#include "m2m/io/vtu/xml_scanner.hpp"
 
 #include <array>
 #include <utility>

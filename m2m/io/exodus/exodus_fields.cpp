@@ -1,5 +1,5 @@
-#include "m2m/io/exodus_elements.hpp"
-#include "m2m/io/exodus_file.hpp"
+#include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
 #include "m2m/io/field_reader.hpp"
 #include "runtime/core/error.hpp"
 

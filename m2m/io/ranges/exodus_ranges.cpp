@@ -1,8 +1,8 @@
-#include "m2m/io/exodus_ranges.hpp"
+#include "m2m/io/ranges/exodus_ranges.hpp"
 
-#include "m2m/io/exodus_elements.hpp"
-#include "m2m/io/exodus_turn.hpp"
-#include "m2m/io/netcdf_header.hpp"
+#include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_turn.hpp"
+#include "m2m/io/exodus/netcdf_header.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

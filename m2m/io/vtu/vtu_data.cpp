@@ -1,4 +1,4 @@
-#include "m2m/io/vtu_data.hpp"
+#include "m2m/io/vtu/vtu_data.hpp"
 
 #include <algorithm>
 #include <array>

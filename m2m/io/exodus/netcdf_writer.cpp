@@ -1,4 +1,4 @@
-#include "m2m/io/netcdf_writer.hpp"
+#include "m2m/io/exodus/netcdf_writer.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
-#include "m2m/io/exodus_file.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
 
-#include "m2m/io/netcdf_header.hpp"
+#include "m2m/io/exodus/netcdf_header.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

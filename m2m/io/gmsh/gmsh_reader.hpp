@@ -3,7 +3,7 @@
 // gives one line of error.
 #pragma once
 
-#include "m2m/io/gmsh_format.hpp"
+#include "m2m/io/gmsh/gmsh_format.hpp"
 #include "m2m/mesh.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "m2m/io/field_reader.hpp"
-#include "m2m/io/gmsh_format.hpp"
-#include "m2m/io/gmsh_reader.hpp"
+#include "m2m/io/gmsh/gmsh_format.hpp"
+#include "m2m/io/gmsh/gmsh_reader.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

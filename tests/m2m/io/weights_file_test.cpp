@@ -1,10 +1,10 @@
 #include "m2m/weights_file.hpp"
 
-#include "m2m/io/netcdf_header.hpp"
-#include "m2m/io/netcdf_writer.hpp"
+#include "m2m/io/exodus/netcdf_header.hpp"
+#include "m2m/io/exodus/netcdf_writer.hpp"
 #include "m2m/kuhn.hpp"
-#include "tests/m2m/damage.hpp"
 #include "tests/m2m/field_values.hpp"
+#include "tests/m2m/io/damage.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

@@ -1,4 +1,4 @@
-#include "m2m/io/netcdf_header.hpp"
+#include "m2m/io/exodus/netcdf_header.hpp"
 
 #include "runtime/core/error.hpp"
 

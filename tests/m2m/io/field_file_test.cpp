@@ -4,9 +4,9 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
 #include "m2m/write_vtu.hpp"
-#include "tests/m2m/damage.hpp"
 #include "tests/m2m/field_values.hpp"
-#include "tests/m2m/gmsh_text.hpp"
+#include "tests/m2m/io/damage.hpp"
+#include "tests/m2m/io/gmsh_text.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -2,7 +2,7 @@
 // which it names nodes and elements.
 #pragma once
 
-#include "m2m/io/gmsh_scanner.hpp"
+#include "m2m/io/gmsh/gmsh_scanner.hpp"
 #include "m2m/mesh.hpp"
 
 #include <algorithm>
