@@ -1,6 +1,6 @@
 // Files on disk: read, and compressed or not by their names.
-#include "runtime/balance/brotli.hpp"
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/brotli.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/unknown_loads.hpp"
 #include "runtime/core/error.hpp"
 

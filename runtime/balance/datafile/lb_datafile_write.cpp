@@ -1,4 +1,4 @@
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 
 #include <map>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "runtime/balance/brotli.hpp"
+#include "runtime/balance/datafile/brotli.hpp"
 
 #include "runtime/core/error.hpp"
 
