@@ -3,7 +3,7 @@
 // the rule. All take n_steps steps.
 #pragma once
 
-#include "apps/bench/dn_scene.hpp"
+#include "apps/bench/dn_field/dn_scene.hpp"
 #include "collide/dn_field/rules.hpp"
 
 namespace bench {

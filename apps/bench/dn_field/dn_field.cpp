@@ -8,9 +8,9 @@
 // machine affects both alike; 105 is allowed.
 //
 //     bench_dn_field --pes 1 [--particles 1000000] [--repeat 5]
-#include "apps/bench/dn_by_hand.hpp"
+#include "apps/bench/dn_field/dn_by_hand.hpp"
+#include "apps/bench/dn_field/thread_watch.hpp"
 #include "apps/bench/report.hpp"
-#include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/stepper.hpp"

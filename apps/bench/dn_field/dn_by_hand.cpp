@@ -1,4 +1,4 @@
-#include "apps/bench/dn_by_hand.hpp"
+#include "apps/bench/dn_field/dn_by_hand.hpp"
 
 #include "collide/dn_field/field/sample.hpp"
 #include "collide/dn_field/geometry/lanes.hpp"

@@ -1,7 +1,7 @@
-#include "apps/bench/openvdb_look_up.hpp"
+#include "apps/bench/dn_field/openvdb_look_up.hpp"
 
-#include "apps/bench/openvdb_field.hpp"
-#include "apps/bench/thread_watch.hpp"
+#include "apps/bench/dn_field/openvdb_field.hpp"
+#include "apps/bench/dn_field/thread_watch.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "runtime/core/check.hpp"
 

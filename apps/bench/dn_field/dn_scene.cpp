@@ -1,4 +1,4 @@
-#include "apps/bench/dn_scene.hpp"
+#include "apps/bench/dn_field/dn_scene.hpp"
 
 #include "collide/dn_field/shapes.hpp"
 

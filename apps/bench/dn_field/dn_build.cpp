@@ -6,10 +6,10 @@
 // is the limit of ours. Figures of other machines stand in apps/bench/results/.
 //
 //     bench_dn_build --repeat 5
-#include "apps/bench/openvdb_field.hpp"
-#include "apps/bench/openvdb_look_up.hpp"
+#include "apps/bench/dn_field/openvdb_field.hpp"
+#include "apps/bench/dn_field/openvdb_look_up.hpp"
+#include "apps/bench/dn_field/thread_watch.hpp"
 #include "apps/bench/report.hpp"
-#include "apps/bench/thread_watch.hpp"
 #include "apps/command_line.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"

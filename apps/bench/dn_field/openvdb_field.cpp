@@ -1,4 +1,4 @@
-#include "apps/bench/openvdb_field.hpp"
+#include "apps/bench/dn_field/openvdb_field.hpp"
 
 #ifdef TESS_WITH_OPENVDB
 #include <openvdb/openvdb.h>
