@@ -1,10 +1,10 @@
 #include "m2m/read_mesh.hpp"
 
-#include "m2m/io/exodus_reader.hpp"
+#include "m2m/io/exodus/exodus_reader.hpp"
 #include "m2m/io/file_bytes.hpp"
 #include "m2m/io/file_format.hpp"
-#include "m2m/io/gmsh_reader.hpp"
-#include "m2m/io/vtu_reader.hpp"
+#include "m2m/io/gmsh/gmsh_reader.hpp"
+#include "m2m/io/vtu/vtu_reader.hpp"
 #include "m2m/kuhn.hpp"
 
 #include <string_view>

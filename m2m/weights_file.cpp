@@ -1,8 +1,8 @@
 #include "m2m/weights_file.hpp"
 
+#include "m2m/io/exodus/netcdf_header.hpp"
+#include "m2m/io/exodus/netcdf_writer.hpp"
 #include "m2m/io/file_bytes.hpp"
-#include "m2m/io/netcdf_header.hpp"
-#include "m2m/io/netcdf_writer.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 

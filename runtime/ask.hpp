@@ -16,7 +16,7 @@
 #pragma once
 
 #include "runtime/callback.hpp"
-#include "runtime/collections/call.hpp"
+#include "runtime/collections/arrays/call.hpp"
 #include "runtime/core/duration.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/scheduler/pe_action.hpp"

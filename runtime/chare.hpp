@@ -7,8 +7,8 @@
 // <class Ar> void serialize(Ar& ar)`.
 #pragma once
 
-#include "runtime/collections/array_of.hpp"
-#include "runtime/collections/contribution.hpp"
+#include "runtime/collections/arrays/array_of.hpp"
+#include "runtime/collections/arrays/contribution.hpp"
 #include "runtime/task.hpp"
 
 namespace tess {

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "runtime/ask.hpp"
-#include "runtime/collections/typed_array.hpp"
+#include "runtime/collections/arrays/typed_array.hpp"
 #include "runtime/priority.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/timer.hpp"

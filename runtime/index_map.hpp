@@ -22,7 +22,7 @@
 #pragma once
 
 #include "runtime/array.hpp"
-#include "runtime/collections/index_map.hpp"
+#include "runtime/collections/elements/index_map.hpp"
 
 #include <concepts>
 #include <cstdint>

@@ -14,7 +14,7 @@
 #pragma once
 
 #include "runtime/ask.hpp"
-#include "runtime/collections/element_message.hpp"
+#include "runtime/collections/elements/element_message.hpp"
 #include "runtime/messages/entry_attributes.hpp"
 
 #include <utility>

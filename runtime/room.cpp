@@ -1,8 +1,8 @@
 #include "runtime/room.hpp"
 
 #include "runtime/core/check.hpp"
-#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/pe_action.hpp"
+#include "runtime/scheduler/queues/outbox.hpp"
 
 namespace tess::detail {
 namespace {

@@ -1,6 +1,6 @@
 #include "runtime/run.hpp"
 
-#include "runtime/collections/element.hpp"
+#include "runtime/collections/elements/element.hpp"
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"

@@ -24,7 +24,7 @@
 #include "runtime/core/duration.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/machine.hpp"
-#include "runtime/scheduler/runtime_options.hpp"
+#include "runtime/scheduler/interfaces/runtime_options.hpp"
 #include "runtime/task.hpp"
 
 #include <functional>

@@ -24,9 +24,9 @@
 // element, as tess::gather does. The epoch of a contribution waits for its result.
 #pragma once
 
+#include "runtime/collections/arrays/contribution.hpp"
 #include "runtime/collections/collection_action.hpp"
-#include "runtime/collections/contribution.hpp"
-#include "runtime/collections/kept_scans.hpp"
+#include "runtime/collections/reductions/kept_scans.hpp"
 #include "runtime/core/algorithm.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/reduction.hpp"

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "runtime/array.hpp"
-#include "runtime/collections/section_lists.hpp"
+#include "runtime/collections/arrays/section_lists.hpp"
 
 #include <type_traits>
 #include <unordered_map>

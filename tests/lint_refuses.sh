@@ -53,7 +53,7 @@ run_check || { echo "refuses the sound tree"; exit 1; }
 case $check in
   layers)
     refuses runtime/core/number.hpp '#include "runtime/scheduler/pe.hpp"' 'runtime/core may not include runtime/scheduler'
-    refuses runtime/scheduler/queue.hpp '#include "runtime/collections/array_of.hpp"' 'runtime/scheduler may not include runtime/collections'
+    refuses runtime/scheduler/queue.hpp '#include "runtime/collections/arrays/array_of.hpp"' 'runtime/scheduler may not include runtime/collections'
     refuses runtime/scheduler/queue.hpp '#include "runtime/chare.hpp"' 'runtime/scheduler may not include runtime'
     refuses collide/serial/grid.cpp '#include "m2m/mesh.hpp"' 'collide/serial may not include m2m/vocabulary'
     refuses apps/hello/main.cpp '#include "runtime/scheduler/pe.hpp"' 'apps/hello may not include runtime/scheduler'

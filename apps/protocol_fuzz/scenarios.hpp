@@ -11,41 +11,41 @@
 
 namespace tess::fuzz {
 
-void create_at_once(Trial& trial);       // create.cpp
-void message_first(Trial& trial);        // create.cpp
-void lives(Trial& trial);                // lives.cpp
-void broadcasts(Trial& trial);           // broadcasts.cpp
-void constructors(Trial& trial);         // constructors.cpp
-void rounds(Trial& trial);               // rounds.cpp
-void newborns(Trial& trial);             // newborns.cpp
-void refinement(Trial& trial);           // newborns.cpp
-void sections(Trial& trial);             // sections.cpp
-void sections_end(Trial& trial);         // sections_end.cpp
-void scans(Trial& trial);                // scans.cpp
-void tour(Trial& trial);                 // tour.cpp
-void epochs(Trial& trial);               // epochs.cpp
-void pauses(Trial& trial);               // pauses.cpp
-void epoch_migrations(Trial& trial);     // epoch_migrations.cpp
-void flood_exit(Trial& trial);           // exits.cpp
-void mailboxes(Trial& trial);            // mailboxes.cpp
-void asks(Trial& trial);                 // asks.cpp
+void create_at_once(Trial& trial);       // elements/create.cpp
+void message_first(Trial& trial);        // elements/create.cpp
+void lives(Trial& trial);                // elements/lives.cpp
+void broadcasts(Trial& trial);           // collectives/broadcasts.cpp
+void constructors(Trial& trial);         // elements/constructors.cpp
+void rounds(Trial& trial);               // collectives/rounds.cpp
+void newborns(Trial& trial);             // elements/newborns.cpp
+void refinement(Trial& trial);           // elements/newborns.cpp
+void sections(Trial& trial);             // collectives/sections.cpp
+void sections_end(Trial& trial);         // collectives/sections_end.cpp
+void scans(Trial& trial);                // collectives/scans.cpp
+void tour(Trial& trial);                 // elements/tour.cpp
+void epochs(Trial& trial);               // completion/epochs.cpp
+void pauses(Trial& trial);               // completion/pauses.cpp
+void epoch_migrations(Trial& trial);     // completion/epoch_migrations.cpp
+void flood_exit(Trial& trial);           // completion/exits.cpp
+void mailboxes(Trial& trial);            // messages/mailboxes.cpp
+void asks(Trial& trial);                 // messages/asks.cpp
 void all_at_once(Trial& trial);          // all_at_once.cpp
-void timers(Trial& trial);               // timers.cpp
-void payloads(Trial& trial);             // payloads.cpp
-void floods(Trial& trial);               // floods.cpp
-void priorities(Trial& trial);           // priorities.cpp
-void process_groups(Trial& trial);       // process_groups.cpp
-void deadlocks(Trial& trial);            // ends.cpp
-void exceptions(Trial& trial);           // ends.cpp
-void dead_letters(Trial& trial);         // ends.cpp
-void destroyed(Trial& trial);            // destroyed.cpp
-void groups(Trial& trial);               // groups.cpp
-void balance_rounds(Trial& trial);       // balance.cpp
-void balance_barrier(Trial& trial);      // balance_barrier.cpp
-void balance_rotate(Trial& trial);       // balance.cpp
-void balance_first_round(Trial& trial);  // balance.cpp
-void balance_periodic(Trial& trial);     // balance.cpp
-void balance_epochs(Trial& trial);       // balance_epochs.cpp
+void timers(Trial& trial);               // messages/timers.cpp
+void payloads(Trial& trial);             // messages/payloads.cpp
+void floods(Trial& trial);               // messages/floods.cpp
+void priorities(Trial& trial);           // messages/priorities.cpp
+void process_groups(Trial& trial);       // collectives/process_groups.cpp
+void deadlocks(Trial& trial);            // completion/ends.cpp
+void exceptions(Trial& trial);           // completion/ends.cpp
+void dead_letters(Trial& trial);         // completion/ends.cpp
+void destroyed(Trial& trial);            // elements/destroyed.cpp
+void groups(Trial& trial);               // collectives/groups.cpp
+void balance_rounds(Trial& trial);       // elements/balance.cpp
+void balance_barrier(Trial& trial);      // elements/balance_barrier.cpp
+void balance_rotate(Trial& trial);       // elements/balance.cpp
+void balance_first_round(Trial& trial);  // elements/balance.cpp
+void balance_periodic(Trial& trial);     // elements/balance.cpp
+void balance_epochs(Trial& trial);       // elements/balance_epochs.cpp
 
 struct Scenario {
   std::string_view name;

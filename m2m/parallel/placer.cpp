@@ -1,6 +1,6 @@
 #include "m2m/parallel/placer.hpp"
 
-#include "m2m/io/mesh_ranges.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/sort_unique.hpp"

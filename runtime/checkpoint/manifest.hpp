@@ -6,7 +6,7 @@
 #include "runtime/collections/membership.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/index.hpp"
-#include "runtime/scheduler/ended_collections.hpp"
+#include "runtime/scheduler/tables/ended_collections.hpp"
 
 #include <cstdint>
 #include <string>

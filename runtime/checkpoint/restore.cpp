@@ -6,7 +6,7 @@
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/checkpoint/save.hpp"
 #include "runtime/collections/collection.hpp"
-#include "runtime/collections/index_map.hpp"
+#include "runtime/collections/elements/index_map.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/scheduler/runtime.hpp"
 

@@ -5,7 +5,7 @@
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/collections/collection.hpp"
-#include "runtime/collections/index_map.hpp"
+#include "runtime/collections/elements/index_map.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/report/waiting.hpp"
 #include "runtime/scheduler/runtime.hpp"

@@ -1,12 +1,12 @@
 #include "runtime/collections/collection.hpp"
 
-#include "runtime/collections/balance_record.hpp"
-#include "runtime/collections/index_map.hpp"
-#include "runtime/collections/kept_scans.hpp"
+#include "runtime/collections/elements/balance_record.hpp"
+#include "runtime/collections/elements/index_map.hpp"
+#include "runtime/collections/reductions/kept_scans.hpp"
 #include "runtime/collections/sections.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
-#include "runtime/scheduler/element_mover.hpp"
+#include "runtime/scheduler/interfaces/element_mover.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
 namespace tess::detail {

@@ -4,7 +4,7 @@
 
 #include "runtime/collections/collection_hosts.hpp"
 #include "runtime/collections/collection_kind.hpp"
-#include "runtime/collections/element.hpp"
+#include "runtime/collections/elements/element.hpp"
 #include "runtime/collections/membership.hpp"
 #include "runtime/scheduler/pe.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/collections/broadcast_log.hpp"
-#include "runtime/collections/reduction_tree.hpp"
+#include "runtime/collections/reductions/reduction_tree.hpp"
 
 namespace tess::detail {
 

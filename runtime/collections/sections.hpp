@@ -10,8 +10,8 @@
 #pragma once
 
 #include "runtime/collections/membership.hpp"
-#include "runtime/collections/section_reduction.hpp"
-#include "runtime/scheduler/ended_collections.hpp"
+#include "runtime/collections/reductions/section_reduction.hpp"
+#include "runtime/scheduler/tables/ended_collections.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -13,8 +13,8 @@
 #pragma once
 
 #include "runtime/monitor/sample.hpp"
-#include "runtime/scheduler/process_monitor.hpp"
-#include "runtime/scheduler/runtime_options.hpp"
+#include "runtime/scheduler/interfaces/process_monitor.hpp"
+#include "runtime/scheduler/interfaces/runtime_options.hpp"
 
 #include <cstdint>
 #include <memory>

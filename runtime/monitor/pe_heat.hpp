@@ -15,8 +15,8 @@
 
 #include "runtime/monitor/heat_cells.hpp"
 #include "runtime/monitor/heat_grid.hpp"
+#include "runtime/scheduler/interfaces/scope_listener.hpp"
 #include "runtime/scheduler/pe.hpp"
-#include "runtime/scheduler/scope_listener.hpp"
 
 #include <cstdint>
 #include <map>

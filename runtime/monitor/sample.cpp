@@ -1,7 +1,7 @@
 #include "runtime/monitor/sample.hpp"
 
 #include "runtime/base/usable_memory.hpp"
-#include "runtime/scheduler/idle_time.hpp"
+#include "runtime/scheduler/measure/idle_time.hpp"
 
 namespace tess::detail {
 PeSample sample_of(Pe& pe) {

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "runtime/monitor/board.hpp"
-#include "runtime/scheduler/runtime_options.hpp"
+#include "runtime/scheduler/interfaces/runtime_options.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>

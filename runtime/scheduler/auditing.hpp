@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runtime/report/audit.hpp"
+#include "runtime/scheduler/interfaces/runtime_options.hpp"
 #include "runtime/scheduler/pe.hpp"
-#include "runtime/scheduler/runtime_options.hpp"
 
 #include <cstdint>
 

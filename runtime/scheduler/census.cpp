@@ -1,10 +1,10 @@
 // What waits on a PE, for the reports of a deadlock, a hang and a signal: coroutines, collections,
 // epochs and messages. Reads the state of the PE on its own thread and changes nothing.
 #include "runtime/report/waiting.hpp"
-#include "runtime/scheduler/collection_table.hpp"
-#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/pe.hpp"
+#include "runtime/scheduler/queues/outbox.hpp"
 #include "runtime/scheduler/runtime.hpp"
+#include "runtime/scheduler/tables/collection_table.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -2,9 +2,9 @@
 
 #include "runtime/core/cpu_clock.hpp"
 #include "runtime/report/pe_watch.hpp"
-#include "runtime/scheduler/load_record.hpp"
+#include "runtime/scheduler/interfaces/scope_listener.hpp"
+#include "runtime/scheduler/measure/load_record.hpp"
 #include "runtime/scheduler/pe.hpp"
-#include "runtime/scheduler/scope_listener.hpp"
 
 #include <algorithm>
 

@@ -5,12 +5,12 @@
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/auditing.hpp"
 #include "runtime/scheduler/block.hpp"
-#include "runtime/scheduler/collection_table.hpp"
-#include "runtime/scheduler/element_mover.hpp"
-#include "runtime/scheduler/future_table.hpp"
-#include "runtime/scheduler/idle_time.hpp"
-#include "runtime/scheduler/outbox.hpp"
+#include "runtime/scheduler/interfaces/element_mover.hpp"
+#include "runtime/scheduler/measure/idle_time.hpp"
+#include "runtime/scheduler/queues/outbox.hpp"
 #include "runtime/scheduler/runtime.hpp"
+#include "runtime/scheduler/tables/collection_table.hpp"
+#include "runtime/scheduler/tables/future_table.hpp"
 
 #include <algorithm>
 #include <new>

@@ -9,13 +9,13 @@
 #include "runtime/core/hash.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/completion_messages.hpp"
-#include "runtime/scheduler/ended_collections.hpp"
-#include "runtime/scheduler/hosted_collection.hpp"
+#include "runtime/scheduler/interfaces/hosted_collection.hpp"
+#include "runtime/scheduler/measure/trace.hpp"
 #include "runtime/scheduler/meter.hpp"
-#include "runtime/scheduler/ready_queue.hpp"
-#include "runtime/scheduler/suspended.hpp"
+#include "runtime/scheduler/queues/ready_queue.hpp"
+#include "runtime/scheduler/tables/ended_collections.hpp"
+#include "runtime/scheduler/tables/suspended.hpp"
 #include "runtime/scheduler/timers.hpp"
-#include "runtime/scheduler/trace.hpp"
 
 #include <atomic>
 #include <cstdint>

@@ -2,9 +2,9 @@
 // PE, and repaid once they have run.
 #include "runtime/core/check.hpp"
 #include "runtime/messages/read_all.hpp"
-#include "runtime/scheduler/outbox.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/pe_action.hpp"
+#include "runtime/scheduler/queues/outbox.hpp"
 
 #include <numeric>
 

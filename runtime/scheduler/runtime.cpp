@@ -2,7 +2,7 @@
 
 #include "runtime/core/check.hpp"
 #include "runtime/report/pe_watch.hpp"
-#include "runtime/scheduler/critical_path.hpp"
+#include "runtime/scheduler/measure/critical_path.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 #include <algorithm>

@@ -18,10 +18,10 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/report/audit.hpp"
 #include "runtime/report/waiting.hpp"
+#include "runtime/scheduler/interfaces/process_monitor.hpp"
+#include "runtime/scheduler/interfaces/process_service.hpp"
+#include "runtime/scheduler/interfaces/runtime_options.hpp"
 #include "runtime/scheduler/pe.hpp"
-#include "runtime/scheduler/process_monitor.hpp"
-#include "runtime/scheduler/process_service.hpp"
-#include "runtime/scheduler/runtime_options.hpp"
 
 #include <atomic>
 #include <cstddef>

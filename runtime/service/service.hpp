@@ -24,7 +24,7 @@
 // The PEs call it, and it posts messages to them; it runs no user code.
 #pragma once
 
-#include "runtime/scheduler/process_service.hpp"
+#include "runtime/scheduler/interfaces/process_service.hpp"
 
 #include <memory>
 

@@ -1,9 +1,9 @@
 #include "runtime/testing/decisions.hpp"
 
-#include "runtime/collections/element.hpp"
+#include "runtime/collections/elements/element.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/messages/envelope.hpp"
-#include "runtime/scheduler/outbox.hpp"
+#include "runtime/scheduler/queues/outbox.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -6,7 +6,7 @@
 
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/adversary.hpp"
-#include "runtime/scheduler/element_mover.hpp"
+#include "runtime/scheduler/interfaces/element_mover.hpp"
 #include "runtime/testing/shrink.hpp"
 
 #include <array>

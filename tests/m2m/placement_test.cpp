@@ -2,7 +2,7 @@
 // same bytes.
 #include "m2m/placement.hpp"
 
-#include "m2m/io/mesh_ranges.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/partition/curve_cut.hpp"
 #include "m2m/partition/id_set.hpp"

@@ -1,7 +1,7 @@
 #include "apps/lb_lab/output/replay.hpp"
 
+#include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/fold.hpp"
-#include "runtime/balance/lb_datafile.hpp"
 #include "runtime/balance/memory.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategy.hpp"

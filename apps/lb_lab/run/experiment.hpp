@@ -3,7 +3,7 @@
 
 #include "apps/lb_lab/run/station.hpp"
 #include "runtime/balance.hpp"
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance_options.hpp"
 #include "runtime/task.hpp"
 

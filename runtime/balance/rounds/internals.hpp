@@ -1,12 +1,12 @@
 // What the balancer uses of the runtime's internals, by its short name in this namespace.
 #pragma once
 
-#include "runtime/collections/balance_record.hpp"
 #include "runtime/collections/collection.hpp"
 #include "runtime/collections/collection_action.hpp"
-#include "runtime/collections/element.hpp"
-#include "runtime/collections/reduction_tree.hpp"
-#include "runtime/collections/typed_partial.hpp"
+#include "runtime/collections/elements/balance_record.hpp"
+#include "runtime/collections/elements/element.hpp"
+#include "runtime/collections/reductions/reduction_tree.hpp"
+#include "runtime/collections/reductions/typed_partial.hpp"
 #include "runtime/core/registry.hpp"
 #include "runtime/scheduler/meter.hpp"
 

@@ -2,7 +2,7 @@
 // refuses.
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"

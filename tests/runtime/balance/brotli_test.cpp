@@ -1,7 +1,7 @@
-#include "runtime/balance/brotli.hpp"
+#include "runtime/balance/datafile/brotli.hpp"
 
 #include "apps/bench/balance_scenes.hpp"
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/runtime/balance/memory_scenes.hpp"

@@ -1,4 +1,4 @@
-#include "runtime/balance/lb_datafile.hpp"
+#include "runtime/balance/datafile/lb_datafile.hpp"
 
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/core/error.hpp"

@@ -9,7 +9,7 @@
 // The oracles: a result has each contribution to its number once, and none comes later; no epoch of a
 // contribution is done before the result is delivered. In rounds the element that receives
 // broadcast b + 1 contributes to reduction b.
-#include "runtime/collections/reduction_tree.hpp"
+#include "runtime/collections/reductions/reduction_tree.hpp"
 
 #include "tests/runtime/collections/network.hpp"
 #include "tests/support/catch.hpp"

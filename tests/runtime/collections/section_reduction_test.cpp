@@ -4,7 +4,7 @@
 //
 // The oracles: a result has the contribution of each member that was not destroyed before, once, and
 // none comes later; the epochs of its contributions are open until then, and done afterwards.
-#include "runtime/collections/section_reduction.hpp"
+#include "runtime/collections/reductions/section_reduction.hpp"
 
 #include "tests/runtime/collections/network.hpp"
 #include "tests/support/catch.hpp"

@@ -1,4 +1,4 @@
-#include "runtime/collections/section_roster.hpp"
+#include "runtime/collections/arrays/section_roster.hpp"
 
 #include "tests/support/catch.hpp"
 

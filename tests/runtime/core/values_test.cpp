@@ -1,7 +1,7 @@
 // The parts of the runtime that need no run: serialisation, indices, names, reduction operations.
 #include "runtime/core/round_trip.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/scheduler/ready_queue.hpp"
+#include "runtime/scheduler/queues/ready_queue.hpp"
 #include "tests/support/catch.hpp"
 
 #include <boost/container/small_vector.hpp>

@@ -1,4 +1,4 @@
-#include "runtime/scheduler/future_table.hpp"
+#include "runtime/scheduler/tables/future_table.hpp"
 
 #include "tests/support/catch.hpp"
 

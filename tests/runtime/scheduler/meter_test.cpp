@@ -3,7 +3,7 @@
 
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
-#include "runtime/scheduler/load_record.hpp"
+#include "runtime/scheduler/measure/load_record.hpp"
 #include "tests/support/catch.hpp"
 
 #include <chrono>

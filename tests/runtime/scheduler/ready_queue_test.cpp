@@ -1,5 +1,5 @@
 // The ready queue by itself, against a sorted list.
-#include "runtime/scheduler/ready_queue.hpp"
+#include "runtime/scheduler/queues/ready_queue.hpp"
 
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"

@@ -1,0 +1,140 @@
+#include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
+#include "m2m/io/field_reader.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <utility>
+
+namespace tess::m2m {
+namespace {
+
+/// Nodal and element variables. A variable is a scalar. NAME_x, NAME_y and NAME_z in a row are also
+/// one field of three components, NAME, as ParaView shows them.
+class ExodusFields : public FieldReader, private ExodusFile {
+ public:
+  ExodusFields(const std::string& path, std::string_view bytes) : ExodusFile(path, bytes) {
+    set_name_length();
+    const auto n_steps = static_cast<std::size_t>(count(EX_INQ_TIME, "number of time steps"));
+    times_.resize(n_steps);
+    if (n_steps > 0) check(ex_get_all_times(id_, times_.data()), "ex_get_all_times");
+    add_fields(FieldPlace::vertices);
+    add_fields(FieldPlace::tets);
+  }
+
+  [[nodiscard]] std::vector<double> read(const TetMesh& mesh, std::size_t field,
+                                         std::size_t step) const override {
+    const bool nodal = fields_[field].place == FieldPlace::vertices;
+    const std::vector<int>& variables = variables_[field];
+    const std::size_t n_components = variables.size();
+    std::vector<double> values;
+    for (std::size_t c = 0; c < n_components; ++c) {
+      const std::vector<double> column =
+          nodal ? at_vertices(mesh, variables[c], step) : in_elements(field, variables[c], step);
+      values.resize(column.size() * n_components);
+      for (std::size_t i = 0; i < column.size(); ++i) values[i * n_components + c] = column[i];
+    }
+    return nodal ? values : values_of_tets(mesh, std::move(values), n_components, path_);
+  }
+
+ private:
+  static constexpr ex_entity_type type_of(FieldPlace place) {
+    return place == FieldPlace::vertices ? EX_NODAL : EX_ELEM_BLOCK;
+  }
+
+  void add_fields(FieldPlace place) {
+    int n = 0;
+    check(ex_get_variable_param(id_, type_of(place), &n), "ex_get_variable_param");
+    if (n < 0 || n > most()) damaged("number of variables", -1);
+    std::vector<std::string> names;
+    for (int i = 1; i <= n; ++i) {
+      std::array<char, 512> name{};
+      check(ex_get_variable_name(id_, type_of(place), i, name.data()), "ex_get_variable_name");
+      names.push_back(clean_name(name.data()));
+    }
+    for (int i = 0; i < n; ++i) {
+      if (const auto stem = vector_at(names, i)) {
+        add({*stem, place, 3}, {i + 1, i + 2, i + 3});
+        for (int c = i; c < i + 3; ++c) add({names[at(c)], place, 1, true}, {c + 1});
+        i += 2;
+      } else {
+        add({names[at(i)], place}, {i + 1});
+      }
+    }
+  }
+  void add(FileField field, std::vector<int> variables) {
+    fields_.push_back(std::move(field));
+    variables_.push_back(std::move(variables));
+  }
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  /// The name of the vector of which this variable and the next two are the components.
+  static std::optional<std::string> vector_at(const std::vector<std::string>& names, int first) {
+    if (at(first) + 3 > names.size()) return std::nullopt;
+    const std::string stem = names[at(first)].substr(0, names[at(first)].size() - 1);
+    if (stem.size() < 2 || stem.back() != '_') return std::nullopt;
+    for (int c = 0; c < 3; ++c) {
+      const std::string& name = names[at(first + c)];
+      if (name.size() != stem.size() + 1 || !name.starts_with(stem) ||
+          std::tolower(static_cast<unsigned char>(name.back())) != "xyz"[c])
+        return std::nullopt;
+    }
+    return stem.substr(0, stem.size() - 1);
+  }
+
+  [[nodiscard]] std::vector<double> at_vertices(const TetMesh& mesh, int variable,
+                                                std::size_t step) const {
+    const std::int64_t n = count(EX_INQ_NODES, "number of nodes");
+    check_n_points(mesh, n, path_);
+    std::vector<double> values(static_cast<std::size_t>(n));
+    if (n > 0)
+      check(ex_get_var(id_, static_cast<int>(step + 1), EX_NODAL, variable, 1, n, values.data()),
+            "ex_get_var");
+    return values;
+  }
+
+  /// Per element with a volume.
+  [[nodiscard]] std::vector<double> in_elements(std::size_t field, int variable,
+                                                std::size_t step) const {
+    const std::int64_t n_blocks = count(EX_INQ_ELEM_BLK, "number of blocks");
+    int n_variables = 0;
+    check(ex_get_variable_param(id_, EX_ELEM_BLOCK, &n_variables), "ex_get_variable_param");
+    if (n_variables < variable || n_variables > most() / std::max<std::int64_t>(n_blocks, 1))
+      damaged("number of variables", -1);
+    std::vector<int> has(static_cast<std::size_t>(n_blocks) * at(n_variables));
+    if (!has.empty())
+      check(ex_get_truth_table(id_, EX_ELEM_BLOCK, static_cast<int>(n_blocks), n_variables,
+                               has.data()),
+            "ex_get_truth_table");
+    std::vector<double> values;
+    std::size_t row = 0;
+    for (const std::int64_t id : ids_of(EX_ELEM_BLOCK, n_blocks)) {
+      const ElementBlock block = block_of(id);
+      const bool is_there = has[row++ * at(n_variables) + at(variable - 1)] != 0;
+      if (block.n_elements == 0 || !exodus_volume(block.type, block.n_vertices_each)) continue;
+      if (block.n_elements < 0 || block.n_elements > most()) damaged("number of elements", -1);
+      if (!is_there)
+        fail(ErrorCode::bad_value, path_, ": variable '", fields_[field].name,
+             "' is missing in block ", id, "; write it for all blocks, or choose another one");
+      const std::size_t first = values.size();
+      values.resize(first + static_cast<std::size_t>(block.n_elements));
+      check(ex_get_var(id_, static_cast<int>(step + 1), EX_ELEM_BLOCK, variable, id,
+                       block.n_elements, values.data() + first),
+            "ex_get_var");
+    }
+    return values;
+  }
+
+  std::vector<std::vector<int>> variables_;  // per field, from 1 on
+};
+
+}  // namespace
+
+std::unique_ptr<FieldReader> exodus_fields(const std::string& path, std::string_view bytes) {
+  return std::make_unique<ExodusFields>(path, bytes);
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,122 @@
+#include "m2m/io/exodus/exodus_file.hpp"
+
+#include "m2m/io/exodus/netcdf_header.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <fcntl.h>
+#include <limits>
+#include <optional>
+#include <unistd.h>
+
+namespace tess::m2m {
+namespace {
+
+/// Discards standard error while the object lives. libexodusII prints a message if it cannot open a
+/// NetCDF-4 file, and has no option against it. The whole process is affected, so an object lives
+/// only during one call.
+class Silence {
+ public:
+  Silence() : kept_(::dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere < 0) return;
+    ::dup2(nowhere, STDERR_FILENO);
+    ::close(nowhere);
+  }
+  ~Silence() {
+    std::fflush(stderr);
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDERR_FILENO);
+    ::close(kept_);
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  int kept_;
+};
+
+}  // namespace
+
+ExodusFile::ExodusFile(const std::string& path, std::string_view bytes)
+    : path_(path),
+      most_(static_cast<std::int64_t>(
+          std::min<std::size_t>(bytes.size(), std::numeric_limits<std::int64_t>::max() / 1000) *
+          1000)) {
+  std::optional<Silence> silence;
+  if (bytes.starts_with("CDF")) {
+    check_netcdf_header(path, bytes);
+  } else {
+    silence.emplace();
+  }
+  ex_opts(0);  // the library prints no messages of its own
+  int compute_bytes = sizeof(double);
+  int stored_bytes = 0;
+  float version = 0;
+  id_ = ex_open(path.c_str(), EX_READ, &compute_bytes, &stored_bytes, &version);
+  if (id_ < 0) damaged("ex_open", id_);
+  ex_set_int64_status(id_, EX_ALL_INT64_API);
+}
+
+ExodusFile::~ExodusFile() {
+  ex_close(id_);
+}
+
+void ExodusFile::damaged(const char* call, int code) const {
+  fail(ErrorCode::bad_file, path_, ": is truncated or damaged (", call, " failed with code ", code,
+       "); write the mesh again");
+}
+
+std::int64_t ExodusFile::inquire(int what) const {
+  const std::int64_t answer = ex_inquire_int(id_, what);
+  if (answer < 0) damaged("ex_inquire", static_cast<int>(answer));
+  return answer;
+}
+
+std::int64_t ExodusFile::count(int what, const char* name) const {
+  const std::int64_t n = inquire(what);
+  if (n > most_) damaged(name, -1);
+  return n;
+}
+
+void ExodusFile::set_name_length() const {
+  constexpr std::int64_t longest = 255;
+  const std::int64_t used = ex_inquire_int(id_, EX_INQ_DB_MAX_USED_NAME_LENGTH);
+  ex_set_max_name_length(id_, static_cast<int>(std::clamp<std::int64_t>(used, 32, longest)));
+}
+
+std::vector<std::int64_t> ExodusFile::ids_of(ex_entity_type type, std::int64_t n) const {
+  std::vector<std::int64_t> ids(static_cast<std::size_t>(n));
+  if (n > 0) check(ex_get_ids(id_, type, ids.data()), "ex_get_ids");
+  std::vector<std::int64_t> sorted = ids;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    damaged("two blocks or sets with the same number", -1);
+  return ids;
+}
+
+std::string ExodusFile::name_of(ex_entity_type type, std::int64_t id) const {
+  std::array<char, 512> name{};
+  if (ex_get_name(id_, type, id, name.data()) < 0) return {};  // an old file without names
+  return name.data();
+}
+
+ExodusFile::ElementBlock ExodusFile::block_of(std::int64_t id) const {
+  ex_block block{};
+  block.id = id;
+  block.type = EX_ELEM_BLOCK;
+  check(ex_get_block_param(id_, &block), "ex_get_block_param");
+  block.topology[MAX_STR_LENGTH] = '\0';
+  std::string type = block.topology;
+  for (char& c : type) {
+    c = std::isprint(static_cast<unsigned char>(c)) != 0
+            ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
+            : '?';
+  }
+  return {id, std::move(type), block.num_entry, block.num_nodes_per_entry};
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,198 @@
+#include "m2m/io/exodus/exodus_reader.hpp"
+
+#include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
+#include "m2m/io/exodus/exodus_turn.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <exodusII.h>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace tess::m2m {
+namespace {
+
+constexpr const char* supported_volumes = "TET4, TET10, HEX8, WEDGE6 and PYRAMID5";
+
+class ExodusReader : private ExodusFile {
+ public:
+  using ExodusFile::ExodusFile;
+
+  TetMesh read() {
+    TetMesh mesh;
+    mesh.name = path_;
+    const std::int64_t n_axes = inquire(EX_INQ_DIM);
+    if (n_axes != 3) {
+      fail(ErrorCode::bad_mesh, path_, ": has ", n_axes,
+           " dimensions; give a mesh in 3 dimensions");
+    }
+    const std::int64_t n = count(EX_INQ_NODES, "number of nodes");
+    const std::int64_t n_blocks = count(EX_INQ_ELEM_BLK, "number of blocks");
+    if (n > std::numeric_limits<VertexId>::max()) {
+      fail(ErrorCode::bad_mesh, path_, ": has ", n,
+           " vertices; at most 2147483647 fit in one mesh, split it");
+    }
+    if (n > 0) read_points(mesh, n);
+    set_name_length();
+    ElementSplitter elements(mesh);
+    for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks))
+      read_block(mesh, elements, block);
+    elements.finish();
+    read_sets(mesh, elements);
+    return mesh;
+  }
+
+ private:
+  void read_points(TetMesh& mesh, std::int64_t n) const {
+    std::array<std::vector<double>, 3> axes;
+    for (auto& axis : axes) axis.resize(static_cast<std::size_t>(n));
+    check(ex_get_n_coord(id_, 1, n, axes[0].data(), axes[1].data(), axes[2].data()),
+          "ex_get_coord");
+    mesh.points.resize(static_cast<std::size_t>(n));
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+      mesh.points[i] = {axes[0][i], axes[1][i], axes[2][i]};
+  }
+
+  void read_block(TetMesh& mesh, ElementSplitter& elements, std::int64_t id) {
+    const ElementBlock block = block_of(id);
+    if (block.n_elements == 0) return;
+    if (block.n_elements < 0 || block.n_elements > most() - n_elements_)
+      damaged("number of elements", -1);
+    n_elements_ += block.n_elements;
+    const auto element = exodus_volume(block.type, block.n_vertices_each);
+    if (!element) {
+      if (exodus_has_no_volume(block.type)) return skip(mesh, block.type, block.n_elements);
+      fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", block.type,
+           " with ", block.n_vertices_each, " vertices; ", supported_volumes,
+           " are supported: mesh it with one of these");
+    }
+    element_runs_.push_back(
+        {n_elements_, elements.n_elements() - (n_elements_ - block.n_elements)});
+    const std::size_t n_tets_before = mesh.n_tets();
+    const auto n = static_cast<std::size_t>(block.n_elements);
+    const std::size_t n_each = n_vertices(*element);
+    std::vector<std::int64_t> vertices(n_each * n);
+    check(ex_get_n_conn(id_, EX_ELEM_BLOCK, id, 1, block.n_elements, vertices.data(), nullptr,
+                        nullptr),
+          "ex_get_conn");
+    const auto n_points = static_cast<std::int64_t>(mesh.n_points());
+    mesh.tets.reserve(mesh.n_tets() + n);
+    std::vector<VertexId> corners(n_each);
+    for (std::size_t t = 0; t < n; ++t) {
+      for (std::size_t corner = 0; corner < n_each; ++corner) {
+        const std::int64_t vertex = vertices[n_each * t + corner];
+        if (vertex < 1 || vertex > n_points) {
+          fail(ErrorCode::bad_mesh, path_, ": element ", t + 1, " of block ", id, " names vertex ",
+               vertex, " of ", n_points, "; write the mesh again");
+        }
+        corners[corner] = static_cast<VertexId>(vertex - 1);
+      }
+      elements.add(*element, corners);
+    }
+    mesh.blocks.push_back({id, name_of(EX_ELEM_BLOCK, id), mesh.n_tets() - n_tets_before});
+  }
+
+  void skip(TetMesh& mesh, const std::string& type, std::int64_t n) {
+    const auto known = std::find_if(mesh.skipped.begin(), mesh.skipped.end(),
+                                    [&](const Skipped& other) { return other.type == type; });
+    if (known == mesh.skipped.end())
+      mesh.skipped.push_back({type, static_cast<std::uint64_t>(n)});
+    else
+      known->n_elements += static_cast<std::uint64_t>(n);
+    element_runs_.push_back({n_elements_, std::nullopt});
+  }
+
+  /// The number of an element of the file (counted from 1 over all blocks) among those with a
+  /// volume: -1 for an element that was skipped, -2 for an element that does not exist.
+  [[nodiscard]] GlobalId volume_of(std::int64_t element) const {
+    const auto run = std::partition_point(element_runs_.begin(), element_runs_.end(),
+                                          [&](const Run& r) { return r.last < element; });
+    if (element < 1 || run == element_runs_.end()) return -2;
+    return run->shift ? element - 1 + *run->shift : -1;
+  }
+
+  void read_sets(TetMesh& mesh, const ElementSplitter& elements) const {
+    const std::int64_t n_side_sets = count(EX_INQ_SIDE_SETS, "number of side sets");
+    const std::int64_t n_node_sets = count(EX_INQ_NODE_SETS, "number of node sets");
+    for (const std::int64_t id : ids_of(EX_SIDE_SET, n_side_sets))
+      read_side_set(mesh, elements, id);
+    for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id);
+  }
+
+  /// The number of entries and of distribution factors of a set.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> size_of(ex_entity_type type,
+                                                            std::int64_t id) const {
+    std::int64_t n = 0, n_factors = 0;
+    check(ex_get_set_param(id_, type, id, &n, &n_factors), "ex_get_set_param");
+    if (n < 0 || n > most() || n_factors < 0 || n_factors > most()) damaged("size of a set", -1);
+    return {static_cast<std::size_t>(n), static_cast<std::size_t>(n_factors)};
+  }
+
+  [[nodiscard]] std::vector<double> factors_of(ex_entity_type type, std::int64_t id,
+                                               std::size_t n) const {
+    std::vector<double> factors(n);
+    if (n > 0) check(ex_get_set_dist_fact(id_, type, id, factors.data()), "ex_get_set_dist_fact");
+    return factors;
+  }
+
+  /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of their
+  /// tetrahedra. The factors of such a set are left out too, because the file does not say which
+  /// factor belongs to which side.
+  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id) const {
+    const auto [n, n_factors] = size_of(EX_SIDE_SET, id);
+    std::vector<std::int64_t> elements(n), sides(n);
+    if (n > 0) check(ex_get_set(id_, EX_SIDE_SET, id, elements.data(), sides.data()), "ex_get_set");
+    SideSet set{id, name_of(EX_SIDE_SET, id)};
+    for (std::size_t i = 0; i < n; ++i) {
+      const GlobalId element = volume_of(elements[i]);
+      if (element == -1) continue;
+      if (element < 0 || sides[i] < 1 ||
+          sides[i] > static_cast<std::int64_t>(volumes.n_sides_of(element))) {
+        fail(ErrorCode::bad_mesh, path_, ": side set ", id, " names side ", sides[i],
+             " of element ", elements[i], " of ", n_elements_, "; write the mesh again");
+      }
+      volumes.append_side(element, sides[i], set.entries);
+    }
+    if (set.entries.size() == n && mesh.split.empty())
+      set.factors = factors_of(EX_SIDE_SET, id, n_factors);
+    mesh.side_sets.push_back(std::move(set));
+  }
+
+  void read_node_set(TetMesh& mesh, std::int64_t id) const {
+    const auto [n, n_factors] = size_of(EX_NODE_SET, id);
+    std::vector<std::int64_t> vertices(n);
+    if (n > 0) check(ex_get_set(id_, EX_NODE_SET, id, vertices.data(), nullptr), "ex_get_set");
+    NodeSet set{id, name_of(EX_NODE_SET, id), {}, factors_of(EX_NODE_SET, id, n_factors)};
+    for (const std::int64_t vertex : vertices) {
+      if (vertex < 1 || vertex > static_cast<std::int64_t>(mesh.n_points())) {
+        fail(ErrorCode::bad_mesh, path_, ": node set ", id, " names vertex ", vertex, " of ",
+             mesh.n_points(), "; write the mesh again");
+      }
+      set.entries.push_back(static_cast<VertexId>(vertex - 1));
+    }
+    mesh.node_sets.push_back(std::move(set));
+  }
+
+  /// The elements of a block of the file.
+  struct Run {
+    std::int64_t last;              // of the file's elements, counted from 1
+    std::optional<GlobalId> shift;  // from element - 1 to volume_of(); none if skipped
+  };
+
+  std::int64_t n_elements_ = 0;    // read so far, including skipped ones
+  std::vector<Run> element_runs_;  // in file order
+};
+
+}  // namespace
+
+TetMesh read_exodus(const std::string& path, std::string_view bytes) {
+  const std::lock_guard in_turn(exodus_turn());
+  return ExodusReader(path, bytes).read();
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,154 @@
+#include "m2m/io/field_reader.hpp"
+#include "m2m/io/gmsh/gmsh_format.hpp"
+#include "m2m/io/gmsh/gmsh_reader.hpp"
+#include "runtime/core/error.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace tess::m2m {
+namespace {
+
+/// $NodeData and $ElementData. A section holds one step of one view, or a part of it, in gmsh's
+/// partitioned files. Sections are listed when the file is opened; read() reads those of one step.
+class GmshFields : public FieldReader {
+ public:
+  GmshFields(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {
+    GmshScanner file(path_, bytes_);
+    bool have_format = false;
+    for (file.skip_blanks(); !file.at_end(); file.skip_blanks()) {
+      const std::string section(file.word());
+      if (section == "$MeshFormat") {
+        binary_ = read_gmsh_format(file).binary;
+        have_format = true;
+      } else if ((section == "$NodeData" || section == "$ElementData") && have_format) {
+        list(file, section == "$NodeData" ? FieldPlace::vertices : FieldPlace::tets);
+      } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
+        file.skip_to("$End" + section.substr(1));
+      } else {
+        file.damaged("expected a section such as $Nodes");
+      }
+    }
+    for (const auto& [step, time] : time_of_) times_.push_back(time);
+  }
+
+  [[nodiscard]] std::vector<double> read(const TetMesh& mesh, std::size_t field,
+                                         std::size_t step) const override {
+    const FileField& wanted = fields_[field];
+    const bool nodal = wanted.place == FieldPlace::vertices;
+    GmshTags tags;
+    // The tags come from the mesh; they are not kept, since few meshes are read for their fields.
+    check_n_points(mesh, static_cast<std::int64_t>(read_gmsh(path_, bytes_, &tags).n_points()),
+                   path_);
+    GmshScanner file(path_, bytes_);
+    GmshTagMap places;
+    const std::vector<std::uint64_t>& list = nodal ? tags.nodes : tags.volumes;
+    places.build(list, file, nodal ? "node" : "element");
+    std::vector<double> values(list.size() * wanted.n_components);
+    std::vector<bool> has(list.size());
+    const int step_tag = std::next(time_of_.begin(), static_cast<std::ptrdiff_t>(step))->first;
+    for (const Section& section : sections_[field])
+      if (section.step == step_tag) read(file, section, wanted.n_components, places, values, has);
+    const auto missing = std::find(has.begin(), has.end(), false);
+    if (missing != has.end())
+      fail(ErrorCode::bad_value, path_, ": variable '", wanted.name, "' has no value for ",
+           nodal ? "node " : "element ", list[static_cast<std::size_t>(missing - has.begin())],
+           " at step ", step, " (time ", times_[step], ", ",
+           std::count(has.begin(), has.end(), false), " of ", has.size(),
+           " are missing); write it for the whole mesh, or choose another one");
+    return nodal ? values : values_of_tets(mesh, std::move(values), wanted.n_components, path_);
+  }
+
+ private:
+  struct Section {
+    std::size_t begin = 0;  // of the values, in the file
+    std::size_t n = 0;      // rows
+    int step = 0;           // gmsh's number of the step
+  };
+
+  /// Reads the tags of a section, and skips its values.
+  void list(GmshScanner& file, FieldPlace place) {
+    std::string name = "unnamed";
+    const auto n_names = file.number_as_text<std::uint32_t>();
+    for (std::uint32_t i = 0; i < n_names; ++i) {
+      const std::string_view text = file.quoted();
+      if (i == 0) name = clean_name(text);
+    }
+    double time = 0;
+    const auto n_times = file.number_as_text<std::uint32_t>();
+    for (std::uint32_t i = 0; i < n_times; ++i) {
+      const auto real = file.number_as_text<double>();
+      if (i == 0) time = real;
+    }
+    std::array<int, 3> tags{};  // step, components, rows
+    const auto n_tags = file.number_as_text<std::uint32_t>();
+    if (n_tags < 3) file.damaged("a section of '", name, "' with ", n_tags, " integer tags");
+    for (std::uint32_t i = 0; i < n_tags; ++i) {
+      const int tag = file.number_as_text<int>();
+      if (i < 3) tags[i] = tag;
+    }
+    const auto [step, n_components, n] = tags;
+    if (n_components < 1 || n_components > 9)
+      file.damaged("'", name, "' has ", n_components, " components");
+    if (binary_) file.end_of_line();
+    file.set_binary(binary_);
+    const auto each = static_cast<std::size_t>(n_components);
+    const std::size_t n_rows = file.checked_count(n, "rows", 4 + 8 * each);
+    const std::size_t begin = file.at();
+    if (binary_) {
+      file.skip<char>(n_rows * (4 + 8 * each));
+      file.set_binary(false);
+      file.close(end_of(place));
+    } else {
+      file.skip_to(end_of(place));
+    }
+    std::size_t field = 0;
+    while (field < fields_.size() && (fields_[field].name != name || fields_[field].place != place))
+      ++field;
+    if (field == fields_.size()) {
+      fields_.push_back({name, place, each});
+      sections_.emplace_back();
+    }
+    if (fields_[field].n_components != each)
+      file.damaged("'", name, "' has ", fields_[field].n_components, " components and ", each);
+    sections_[field].push_back({begin, n_rows, step});
+    time_of_.try_emplace(step, time);
+  }
+  static const char* end_of(FieldPlace place) {
+    return place == FieldPlace::vertices ? "$EndNodeData" : "$EndElementData";
+  }
+
+  void read(GmshScanner& file, const Section& section, std::size_t n_components,
+            const GmshTagMap& places, std::vector<double>& values, std::vector<bool>& has) const {
+    file.move_to(section.begin);
+    file.set_binary(binary_);
+    for (std::size_t i = 0; i < section.n; ++i) {
+      const int tag = file.number<int>();
+      const VertexId place = tag < 0 ? -1 : places.find(static_cast<std::uint64_t>(tag));
+      if (place < 0) {  // an element without a volume
+        file.skip<double>(n_components);
+        continue;
+      }
+      const auto row = static_cast<std::size_t>(place);
+      for (std::size_t c = 0; c < n_components; ++c)
+        values[row * n_components + c] = file.number<double>();
+      has[row] = true;
+    }
+  }
+
+  const std::string& path_;
+  std::string_view bytes_;
+  bool binary_ = false;
+  std::vector<std::vector<Section>> sections_;  // per field
+  std::map<int, double> time_of_;               // per step, by gmsh's number
+};
+
+}  // namespace
+
+std::unique_ptr<FieldReader> gmsh_fields(const std::string& path, std::string_view bytes) {
+  return std::make_unique<GmshFields>(path, bytes);
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,238 @@
+#include "m2m/io/gmsh/gmsh_reader.hpp"
+
+#include "m2m/io/gmsh/gmsh_elements.hpp"
+#include "m2m/io/gmsh/gmsh_format.hpp"
+#include "m2m/io/gmsh/gmsh_scanner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tess::m2m {
+namespace {
+
+class GmshReader {
+ public:
+  GmshReader(const std::string& path, std::string_view bytes, GmshTags* tags)
+      : file_(path, bytes), tags_out_(tags) {
+    mesh_.name = path;
+  }
+
+  TetMesh read() {
+    bool have_nodes = false;
+    bool have_elements = false;
+    for (file_.skip_blanks(); !file_.at_end(); file_.skip_blanks()) {
+      const std::string section(file_.word());
+      if (section == "$MeshFormat") {
+        const GmshFormat format = read_gmsh_format(file_);
+        legacy_ = format.legacy;
+        binary_ = format.binary;
+        have_format_ = true;
+      } else if (section == "$Nodes" && !have_nodes) {
+        need_format();
+        file_.set_binary(binary_);
+        legacy_ ? nodes_22() : nodes_41();
+        file_.set_binary(false);
+        file_.close("$EndNodes");
+        tags_.build(node_tags_, file_, "node");
+        have_nodes = true;
+      } else if (section == "$Elements" && !have_elements) {
+        need_format();
+        if (!have_nodes) file_.damaged("$Elements before $Nodes");
+        file_.set_binary(binary_);
+        legacy_ ? elements_22() : elements_41();
+        file_.set_binary(false);
+        file_.close("$EndElements");
+        have_elements = true;
+      } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
+        file_.skip_to("$End" + section.substr(1));
+      } else {
+        file_.damaged("expected a section such as $Nodes");
+      }
+    }
+    if (!have_nodes) file_.damaged("$Nodes is missing");
+    if (!have_elements) file_.damaged("$Elements is missing");
+    for (const GmshElement& type : gmsh_elements) {
+      const std::uint64_t n = n_skipped_[static_cast<std::size_t>(type.number)];
+      if (n > 0) mesh_.skipped.push_back({std::string(type.name), n});
+    }
+    elements_.finish();
+    if (tags_out_ != nullptr) {
+      tags_out_->nodes = std::move(node_tags_);
+      tags_out_->volumes = std::move(volume_tags_);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void need_format() const {
+    if (!have_format_) file_.damaged("$MeshFormat is missing");
+  }
+
+  void start_nodes(std::size_t n) {
+    if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
+      file_.refuse("has ", n, " vertices; at most 2147483647 fit in one mesh, split it");
+    }
+    mesh_.points.reserve(n);
+    node_tags_.reserve(n);
+  }
+
+  Point point() {
+    const auto x = file_.number<double>();
+    const auto y = file_.number<double>();
+    const auto z = file_.number<double>();
+    return {x, y, z};
+  }
+
+  /// Version 2.2 writes counts as text, also in binary files.
+  std::size_t count_22(std::string_view what, std::size_t bytes_each) {
+    const auto n = file_.number_as_text<std::uint64_t>();
+    if (binary_) file_.end_of_line();
+    return file_.checked_count(n, what, bytes_each);
+  }
+
+  void nodes_22() {
+    const std::size_t n = count_22("nodes", 28);
+    start_nodes(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const int tag = file_.number<int>();
+      if (tag < 0) file_.damaged("node tag ", tag);
+      node_tags_.push_back(static_cast<std::uint64_t>(tag));
+      mesh_.points.push_back(point());
+    }
+  }
+
+  void nodes_41() {
+    if (binary_) file_.end_of_line();
+    const auto n_blocks = file_.count<std::uint64_t>("blocks of nodes", 20);
+    const auto n = file_.count<std::uint64_t>("nodes", 32);
+    file_.skip<std::uint64_t>(2);  // least and greatest tag
+    start_nodes(n);
+    for (std::size_t block = 0; block < n_blocks; ++block) {
+      const int dimension = file_.number<int>();
+      file_.skip<int>(1);  // entity
+      const int parametric = file_.number<int>();
+      const auto m = file_.count<std::uint64_t>("nodes in a block", 32);
+      if (dimension < 0 || dimension > 3 || (parametric != 0 && parametric != 1)) {
+        file_.damaged("a block of nodes of dimension ", dimension, ", parametric ", parametric);
+      }
+      if (m > n - mesh_.points.size()) file_.damaged("more nodes than the ", n, " announced");
+      for (std::size_t i = 0; i < m; ++i) node_tags_.push_back(file_.number<std::uint64_t>());
+      for (std::size_t i = 0; i < m; ++i) {
+        mesh_.points.push_back(point());
+        if (parametric == 1) file_.skip<double>(static_cast<std::size_t>(dimension));
+      }
+    }
+    if (mesh_.points.size() != n)
+      file_.damaged(n, " nodes announced, ", mesh_.points.size(), " found");
+  }
+
+  /// The type with this number. Refuses unknown types and volume elements that are not supported.
+  const GmshElement& element_type(int number) const {
+    const GmshElement* const type = gmsh_element(number);
+    if (type == nullptr)
+      file_.refuse("has elements of unknown gmsh type ", number, "; ", supported);
+    if (type->dimension == 3 && !gmsh_volume(number)) {
+      file_.refuse("has elements of type ", type->name, "; ", supported,
+                   ": mesh it with one of these");
+    }
+    return *type;
+  }
+
+  template <class Tag>
+  void element(const GmshElement& type, Tag label) {
+    const auto volume = gmsh_volume(type.number);
+    if (!volume) {
+      ++n_skipped_[static_cast<std::size_t>(type.number)];
+      return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
+    }
+    std::array<VertexId, 10> ids;
+    const auto corners = std::span(ids).first(static_cast<std::size_t>(type.n_vertices));
+    for (VertexId& vertex : corners) {
+      const Tag tag = file_.number<Tag>();
+      vertex = tag < Tag{0} ? -1 : tags_.find(static_cast<std::uint64_t>(tag));
+      if (vertex < 0) {
+        file_.refuse(type.name, " ", elements_.n_elements(), " names node ", tag,
+                     ", which does not exist; write the mesh again");
+      }
+    }
+    if (*volume == ElementType::tet10) std::swap(ids[8], ids[9]);
+    if (tags_out_ != nullptr) volume_tags_.push_back(static_cast<std::uint64_t>(label));
+    elements_.add(*volume, corners);
+  }
+
+  void elements_22() {
+    const std::size_t n = count_22("elements", 8);
+    for (std::size_t i = 0; i < n;) {
+      std::size_t group = 1;
+      int tag = 0;
+      int number = 0;
+      int n_labels = 0;
+      if (binary_) {
+        number = file_.number<int>();
+        group = file_.count<int>("elements in a block", 8);
+        n_labels = file_.number<int>();
+        if (group == 0 || group > n - i) file_.damaged("a block of ", group, " elements");
+      } else {
+        tag = file_.number<int>();
+        number = file_.number<int>();
+        n_labels = file_.number<int>();
+      }
+      const GmshElement& type = element_type(number);
+      if (n_labels < 0) file_.damaged(n_labels, " labels");
+      for (std::size_t k = 0; k < group; ++k) {
+        if (binary_) tag = file_.number<int>();
+        file_.skip<int>(static_cast<std::size_t>(n_labels));
+        element<int>(type, tag);
+      }
+      i += group;
+    }
+  }
+
+  void elements_41() {
+    if (binary_) file_.end_of_line();
+    const auto n_blocks = file_.count<std::uint64_t>("blocks of elements", 20);
+    const auto n = file_.count<std::uint64_t>("elements", 16);
+    file_.skip<std::uint64_t>(2);  // least and greatest tag
+    std::size_t found = 0;
+    for (std::size_t block = 0; block < n_blocks; ++block) {
+      file_.skip<int>(2);  // dimension and entity
+      const GmshElement& type = element_type(file_.number<int>());
+      const auto m = file_.count<std::uint64_t>("elements in a block", 16);
+      if (gmsh_volume(type.number)) mesh_.tets.reserve(mesh_.n_tets() + m);
+      for (std::size_t i = 0; i < m; ++i) {
+        const auto tag = file_.number<std::uint64_t>();
+        element<std::uint64_t>(type, tag);
+      }
+      found += m;
+    }
+    if (found != n) file_.damaged(n, " elements announced, ", found, " found");
+  }
+
+  static constexpr const char* supported =
+      "of volumes, tet4, tet10, hex8, prism6 and pyramid5 are supported";
+
+  GmshScanner file_;
+  TetMesh mesh_;
+  ElementSplitter elements_{mesh_};
+  std::vector<std::uint64_t> node_tags_;
+  GmshTagMap tags_;
+  GmshTags* tags_out_;
+  std::vector<std::uint64_t> volume_tags_;      // if they are asked for
+  std::array<std::uint64_t, 128> n_skipped_{};  // per type number
+  bool have_format_ = false;
+  bool legacy_ = false;
+  bool binary_ = false;
+};
+
+}  // namespace
+
+TetMesh read_gmsh(const std::string& path, std::string_view bytes, GmshTags* tags) {
+  return GmshReader(path, bytes, tags).read();
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,210 @@
+#include "m2m/io/vtu/vtu_file.hpp"
+
+#include "m2m/io/field_reader.hpp"
+#include "m2m/io/vtu/xml_scanner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+
+namespace tess::m2m {
+namespace {
+
+std::string printable(std::string text) {
+  if (text.size() > 80) text.resize(80);
+  for (char& c : text) c = c < ' ' || c > '~' ? '?' : c;
+  return text;
+}
+
+/// The numbers of type `Stored` in `bytes`, as numbers of type T.
+template <class T, class Stored>
+std::vector<T> converted(const std::string& bytes, bool big_endian) {
+  std::vector<T> out(bytes.size() / sizeof(Stored));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    std::array<char, sizeof(Stored)> number;
+    std::memcpy(number.data(), bytes.data() + i * sizeof(Stored), sizeof(Stored));
+    if (big_endian) std::reverse(number.begin(), number.end());
+    Stored value;
+    std::memcpy(&value, number.data(), sizeof(Stored));
+    if constexpr (std::is_floating_point_v<Stored> && !std::is_floating_point_v<T>) {
+      // Ids in floating point; what is no number becomes an id that does not exist.
+      out[i] = value >= -1 && value < 9e15 ? static_cast<T>(value) : T{-1};
+    } else {
+      out[i] = static_cast<T>(value);
+    }
+  }
+  return out;
+}
+
+template <class T>
+std::optional<std::vector<T>> converted(const std::string& type, const std::string& bytes,
+                                        bool big_endian) {
+  if (type == "Float64") return converted<T, double>(bytes, big_endian);
+  if (type == "Float32") return converted<T, float>(bytes, big_endian);
+  if (type == "Int64") return converted<T, std::int64_t>(bytes, big_endian);
+  if (type == "UInt64") return converted<T, std::uint64_t>(bytes, big_endian);
+  if (type == "Int32") return converted<T, std::int32_t>(bytes, big_endian);
+  if (type == "UInt32") return converted<T, std::uint32_t>(bytes, big_endian);
+  if (type == "Int16") return converted<T, std::int16_t>(bytes, big_endian);
+  if (type == "UInt16") return converted<T, std::uint16_t>(bytes, big_endian);
+  if (type == "Int8") return converted<T, std::int8_t>(bytes, big_endian);
+  if (type == "UInt8") return converted<T, std::uint8_t>(bytes, big_endian);
+  return std::nullopt;
+}
+
+}  // namespace
+
+VtuFile::VtuFile(const std::string& path, std::string_view bytes) : path_(path) {
+  const auto size_of = [&](const XmlTag& tag, std::string_view name,
+                           std::optional<std::size_t> otherwise) {
+    const auto text = tag.attribute(name);
+    if (!text && otherwise) return *otherwise;
+    std::size_t value = 0;
+    const char* const end = text ? text->data() + text->size() : nullptr;
+    if (!text || std::from_chars(text->data(), end, value).ptr != end || text->empty())
+      damaged(tag.name, " has no number ", name);
+    return value;
+  };
+  XmlScanner xml(bytes);
+  std::vector<VtuArray>* section = nullptr;
+  std::vector<VtuArray> field_data;
+  VtuArray* open_array = nullptr;
+  const char* text_begin = nullptr;
+  bool has_root = false, is_complete = false;
+  while (const auto tag = xml.next()) {
+    const bool opens = tag->kind != XmlTag::Kind::close;
+    if (tag->name == "VTKFile") {
+      if (!opens) {
+        is_complete = true;
+        break;
+      }
+      has_root = true;
+      const std::string type = tag->attribute("type").value_or("");
+      if (type != "UnstructuredGrid")
+        fail(ErrorCode::bad_mesh, path_, ": holds a VTK ", printable(type),
+             "; only UnstructuredGrid (.vtu) is supported: convert it");
+      encoding_.big_endian = tag->attribute("byte_order").value_or("") == "BigEndian";
+      encoding_.header_bytes = tag->attribute("header_type").value_or("") == "UInt64" ? 8 : 4;
+      const std::string compressor = tag->attribute("compressor").value_or("");
+      encoding_.zlib = compressor == "vtkZLibDataCompressor";
+      if (!compressor.empty() && !encoding_.zlib)
+        fail(ErrorCode::bad_file, path_, ": is compressed by ", printable(compressor),
+             "; only vtkZLibDataCompressor is supported: write it with that one, or uncompressed");
+    } else if (!has_root) {
+      break;
+    } else if (tag->name == "Piece" && opens) {
+      pieces_.push_back({size_of(*tag, "NumberOfPoints", {}), size_of(*tag, "NumberOfCells", {})});
+      section = nullptr;
+      open_array = nullptr;
+    } else if (tag->name == "FieldData") {
+      section = opens ? &field_data : nullptr;
+    } else if (tag->name == "Points" || tag->name == "Cells" || tag->name == "PointData" ||
+               tag->name == "CellData") {
+      if (pieces_.empty()) damaged(tag->name, " before Piece");
+      VtuPiece& piece = pieces_.back();
+      section = !opens                     ? nullptr
+                : tag->name == "Points"    ? &piece.points
+                : tag->name == "Cells"     ? &piece.cells
+                : tag->name == "PointData" ? &piece.point_data
+                                           : &piece.cell_data;
+    } else if (tag->name == "DataArray" && section != nullptr) {
+      if (opens) {
+        section->push_back({clean_name(tag->attribute("Name").value_or("")),
+                            tag->attribute("type").value_or(""),
+                            tag->attribute("format").value_or("ascii"),
+                            size_of(*tag, "NumberOfComponents", 1), size_of(*tag, "offset", 0)});
+        open_array = tag->kind == XmlTag::Kind::open ? &section->back() : nullptr;
+        text_begin = bytes.data() + tag->end;
+      } else if (open_array != nullptr) {
+        // The numbers end with the first tag behind them, such as an InformationKey.
+        const std::string_view text(text_begin, tag->text_before.data() + tag->text_before.size());
+        open_array->text = text.substr(0, text.find('<'));
+        open_array = nullptr;
+      }
+    } else if (tag->name == "AppendedData" && opens) {
+      appended_is_base64_ = tag->attribute("encoding").value_or("") == "base64";
+      const std::size_t begin = bytes.find('_', tag->end);
+      const std::size_t end = bytes.rfind("</AppendedData>");
+      if (begin == std::string_view::npos || end == std::string_view::npos || end < begin)
+        damaged("AppendedData has no end");
+      appended_ = bytes.substr(begin + 1, end - begin - 1);
+      is_complete = bytes.substr(end).find("</VTKFile>") != std::string_view::npos;
+      break;
+    }
+  }
+  if (!is_complete) damaged("</VTKFile> is missing behind byte ", xml.at());
+  if (pieces_.empty()) damaged("it has no Piece");
+  for (const VtuArray& found : field_data)
+    if (found.name == "TimeValue") {
+      const std::vector<double> times = reals(found, any);
+      if (!times.empty()) time_ = times[0];
+    }
+}
+
+const VtuArray& VtuFile::array(const std::vector<VtuArray>& arrays, std::string_view name) const {
+  for (const VtuArray& found : arrays)
+    if (found.name == name) return found;
+  damaged("array ", name, " is missing");
+}
+
+template <class T>
+std::vector<T> VtuFile::numbers_of_text(const VtuArray& array) const {
+  std::vector<T> out;
+  const char* at = array.text.data();
+  const char* const end = at + array.text.size();
+  while (true) {
+    while (at != end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
+    if (at == end) return out;
+    T value{};
+    const auto [last, error] = std::from_chars(at, end, value);
+    if constexpr (std::is_floating_point_v<T>) {
+      if (error == std::errc::result_out_of_range)  // zero or infinite
+        value = std::strtod(std::string(at, last).c_str(), nullptr);
+    }
+    if (error != std::errc() &&
+        (error != std::errc::result_out_of_range || !std::is_floating_point_v<T>))
+      damaged("array '", printable(array.name), "' has text that is no number");
+    out.push_back(value);
+    at = last;
+  }
+}
+
+template <class T>
+std::vector<T> VtuFile::numbers(const VtuArray& array, std::size_t n) const {
+  const std::string name = printable(array.name);
+  std::vector<T> out;
+  if (array.format == "ascii") {
+    out = numbers_of_text<T>(array);
+  } else if (array.format == "binary" || array.format == "appended") {
+    const bool appended = array.format == "appended";
+    if (appended && array.offset > appended_.size())
+      damaged("array '", name, "' begins at byte ", array.offset, " of ", appended_.size());
+    const auto bytes = vtu_payload(appended ? appended_.substr(array.offset) : array.text,
+                                   !appended || appended_is_base64_, encoding_);
+    if (!bytes) damaged("array '", name, "' cannot be decoded");
+    auto found = converted<T>(array.type, *bytes, encoding_.big_endian);
+    if (!found)
+      fail(ErrorCode::bad_file, path_, ": array '", name, "' is of type ", printable(array.type),
+           "; only Int8 to UInt64, Float32 and Float64 are supported");
+    out = std::move(*found);
+  } else {
+    fail(ErrorCode::bad_file, path_, ": array '", name, "' has format ", printable(array.format),
+         "; only ascii, binary and appended are supported");
+  }
+  if (n != any && out.size() != n)
+    damaged("array '", name, "' has ", out.size(), " numbers instead of ", n);
+  return out;
+}
+
+std::vector<double> VtuFile::reals(const VtuArray& array, std::size_t n) const {
+  return numbers<double>(array, n);
+}
+std::vector<std::int64_t> VtuFile::integers(const VtuArray& array, std::size_t n) const {
+  return numbers<std::int64_t>(array, n);
+}
+
+}  // namespace tess::m2m

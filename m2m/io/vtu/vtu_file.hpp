@@ -1,0 +1,68 @@
+// The pieces and arrays of a VTU file (VTK XML UnstructuredGrid), which are decoded when they are
+// asked for. Arrays may be ascii, binary (base64) or appended (raw or base64), of either byte order,
+// and compressed by zlib; other compressors are refused by name.
+#pragma once
+
+#include "m2m/io/vtu/vtu_data.hpp"
+#include "runtime/core/error.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tess::m2m {
+
+struct VtuArray {
+  std::string name, type, format;
+  std::size_t n_components = 1;
+  std::size_t offset = 0;   ///< in the appended data
+  std::string_view text{};  ///< ascii or base64
+};
+
+struct VtuPiece {
+  std::size_t n_points = 0, n_cells = 0;
+  std::vector<VtuArray> points{}, cells{}, point_data{}, cell_data{};
+};
+
+class VtuFile {
+ public:
+  /// Reads the list of arrays. `path` and `bytes`, its content, must outlive the object. Throws
+  /// Error (bad_file) if the file is truncated or damaged or of another kind.
+  VtuFile(const std::string& path, std::string_view bytes);
+
+  [[nodiscard]] const std::vector<VtuPiece>& pieces() const noexcept { return pieces_; }
+  /// The array TimeValue; 0 if there is none.
+  [[nodiscard]] double time() const noexcept { return time_; }
+
+  /// The array of this name. Throws Error (bad_file) if there is none.
+  [[nodiscard]] const VtuArray& array(const std::vector<VtuArray>& arrays,
+                                      std::string_view name) const;
+  static constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+  /// Its numbers. Throws Error (bad_file) unless there are `n`.
+  [[nodiscard]] std::vector<double> reals(const VtuArray& array, std::size_t n) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(const VtuArray& array, std::size_t n) const;
+
+  template <class... Parts>
+  [[noreturn]] void damaged(const Parts&... parts) const {
+    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (", parts...,
+         "); write the mesh again");
+  }
+
+ private:
+  template <class T>
+  [[nodiscard]] std::vector<T> numbers(const VtuArray& array, std::size_t n) const;
+  template <class T>
+  [[nodiscard]] std::vector<T> numbers_of_text(const VtuArray& array) const;
+
+  const std::string& path_;
+  VtuEncoding encoding_;
+  std::vector<VtuPiece> pieces_;
+  std::string_view appended_;
+  bool appended_is_base64_ = false;
+  double time_ = 0;
+};
+
+}  // namespace tess::m2m

@@ -1,0 +1,185 @@
+#include "m2m/io/vtu/vtu_reader.hpp"
+
+#include "m2m/io/field_reader.hpp"
+#include "m2m/io/vtu/vtu_cells.hpp"
+#include "m2m/io/vtu/vtu_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+namespace tess::m2m {
+namespace {
+
+constexpr std::size_t most_points = std::numeric_limits<VertexId>::max();
+
+/// The types of the cells of a piece, checked.
+std::vector<std::int64_t> types_of(const VtuFile& file, const VtuPiece& piece) {
+  return file.integers(file.array(piece.cells, "types"), piece.n_cells);
+}
+
+class VtuMeshReader {
+ public:
+  VtuMeshReader(const std::string& path, std::string_view bytes) : path_(path), file_(path, bytes) {
+    mesh_.name = path;
+  }
+
+  TetMesh read() {
+    for (const VtuPiece& piece : file_.pieces()) read(piece);
+    for (const VtuCell& cell : vtu_cells) {
+      const std::uint64_t n = n_skipped_[static_cast<std::size_t>(cell.number)];
+      if (n > 0) mesh_.skipped.push_back({std::string(cell.name), n});
+    }
+    elements_.finish();
+    return std::move(mesh_);
+  }
+
+ private:
+  void read(const VtuPiece& piece) {
+    const std::size_t first = mesh_.n_points();
+    if (piece.n_points > most_points - first)
+      fail(ErrorCode::bad_mesh, path_, ": has more than ", most_points, " points; split the mesh");
+    if (piece.n_cells > 0 || piece.n_points > 0) read_points(piece);
+    if (piece.n_cells == 0) return;
+    const std::vector<std::int64_t> types = types_of(file_, piece);
+    const std::vector<std::int64_t> ends =
+        file_.integers(file_.array(piece.cells, "offsets"), piece.n_cells);
+    const std::vector<std::int64_t> vertices =
+        file_.integers(file_.array(piece.cells, "connectivity"), VtuFile::any);
+    std::int64_t begin = 0;
+    for (std::size_t c = 0; c < piece.n_cells; ++c) {
+      if (ends[c] < begin || ends[c] > static_cast<std::int64_t>(vertices.size()))
+        file_.damaged("cell ", c, " ends at ", ends[c], " of ", vertices.size());
+      add(types[c], c,
+          std::span(vertices).subspan(static_cast<std::size_t>(begin),
+                                      static_cast<std::size_t>(ends[c] - begin)),
+          first);
+      begin = ends[c];
+    }
+  }
+
+  void read_points(const VtuPiece& piece) {
+    if (piece.points.empty()) file_.damaged("Points is missing");
+    const std::vector<double> x = file_.reals(piece.points[0], 3 * piece.n_points);
+    for (std::size_t v = 0; v < piece.n_points; ++v)
+      mesh_.points.push_back({x[3 * v], x[3 * v + 1], x[3 * v + 2]});
+  }
+
+  void add(std::int64_t type, std::size_t cell, std::span<const std::int64_t> vertices,
+           std::size_t first) {
+    const VtuCell* const known = vtu_cell(type);
+    const auto volume = vtu_volume(type);
+    if (known == nullptr || (known->dimension == 3 && !volume))
+      fail(ErrorCode::bad_mesh, path_, ": cell ", cell, " is a ",
+           known == nullptr ? "cell" : known->name, " (VTK type ", type,
+           "); of volumes, tetra, hexahedron, voxel, wedge, pyramid and quadratic tetra are "
+           "supported: mesh it with one of these");
+    if (!volume) {
+      ++n_skipped_[static_cast<std::size_t>(type)];
+      return;
+    }
+    if (vertices.size() != n_vertices(*volume))
+      file_.damaged("cell ", cell, " of type ", known->name, " has ", vertices.size(), " vertices");
+    std::array<VertexId, 10> ids{};
+    const auto n_points = static_cast<std::int64_t>(mesh_.n_points() - first);
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      if (vertices[k] < 0 || vertices[k] >= n_points)
+        fail(ErrorCode::bad_mesh, path_, ": cell ", cell, " names point ", vertices[k], " of ",
+             n_points, "; write the mesh again");
+      ids[k] = static_cast<VertexId>(vertices[k] + static_cast<std::int64_t>(first));
+    }
+    if (type == 11) {
+      std::swap(ids[2], ids[3]);
+      std::swap(ids[6], ids[7]);
+    }
+    if (*volume == ElementType::wedge6 && is_inverted(ids)) {
+      std::swap(ids[1], ids[2]);
+      std::swap(ids[4], ids[5]);
+    }
+    elements_.add(*volume, std::span(ids).first(vertices.size()));
+  }
+
+  /// VTK's wedges have the opposite orientation of ExodusII's; many programs write the latter.
+  [[nodiscard]] bool is_inverted(const std::array<VertexId, 10>& wedge) const {
+    const auto edge = [&](std::size_t to) {
+      const Point& a = mesh_.points[static_cast<std::size_t>(wedge[0])];
+      const Point& b = mesh_.points[static_cast<std::size_t>(wedge[to])];
+      return Point{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    };
+    const Point u = edge(1), v = edge(2), w = edge(3);
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+               u[2] * (v[0] * w[1] - v[1] * w[0]) <
+           0;
+  }
+
+  const std::string& path_;
+  VtuFile file_;
+  TetMesh mesh_;
+  ElementSplitter elements_{mesh_};
+  std::array<std::uint64_t, 128> n_skipped_{};  // per type number
+};
+
+/// PointData and CellData of all pieces, at one time.
+class VtuFields : public FieldReader {
+ public:
+  VtuFields(const std::string& path, std::string_view bytes) : path_(path), file_(path, bytes) {
+    times_ = {file_.time()};
+    for (const VtuArray& array : file_.pieces()[0].point_data) list(array, FieldPlace::vertices);
+    for (const VtuArray& array : file_.pieces()[0].cell_data) list(array, FieldPlace::tets);
+  }
+
+  [[nodiscard]] std::vector<double> read(const TetMesh& mesh, std::size_t field,
+                                         std::size_t) const override {
+    const FileField& wanted = fields_[field];
+    const bool nodal = wanted.place == FieldPlace::vertices;
+    const std::size_t n_components = wanted.n_components;
+    std::vector<double> values;
+    std::size_t n_points = 0;
+    for (const VtuPiece& piece : file_.pieces()) {
+      n_points += piece.n_points;
+      const std::size_t n = nodal ? piece.n_points : piece.n_cells;
+      if (n == 0) continue;
+      const VtuArray& array = file_.array(nodal ? piece.point_data : piece.cell_data, wanted.name);
+      if (array.n_components != n_components)
+        file_.damaged("'", wanted.name, "' has ", n_components, " components and ",
+                      array.n_components);
+      const std::vector<double> all = file_.reals(array, n * n_components);
+      if (nodal) {
+        values.insert(values.end(), all.begin(), all.end());
+        continue;
+      }
+      const std::vector<std::int64_t> types = types_of(file_, piece);
+      for (std::size_t c = 0; c < n; ++c)
+        if (vtu_volume(types[c]))
+          values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(c * n_components),
+                        all.begin() + static_cast<std::ptrdiff_t>((c + 1) * n_components));
+    }
+    if (!nodal) return values_of_tets(mesh, std::move(values), n_components, path_);
+    check_n_points(mesh, static_cast<std::int64_t>(n_points), path_);
+    return values;
+  }
+
+ private:
+  void list(const VtuArray& array, FieldPlace place) {
+    if (array.name.empty() || array.type == "String") return;
+    if (array.n_components < 1 || array.n_components > 1000)
+      file_.damaged("'", array.name, "' has ", array.n_components, " components");
+    fields_.push_back({array.name, place, array.n_components});
+  }
+
+  const std::string& path_;
+  VtuFile file_;
+};
+
+}  // namespace
+
+TetMesh read_vtu(const std::string& path, std::string_view bytes) {
+  return VtuMeshReader(path, bytes).read();
+}
+
+std::unique_ptr<FieldReader> vtu_fields(const std::string& path, std::string_view bytes) {
+  return std::make_unique<VtuFields>(path, bytes);
+}
+
+}  // namespace tess::m2m

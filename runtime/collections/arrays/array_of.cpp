@@ -1,0 +1,13 @@
+#include "runtime/collections/arrays/array_of.hpp"
+
+#include "runtime/collections/arrays/moving.hpp"
+#include "runtime/collections/arrays/routing.hpp"
+#include "runtime/collections/arrays/saving.hpp"
+
+namespace tess::detail {
+
+template class ArrayOf<Index1>;
+template class ArrayOf<Index2>;
+template class ArrayOf<Index3>;
+
+}  // namespace tess::detail

@@ -1,0 +1,172 @@
+// Migration and destruction of elements: the messages between an element's old PE, its new PE and
+// its home.
+#pragma once
+
+#include "runtime/collections/arrays/array_of.hpp"
+#include "runtime/collections/ending.hpp"
+
+namespace tess::detail {
+
+template <class Index>
+void ArrayOf<Index>::depart(Indexed& element, PeId to) {
+  const Index index = element.index_;
+  unlist(element);
+  ++n_departures_;
+  count_departure(element);
+  const Version version{element.state_.version.incarnation, element.state_.version.epoch + 1};
+  element.state_.version = version;
+  table_.at(index).set(home(index) == pe_.id() ? IndexState::moving : IndexState::departed, to,
+                       version);
+  broadcasts().left(element.state_.seen_broadcast);
+  ++pe_.statistics().migrations;
+  pe_.completion().sent(pe_.context().epoch);
+  ship(element, to, leave_sections(element));
+  reductions().advance();
+}
+
+template <class Index>
+void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memberships) {
+  const Index index = element->index_;
+  const EpochId epoch = pe_.context().epoch;
+  const std::uint64_t seen = element->state_.seen_broadcast;
+  const Version version = element->state_.version;
+  table_.at(index).set_here(*element);
+  count_arrival(*element);
+  list(*element);
+  enter_sections(*element, std::move(memberships));
+  // It stays until it has received the broadcasts that it missed: only then has it arrived.
+  ++element->n_suspended_;
+  for (const NumberedCall& call : broadcasts().missed(seen)) {
+    if (element->destroy_requested_ || pe_.stopped()) break;
+    pe_.begins(&call.call->action());
+    this->call(*element, call);
+    // The epoch of the call that requests the next migration waits for it.
+    if (element->migrate_to_.value >= 0) pe_.context().epoch = call.epoch;
+  }
+  const MoveReport report{index, Place{pe_.id(), version}, from, seen};
+  if (home(index) == pe_.id()) {
+    on_move_report(report);
+  } else {
+    send_to_collection<&move_report_arrives, Traffic::location>(*this, home(index), report);
+  }
+  pe_.completion().processed(epoch);
+  --element->n_suspended_;
+  settle(*element);
+}
+
+template <class Index>
+void ArrayOf<Index>::on_move_report(const MoveReport& report) {
+  send_to_collection<&move_noted_arrives, Traffic::location>(
+      *this, report.from, MoveNoted{report.index, report.place.version, report.seen});
+  if (report.place.pe != pe_.id()) {
+    Record& record = table_.at(report.index);
+    if (record.state() == IndexState::here) return;  // it has returned home since
+    const bool newer = record.state() == IndexState::destroyed
+                           ? report.place.version.incarnation > record.version().incarnation
+                           : report.place.version >= record.version();
+    if (!newer) return;
+    record.set(IndexState::live, report.place.pe, report.place.version);
+  }
+  reroute(unpark(report.index, Parked::waiting));
+}
+
+template <class Index>
+void ArrayOf<Index>::on_move_noted(const MoveNoted& noted) {
+  if (Record* record = table_.find(noted.index); record != nullptr &&
+                                                 record->state() == IndexState::departed &&
+                                                 record->version() == noted.version) {
+    record->confirm();
+    ++n_hints_;
+  }
+  broadcasts().arrived(noted.seen);
+}
+
+template <class Index>
+ArrayOf<Index>::~ArrayOf() = default;
+
+template <class Index>
+void ArrayOf<Index>::destroy_all() {
+  table_.for_each([this](const Index& /*index*/, const Record& record) {
+    if (record.element() != nullptr) destroy(*record.element());
+  });
+  for (Messages* messages : {&pending_, &waiting_, &destroyed_})
+    for (auto& [index, parked] : *messages)
+      for (CallMessage* message : parked) discard(message);
+}
+
+template <class Index>
+void ArrayOf<Index>::end() {
+  Collection::end();
+  const auto drop = [this](const auto& messages) {
+    for (CallMessage* message : messages) dead_letter(message);
+  };
+  for (Messages* messages : {&pending_, &waiting_, &destroyed_}) {
+    for (const auto& [index, parked] : *messages) drop(parked);
+    messages->clear();
+  }
+  std::vector<Indexed*> ready;
+  table_.for_each([&ready](const Index& /*index*/, const Record& record) {
+    if (record.element() != nullptr && record.element()->n_suspended_ == 0)
+      ready.push_back(record.element());
+  });
+  for (Indexed* element : ready) end_element(*element);
+}
+
+/// Destroys an element of an array that has ended.
+template <class Index>
+void ArrayOf<Index>::end_element(Indexed& element) {
+  unlist(element);
+  ++n_departures_;
+  table_.at(element.index_).set_unknown();
+  destroy(element);
+}
+
+template <class Index>
+void ArrayOf<Index>::destroy_here(Indexed& element) {
+  if (ended()) {
+    end_element(element);
+    if (n_local() == 0) free_later(*this);
+    return;
+  }
+  const Index index = element.index_;
+  const Version version = element.state_.version;
+  const std::uint32_t next = element.state_.next_reduction;
+  unlist(element);
+  ++n_departures_;
+  table_.at(index).set_unknown();
+  end_wait(element);
+  end_memberships(element);
+  if (watcher() != nullptr) [[unlikely]]
+    watcher()->destroyed(element);
+  destroy(element);
+  reductions().remove_member(next);
+  reductions().advance();
+  if (home(index) == pe_.id()) {
+    table_.at(index).set(IndexState::destroyed, pe_.id(), version);
+    return;
+  }
+  ++n_destroyed_[index];
+  table_.at(index).park(Parked::destroyed);
+  send_to_collection<&destroy_report_arrives, Traffic::location>(
+      *this, home(index), DestroyReport{index, version, pe_.id()});
+}
+
+template <class Index>
+void ArrayOf<Index>::on_destroy_report(const DestroyReport& report) {
+  // This is the last incarnation that the home knows: it grants the next only after this report.
+  table_.at(report.index).set(IndexState::destroyed, report.from, report.version);
+  send_to_collection<&destroy_noted_arrives, Traffic::location>(*this, report.from,
+                                                                DestroyNoted{report.index});
+  reroute(unpark(report.index, Parked::waiting));
+}
+
+template <class Index>
+void ArrayOf<Index>::on_destroy_noted(const DestroyNoted& noted) {
+  const auto n_destroyed = n_destroyed_.find(noted.index);
+  if (--n_destroyed->second != 0) return;
+  n_destroyed_.erase(n_destroyed);
+  reroute(unpark(noted.index, Parked::destroyed));
+  table_.tidy(noted.index);
+}
+
+}  // namespace tess::detail

@@ -1,0 +1,254 @@
+#include "runtime/collections/reductions/reduction_tree.hpp"
+
+#include "runtime/base/spanning_tree.hpp"
+#include "runtime/completion/completion.hpp"
+#include "runtime/core/check.hpp"
+
+namespace tess::detail {
+
+void ReductionTree::end() {
+  for (const auto& [number, gathering] : gathering_) settle(completion_, gathering.shares);
+  for (const auto& [number, whole] : whole_) settle(completion_, whole.sum.shares);
+  gathering_.clear();
+  whole_.clear();
+  current_ = nullptr;
+}
+
+ReductionTree::ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
+                             std::int32_t n_pes, TreeWords words)
+    : host_(host),
+      completion_(completion),
+      words_(std::move(words)),
+      here_(here),
+      root_(root),
+      parent_(SpanningTree(here, root, n_pes).parent()),
+      children_(SpanningTree(here, root, n_pes).children()) {}
+
+ReductionTree::~ReductionTree() = default;
+
+void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
+  for (const PeId child : children_) host_.send(child, ReductionBegin{number, cause});
+}
+
+bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
+  if (led_by == 0 || !led_to_.learn(led_by, number)) return false;
+  host_.postpone_new_elements();
+  return true;
+}
+
+void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cause) {
+  into.cause.met = std::max(into.cause.met, cause.met);
+  if (cause.led_by - 1 >= into.cause.led_by - 1) return;  // 0 means none and is ordered last
+  into.cause.led_by = cause.led_by;
+  (void)learn(number, cause.led_by);
+  // A PE below that was asked or has reported may hold an element that waits for this number.
+  if (into.asked || into.children > 0) ask_children(number, into.cause);
+}
+
+void ReductionTree::take(std::uint32_t number, const Cause& cause) {
+  if (number >= next_report_) {
+    Gathering& gathering = gathering_[number];
+    gathering.known = true;
+    take(number, gathering, cause);
+  } else if (learn(number, cause.led_by)) {
+    ask_children(number, cause);
+  }
+}
+
+void ReductionTree::remove_member(std::uint32_t next) {
+  if (next >= next_report_) {
+    changes_[next] -= 1;
+    return;
+  }
+  send_late_change(next, 0);
+}
+
+void ReductionTree::send_late_change(std::uint32_t number, std::uint32_t joins) {
+  ReductionReport late;
+  late.number = number;
+  late.change = -1;
+  late.late = true;
+  late.joins = joins;
+  host_.send(root_, std::move(late));
+}
+
+std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_after) {
+  const std::uint32_t later = led_to_.end(created_after);
+  if (later <= next) return next;
+  leave(next);
+  enter(later);
+  if (later < next_report_) {
+    send_late_change(
+        next, later);  // one message, so that the root completes no number between the two changes
+  } else {
+    remove_member(next);
+    add_member(later);
+  }
+  return later;
+}
+
+void ReductionTree::enter(std::uint32_t next) {
+  elements_at_.add(next);
+}
+
+void ReductionTree::leave(std::uint32_t next) {
+  elements_at_.remove(next);
+}
+
+void ReductionTree::added(std::uint32_t number, const Cause& cause) {
+  Gathering& gathering = *current_;
+  take(number, gathering, cause);
+  completion_.sent(gathering.shares.front().epoch);
+  ++gathering.shares.front().n;
+  ++gathering.n;
+  leave(number);
+  enter(number + 1);
+  if (ready(next_report_)) advance();
+}
+
+void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
+                               const Cause& cause) {
+  completion_.sent(epoch);
+  leave(number);
+  enter(number + 1);
+  if (number < next_report_) {  // this PE has reported: the element arrived later
+    ReductionReport late;
+    late.number = number;
+    late.n = 1;
+    late.late = true;
+    late.cause = cause;
+    late.value.held = std::move(value);
+    late.shares = {{epoch, 1}};
+    host_.send(root_, std::move(late));
+    return;
+  }
+  Gathering& gathering = gathering_[number];
+  gathering.known = true;
+  ++gathering.n;
+  gathering.merge_value(std::move(value));
+  gathering.merge_shares({{epoch, 1}});
+  current_ = &gathering;
+  current_number_ = number;
+  take(number, gathering, cause);
+  advance();
+}
+
+bool ReductionTree::ready(std::uint32_t number) const {
+  return elements_at_.empty() || elements_at_.lowest() > number;
+}
+
+void ReductionTree::advance() {
+  for (;;) {
+    const auto at = gathering_.find(next_report_);
+    if (at == gathering_.end() || !at->second.known || !ready(next_report_)) return;
+    Gathering& gathering = at->second;
+    if (static_cast<std::size_t>(gathering.children) < children_.size()) {
+      if (!gathering.asked) {
+        gathering.asked = true;
+        ask_children(next_report_, gathering.cause);
+      }
+      return;
+    }
+    // An element that is created here after the report has received what led to the reduction.
+    if (gathering.cause.met > host_.applied_broadcast()) {
+      awaited_broadcast_ = gathering.cause.met;
+      return;
+    }
+    if (current_ == &gathering) current_ = nullptr;
+    Gathering done = std::move(gathering);
+    gathering_.erase(at);
+    if (const auto change = changes_.find(next_report_); change != changes_.end()) {
+      done.change += change->second;
+      changes_.erase(change);
+    }
+    report(next_report_++, std::move(done));
+  }
+}
+
+void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
+  if (root_ != here_) {
+    host_.send(parent_,
+               ReductionReport{number, gathered.n, gathered.change, false, 0, gathered.cause,
+                               std::move(gathered.value), std::move(gathered.shares)});
+    return;
+  }
+  Whole& whole = whole_[number];
+  whole.all_reported = true;
+  whole.sum.n += gathered.n;
+  whole.sum.change += gathered.change;
+  whole.sum.merge_value(std::move(gathered.value.held));
+  whole.sum.merge_shares(gathered.shares);
+  complete_if_whole();
+}
+
+void ReductionTree::on_report(ReductionReport&& report) {
+  if (report.late) {
+    // A member of a number contributes to it or is destroyed before the number is complete.
+    TESS_CHECK(report.number >= next_complete_, words_.name, " ", report.number,
+               " is complete, but a report of one of its members arrives");
+    Whole& whole = whole_[report.number];
+    whole.sum.n += report.n;
+    whole.sum.change += report.change;
+    whole.sum.merge_value(std::move(report.value.held));
+    whole.sum.merge_shares(report.shares);
+    if (report.joins != 0) whole_[report.joins].sum.change += 1;
+    take(report.number, report.cause);
+    advance();
+    complete_if_whole();
+    return;
+  }
+  Gathering& gathering = gathering_[report.number];
+  gathering.known = true;
+  gathering.n += report.n;
+  gathering.change += report.change;
+  gathering.merge_value(std::move(report.value.held));
+  gathering.merge_shares(report.shares);
+  take(report.number, gathering, report.cause);
+  ++gathering.children;
+  // The same holds for a PE that reported without this knowledge.
+  if (report.cause.led_by != gathering.cause.led_by && !gathering.asked)
+    ask_children(report.number, gathering.cause);
+  advance();
+}
+
+void ReductionTree::on_begin(const ReductionBegin& begin) {
+  take(begin.number, begin.cause);
+  advance();
+}
+
+void ReductionTree::complete_if_whole() {
+  for (;;) {
+    const auto at = whole_.find(next_complete_);
+    if (at == whole_.end() || !at->second.all_reported) return;
+    Gathering& sum = at->second.sum;
+    if (static_cast<std::int64_t>(sum.n) != members_ + sum.change) return;
+    members_ += sum.change;
+    Gathering done = std::move(sum);
+    whole_.erase(at);
+    ++next_complete_;
+    if (done.value.held) host_.deliver(*done.value.held, done.epoch());
+    // The result has been sent in the same epoch before the contributions are settled.
+    settle(completion_, done.shares);
+  }
+}
+
+void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
+  for (const auto& [number, gathering] : gathering_) {
+    if (gathering.n == 0 && ready(number)) continue;
+    lines.push_back(text(words_.name, " ", number, " has ", gathering.n, " contributions on ",
+                         here_, "; it waits for ",
+                         ready(number) ? "other PEs" : words_.missing_before(number + 1)));
+  }
+  // Elements that arrived after this PE had reported; the reductions that they have yet to
+  // contribute to are incomplete.
+  if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
+    lines.push_back(text(words_.name, " ", elements_at_.lowest(), " waits for ",
+                         words_.missing_before(next_report_)));
+  for (const auto& [number, whole] : whole_) {
+    if (whole.sum.n != 0)
+      lines.push_back(text(words_.name, " ", number, " has ", whole.sum.n, " contributions of ",
+                           members_ + whole.sum.change, " members"));
+  }
+}
+
+}  // namespace tess::detail

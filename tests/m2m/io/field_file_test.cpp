@@ -1,0 +1,380 @@
+#include "m2m/field_file.hpp"
+
+#include "m2m/kuhn.hpp"
+#include "m2m/read_mesh.hpp"
+#include "m2m/write_exodus.hpp"
+#include "m2m/write_vtu.hpp"
+#include "tests/m2m/field_values.hpp"
+#include "tests/m2m/io/damage.hpp"
+#include "tests/m2m/io/gmsh_text.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shared_data.hpp"
+
+#include <array>
+#include <exodusII.h>
+#include <fmt/core.h>
+#include <memory>
+#include <optional>
+
+using namespace tess::m2m;
+using tess::test::as_gmsh;
+using tess::test::awkward_field;
+using tess::test::bits_of;
+using tess::test::made_mesh;
+using tess::test::message_of;
+using tess::test::read_all;
+using tess::test::Scratch;
+using tess::test::shared_data;
+using tess::test::slurp;
+
+namespace {
+
+/// The mesh, with blocks, and its fields at three steps.
+struct Results {
+  TetMesh mesh = kuhn_mesh({2, 0.1});
+  std::vector<double> times{0, 0.5, 0.75};
+  std::vector<Field> temperature{}, velocity{}, part{};
+};
+Results write_results(const std::string& path) {
+  Results results;
+  results.mesh.blocks = {{7, "fluid", 40}, {12, "solid", 8}};
+  const std::size_t n = results.mesh.n_points(), m = results.mesh.n_tets();
+  ExodusSteps out(path, results.mesh);
+  for (std::size_t step = 0; step < 3; ++step) {
+    results.temperature.push_back(awkward_field("temperature", n, 1, 10 + step));
+    results.velocity.push_back(awkward_field("velocity", n, 3, 20 + step));
+    results.part.push_back(awkward_field("part", m, 1, 30 + step));
+    out.add(results.times[step], std::array{results.temperature[step], results.velocity[step]},
+            std::array{results.part[step]});
+  }
+  out.finish();
+  return results;
+}
+
+/// A section of values. `rows`: tag and values.
+struct Section {
+  const char* kind = "NodeData";
+  const char* name = "temp";
+  double time = 0;
+  int step = 0;
+  std::vector<std::pair<int, std::vector<double>>> rows{};
+};
+std::string text_of(const Section& section, bool binary) {
+  std::string out = fmt::format("${}\n1\n\"{}\"\n1\n{}\n3\n{}\n{}\n{}\n", section.kind,
+                                section.name, section.time, section.step,
+                                section.rows.front().second.size(), section.rows.size());
+  for (const auto& [tag, values] : section.rows) {
+    if (binary) {
+      tess::test::put(out, tag);
+      for (const double value : values) tess::test::put(out, value);
+    } else {
+      out += std::to_string(tag);
+      for (const double value : values) out += fmt::format(" {:.17g}", value);
+      out += "\n";
+    }
+  }
+  return out + (binary ? "\n" : "") + "$End" + section.kind + "\n";
+}
+
+/// The values of a mesh of as_gmsh(mesh, …, gap), row by row from the last on.
+std::vector<std::pair<int, std::vector<double>>> rows_of(const Field& field, int gap) {
+  std::vector<std::pair<int, std::vector<double>>> rows;
+  const std::size_t n = field.values.size() / field.n_components;
+  for (std::size_t i = n; i-- > 0;) {
+    const auto at = field.values.begin() + static_cast<std::ptrdiff_t>(i * field.n_components);
+    rows.push_back({static_cast<int>(i) * gap + 3,
+                    {at, at + static_cast<std::ptrdiff_t>(field.n_components)}});
+  }
+  return rows;
+}
+
+/// A hexahedron, a triangle and a tetrahedron in blocks 3, 4 and 5, with element variables `rho` and
+/// `q`, the second missing in block 5.
+std::string solids_with_variables(const Scratch& scratch) {
+  const std::string path = scratch.path("solids.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 9> x{0, 1, 1, 0, 0, 1, 1, 0, 2}, y{0, 0, 1, 1, 0, 0, 1, 1, 0},
+      z{0, 0, 0, 0, 1, 1, 1, 1, 0};
+  ex_put_init(id, "solids", 3, 9, 3, 3, 0, 0);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  const std::array<int, 8> hex{1, 2, 3, 4, 5, 6, 7, 8};
+  const std::array<int, 3> triangle{1, 2, 3};
+  const std::array<int, 4> tet{2, 9, 3, 6};
+  const auto block = [&](int number, const char* type, const auto& vertices) {
+    ex_put_block(id, EX_ELEM_BLOCK, number, type, 1, static_cast<int>(vertices.size()), 0, 0, 0);
+    ex_put_conn(id, EX_ELEM_BLOCK, number, vertices.data(), nullptr, nullptr);
+  };
+  block(3, "HEX8", hex);
+  block(4, "TRI3", triangle);
+  block(5, "TETRA", tet);
+  ex_put_variable_param(id, EX_ELEM_BLOCK, 2);
+  ex_put_variable_name(id, EX_ELEM_BLOCK, 1, "rho");
+  ex_put_variable_name(id, EX_ELEM_BLOCK, 2, "q");
+  std::array<int, 6> has{1, 1, 1, 1, 1, 0};
+  ex_put_truth_table(id, EX_ELEM_BLOCK, 3, 2, has.data());
+  const double time = 4;
+  ex_put_time(id, 1, &time);
+  const double values[] = {30, 40, 50};
+  for (int b = 0; b < 3; ++b) ex_put_var(id, 1, EX_ELEM_BLOCK, 1, 3 + b, 1, &values[b]);
+  for (int b = 0; b < 2; ++b) ex_put_var(id, 1, EX_ELEM_BLOCK, 2, 3 + b, 1, &values[b]);
+  ex_close(id);
+  return path;
+}
+
+}  // namespace
+
+TEST_CASE("fields of several steps are written and read back bit for bit", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("steps.exo");
+  const Results results = write_results(path);
+  CHECK(scratch.n_files() == 1);
+  const TetMesh mesh = read_mesh(path);
+  CHECK(mesh.blocks == results.mesh.blocks);
+  const FieldFile file(path);
+  CHECK(file.times() == results.times);
+  REQUIRE(file.fields().size() == 6);
+  CHECK(file.fields()[1].name == "velocity");
+  CHECK(file.fields()[1].n_components == 3);
+  CHECK(file.fields()[3].name == "velocity_y");
+  CHECK(file.fields()[3].is_part);
+  for (const std::size_t step : {2U, 0U, 1U}) {
+    CHECK(bits_of(file.vertex_field(mesh, "temperature", step).values) ==
+          bits_of(results.temperature[step].values));
+    const Field velocity = file.vertex_field(mesh, "velocity", step);
+    CHECK(velocity.n_components == 3);
+    CHECK(bits_of(velocity.values) == bits_of(results.velocity[step].values));
+    CHECK(bits_of(file.vertex_field(mesh, "velocity_y", step).values)[4] ==
+          bits_of(results.velocity[step].values)[13]);
+    CHECK(bits_of(file.tet_field(mesh, "part", step).values) == bits_of(results.part[step].values));
+  }
+}
+
+TEST_CASE("a missing field or step is refused with what the file has", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("steps.exo");
+  const Results results = write_results(path);
+  const FieldFile file(path);
+  const auto refusal = [&](const std::string& name, std::size_t step) {
+    return message_of([&] { (void)file.vertex_field(results.mesh, name, step); });
+  };
+  CHECK(refusal("tmp", 0) ==
+        path +
+            ": has no variable 'tmp' at vertices; it has: temperature, velocity "
+            "(3 components) (in elements: part); steps 0..2 (times 0 to 0.75)");
+  CHECK(refusal("temperature", 3) ==
+        path + ": variable 'temperature' has no step 3; the file has steps 0..2 (times 0 to 0.75)");
+  CHECK_THAT(refusal("part", 0), Catch::Contains("has no variable 'part' at vertices"));
+  CHECK_THAT(message_of([&] { (void)file.tet_field(results.mesh, "temperature", 0); }),
+             Catch::Contains("has no variable 'temperature' in elements; it has: part"));
+  CHECK_THAT(message_of([&] { (void)file.vertex_field(kuhn_mesh({3}), "temperature", 0); }),
+             Catch::Contains("do not fit the mesh"));
+  CHECK_THAT(message_of([&] { (void)file.tet_field(kuhn_mesh({3}), "part", 0); }),
+             Catch::Contains("do not fit the mesh"));
+  CHECK_THAT(message_of([] { FieldFile("kuhn:3"); }), Catch::Contains("kuhn:3: is generated"));
+  CHECK_THAT(message_of([&] { FieldFile(scratch.path("none.exo")); }),
+             Catch::Contains("none.exo: cannot be opened"));
+
+  const std::string plain = scratch.path("plain.exo");
+  ExodusSteps(plain, results.mesh).finish();
+  CHECK_THAT(message_of([&] { (void)FieldFile(plain).vertex_field(results.mesh, "u", 0); }),
+             Catch::Contains("has no variable 'u' at vertices; it has: none") &&
+                 Catch::Contains("no time steps"));
+}
+
+TEST_CASE("steps with other fields or an earlier time are refused, and no file remains",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("steps.exo");
+  const TetMesh mesh = kuhn_mesh({2});
+  const Field a = awkward_field("a", mesh.n_points(), 1, 1);
+  const Field b = awkward_field("b", mesh.n_points(), 3, 1);
+  {
+    ExodusSteps out(path, mesh);
+    out.add(1, std::array{a});
+    CHECK_THAT(message_of([&] { out.add(1, std::array{a}); }),
+               Catch::Contains(path + ": step 1 has time 1, which is not after 1"));
+    CHECK_THAT(
+        message_of([&] { out.add(2, std::array{b}); }),
+        Catch::Contains("step 1 has the variables b_x, b_y, b_z and none, but step 0 had a"));
+  }
+  CHECK(scratch.n_files() == 0);
+}
+
+TEST_CASE("two fields of one name are refused, and no file remains", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2});
+  const Field scalar = awkward_field("v_x", mesh.n_points(), 1, 1);
+  const Field vector = awkward_field("v", mesh.n_points(), 3, 1);
+  const Field in_tets = awkward_field("v", mesh.n_tets(), 3, 1);
+  CHECK_THAT(message_of([&] {
+               write_exodus(scratch.path("a.exo"), mesh, std::array{scalar, vector});
+             }),
+             Catch::Contains("a.exo: two fields have the variable 'v_x'"));
+  CHECK_THAT(message_of([&] {
+               write_vtu(scratch.path("a.vtu"), mesh, std::array{vector, scalar, vector});
+             }),
+             Catch::Contains("a.vtu: two fields have the name 'v'"));
+  CHECK(scratch.n_files() == 0);
+  CHECK_NOTHROW(write_exodus(scratch.path("a.exo"), mesh, std::array{vector}, std::array{in_tets}));
+  CHECK_NOTHROW(write_vtu(scratch.path("a.vtu"), mesh, std::array{vector}, std::array{in_tets}));
+}
+
+TEST_CASE("a file of steps keeps its own copy of the path", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2});
+  const Field a = awkward_field("a", mesh.n_points(), 1, 1);
+  auto path = std::make_unique<std::string>(scratch.path("steps_of_a_path_that_ends.exo"));
+  const std::string copy = *path;
+  ExodusSteps out(*path, mesh);
+  std::fill(path->begin(), path->end(), 'x');
+  path.reset();
+  out.add(1, std::array{a});
+  CHECK_THAT(message_of([&] { out.add(1, std::array{a}); }), Catch::StartsWith(copy + ": step 1"));
+  out.finish();
+  CHECK(bits_of(FieldFile(copy).vertex_field(mesh, "a", 0).values) == bits_of(a.values));
+}
+
+TEST_CASE("values of split elements are those of the whole element; skipped ones are left out",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = solids_with_variables(scratch);
+  const TetMesh mesh = read_mesh(path);
+  REQUIRE(mesh.n_tets() == 7);
+  const FieldFile file(path);
+  CHECK(file.times() == std::vector<double>{4});
+  CHECK(file.tet_field(mesh, "rho", 0).values == std::vector<double>{30, 30, 30, 30, 30, 30, 50});
+  CHECK_THAT(message_of([&] { (void)file.tet_field(mesh, "q", 0); }),
+             Catch::Contains(path + ": variable 'q' is missing in block 5"));
+}
+
+TEST_CASE("scalars that are no vector stay apart", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("scalars.exo");
+  const TetMesh mesh = kuhn_mesh({1});
+  std::vector<Field> fields;
+  for (const char* name : {"u_x", "u_y", "w_z", "U_X", "U_Y", "U_Z", "_x", "_y", "_z", "v_x"})
+    fields.push_back(awkward_field(name, mesh.n_points(), 1, 3));
+  fields.push_back(awkward_field("pair", mesh.n_points(), 2, 3));
+  write_exodus(path, mesh, fields);
+  std::string whole;
+  const FieldFile file(path);
+  for (const FileField& field : file.fields())
+    if (!field.is_part) whole += fmt::format("{}:{} ", field.name, field.n_components);
+  CHECK(whole == "u_x:1 u_y:1 w_z:1 U:3 _x:1 _y:1 _z:1 v_x:1 pair_1:1 pair_2:1 ");
+  CHECK(file.vertex_field(mesh, "U", 0).values.size() == 3 * mesh.n_points());
+}
+
+TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any order of tags",
+          "[m2m][io]") {
+  const Scratch scratch;
+  TetMesh mesh = kuhn_mesh({2, 0.1});
+  for (const bool legacy : {false, true}) {
+    for (const bool binary : {false, true}) {
+      for (const int gap : {1, 1000, 30000000}) {
+        CAPTURE(legacy, binary, gap);
+        const Field early = awkward_field("temp", mesh.n_points(), 1, 1);
+        const Field late = awkward_field("temp", mesh.n_points(), 1, 2);
+        const Field flow = awkward_field("a flow", mesh.n_points(), 3, 3);
+        // Elements have the tags 1 (a point), and 2, 3, … (tetrahedra).
+        Section part{"ElementData", "part", 0, 0, {{1, {-1}}}};
+        for (std::size_t t = 0; t < mesh.n_tets(); ++t)
+          part.rows.push_back({static_cast<int>(t + 2), {static_cast<double>(t) / 3}});
+        std::string bytes = as_gmsh(mesh, legacy, binary, static_cast<std::uint64_t>(gap));
+        const std::string first =
+            text_of({"NodeData", "temp", 0.25, 0, rows_of(early, gap)}, binary);
+        const std::string second =
+            text_of({"NodeData", "temp", 1.5, 10, rows_of(late, gap)}, binary);
+        bytes += legacy ? first + second : second + first;
+        bytes += text_of({"NodeData", "a flow", 0.25, 0, rows_of(flow, gap)}, binary);
+        bytes += text_of(part, binary);
+        const std::string path = scratch.write("fields.msh", bytes);
+        const TetMesh read = read_mesh(path);
+        CHECK(read.tets == mesh.tets);
+        const FieldFile file(path);
+        CHECK(file.times() == std::vector<double>{0.25, 1.5});
+        const auto same = [](const Field& got, const Field& want) {
+          if (got.values.size() != want.values.size()) return false;
+          for (std::size_t i = 0; i < got.values.size(); ++i)  // as text, a NaN loses its bits
+            if (got.values[i] != want.values[i] && got.values[i] == got.values[i]) return false;
+          return true;
+        };
+        CHECK(same(file.vertex_field(read, "temp", 0), early));
+        CHECK(same(file.vertex_field(read, "temp", 1), late));
+        CHECK(same(file.vertex_field(read, "a flow", 0), flow));
+        CHECK(file.tet_field(read, "part", 0).values[47] == 47.0 / 3);
+        CHECK_THAT(
+            message_of([&] { (void)file.vertex_field(read, "a flow", 1); }),
+            Catch::Contains("variable 'a flow' has no value for node 3 at step 1 (time 1.5"));
+      }
+    }
+  }
+}
+
+TEST_CASE("gmsh's partitions of a step are joined; a vertex without a value is named",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  Field field = awkward_field("p", mesh.n_points(), 1, 1);
+  for (double& value : field.values) value = 2;
+  auto rows = rows_of(field, 1);
+  const std::vector<std::pair<int, std::vector<double>>> first(rows.begin(), rows.begin() + 5),
+      second(rows.begin() + 4, rows.end());
+  const std::string head = as_gmsh(mesh, false, false, 1);
+  const std::string whole =
+      scratch.write("whole.msh", head + text_of({"NodeData", "p", 0, 0, first}, false) +
+                                     text_of({"NodeData", "p", 0, 0, second}, false));
+  CHECK(FieldFile(whole).vertex_field(mesh, "p", 0).values == field.values);
+  const std::string part =
+      scratch.write("part.msh", head + text_of({"NodeData", "p", 0, 0, first}, false));
+  CHECK_THAT(message_of([&] { (void)FieldFile(part).vertex_field(mesh, "p", 0); }),
+             Catch::Contains(part + ": variable 'p' has no value for node 3 at step 0") &&
+                 Catch::Contains("3 of 8 are missing"));
+  const std::string other =
+      scratch.write("other.msh", head + text_of({"NodeData", "p", 0, 0, first}, false) +
+                                     text_of({"NodeData", "p", 1, 1, {{3, {1, 2, 3}}}}, false));
+  CHECK_THAT(message_of([&] { FieldFile{other}; }), Catch::Contains("'p' has 1 components and 3"));
+}
+
+TEST_CASE("a view that gmsh saved is read", "[m2m][io][.][meshes]") {
+  const std::string path = made_mesh("view");
+  const TetMesh mesh = read_mesh(path);
+  const Field field = FieldFile(path).vertex_field(mesh, "a constant", 0);
+  CHECK(field.values == std::vector<double>(3 * mesh.n_points(), 1.5));
+}
+
+TEST_CASE("the fields of files of other programs are listed, and those that are there are read",
+          "[m2m][io][.][shared_data]") {
+  for (const char* name :
+       {"nalu/3d_tet4_pipe.exo", "nalu/3d_tet4_taylor_green_0p4.exo", "nalu/3d_hex8_pipe.exo",
+        "mfem/simple-cube-tet4.e", "mfem/indheat.bin.v41.msh", "skfem/box.msh"}) {
+    CAPTURE(name);
+    CHECK_NOTHROW(read_all(shared_data(name)));
+  }
+}
+
+TEST_CASE("files with fields that are cut or have flipped bits give one line of error",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("steps.exo");
+  (void)write_results(path);
+  std::string bytes = slurp(path);
+  tess::test::damage_everywhere("cut.exo", bytes, bytes.size() / 64, 1500, read_all);
+  const TetMesh mesh = kuhn_mesh({1});
+  for (const bool binary : {false, true}) {
+    bytes = as_gmsh(mesh, !binary, binary, 2);
+    for (int step = 0; step < 3; ++step)
+      bytes += text_of({"NodeData", "temp", 1.0 * step, step,
+                        rows_of(awkward_field("temp", mesh.n_points(), 2, 5), 2)},
+                       binary);
+    const std::size_t n_mesh = as_gmsh(mesh, !binary, binary, 2).size();
+    // A cut between sections leaves a sound file of fewer steps.
+    tess::test::damage_everywhere("cut.msh", bytes, 1, 1000, read_all);
+    for (std::size_t kept = n_mesh; kept < bytes.size(); ++kept)
+      tess::test::check_refusal(scratch.write("cut.msh", bytes.substr(0, kept)), read_all);
+    CHECK_THAT(
+        message_of([&] { read_all(scratch.write("cut.msh", bytes.substr(0, bytes.size() - 30))); }),
+        Catch::Contains("truncated"));
+  }
+}
