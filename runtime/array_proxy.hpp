@@ -89,12 +89,8 @@ class ArrayProxy {
   /// The part of the array on this PE with its local elements, for libraries and tests.
   [[nodiscard]] detail::Array<C>& here() const {
     detail::Collection* collection = detail::find_collection(current_pe(), id_);
-    TESS_CHECK(collection != nullptr, "the array of this proxy ",
-               current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
-               current_pe().id(),
-               current_pe().ended(id_)
-                   ? ""
-                   : ": create it inside an awaited epoch, or send its size with the proxy");
+    if (collection == nullptr) [[unlikely]]
+      detail::refuse_absent(id_, "the array of this proxy", ", or send its size with the proxy");
     return *static_cast<detail::Array<C>*>(collection);
   }
 

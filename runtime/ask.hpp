@@ -133,6 +133,7 @@ class AskOf : public AskBase {
 
  protected:
   std::optional<Value> value_;
+  bool taken_ = false;  // a co_await has moved the value out
 
  private:
   static void arrives(Pe& pe, Reply&& reply) {
@@ -265,7 +266,11 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
 
   auto await_resume() {
     if (this->failure_) throw Error(this->failure_->code, this->failure_->message);
-    if constexpr (!std::is_same_v<Value, NoValue>) return std::move(*this->value_);
+    if constexpr (!std::is_same_v<Value, NoValue>) {
+      TESS_CHECK(!std::exchange(this->taken_, true), waits_for().text,
+                 " is awaited again: the first co_await took it, so keep that");
+      return std::move(*this->value_);
+    }
   }
   [[nodiscard]] detail::WaitReason waits_for() const override {
     return this->reply_of(collection_, IndexHash<Index>()(index_),

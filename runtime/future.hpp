@@ -5,7 +5,7 @@
 //     const double t = co_await total;
 //
 // The callback can be sent anywhere; the result arrives at the PE that made the future. It is taken
-// once, and the future must outlive it: make it a local variable of the coroutine that awaits it, or
+// once (a second co_await ends the job), and the future must outlive it: make it a local variable of the coroutine that awaits it, or
 // a member of an element that does not migrate meanwhile. A Future<void> gets no value.
 #pragma once
 
@@ -65,7 +65,11 @@ class Future {
   }
   T await_resume() {
     waiting_ = nullptr;
-    if constexpr (!std::is_void_v<T>) return std::move(*value_);
+    if constexpr (!std::is_void_v<T>) {
+      TESS_CHECK(!std::exchange(taken_, true), waits_for(),
+                 " is awaited again: the first co_await took its result, so keep that");
+      return std::move(*value_);
+    }
   }
 
   // For when_all and when_any.
@@ -96,7 +100,7 @@ class Future {
   }
   static void arrives(Pe& pe, Result&& result) {
     auto* future = static_cast<Future*>(pe.require_future(result.id));
-    TESS_CHECK(!future->value_, "a future was given two results");
+    TESS_CHECK(!future->value_, future->waits_for(), " was given two results: it takes one");
     future->value_ = std::move(result.value);
     if (future->waiting_ != nullptr) future->waiting_->wake();
     pe.completion().processed(pe.context().epoch);
@@ -115,12 +119,14 @@ class Future {
     pe_ = other.pe_;
     id_ = std::exchange(other.id_, 0);
     value_ = std::exchange(other.value_, std::nullopt);
+    taken_ = other.taken_;
     if (id_ != 0) pe_->move_future(id_, this);
   }
 
   Pe* pe_;
   std::uint64_t id_ = 0;  // 0: moved from
   std::optional<Value> value_;
+  bool taken_ = false;  // a co_await has moved the value out
   detail::Waiter own_;
   detail::Waiter* waiting_ = nullptr;
 };

@@ -112,10 +112,8 @@ class GroupProxy {
   /// The member on this PE.
   [[nodiscard]] G& local() const {
     G* member = local_or_null();
-    TESS_CHECK(member != nullptr, "this group ",
-               current_pe().ended(id_) ? "was destroyed" : "is not known yet", " on ",
-               current_pe().id(),
-               current_pe().ended(id_) ? "" : ": create it inside an awaited epoch");
+    if (member == nullptr) [[unlikely]]
+      detail::refuse_absent(id_, "this group", "");
     return *member;
   }
 
@@ -149,6 +147,8 @@ class GroupProxy {
 /// Creates a group: one G per PE, constructed with these arguments. Returns immediately.
 template <class G, class... Args>
 GroupProxy<G> create_group(Args&&... args) {
+  static_assert(detail::OnePerPe<G>,
+                "a group's class derives from tess::Group; create() makes an array");
   return GroupProxy<G>(
       detail::create_collection<G>(range(current_pe().n_pes()), std::forward<Args>(args)...));
 }

@@ -69,7 +69,6 @@ class ChareProxy {
 /// Creates one chare on that PE. Returns immediately: messages wait for it.
 template <class C, class... Args>
 ChareProxy<C> create_one_on(PeId pe, Args&&... args) {
-  static_assert(!detail::OnePerPe<C>, "a group is made by create_group()");
   const ChareProxy<C> chare(create<C>(sparse).id());
   chare.element().insert_on(pe, std::forward<Args>(args)...);
   return chare;
@@ -78,7 +77,6 @@ ChareProxy<C> create_one_on(PeId pe, Args&&... args) {
 /// The same; the runtime chooses the PE. Many such chares are spread over all PEs.
 template <class C, class... Args>
 ChareProxy<C> create_one(Args&&... args) {
-  static_assert(!detail::OnePerPe<C>, "a group is made by create_group()");
   const ChareProxy<C> chare(create<C>(sparse).id());
   chare.element().insert_on(detail::root_of(chare.id(), current_pe().n_pes()),
                             std::forward<Args>(args)...);

@@ -13,6 +13,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tess::detail {
@@ -317,6 +318,9 @@ class ElementScope {
 [[nodiscard]] inline Collection* find_collection(Pe& pe, CollectionId id) {
   return static_cast<Collection*>(pe.find(id));
 }
+/// Ends the job with the reason why find_collection() is null: the proxy is empty, or `what` has
+/// ended, or it is not known here yet, for which `or_else` is another remedy.
+[[noreturn]] void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else);
 /// The collection whose element is under construction; null if there is none.
 [[nodiscard]] inline Collection* constructing_collection(const Pe& pe) {
   return static_cast<Collection*>(pe.constructing_collection());

@@ -116,7 +116,7 @@ template <class Index>
         out += "?";
       }
     };
-    boost::pfr::for_each_field(index, add);
+    detail::for_each_field(index, add);
     return out + "]";
   } else {
     return text("[#", IndexHash<Index>()(index), "]");

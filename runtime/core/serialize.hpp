@@ -8,11 +8,17 @@
 //       template <class Ar>
 //       void serialize(Ar& ar) { ar(grid_, tile_, edges_); }
 //     };
+//     // a class of another library has it beside itself: in its own namespace, or in namespace tess
+//     namespace tess {
+//     template <class Ar>
+//     void serialize(Ar& ar, std::bitset<64>& bits);
+//     }
 //
-// Numbers, enums and durations are copied bit by bit: all processes of a job run the same binary on the same
-// kind of machine. Standard and Boost containers, pair, tuple, optional, variant and unique_ptr
-// work if their contents do. A raw pointer does not compile. Reading compares every length with the
-// bytes that are left and throws tess::Error.
+// Numbers, complex numbers, enums and durations are copied bit by bit: all processes of a job run the same
+// binary on the same kind of machine. Standard and Boost containers, pair, tuple, optional, variant and
+// unique_ptr work if their contents do. A raw or shared pointer does not compile, and a unique_ptr to a base
+// class that holds a derived object ends the job. Reading compares every length with the bytes that are left
+// and throws tess::Error.
 //
 // In a message to another process a large vector of numbers is not copied: its memory is attached
 // and sent from where it is to where it is read. The stream holds only its length, with the highest
@@ -24,9 +30,9 @@
 
 #include "runtime/core/buffer.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/fields.hpp"
+#include "runtime/core/serialize_kinds.hpp"
 #include "runtime/core/uninitialised.hpp"
-
-#include <boost/pfr/core.hpp>
 
 #include <array>
 #include <cstddef>
@@ -43,103 +49,7 @@
 
 namespace tess {
 
-class Writer;
 class Reader;
-
-namespace serialization {
-
-template <class T>
-concept HasSerialize = requires(T& value, Writer& ar) { value.serialize(ar); };
-template <class T>
-concept Duration = requires { typename T::period; } && std::is_arithmetic_v<typename T::rep>;
-template <class T>
-concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T> || Duration<T>;
-template <class T>
-concept TupleLike = requires { std::tuple_size<T>::value; } && !std::is_aggregate_v<T>;
-template <class T>
-concept Resizable = requires(T& c, std::size_t n) {
-  c.resize(n);
-  c.data();
-  c.size();
-  typename T::value_type;
-};
-template <class T>
-concept Growable = requires(T& c, typename T::value_type v) {
-  c.clear();
-  c.insert(c.end(), std::move(v));
-  c.size();
-};
-
-template <class T>
-struct IsArray : std::false_type {};
-template <class T, std::size_t N>
-struct IsArray<std::array<T, N>> : std::true_type {};
-template <class T>
-struct IsVector : std::false_type {};
-template <class T>
-struct IsVector<std::vector<T>> : std::bool_constant<!std::is_same_v<T, bool>> {};
-/// The type passes only its own members to an archive, never a temporary: they may be attached.
-template <class T>
-concept GivesMembers = requires { typename T::GivesMembers; };
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-template <class T>
-struct IsVariant : std::false_type {};
-/// std::variant and Boost's, without their headers: most programs have none.
-template <template <class...> class V, class... T>
-  requires requires(const V<T...>& value) {
-    value.valueless_by_exception();
-    value.index();
-  }
-struct IsVariant<V<T...>> : std::true_type {
-  static constexpr std::size_t n_alternatives = sizeof...(T);
-};
-template <class T>
-struct IsUnique : std::false_type {};
-template <class T>
-struct IsUnique<std::unique_ptr<T>> : std::true_type {};
-template <class T>
-struct IsPair : std::false_type {};
-template <class A, class B>
-struct IsPair<std::pair<A, B>> : std::true_type {};
-
-template <class T>
-consteval bool is_bitwise();
-
-template <class T, std::size_t... I>
-consteval bool fields_are_bitwise(std::index_sequence<I...> /*fields*/) {
-  return (is_bitwise<boost::pfr::tuple_element_t<I, T>>() && ...) &&
-         (sizeof(boost::pfr::tuple_element_t<I, T>) + ... + 0) == sizeof(T);
-}
-
-/// True if the value can be copied as bytes and has no padding.
-template <class T>
-consteval bool is_bitwise() {
-  if constexpr (Number<T>) {
-    return true;
-  } else if constexpr (IsArray<T>::value) {
-    return is_bitwise<typename T::value_type>();
-  } else if constexpr (std::is_array_v<T>) {
-    return false;
-  } else if constexpr (std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> &&
-                       !HasSerialize<T> && !std::is_union_v<T>) {
-    if constexpr (std::is_empty_v<T>) {
-      return false;
-    } else {
-      return fields_are_bitwise<T>(std::make_index_sequence<boost::pfr::tuple_size_v<T>>());
-    }
-  } else {
-    return false;
-  }
-}
-
-}  // namespace serialization
-
-/// A value that can be copied as bytes.
-template <class T>
-concept Bitwise = serialization::is_bitwise<std::remove_cv_t<T>>();
 
 namespace detail {
 
@@ -348,6 +258,9 @@ void Writer::put(const T& value) {
   using namespace serialization;
   static_assert(!std::is_pointer_v<T> && !std::is_reference_v<T>,
                 "a pointer means nothing in another process: send the value, an index or a proxy");
+  static_assert(!SharedPointer<T> || HasFreeSerialize<T>,
+                "a shared_ptr is not shared between processes: hold a unique_ptr, or for numbers "
+                "with many readers a tess::SharedArray");
   if constexpr (Bitwise<T>) {
     bytes(&value, sizeof value);
   } else if constexpr (HasSerialize<T>) {
@@ -357,12 +270,18 @@ void Writer::put(const T& value) {
       const CopiesAll scope(*this);
       const_cast<T&>(value).serialize(*this);
     }
+  } else if constexpr (HasFreeSerialize<T>) {
+    const CopiesAll scope(*this);
+    serialize(*this, const_cast<T&>(value));
   } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
     put(static_cast<std::uint64_t>(value.size()));
     for (const bool bit : value) put(static_cast<std::uint8_t>(bit));
   } else if constexpr (IsOptional<T>::value || IsUnique<T>::value) {
     put(static_cast<std::uint8_t>(value ? 1 : 0));
-    if (value) put(*value);
+    if (!value) return;
+    if constexpr (IsUnique<T>::value && std::is_polymorphic_v<std::decay_t<decltype(*value)>>)
+      serialization::check_whole(typeid(*value), typeid(typename T::element_type));
+    put(*value);
   } else if constexpr (IsVariant<T>::value) {
     put(static_cast<std::uint64_t>(value.index()));
     [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -394,7 +313,7 @@ void Writer::put(const T& value) {
     for (const auto& item : value) put(item);
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (const auto& item : value) put(item);
-  } else if constexpr (IsPair<T>::value || TupleLike<T>) {
+  } else if constexpr (TupleLike<T>) {
     std::apply([this](const auto&... item) { (this->put(item), ...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to write.
@@ -402,7 +321,7 @@ void Writer::put(const T& value) {
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
-    boost::pfr::for_each_field(value, [this](const auto& field) { this->put(field); });
+    detail::for_each_field(value, [this](const auto& field) { this->put(field); });
   }
 }
 
@@ -413,6 +332,8 @@ void Reader::get(T& value) {
     bytes(&value, sizeof value);
   } else if constexpr (HasSerialize<T>) {
     value.serialize(*this);
+  } else if constexpr (HasFreeSerialize<T>) {
+    serialize(*this, value);
   } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
     value.resize(length(1));
     for (auto&& bit : value) bit = take<std::uint8_t>() != 0;
@@ -422,6 +343,9 @@ void Reader::get(T& value) {
   } else if constexpr (IsUnique<T>::value) {
     value.reset();
     if (take<std::uint8_t>() != 0) {
+      static_assert(!std::is_abstract_v<typename T::element_type>,
+                    "a unique_ptr to an abstract class cannot be read: hold a std::variant of the "
+                    "classes that derive from it");
       value = std::make_unique<typename T::element_type>();
       get(*value);
     }
@@ -464,7 +388,7 @@ void Reader::get(T& value) {
     }
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (auto& item : value) get(item);
-  } else if constexpr (IsPair<T>::value || TupleLike<T>) {
+  } else if constexpr (TupleLike<T>) {
     std::apply([this](auto&... item) { (this->get(item), ...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to read.
@@ -472,7 +396,7 @@ void Reader::get(T& value) {
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
-    boost::pfr::for_each_field(value, [this](auto& field) { this->get(field); });
+    detail::for_each_field(value, [this](auto& field) { this->get(field); });
   }
 }
 

@@ -2,7 +2,7 @@
 # header_weight.sh COMPILER ROOT: runtime.hpp by itself has at most so many preprocessed lines that are not blank. Each
 # source of each program compiles them. What exceeds the limit belongs into a source, or behind a pointer.
 set -euo pipefail
-limit=67100
+limit=66200
 if ! "$1" --version | grep -q '(Debian 12\.'; then
   echo "skipped: the limit is for the standard library of g++ 12"
   exit 77

@@ -5,8 +5,13 @@
 #include "runtime/index_map.hpp"
 #include "runtime/runtime.hpp"
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -43,6 +48,22 @@ struct Refused {
   friend Refused operator+(Refused a, const Refused& /*b*/) { return a; }
 };
 
+/// A base class with a serialize() of its own, which knows nothing of what derives from it.
+struct Shape {
+  int n = 0;
+  Shape() = default;
+  Shape(const Shape&) = delete;
+  Shape& operator=(const Shape&) = delete;
+  virtual ~Shape() = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n);
+  }
+};
+struct Circle : Shape {
+  double radius = 1;
+};
+
 struct Scaled {
   int by = 1;
   int operator()(int a, int b) const { return by * (a + b); }
@@ -64,6 +85,14 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void give_scaled(tess::Callback<int> target) { contribute(Scaled{index().x}, 1, target); }
   void take(int /*sum*/) {}
   void count(std::uint64_t /*n*/) {}
+  void tell(tess::Callback<std::string> target) { target("the news"); }
+  [[nodiscard]] std::string news() const { return "the news"; }
+  void give_twice(tess::Callback<int> target) {
+    target(1);
+    target(2);
+  }
+  void report(tess::Callback<void> target) { contribute(target); }
+  void draw(std::unique_ptr<Shape> /*shape*/) {}
   void move(PeId pe) { migrate_to(pe); }
   template <class Ar>
   void serialize(Ar& /*ar*/) {}
@@ -175,6 +204,33 @@ tess::Task use_member_after_end() {
   members.local().nothing();
 }
 
+tess::Task future_awaited_twice() {
+  const auto all = tess::create<Block>(tess::range(3));
+  tess::Future<std::string> news;
+  all[{1}].send<&Block::tell>(news.callback());
+  (void)co_await news;
+  (void)co_await news;
+}
+
+tess::Task ask_awaited_twice() {
+  const auto all = tess::create<Block>(tess::range(3));
+  auto news = all[{1}].ask<&Block::news>();
+  (void)co_await news;
+  (void)co_await news;
+}
+
+tess::Task future_given_two() {
+  const auto all = tess::create<Block>(tess::range(3));
+  tess::Future<int> number;
+  co_await tess::epoch([&] { all[{1}].send<&Block::give_twice>(number.callback()); });
+}
+
+/// To the last element, which is in the last process.
+void draw_circle() {
+  const std::int32_t n = tess::n_pes();
+  tess::create<Block>(tess::range(n))[{n - 1}].send<&Block::draw>(std::make_unique<Circle>());
+}
+
 auto blocks() {
   return tess::create<Block>(tess::range(3));
 }
@@ -191,6 +247,19 @@ const std::map<std::string, std::function<void()>> misuses{
     {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
+    {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},
+    {"empty_array_target",
+     [] {
+       blocks().broadcast<&Block::report>(tess::ArrayProxy<Block>().target<&Block::nothing>());
+     }},
+    {"empty_array_size", [] { (void)tess::ArrayProxy<Block>().size(); }},
+    {"empty_array_ends", [] { tess::ArrayProxy<Block>().destroy(); }},
+    {"empty_group", [] { tess::GroupProxy<Member>().broadcast<&Member::nothing>(); }},
+    {"empty_group_local", [] { tess::GroupProxy<Member>().local().nothing(); }},
+    {"future_awaited_twice", [] { const tess::Task task = future_awaited_twice(); }},
+    {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},
+    {"future_given_two", [] { const tess::Task task = future_given_two(); }},
+    {"derived_in_a_pointer", &draw_circle},
     {"negative_argument", [] { blocks()[{0}].send<&Block::count>(-1); }},
     {"exit_-1", [] { tess::exit(-1); }},
     {"exit_256", [] { tess::exit(256); }},

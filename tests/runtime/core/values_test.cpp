@@ -6,9 +6,12 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include <bitset>
+#include <complex>
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <unordered_map>
 #include <variant>
@@ -42,6 +45,57 @@ class Symmetric {
   std::string text_;
 };
 
+/// Its default values are lists of what is no number; g++ 12 fails on their count by Boost.PFR.
+struct Listed {
+  int first = 1;
+  std::vector<std::string> names{"a", "b"};
+  std::map<std::string, std::vector<int>> map{{"x", {1, 2}}};
+  friend bool operator==(const Listed&, const Listed&) = default;
+};
+/// Members that are arrays of C.
+struct Arrays {
+  double at[3] = {1, 2, 3};
+  std::string name = "name";
+  int table[2][2] = {{1, 2}, {3, 4}};
+  std::string names[2] = {"x", "y"};
+  friend bool operator==(const Arrays&, const Arrays&) = default;
+};
+struct Numbers {
+  double at[3] = {};
+  std::int64_t n[1] = {};
+};
+struct Padded {
+  double at[3] = {};
+  std::int32_t n = 0;
+};
+/// A class of another library: it is no aggregate, and cannot be changed.
+class Foreign {
+ public:
+  explicit Foreign(int value = 0) : value_(value) {}
+  [[nodiscard]] int value() const { return value_; }
+  friend bool operator==(const Foreign&, const Foreign&) = default;
+
+ private:
+  int value_;
+};
+template <class Ar>
+void serialize(Ar& ar, Foreign& foreign) {
+  int value = foreign.value();
+  ar(value);
+  if (Ar::is_reading) foreign = Foreign(value);
+}
+
+struct Shape {
+  int n = 0;
+  Shape() = default;
+  Shape(const Shape&) = default;
+  virtual ~Shape() = default;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n);
+  }
+};
+
 template <class T>
 void check_round_trip(const T& value) {
   const auto bytes = tess::to_bytes(value);
@@ -54,6 +108,15 @@ void check_round_trip(const T& value) {
 }
 
 }  // namespace
+
+namespace tess {
+template <class Ar>
+void serialize(Ar& ar, std::bitset<70>& bits) {
+  std::string text = bits.to_string();
+  ar(text);
+  if (Ar::is_reading) bits = std::bitset<70>(text);
+}
+}  // namespace tess
 
 TEST_CASE("text in one line shows control characters as escapes and leaves the rest", "[runtime]") {
   CHECK(tess::one_line("a\nb\r\tc\x1b[1m\x7f") == "a\\nb\\r\\tc\\x1b[1m\\x7f");
@@ -82,6 +145,45 @@ TEST_CASE("values come back from their bytes, and truncated bytes are refused", 
   check_round_trip(std::pair<std::string, int>{"first", 2});
   check_round_trip(std::array<std::string, 2>{"a", "b"});
   check_round_trip(boost::container::small_vector<int, 4>{1, 2, 3, 4, 5, 6});
+}
+
+TEST_CASE("aggregates come back with arrays of C and with default values that are lists",
+          "[runtime][serialize]") {
+  check_round_trip(Listed{});
+  check_round_trip(Listed{3, {"other"}, {}});
+  Arrays arrays;
+  arrays.at[2] = 7;
+  arrays.table[1][0] = 8;
+  arrays.names[1] = "z";
+  check_round_trip(arrays);
+  STATIC_REQUIRE(tess::Bitwise<Numbers>);
+  STATIC_REQUIRE(!tess::Bitwise<Padded>);
+  CHECK(tess::to_bytes(Padded{}).size() == 28);
+}
+
+TEST_CASE("complex numbers are copied as bytes", "[runtime][serialize]") {
+  STATIC_REQUIRE(tess::Bitwise<std::complex<float>>);
+  check_round_trip(std::complex<double>(1, 2));
+  check_round_trip(std::vector<std::complex<float>>{{1, 2}, {3, 4}});
+}
+
+TEST_CASE("a function beside the type serialises a class of another library",
+          "[runtime][serialize]") {
+  check_round_trip(Foreign(3));
+  check_round_trip(std::vector<Foreign>{Foreign(4), Foreign(5)});
+  check_round_trip(std::map<std::string, Foreign>{{"a", Foreign(6)}});
+  check_round_trip(std::bitset<70>(123456789));
+  CHECK(tess::round_trip_difference(Foreign(3)).empty());
+}
+
+TEST_CASE("a unique_ptr to a class with virtual functions comes back", "[runtime][serialize]") {
+  auto shape = std::make_unique<Shape>();
+  shape->n = 4;
+  const auto back = tess::from_bytes<std::unique_ptr<Shape>>(tess::to_bytes(shape));
+  REQUIRE(back != nullptr);
+  CHECK(back->n == 4);
+  CHECK(tess::from_bytes<std::unique_ptr<Shape>>(tess::to_bytes(std::unique_ptr<Shape>())) ==
+        nullptr);
 }
 
 TEST_CASE("an announced length beyond the bytes is refused before memory is taken", "[runtime]") {
