@@ -65,6 +65,8 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
   if (const auto position = array_->position_of(element)) report.positions.push_back(*position);
+  if (indices_ == SnapshotIndices::text)
+    report.indices.push_back(element_text(element).substr(array_->name().size()));
   for (const auto& [to, sent] : record.load.sent.entries())
     report.parcels.push_back({record.position, to, sent.bytes, sent.messages});
   for (const LoadRecord::Entry& entry : record.load.entries) {

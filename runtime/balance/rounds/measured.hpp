@@ -11,7 +11,8 @@ namespace tess::balance {
 
 class Measured {
  public:
-  explicit Measured(Pe& pe) : pe_(pe), meter_(pe.start_meter()), busy_before_(meter_.busy()) {}
+  Measured(Pe& pe, SnapshotIndices indices)
+      : pe_(pe), meter_(pe.start_meter()), indices_(indices), busy_before_(meter_.busy()) {}
 
   void attach(Collection& array);
   /// Detaches from the array; later reports cover the PE without its elements.
@@ -47,6 +48,7 @@ class Measured {
 
   Pe& pe_;
   Meter& meter_;
+  const SnapshotIndices indices_;
   Collection* array_ = nullptr;
   std::vector<Element*> reported_;
   std::uint64_t busy_before_;      // the meter's busy ticks when the phase began
