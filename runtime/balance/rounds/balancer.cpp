@@ -350,8 +350,9 @@ void Balancer::collect(const Callback<std::vector<PeReport>>& target) {
 }
 
 void Balancer::move(const std::vector<Move>& moves) {
-  outcome_.n_moved += moves.size();
-  outcome_.moved_bytes += measured_.move(moves);
+  const Measured::Moved moved = measured_.move(moves);
+  outcome_.n_moved += moved.n_elements;
+  outcome_.moved_bytes += moved.n_bytes;
 }
 
 void Balancer::resume(std::uint32_t round) {

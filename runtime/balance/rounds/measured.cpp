@@ -150,15 +150,16 @@ std::uint64_t Measured::recall(bool interrupted) {
   return n_known;
 }
 
-std::uint64_t Measured::move(const std::vector<Move>& moves) {
-  std::uint64_t n_bytes = 0;
+Measured::Moved Measured::move(const std::vector<Move>& moves) {
+  Moved moved;
   for (const Move& one : moves) {
     Element* element = reported_[one.element];
     if (element == nullptr) continue;
-    n_bytes += Collection::record_of(*element)->size_bytes;
+    ++moved.n_elements;
+    moved.n_bytes += Collection::record_of(*element)->size_bytes;
     array_->move(*element, one.to);
   }
-  return n_bytes;
+  return moved;
 }
 
 }  // namespace tess::balance

@@ -38,8 +38,12 @@ class Measured {
   /// that the checkpoint interrupted. Returns the number of elements whose load it had.
   std::uint64_t recall(bool interrupted);
 
-  /// Sends elements of the last report to other PEs; returns their packed size.
-  std::uint64_t move(const std::vector<Move>& moves);
+  struct Moved {
+    std::uint64_t n_elements = 0;
+    std::uint64_t n_bytes = 0;  ///< packed
+  };
+  /// Sends elements of the last report to other PEs, without those that have left or ended.
+  Moved move(const std::vector<Move>& moves);
 
  private:
   void add(Element& element, std::uint64_t round, PeReport& report);

@@ -121,6 +121,15 @@ TEST_CASE("automatic rounds lose next to nothing where nothing can be gained", "
   }
 }
 
+TEST_CASE("rounds beside the work count no moves of chares that have ended", "[lb_lab]") {
+  Settings s = linear();
+  s.per_pe = {4};
+  s.strategies = {"diffusion", "gossip"};
+  s.when = "periodic";
+  const Sweep sweep = sweep_on("pes=64,cost=1us", s);
+  for (const Row& row : sweep.rows) CHECK((row.n_moves > 0) == (row.moved_bytes > 0));
+}
+
 TEST_CASE("the JSON has the rows of the schema", "[lb_lab]") {
   const Scratch scratch;
   const Sweep sweep = sweep_on("pes=4,cost=1us", linear());
