@@ -11,6 +11,7 @@
 namespace tess {
 
 enum class RoundLines : std::uint8_t { none, print };
+enum class SnapshotIndices : std::uint8_t { none, text };
 enum class BalanceWhen : std::uint8_t { at_sync, periodic, automatic };
 
 struct BalanceOptions {
@@ -25,6 +26,8 @@ struct BalanceOptions {
   std::vector<double> speeds{};        ///< relative speed of each PE; empty: all equal
   std::vector<std::uint64_t> memory_limit_bytes{};  ///< of each PE; 0 or empty: none
   RoundLines lines = RoundLines::none;              ///< or one line per round to standard error
+  /// text: snapshots have the index of each element, which costs a string per element and round.
+  SnapshotIndices indices = SnapshotIndices::none;
 };
 
 /// "strategy=greedy,when=periodic,period=50ms,prediction=linear_trend,window=5,seed=7,report".

@@ -4,8 +4,9 @@
 //       return tess::Picture{64, 64, x_, y_, tile_.width(), tile_.values()};
 //     });
 //
-// Each element shows its part of the picture whenever it likes: a part is taken about twice a
-// second, and otherwise, or without --monitor, the function is not called.
+// Each element shows its part of the picture whenever it likes: while a browser watches, a part is
+// taken about twice a second, or every eight seconds if it is shown much more rarely than others.
+// Otherwise, or without --monitor, the function is not called.
 #pragma once
 
 #include "runtime/core/check.hpp"

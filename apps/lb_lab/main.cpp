@@ -56,7 +56,7 @@ void add_options(apps::CommandLine& line, Settings& s) {
       .one_of({"json.br", "json"});
   line.option("--replay", s.replay,
               "run the strategies on saved snapshots instead: vt's LBDatafile, .json or .json.br, "
-              "one file or all of a directory")
+              "its files or their folder")
       .takes(1, 1 << 20);
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);

@@ -29,7 +29,9 @@ Experiment experiment_of(const Settings& s, const Problem& problem, const std::s
       s.period));
   if (strategy != "none" && e.balance.when != tess::BalanceWhen::periodic)
     e.plan.sync = Sync::at_period;
-  if (!s.snapshots.empty()) e.keep = Keep::snapshots;
+  if (s.snapshots.empty()) return e;
+  e.keep = Keep::snapshots;
+  e.balance.indices = tess::SnapshotIndices::text;
   return e;
 }
 

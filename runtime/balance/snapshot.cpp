@@ -45,7 +45,7 @@ void validate(const Snapshot& s) {
   if (e.pe.size() != n || e.load.size() != n || e.migratable.size() != n ||
       e.size_bytes.size() != n || e.memory_bytes.size() != n ||
       (!e.measured.empty() && e.measured.size() != n) ||
-      (!e.position.empty() && e.position.size() != n))
+      (!e.position.empty() && e.position.size() != n) || (!e.index.empty() && e.index.size() != n))
     fail(ErrorCode::bad_value, "snapshot: arrays of elements differ in length; give each ", n);
   if (n_pes == 0 || s.pes.background.size() != n_pes || s.pes.memory_limit_bytes.size() != n_pes)
     fail(ErrorCode::bad_value,

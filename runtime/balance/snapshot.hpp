@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace tess::balance {
@@ -34,7 +35,8 @@ struct SharedBlock {
 inline constexpr std::size_t no_block = std::numeric_limits<std::size_t>::max();
 
 /// All arrays have one entry per element. `position` may be empty if no element has one, `measured`
-/// if all loads are measured, `working_bytes` if all are 0, and `block` if no element uses one.
+/// if all loads are measured, `working_bytes` if all are 0, `block` if no element uses one, and
+/// `index` unless it was asked for (BalanceOptions::indices).
 struct Elements {
   std::vector<ElementKey> key;
   std::vector<PeId> pe;
@@ -46,6 +48,7 @@ struct Elements {
   std::vector<std::array<double, 3>> position;  ///< for rcb and hilbert
   std::vector<std::uint64_t> working_bytes;     ///< needed only while the element works
   std::vector<std::size_t> block;               ///< position in Snapshot::blocks, or no_block
+  std::vector<std::string> index;               ///< as reports write it: [3], [1,2], ["name"]
   [[nodiscard]] std::size_t size() const { return key.size(); }
   [[nodiscard]] bool knows_load(std::size_t i) const {
     return measured.empty() || measured[i] != 0;

@@ -60,6 +60,8 @@ class Program {
   /// No message is ready: sends what was held back to be packed. Returns true if it created or sent
   /// anything.
   virtual bool idle(PeId pe) = 0;
+  /// The PE has run steps for about a millisecond, and more messages may be ready.
+  virtual void busy(PeId /*pe*/) {}
   /// Takes a buffer that another process sent; `pe` is the PE whose thread received it.
   virtual void receive(PeId pe, std::span<const std::byte> bytes) = 0;
   /// Takes the head of a parcel whose parts have these sizes. Returns a message, and writes the

@@ -41,7 +41,9 @@ struct Outside : Link {
 
 /// A PE checks its inbox after so much work, about as on real machines (team.cpp).
 constexpr std::int64_t nanoseconds_per_step = 30'000;
-constexpr std::size_t most_per_step = 64;
+constexpr std::int64_t most_per_step = 64;
+/// The program learns with this period that a PE is busy, as on real machines.
+constexpr std::int64_t nanoseconds_busy = 1'000'000;
 
 class SimulatedMachine final : public Machine {
  public:
@@ -49,9 +51,9 @@ class SimulatedMachine final : public Machine {
       : options_(options),
         within_(options.within_process()),
         between_(options.between_processes()),
-        first_most_(options.cost || intercepts_local() ? 1 : most_per_step),
+        most_(options.cost || intercepts_local() ? 1 : most_per_step),
         random_(options.seed.value_or(0)),
-        clocks_(static_cast<std::size_t>(options.n_pes), Clock{.most = first_most_}) {
+        clocks_(static_cast<std::size_t>(options.n_pes), Clock{}) {
     if (!options.cost) work_.emplace();
     pes_per_process_ = options.pes_per_process;
     if (pes_per_process_ == 0) {
@@ -148,8 +150,9 @@ class SimulatedMachine final : public Machine {
  private:
   struct Clock {
     std::int64_t now = 0;
-    bool looks = false;    // an event to check the queue is under way
-    std::size_t most = 1;  // messages of the next step
+    bool looks = false;      // an event to check the queue is under way
+    std::size_t most = 1;    // messages of the next step
+    std::int64_t works = 0;  // nanoseconds in steps since it was idle
   };
 
   /// The scope of what the simulation does inside a call of the program.
@@ -232,7 +235,7 @@ class SimulatedMachine final : public Machine {
 
   const SimulatedOptions options_;
   const Wire within_, between_;
-  const std::size_t first_most_;
+  const std::size_t most_;  // messages of a step
   Random random_;
   std::vector<Clock> clocks_;
   std::array<double, 4> slowness_{};
@@ -291,18 +294,29 @@ void SimulatedMachine::run(Program& program) {
 void SimulatedMachine::run_step(Program& program, PeId pe) {
   Clock& clock = clocks_[static_cast<std::size_t>(pe.value)];
   if (draws() && random_.chance(0.1)) program.idle(pe);
+  const std::int64_t began = clock.now;
   begin_work(pe.value);
   const std::size_t ran = program.step(pe, clock.most);
   const std::int64_t worked = end_work();
   if (ran == 0) {
+    clock.works = 0;
     if (program.idle(pe)) look(pe.value);
     return;
   }
   clock.now += worked;
-  if (worked > 2 * nanoseconds_per_step)
-    clock.most = std::max<std::size_t>(1, clock.most / 2);
-  else if (worked < nanoseconds_per_step)
-    clock.most = std::min(first_most_, clock.most * 2);
+  // Measured and charged time: it begins with one message, and grows while steps are full and short.
+  const std::int64_t took = clock.now - began;
+  if (took > 2 * nanoseconds_per_step) {
+    clock.most = static_cast<std::size_t>(std::clamp<std::int64_t>(
+        static_cast<std::int64_t>(ran) * nanoseconds_per_step / took, 1, most_per_step));
+  } else if (took < nanoseconds_per_step && ran == clock.most) {
+    clock.most = std::min(most_, clock.most * 2);
+  }
+  clock.works += took;
+  if (clock.works >= nanoseconds_busy) {
+    clock.works = 0;
+    program.busy(pe);
+  }
   look(pe.value);
 }
 

@@ -1,19 +1,24 @@
 #include "runtime/machine/team.hpp"
 
+#include "runtime/base/ticks.hpp"
+
 #include <algorithm>
+#include <cstdint>
 #include <thread>
 
 namespace tess::detail {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 /// The most messages that a step runs before the PE checks its inbox and the network again.
 constexpr std::size_t step_most = 64;
 
-/// A busy PE polls the network with this period; its steps are kept shorter than that.
-constexpr auto network_period = 30us;
+/// A busy PE checks its inbox and polls the network with about this period.
+constexpr double step_seconds = 30e-6;
+
+/// The program learns with this period that a PE is busy.
+constexpr double busy_seconds = 1e-3;
 
 /// A network has to be polled, so sleeps are short there, and grow while nothing comes; an inbox
 /// wakes its PE by itself. Waking a thread costs about 5 us and a yield among yielding threads
@@ -29,29 +34,46 @@ Patience patience(bool oversubscribed, bool network) {
           .longest_sleep = longest};
 }
 
-/// The number of messages in the next step, derived from the duration of the last one.
+/// The number of messages in the next step, derived from the duration of the last one. It begins
+/// with one and grows while steps are full and short, so that a PE whose messages take long checks
+/// its inbox after each.
 class Stride {
  public:
   [[nodiscard]] std::size_t most() const noexcept { return most_; }
 
-  /// True if it is time to poll the network.
-  bool due() noexcept {
-    const auto now = Clock::now();
-    const auto took = now - since_;
-    if (took > 2 * network_period)
-      most_ = std::max<std::size_t>(1, most_ / 2);
-    else if (took < network_period)
+  void begins() noexcept { began_ = read_ticks(); }
+  /// The step ran so many messages.
+  void ended(std::size_t n_messages) noexcept {
+    const std::uint64_t now = read_ticks();
+    const std::uint64_t took = now - began_;
+    if (took > 2 * period_) {
+      most_ = static_cast<std::size_t>(
+          std::clamp<std::uint64_t>(n_messages * period_ / took, 1, step_most));
+    } else if (took < period_ && n_messages == most_) {
       most_ = std::min(step_most, most_ * 2);
-    since_ = now;
-    if (now < next_) return false;
-    next_ = now + network_period;
+    }
+    is_due_ = now - polled_ >= period_;
+    if (is_due_) polled_ = now;
+    works_ += took;
+  }
+  /// True if it is time to poll the network.
+  [[nodiscard]] bool due() const noexcept { return is_due_; }
+
+  void idle() noexcept { works_ = 0; }
+  /// True once per `busy_seconds` of steps since idle().
+  [[nodiscard]] bool busy() noexcept {
+    if (works_ < busy_period_) return false;
+    works_ = 0;
     return true;
   }
 
  private:
-  std::size_t most_ = step_most;
-  Clock::time_point since_ = Clock::now();
-  Clock::time_point next_ = since_;
+  const std::uint64_t period_ = static_cast<std::uint64_t>(step_seconds / seconds_per_tick());
+  const std::uint64_t busy_period_ = static_cast<std::uint64_t>(busy_seconds / seconds_per_tick());
+  std::size_t most_ = 1;
+  std::uint64_t works_ = 0;  // ticks in steps since idle()
+  std::uint64_t began_ = 0, polled_ = read_ticks();
+  bool is_due_ = false;
 };
 
 }  // namespace
@@ -91,9 +113,15 @@ void Team::drive(Program& program, PeId pe, Seat& seat) noexcept {
   // relaxed: the flag transfers no data; the barrier below provides the order that is needed.
   while (!stopping_.load(std::memory_order_relaxed)) {
     bool worked = take_in(program, pe, seat);
-    if (program.step(pe, stride.most()) > 0) worked = true;
+    stride.begins();
+    if (const std::size_t ran = program.step(pe, stride.most()); ran > 0) {
+      stride.ended(ran);
+      if (stride.busy()) program.busy(pe);
+      worked = true;
+    }
     if (network_ != nullptr && (!worked || stride.due()) && network_->progress(program, pe))
       worked = true;
+    if (!worked) stride.idle();
     if (worked || program.idle(pe)) {
       rest.reset();
       continue;

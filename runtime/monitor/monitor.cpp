@@ -32,10 +32,41 @@ struct SampleAsked {
   std::vector<HeatQuery> heat;
 };
 struct WindowEnds {};
-/// Process 0 tells the others which heat maps are watched.
+/// Process 0 tells the others which heat maps are watched, and whether pictures are.
 struct HeatWanted {
   std::uint64_t version = 0;  // newer ones are greater
   std::vector<HeatQuery> queries;
+  bool pictures = false;
+};
+
+/// The parts of pictures that a PE has sent since its last sample. It ends a period early once all
+/// parts seem to be there: when for long each part that was shown had been sent. Every so many
+/// samples it does not, for parts that are shown rarely.
+class PartsOfPe {
+ public:
+  void begin_period(bool wanted) {
+    sent_.clear();
+    n_again_ = 0;
+    ++n_periods_;
+    open_ = wanted;
+  }
+  [[nodiscard]] bool wants(std::string_view name, std::uint64_t part) {
+    if (!open_) return false;
+    if (sent_.insert(mix(std::hash<std::string_view>()(name)) ^ mix(part)).second) {
+      n_again_ = 0;
+      return true;
+    }
+    if (++n_again_ > 3 * sent_.size() && n_periods_ % whole_period != 0) open_ = false;
+    return false;
+  }
+
+ private:
+  static constexpr std::uint64_t whole_period = 16;
+
+  bool open_ = false;
+  std::unordered_set<std::uint64_t> sent_;  // hashes
+  std::size_t n_again_ = 0;                 // shown since the last new one
+  std::uint64_t n_periods_ = 0;
 };
 
 /// A report of what waits, which the service's thread makes. It may come after the monitor's end.
@@ -89,7 +120,7 @@ class Monitor::Loop {
       const std::lock_guard lock(mutex_);
       OfPe& of = of_pe(pe.id());
       of.asked = false;
-      of.parts.clear();
+      of.parts.begin_period(heat_.pictures);
     }
     if (is_on_process_0(pe)) return arrived(std::move(sample));
     send_uncounted<&sample_arrives>(pe, PeId{0}, std::move(sample));
@@ -126,8 +157,8 @@ class Monitor::Loop {
     if (wanted.version > heat_.version) heat_ = std::move(wanted);
   }
   [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
-    // Only this PE's thread uses its set; answered() clears it on the same thread.
-    return of_pe(pe.id()).parts.insert(mix(std::hash<std::string_view>()(name)) ^ mix(part)).second;
+    // Only this PE's thread uses its parts; answered() runs on the same thread.
+    return of_pe(pe.id()).parts.wants(name, part);
   }
   void draw(const PicturePart& part) {
     const std::lock_guard lock(mutex_);
@@ -142,8 +173,8 @@ class Monitor::Loop {
   struct OfPe {
     bool asked = false;  // and has not answered yet
     // Only its thread uses these.
-    std::unordered_set<std::uint64_t> parts;  // hashes of those that were sent since its sample
-    std::unique_ptr<PeHeat> heat;             // while heat maps are watched
+    PartsOfPe parts;
+    std::unique_ptr<PeHeat> heat;  // while heat maps are watched
   };
 
   void report_heat(Pe& pe, std::vector<HeatCells>&& parts) {
@@ -214,9 +245,11 @@ class Monitor::Loop {
   void watch_heat() {
     board_->watch_heat(server_->watched());
     std::vector<HeatQuery> queries = board_->heat_queries();
-    if (queries == heat_.queries) return;
+    const bool pictures = server_->has_listeners();
+    if (queries == heat_.queries && pictures == heat_.pictures) return;
     ++heat_.version;
     heat_.queries = std::move(queries);
+    heat_.pictures = pictures;
   }
   void end_windows_later(std::vector<PeId> of) {
     window_timer_.expires_after(

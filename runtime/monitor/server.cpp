@@ -270,6 +270,11 @@ void Server::publish(const HeatMapId& id, const Event& event) {
   }
 }
 
+bool Server::has_listeners() const {
+  return std::any_of(to_all_.begin(), to_all_.end(),
+                     [](const auto& listener) { return !listener.expired(); });
+}
+
 std::vector<HeatMapId> Server::watched() const {
   std::vector<HeatMapId> ids;
   for (const auto& [id, listener] : to_heat_)

@@ -54,6 +54,8 @@ class Server {
   void publish(const std::vector<Event>& events);
   /// Sends the event of a heat map to the browsers that watch it.
   void publish(const HeatMapId& id, const Event& event);
+  /// True if any browser listens to the events.
+  [[nodiscard]] bool has_listeners() const;
   /// The heat maps that browsers watch.
   [[nodiscard]] std::vector<HeatMapId> watched() const;
 

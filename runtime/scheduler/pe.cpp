@@ -338,6 +338,13 @@ void Pe::start_idle_time() {
   idle_time_ = std::make_unique<IdleTime>();
 }
 
+// An epoch must end also while other work keeps this PE from being idle.
+void Pe::busy() {
+  const RunsOn here(*this);
+  messages_since_report_ = 0;
+  if (completion_.report_epochs()) flush();
+}
+
 bool Pe::idle() {
   const RunsOn here(*this);
   if (meter_) [[unlikely]]

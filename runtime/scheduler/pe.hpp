@@ -183,6 +183,7 @@ class Pe {
   void accept(Bundle* bundle);
   std::size_t step(std::size_t most);
   bool idle();
+  void busy();
   void receive(std::span<const std::byte> bytes);
   [[nodiscard]] Envelope* place(std::span<const std::byte> head,
                                 std::span<const std::uint64_t> sizes,

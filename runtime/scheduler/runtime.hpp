@@ -117,6 +117,7 @@ class Runtime final : public Program {
   void accept_bundle(PeId id, Bundle* bundle) override { pe(id).accept(bundle); }
   std::size_t step(PeId id, std::size_t most) override { return pe(id).step(most); }
   bool idle(PeId id) override { return pe(id).idle(); }
+  void busy(PeId id) override { pe(id).busy(); }
   void receive(PeId id, std::span<const std::byte> bytes) override { pe(id).receive(bytes); }
   Link* place(PeId id, std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
               std::vector<std::span<std::byte>>& places) override {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 
@@ -31,6 +32,28 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
   snapshot.pes.speed = s.speeds;
   tess::balance::validate(snapshot);
   return snapshot;
+}
+
+/// The files as given, and of a folder all of its LBDatafiles, in the order of their names.
+std::vector<std::string> files_of(const std::vector<std::string>& given) {
+  std::vector<std::string> files;
+  for (const std::string& path : given) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(path, none)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t n_before = files.size();
+    for (const auto& entry : std::filesystem::directory_iterator(path))
+      if (const std::string name = entry.path().string();
+          name.ends_with(".json") || name.ends_with(".json.br"))
+        files.push_back(name);
+    if (files.size() == n_before)
+      tess::fail(tess::ErrorCode::bad_argument, "--replay: the folder ", path,
+                 " has no file named *.json or *.json.br; give LBDatafiles, or their folder");
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(n_before), files.end());
+  }
+  return files;
 }
 
 std::string row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
@@ -64,7 +87,7 @@ std::string replay(const Settings& s) {
       fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12} {:>14} {:>10}\n",
                   "phase", "PEs", "elements", "strategy", "before", "predicted", "moves", "bytes",
                   "external bytes", "strategy ms", "fullest PE", "over limit");
-  std::vector<tess::balance::Phase> phases = tess::balance::read_lb_datafiles(s.replay);
+  std::vector<tess::balance::Phase> phases = tess::balance::read_lb_datafiles(files_of(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
   for (tess::balance::Phase& phase : phases) {
     const Snapshot snapshot = prepared(s, std::move(phase.snapshot));

@@ -94,9 +94,11 @@ void write_json(const std::string& path, const Sweep& sweep) {
 }
 
 std::string list_text() {
-  std::string out = "workloads (NAME_comm: the same, and each cell depends on its neighbours):\n";
+  std::string out = "workloads:\n", with_neighbours;
   for (const Workload& one : workloads())
-    if (!one.name.ends_with("_comm")) out += fmt::format("  {:<18} {}\n", one.name, one.what);
+    (one.name.ends_with("_comm") ? with_neighbours : out) +=
+        fmt::format("  {:<20} {}\n", one.name, one.what);
+  out += "the same, and each cell depends on its neighbours:\n" + with_neighbours;
   return out + fmt::format("strategies: {}\n", fmt::join(tess::balance::strategy_names(), ", "));
 }
 

@@ -13,6 +13,9 @@
 //     task_serialized_bytes   its size_bytes                   home_rank     home of the block
 //     rank_working_bytes      working_bytes of its PE
 //
+// `index` is the index of the element, if the snapshot has it: [3], [1, 2], ["name"]; otherwise its
+// hash.
+//
 // Entity ids are packed as in vt: sequence number << 18 | home << 2 | 3 (2: does not migrate).
 #pragma once
 

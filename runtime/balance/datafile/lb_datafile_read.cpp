@@ -70,6 +70,8 @@ class Place {
     return whole_amount();
   }
 
+  [[nodiscard]] std::string dump() const { return value_.dump(); }
+
   [[noreturn]] void damaged(const std::string& what) const {
     fail(ErrorCode::bad_file, where_, ' ', what,
          ", which the LBDatafile schema does not allow; write the file again");
@@ -129,6 +131,7 @@ class Gathering {
   [[nodiscard]] Snapshot finish(std::size_t n_pes) {
     auto& e = s_.elements;
     if (n_positions_ != e.size()) e.position.clear();
+    if (std::ranges::count(e.index, "") > 0) e.index.clear();
     if (s_.blocks.empty()) e.block.clear();
     if (std::ranges::count(e.working_bytes, 0U) == std::ssize(e.working_bytes))
       e.working_bytes.clear();
@@ -160,6 +163,7 @@ class Gathering {
     auto& e = s_.elements;
     highest_ = std::max(highest_, static_cast<std::size_t>(node));
     e.key.push_back(key_of(entity));
+    e.index.push_back(entity.has("index") ? entity["index"].dump() : "");
     e.pe.push_back(pe_at(node));
     e.load.push_back(time);
     e.measured.push_back(1);

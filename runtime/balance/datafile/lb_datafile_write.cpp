@@ -8,6 +8,13 @@ namespace {
 
 using nlohmann::json;
 
+/// An array of numbers or strings, as the index is written. The hash of the index if it is not known.
+json index_of(const Elements& e, std::size_t i) {
+  if (e.index.empty()) return json::array({e.key[i].element});
+  json index = json::parse(e.index[i], nullptr, false);
+  return index.is_array() ? index : json::array({e.index[i]});
+}
+
 /// Sequence numbers and homes of elements: assigned at first appearance, equal in all phases and
 /// files.
 class Identities {
@@ -29,7 +36,7 @@ class Identities {
             {"home", home},
             {"migratable", migratable},
             {"collection_id", e.key[i].array.value},
-            {"index", json::array({e.key[i].element})}};
+            {"index", index_of(e, i)}};
   }
 
  private:

@@ -54,7 +54,7 @@ Balancer::Balancer(const Plan& plan)
     : plan_(plan),
       barrier_(current_pe(), *constructing_collection(current_pe()), plan.coordinator,
                group()[plan.coordinator].target<&Balancer::reached>()),
-      measured_(current_pe()) {
+      measured_(current_pe(), plan.indices) {
   Pe& pe = current_pe();
   // Immediately if the array is known: messages sent after start_balancing() arrive later.
   if (Collection* array = find_collection(pe, plan_.array); array != nullptr) watch(*array);
@@ -350,8 +350,9 @@ void Balancer::collect(const Callback<std::vector<PeReport>>& target) {
 }
 
 void Balancer::move(const std::vector<Move>& moves) {
-  outcome_.n_moved += moves.size();
-  outcome_.moved_bytes += measured_.move(moves);
+  const Measured::Moved moved = measured_.move(moves);
+  outcome_.n_moved += moved.n_elements;
+  outcome_.moved_bytes += moved.n_bytes;
 }
 
 void Balancer::resume(std::uint32_t round) {
@@ -412,9 +413,9 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);
   GroupProxy<Exchange> exchange;
   if (distributed != DistributedStrategy::none) exchange = create_group<Exchange>();
-  const GroupProxy<Balancer> group = create_group<Balancer>(
-      Balancer::Plan{array, pe.id(), pe.context().epoch, options.when, options.period.count(),
-                     passes, options.speeds, options.memory_limit_bytes, distributed, exchange});
+  const GroupProxy<Balancer> group = create_group<Balancer>(Balancer::Plan{
+      array, pe.id(), pe.context().epoch, options.when, options.period.count(), passes,
+      options.speeds, options.memory_limit_bytes, distributed, exchange, options.indices});
   group.local().coordinate(std::make_unique<Coordinator>(options, std::move(users)));
   return group;
 }

@@ -43,6 +43,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
     std::vector<std::uint64_t> memory_limit_bytes;
     DistributedStrategy distributed = DistributedStrategy::none;
     GroupProxy<Exchange> exchange;  ///< for a distributed strategy
+    SnapshotIndices indices = SnapshotIndices::none;
   };
   /// The result of a distributed round, summed over PEs.
   struct Outcome {

@@ -65,6 +65,8 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
   if (const auto position = array_->position_of(element)) report.positions.push_back(*position);
+  if (indices_ == SnapshotIndices::text)
+    report.indices.push_back(element_text(element).substr(array_->name().size()));
   for (const auto& [to, sent] : record.load.sent.entries())
     report.parcels.push_back({record.position, to, sent.bytes, sent.messages});
   for (const LoadRecord::Entry& entry : record.load.entries) {
@@ -148,15 +150,16 @@ std::uint64_t Measured::recall(bool interrupted) {
   return n_known;
 }
 
-std::uint64_t Measured::move(const std::vector<Move>& moves) {
-  std::uint64_t n_bytes = 0;
+Measured::Moved Measured::move(const std::vector<Move>& moves) {
+  Moved moved;
   for (const Move& one : moves) {
     Element* element = reported_[one.element];
     if (element == nullptr) continue;
-    n_bytes += Collection::record_of(*element)->size_bytes;
+    ++moved.n_elements;
+    moved.n_bytes += Collection::record_of(*element)->size_bytes;
     array_->move(*element, one.to);
   }
-  return n_bytes;
+  return moved;
 }
 
 }  // namespace tess::balance

@@ -11,7 +11,8 @@ namespace tess::balance {
 
 class Measured {
  public:
-  explicit Measured(Pe& pe) : pe_(pe), meter_(pe.start_meter()), busy_before_(meter_.busy()) {}
+  Measured(Pe& pe, SnapshotIndices indices)
+      : pe_(pe), meter_(pe.start_meter()), indices_(indices), busy_before_(meter_.busy()) {}
 
   void attach(Collection& array);
   /// Detaches from the array; later reports cover the PE without its elements.
@@ -37,8 +38,12 @@ class Measured {
   /// that the checkpoint interrupted. Returns the number of elements whose load it had.
   std::uint64_t recall(bool interrupted);
 
-  /// Sends elements of the last report to other PEs; returns their packed size.
-  std::uint64_t move(const std::vector<Move>& moves);
+  struct Moved {
+    std::uint64_t n_elements = 0;
+    std::uint64_t n_bytes = 0;  ///< packed
+  };
+  /// Sends elements of the last report to other PEs, without those that have left or ended.
+  Moved move(const std::vector<Move>& moves);
 
  private:
   void add(Element& element, std::uint64_t round, PeReport& report);
@@ -47,6 +52,7 @@ class Measured {
 
   Pe& pe_;
   Meter& meter_;
+  const SnapshotIndices indices_;
   Collection* array_ = nullptr;
   std::vector<Element*> reported_;
   std::uint64_t busy_before_;      // the meter's busy ticks when the phase began

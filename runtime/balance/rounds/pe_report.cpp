@@ -16,6 +16,7 @@ void append(Snapshot& s, const PeReport& report, std::size_t pe, double speed) {
   e.migratable.insert(e.migratable.end(), report.migratable.begin(), report.migratable.end());
   e.size_bytes.insert(e.size_bytes.end(), report.size_bytes.begin(), report.size_bytes.end());
   e.position.insert(e.position.end(), report.positions.begin(), report.positions.end());
+  e.index.insert(e.index.end(), report.indices.begin(), report.indices.end());
 }
 
 }  // namespace

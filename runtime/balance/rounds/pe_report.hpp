@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct Parcel {
   std::uint64_t messages = 0;
 };
 
-/// Arrays have one entry per element of the PE; positions may be empty instead.
+/// Arrays have one entry per element of the PE; positions and indices may be empty instead.
 struct PeReport {
   std::vector<ElementKey> keys;
   std::vector<double> seconds;         ///< measured on this PE, at its speed
@@ -29,6 +30,7 @@ struct PeReport {
   std::vector<std::uint8_t> migratable;
   std::vector<std::uint64_t> size_bytes;
   std::vector<std::array<double, 3>> positions;
+  std::vector<std::string> indices;  ///< empty unless asked for
   std::vector<Parcel> parcels;
   std::vector<std::pair<std::uint32_t, double>> seconds_by_action;
   double background = 0;  ///< seconds busy outside of these elements

@@ -15,7 +15,8 @@ struct Round {
   std::string strategy;
   std::size_t n_elements = 0;
   std::size_t n_unknown = 0;  ///< elements of these with unknown load, which stay
-  std::size_t n_moved = 0;
+  std::size_t n_moved =
+      0;  ///< beside work (periodic) some of a central round's may have ended before
   std::uint64_t moved_bytes = 0;  ///< packed size of the moved elements
   double before = 1;              ///< max/average as measured in the phase that ended
   double predicted = 1;           ///< the strategy's prediction, after its moves

@@ -121,6 +121,15 @@ TEST_CASE("automatic rounds lose next to nothing where nothing can be gained", "
   }
 }
 
+TEST_CASE("rounds beside the work count no moves of chares that have ended", "[lb_lab]") {
+  Settings s = linear();
+  s.per_pe = {4};
+  s.strategies = {"diffusion", "gossip"};
+  s.when = "periodic";
+  const Sweep sweep = sweep_on("pes=64,cost=1us", s);
+  for (const Row& row : sweep.rows) CHECK((row.n_moves > 0) == (row.moved_bytes > 0));
+}
+
 TEST_CASE("the JSON has the rows of the schema", "[lb_lab]") {
   const Scratch scratch;
   const Sweep sweep = sweep_on("pes=4,cost=1us", linear());
@@ -218,6 +227,39 @@ TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
   CHECK(table["json"] == table["json.br"]);
   CHECK(table["json"].find("hilbert") != std::string::npos);
   CHECK(table["json"].find("left out") == std::string::npos);
+
+  Settings folder = s;
+  folder.strategies = {"all"};
+  folder.replay = {s.snapshots + "/linear-4-greedy"};
+  CHECK(without_times(replay(folder)) == table["json"]);
+  folder.replay = {scratch.path.string()};
+  CHECK_THROWS_WITH(replay(folder), Catch::Contains("has no file named *.json"));
+}
+
+TEST_CASE("a saved snapshot has the index of each element and its measured load", "[lb_lab]") {
+  const Scratch scratch;
+  Settings s = linear();
+  s.per_pe = {4};
+  s.strategies = {"greedy"};
+  s.snapshots = scratch.path.string();
+  s.snapshot_format = "json";
+  (void)sweep_on("pes=2,cost=1us", s);
+  double first = 0;
+  for (int pe = 0; pe < 2; ++pe) {
+    std::ifstream file(scratch.path / "linear-4-greedy" / ("data." + std::to_string(pe) + ".json"));
+    const nlohmann::json root = nlohmann::json::parse(file);
+    const nlohmann::json& tasks = root.at("phases").at(0).at("tasks");
+    REQUIRE(tasks.size() == 4);
+    for (int k = 0; k < 4; ++k) {
+      const nlohmann::json& task = tasks.at(static_cast<std::size_t>(k));
+      CHECK(task.at("entity").at("index") == nlohmann::json::array({4 * pe + k}));
+      // The cells of chare x are the x-th part of a line whose cells cost in proportion to their number.
+      const double load = task.at("time").get<double>();
+      if (pe == 0 && k == 0) first = load;
+      CHECK(load > 0);
+      CHECK((4 * pe + k == 0 || load > first));
+    }
+  }
 }
 
 TEST_CASE("all leaves out what a snapshot without positions cannot serve, and says so",

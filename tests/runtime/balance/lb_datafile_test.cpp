@@ -88,6 +88,26 @@ TEST_CASE("phases come back from a file as they were", "[balance][lb_datafile]")
   }
 }
 
+TEST_CASE("a file has the indices of elements as arrays", "[balance][lb_datafile]") {
+  Snapshot s = mod_seven(Start::blocks);
+  s.elements.index.assign(64, "[1,2]");
+  s.elements.index[1] = "[\"name\"]";
+  s.elements.index[2] = "[-3]";
+  s.elements.index[3] = "[?]";
+  const std::string text = write_lb_datafile({{0, s}});
+  const json root = json::parse(text);
+  const json& tasks = root.at("phases").at(0).at("tasks");
+  const auto index = [&](std::size_t i) { return tasks.at(i).at("entity").at("index"); };
+  CHECK(index(0) == json::array({1, 2}));
+  CHECK(index(1) == json::array({"name"}));
+  CHECK(index(2) == json::array({-3}));
+  CHECK(index(3) == json::array({"[?]"}));
+  const Snapshot back = parse_lb_datafiles({{"data.0.json", text}}).at(0).snapshot;
+  for (std::size_t i = 0; i < 3; ++i) CHECK(back.elements.index[i] == s.elements.index[i]);
+  s.elements.index.pop_back();
+  CHECK_THROWS_AS(validate(s), Error);
+}
+
 TEST_CASE("a file tells loads that are not known from others", "[balance][lb_datafile]") {
   Snapshot s = mod_seven(Start::blocks);
   s.elements.measured.assign(64, 1);

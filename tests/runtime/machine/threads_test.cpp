@@ -4,8 +4,54 @@
 #include "tests/runtime/machine/mock_program.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <thread>
+
 namespace tess::detail {
 namespace {
+
+/// A PE that always has messages ready, of a millisecond each or of none, and stops after some steps.
+class Steps final : public Program {
+ public:
+  Steps(Machine& machine, std::chrono::milliseconds each, std::size_t n_steps)
+      : machine_(machine), each_(each), n_steps_(n_steps) {}
+
+  void start(PeId) override {}
+  void accept(PeId, Link*) override {}
+  std::size_t step(PeId, std::size_t most) override {
+    longest = std::max(longest, most);
+    if (each_.count() > 0) std::this_thread::sleep_for(each_ * most);
+    if (++n_taken == n_steps_ || (each_.count() == 0 && longest > 1)) machine_.stop();
+    return most;
+  }
+  bool idle(PeId) override { return false; }
+  void busy(PeId) override { ++n_busy; }
+  void receive(PeId, std::span<const std::byte>) override {}
+  void finish(PeId) override {}
+
+  std::size_t longest = 0, n_taken = 0, n_busy = 0;
+
+ private:
+  Machine& machine_;
+  const std::chrono::milliseconds each_;
+  const std::size_t n_steps_;
+};
+
+TEST_CASE("a PE checks its inbox after each message that runs long, and is reported as busy",
+          "[runtime][machine]") {
+  const auto machine = make_threads_machine(1);
+  Steps steps(*machine, std::chrono::milliseconds(1), 10);
+  machine->run(steps);
+  CHECK(steps.longest == 1);
+  CHECK(steps.n_busy == steps.n_taken);
+}
+
+TEST_CASE("steps of short messages grow", "[runtime][machine]") {
+  const auto machine = make_threads_machine(1);
+  Steps steps(*machine, std::chrono::milliseconds(0), 1'000'000);
+  machine->run(steps);
+  CHECK(steps.longest > 1);
+}
 
 TEST_CASE("every token makes its tour on threads", "[runtime][machine]") {
   const std::int32_t n_pes = GENERATE(1, 2, 4, 8);

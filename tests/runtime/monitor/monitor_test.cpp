@@ -82,10 +82,13 @@ class Watched : public tess::Chare<Watched, tess::Index1> {
   tess::Task wait_for_a_word() { co_await words_.take(5); }
   void hear(Word word) { words_.put(word); }
   void draw() {
+    if (index().x == 3 && n_shown++ % 50 != 0) return;  // rarely
     tess::show("numbers", [this] {
+      ++n_drawn;
       return tess::Picture{4, 1, index().x, 0, 1, {static_cast<double>(index().x)}};
     });
   }
+  static inline std::atomic<int> n_shown = 0, n_drawn = 0;  // by the last one; parts of all
   void sync() { at_sync(); }
   void resume_from_sync() { ++n_resumed_; }
 
@@ -193,6 +196,24 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
                       .next("round")["text"]
                       .get<std::string>()
                       .find("balance round 0") != std::string::npos);
+          }) == 0);
+  }
+}
+
+TEST_CASE("a picture is made only while a browser watches, with the parts that are shown rarely",
+          "[runtime][monitor]") {
+  for (const bool threads : {false, true}) {
+    Watched::n_shown = Watched::n_drawn = 0;
+    CHECK(watched_run(machine_of(threads), "", [&](unsigned short port) {
+            while (Watched::n_shown < 200) std::this_thread::sleep_for(1ms);
+            CHECK(Browser(port, "/").read().starts_with("HTTP/1.1 200"));
+            CHECK(Watched::n_drawn == 0);
+            Browser pictures(port, "/events");
+            json picture;
+            do {
+              picture = pictures.next("picture");
+            } while (picture["values"] != "0055aaff");
+            CHECK(Watched::n_drawn >= 4);
           }) == 0);
   }
 }
