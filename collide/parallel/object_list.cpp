@@ -1,6 +1,5 @@
 #include "collide/parallel/object_list.hpp"
 
-#include "collide/search/entry.hpp"
 #include "collide/search/survey.hpp"
 #include "runtime/core/error.hpp"
 
@@ -55,8 +54,13 @@ std::uint32_t ObjectList::find_source(OwnerId owner, ModelId model) {
     return static_cast<std::uint32_t>(sources_.size() - 1);
   const auto known = std::find_if(sources_.begin(), sources_.end(), is_wanted);
   const auto at = static_cast<std::uint32_t>(known - sources_.begin());
-  if (known == sources_.end()) sources_.push_back({owner, model, 0});
+  if (known == sources_.end()) add_source({owner, model, 0});
   return at;
+}
+
+void ObjectList::add_source(const Source& source) {
+  several_models_ = several_models_ || (!sources_.empty() && sources_.back().model != source.model);
+  sources_.push_back(source);
 }
 
 /// One pass over the boxes, in blocks that stay in the cache: they are checked, surveyed and copied.
@@ -85,7 +89,7 @@ void ObjectList::append(const Objects& objects) {
   const Source source{
       objects.owner, objects.model,
       static_cast<std::uint32_t>(objects.first) - static_cast<std::uint32_t>(begin)};
-  if (sources_.empty() || sources_.back() != source) sources_.push_back(source);
+  if (sources_.empty() || sources_.back() != source) add_source(source);
   if (sources_.size() > 1 || !source_of_.empty()) {
     set_sources();
     source_of_.insert(source_of_.end(), n, static_cast<std::uint32_t>(sources_.size() - 1));
@@ -108,11 +112,27 @@ void ObjectList::append(std::span<const Item> items) {
   }
 }
 
-void ObjectList::append(const ObjectList& from, std::uint32_t object) {
-  const std::uint32_t source = from.source(object);
-  boxes_.push_back(from.boxes_.data()[object]);
-  source_of_.push_back(find_source(from.sources_[source].owner, from.sources_[source].model));
-  local_.push_back(static_cast<std::uint32_t>(from.local(object, source)));
+/// A list keeps the numbers of the sources only from the second source on.
+void ObjectList::append(const ObjectList& from, std::span<const search::Entry> entries,
+                        std::vector<search::Entry>& copies) {
+  const std::uint32_t begin = size();
+  if (begin != 0 && local_.empty()) number_objects();
+  boxes_.resize(begin + entries.size());
+  local_.resize(begin + entries.size());
+  copies.reserve(copies.size() + entries.size());
+  std::uint32_t source = ~std::uint32_t{0}, at = 0;
+  for (std::uint32_t i = 0; i < entries.size(); ++i) {
+    const std::uint32_t object = search::object_of(entries[i]), to = begin + i;
+    if (from.source(object) != source) {
+      source = from.source(object);
+      at = find_source(from.sources_[source].owner, from.sources_[source].model);
+      if (at != 0 && source_of_.empty()) source_of_.assign(to, 0);
+    }
+    if (!source_of_.empty()) source_of_.push_back(at);
+    boxes_.data()[to] = from.boxes_.data()[object];
+    local_[to] = static_cast<std::uint32_t>(from.local(object, source));
+    copies.push_back(search::make_entry(to, search::below_of(entries[i])));
+  }
 }
 
 void ObjectList::clear() {
@@ -120,13 +140,9 @@ void ObjectList::clear() {
   sources_.clear();
   source_of_.clear();
   local_.clear();
+  several_models_ = false;
   bounds_ = no_box<double, 3>();
   octaves_.fill(0);
-}
-
-bool ObjectList::has_one_model() const noexcept {
-  return std::all_of(sources_.begin(), sources_.end(),
-                     [&](const Source& s) { return s.model == sources_.front().model; });
 }
 
 }  // namespace tess::collide

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
 
 #include <algorithm>
@@ -29,8 +30,10 @@ class ObjectList {
   /// objects if it is above 2^28, and change nothing.
   void append(const Objects& objects);
   void append(std::span<const Item> items);
-  /// An object of another list. Not counted in bounds() and has_octave().
-  void append(const ObjectList& from, std::uint32_t object);
+  /// Objects of another list. Adds their entries in this list to `copies`. They are not counted in
+  /// bounds() and has_octave().
+  void append(const ObjectList& from, std::span<const search::Entry> entries,
+              std::vector<search::Entry>& copies);
   void clear();
 
   [[nodiscard]] std::uint32_t size() const noexcept {
@@ -63,12 +66,12 @@ class ObjectList {
     return static_cast<LocalId>(local_.empty() ? object + sources_[source].shift : local_[object]);
   }
   /// True if all objects have one model.
-  [[nodiscard]] bool has_one_model() const noexcept;
+  [[nodiscard]] bool has_one_model() const noexcept { return !several_models_; }
 
   template <class Ar>
   void serialize(Ar& ar) {
     std::uint64_t n = boxes_.size();
-    ar(n, sources_, source_of_, local_);
+    ar(n, several_models_, sources_, source_of_, local_);
     boxes_.resize(n);
     ar.bytes(boxes_.data(), n * sizeof(Aabb));
   }
@@ -79,11 +82,13 @@ class ObjectList {
   void number_objects();
   void set_sources();
   std::uint32_t find_source(OwnerId owner, ModelId model);
+  void add_source(const Source& source);
 
   search::Scratch<Aabb> boxes_;
   std::vector<Source> sources_;
   std::vector<std::uint32_t> source_of_;  // per object; empty: all 0
   std::vector<std::uint32_t> local_;      // per object; empty: by the shift of the source
+  bool several_models_ = false;
   Aabb bounds_ = no_box<double, 3>();
   std::array<std::uint8_t, 2048> octaves_{};
 };

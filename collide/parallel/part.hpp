@@ -57,16 +57,6 @@ class Part {
     return {delivery_->sorted.data() + begin_ + n_natives_, n_visitors_};
   }
 
-  /// Adds the objects of some of its entries to a list, and their entries there.
-  void copy(std::span<const search::Entry> entries, ObjectList& objects,
-            std::vector<search::Entry>& copies) const {
-    for (const search::Entry entry : entries) {
-      const std::uint32_t n = objects.size();
-      objects.append(delivery_->objects, search::object_of(entry));
-      copies.push_back(search::make_entry(n, search::below_of(entry)));
-    }
-  }
-
   template <class Ar>
   void serialize(Ar& ar) {
     if constexpr (Ar::is_reading) {
@@ -88,8 +78,8 @@ class Part {
     alone->plan = delivery_->plan;
     alone->report = delivery_->report;
     alone->managers = delivery_->managers;
-    copy(natives(), alone->objects, alone->sorted);
-    copy(visitors(), alone->objects, alone->sorted);
+    const std::span all(delivery_->sorted.data() + begin_, n_natives_ + n_visitors_);
+    alone->objects.append(delivery_->objects, all, alone->sorted);
     delivery_ = std::move(alone);
     begin_ = 0;
   }
