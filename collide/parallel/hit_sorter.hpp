@@ -9,7 +9,6 @@
 
 #include <boost/unordered/unordered_flat_map.hpp>
 
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,10 +23,9 @@ class HitSorter {
     const std::uint32_t* objects;
   };
 
-  /// Pairs of objects: to both owners, once if they are the same; with `only` to the owner of this
-  /// model's object.
-  void add(const Side& first, const Side& second, std::size_t n,
-           const std::optional<ModelId>& only) {
+  /// Pairs of objects that are found on a PE, to the owners that the report names.
+  void add(const Side& first, const Side& second, std::size_t n, const Report& report,
+           PeId found_on) {
     const auto sources_of = [&](std::size_t i) {
       return std::pair(first.list.source(first.objects[i]), second.list.source(second.objects[i]));
     };
@@ -48,9 +46,9 @@ class HitSorter {
           *out++ = {mine.list.local(mine.objects[i], my_source),
                     theirs.list.local(theirs.objects[i], their_source)};
       };
-      if (!only || of_a.model == *only) copy(first, sources.first, second, sources.second);
-      if (only ? of_b.model == *only : of_a.owner != of_b.owner)
-        copy(second, sources.second, first, sources.first);
+      const auto [to_a, to_b] = receivers(of_a, of_b, report, found_on);
+      if (to_a) copy(first, sources.first, second, sources.second);
+      if (to_b) copy(second, sources.second, first, sources.first);
     }
   }
   [[nodiscard]] bool empty() const noexcept { return lists_.empty(); }
@@ -59,6 +57,17 @@ class HitSorter {
   }
 
  private:
+  /// Whether the owners of a pair's objects receive it.
+  [[nodiscard]] static std::pair<bool, bool> receivers(const ObjectList::Source& a,
+                                                       const ObjectList::Source& b,
+                                                       const Report& report, PeId found_on) {
+    if (report.only) return {a.model == *report.only, b.model == *report.only};
+    if (a.owner == b.owner) return {true, false};
+    if (report.receivers == Receivers::both_owners) return {true, true};
+    const bool to_b = a.pe != found_on && b.pe == found_on;
+    return {!to_b, to_b};
+  }
+
   using Key = std::pair<OwnerId, OwnerId>;
   struct Hash {
     std::size_t operator()(const Key& key) const {

@@ -49,8 +49,8 @@ class Manager : public Group<Manager> {
 
   /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid;
   /// then no object of the list is accepted.
-  void submit(const Objects& objects) { pending().append(objects); }
-  void submit(const std::vector<Item>& items) { pending().append(items); }
+  void submit(const Objects& objects) { pending().append(objects, pe()); }
+  void submit(const std::vector<Item>& items) { pending().append(items, pe()); }
 
   /// A number for a collision that starts on this PE.
   [[nodiscard]] std::uint64_t new_step() {

@@ -47,14 +47,18 @@ void ObjectList::number_objects() {
 }
 
 /// For a list whose objects have numbers.
-std::uint32_t ObjectList::find_source(OwnerId owner, ModelId model) {
-  const auto is_wanted = [&](const Source& s) { return s.owner == owner && s.model == model; };
+std::uint32_t ObjectList::find_source(Source wanted) {
+  wanted.shift = 0;
+  const auto is_wanted = [&](Source known) {
+    known.shift = 0;
+    return known == wanted;
+  };
   // Most objects have the source of the one before.
   if (!sources_.empty() && is_wanted(sources_.back()))
     return static_cast<std::uint32_t>(sources_.size() - 1);
   const auto known = std::find_if(sources_.begin(), sources_.end(), is_wanted);
   const auto at = static_cast<std::uint32_t>(known - sources_.begin());
-  if (known == sources_.end()) add_source({owner, model, 0});
+  if (known == sources_.end()) add_source(wanted);
   return at;
 }
 
@@ -65,7 +69,7 @@ void ObjectList::add_source(const Source& source) {
 
 /// One pass over the boxes, in blocks that stay in the cache: they are checked, surveyed and copied.
 /// Only then does the list have them.
-void ObjectList::append(const Objects& objects) {
+void ObjectList::append(const Objects& objects, PeId pe) {
   const std::size_t n = objects.boxes.size(), begin = boxes_.size();
   if (n == 0) return;
   check_room(n);
@@ -87,7 +91,7 @@ void ObjectList::append(const Objects& objects) {
   bounds_ = bounds;
   octaves_ = octaves;
   const Source source{
-      objects.owner, objects.model,
+      objects.owner, objects.model, pe,
       static_cast<std::uint32_t>(objects.first) - static_cast<std::uint32_t>(begin)};
   if (sources_.empty() || sources_.back() != source) add_source(source);
   if (sources_.size() > 1 || !source_of_.empty()) {
@@ -98,7 +102,7 @@ void ObjectList::append(const Objects& objects) {
   if (!local_.empty()) number_objects();
 }
 
-void ObjectList::append(std::span<const Item> items) {
+void ObjectList::append(std::span<const Item> items, PeId pe) {
   if (items.empty()) return;
   check_boxes(items);
   check_room(items.size());
@@ -107,7 +111,7 @@ void ObjectList::append(std::span<const Item> items) {
     boxes_.push_back(item.box);
     bounds_ = merged(bounds_, item.box);
     octaves_[search::octave_of(search::longest_extent(item.box))] = 1;
-    source_of_.push_back(find_source(item.id.owner, item.id.model));
+    source_of_.push_back(find_source({item.id.owner, item.id.model, pe, 0}));
     local_.push_back(static_cast<std::uint32_t>(item.id.local));
   }
 }
@@ -125,7 +129,7 @@ void ObjectList::append(const ObjectList& from, std::span<const search::Entry> e
     const std::uint32_t object = search::object_of(entries[i]), to = begin + i;
     if (from.source(object) != source) {
       source = from.source(object);
-      at = find_source(from.sources_[source].owner, from.sources_[source].model);
+      at = find_source(from.sources_[source]);
       if (at != 0 && source_of_.empty()) source_of_.assign(to, 0);
     }
     if (!source_of_.empty()) source_of_.push_back(at);

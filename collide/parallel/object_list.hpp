@@ -6,6 +6,7 @@
 #include "collide/hit.hpp"
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
+#include "runtime/core/ids.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,10 +27,10 @@ struct Objects {
 
 class ObjectList {
  public:
-  /// Both throw Error (bad_value) with the object if a box is not valid, or with the number of
-  /// objects if it is above 2^28, and change nothing.
-  void append(const Objects& objects);
-  void append(std::span<const Item> items);
+  /// Objects that are submitted on a PE. Both throw Error (bad_value) with the object if a box is not
+  /// valid, or with the number of objects if it is above 2^28, and change nothing.
+  void append(const Objects& objects, PeId pe);
+  void append(std::span<const Item> items, PeId pe);
   /// Objects of another list. Adds their entries in this list to `copies`. They are not counted in
   /// bounds() and has_octave().
   void append(const ObjectList& from, std::span<const search::Entry> entries,
@@ -50,6 +51,7 @@ class ObjectList {
   struct Source {
     OwnerId owner{};
     ModelId model{};
+    PeId pe{};                // where they were submitted
     std::uint32_t shift = 0;  // the number of an object is its position plus this, modulo 2^32
     friend bool operator==(const Source&, const Source&) = default;
   };
@@ -81,7 +83,7 @@ class ObjectList {
   /// Sets the numbers of the objects that have none.
   void number_objects();
   void set_sources();
-  std::uint32_t find_source(OwnerId owner, ModelId model);
+  std::uint32_t find_source(Source wanted);
   void add_source(const Source& source);
 
   search::Scratch<Aabb> boxes_;

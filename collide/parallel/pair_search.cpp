@@ -37,7 +37,7 @@ struct Receiver {
     self.n_pairs += n;
     if (self.n_pairs > most_pairs) throw TooManyPairs{};
     self.hits.add({swapped ? *self.of_b : *self.of_a, first},
-                  {swapped ? *self.of_a : *self.of_b, second}, n, self.report.only);
+                  {swapped ? *self.of_a : *self.of_b, second}, n, self.report, my_pe());
   }
 };
 
