@@ -119,14 +119,16 @@ void ObjectList::append(std::span<const Item> items, PeId pe) {
 /// A list keeps the numbers of the sources only from the second source on.
 void ObjectList::append(const ObjectList& from, std::span<const search::Entry> entries,
                         std::vector<search::Entry>& copies) {
+  constexpr std::size_t ahead = 16;
   const std::uint32_t begin = size();
   if (begin != 0 && local_.empty()) number_objects();
   boxes_.resize(begin + entries.size());
   local_.resize(begin + entries.size());
-  copies.reserve(copies.size() + entries.size());
   std::uint32_t source = ~std::uint32_t{0}, at = 0;
   for (std::uint32_t i = 0; i < entries.size(); ++i) {
     const std::uint32_t object = search::object_of(entries[i]), to = begin + i;
+    if (i + ahead < entries.size())
+      prefetch(from.boxes().subspan(search::object_of(entries[i + ahead]), 1));
     if (from.source(object) != source) {
       source = from.source(object);
       at = find_source(from.sources_[source]);

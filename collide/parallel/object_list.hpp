@@ -7,11 +7,14 @@
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
 #include "runtime/core/ids.hpp"
+#include "runtime/core/serialize.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace tess::collide {
@@ -35,6 +38,11 @@ class ObjectList {
   /// bounds() and has_octave().
   void append(const ObjectList& from, std::span<const search::Entry> entries,
               std::vector<search::Entry>& copies);
+  /// Makes room for objects of other lists.
+  void reserve(std::size_t n) {
+    boxes_.reserve(n);
+    local_.reserve(n);
+  }
   void clear();
 
   [[nodiscard]] std::uint32_t size() const noexcept {
@@ -70,12 +78,28 @@ class ObjectList {
   /// True if all objects have one model.
   [[nodiscard]] bool has_one_model() const noexcept { return !several_models_; }
 
+  /// If `keeper` keeps this list, the boxes may be attached to a message.
   template <class Ar>
-  void serialize(Ar& ar) {
-    std::uint64_t n = boxes_.size();
-    ar(n, several_models_, sources_, source_of_, local_);
-    boxes_.resize(n);
-    ar.bytes(boxes_.data(), n * sizeof(Aabb));
+  void serialize(Ar& ar, const std::shared_ptr<const void>& keeper) {
+    ar(several_models_, sources_, source_of_, local_);
+    if constexpr (Ar::is_reading) {
+      const auto [n, attached] = ar.length_or_attached(sizeof(Aabb));
+      boxes_.resize(n);
+      if (attached)
+        ar.place(boxes_.data(), n * sizeof(Aabb));
+      else
+        ar.bytes(boxes_.data(), n * sizeof(Aabb));
+    } else {
+      const std::uint64_t n = boxes_.size();
+      if constexpr (std::is_same_v<Ar, Writer>) {
+        if (keeper != nullptr && ar.attach(std::as_bytes(boxes()), keeper)) {
+          ar(n | Reader::attached_bit);
+          return;
+        }
+      }
+      ar(n);
+      ar.bytes(boxes_.data(), n * sizeof(Aabb));
+    }
   }
 
  private:
