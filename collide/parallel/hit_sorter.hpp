@@ -9,7 +9,6 @@
 
 #include <boost/unordered/unordered_flat_map.hpp>
 
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,28 +17,38 @@ namespace tess::collide {
 /// Most hits have the same sources as the hit before, so pairs are copied in runs of equal sources.
 class HitSorter {
  public:
-  /// Pairs of objects: to both owners, once if they are the same; with `only` to the owner of this
-  /// model's object.
-  void add(const ObjectList& objects, const std::uint32_t* first, const std::uint32_t* second,
-           std::size_t n, const std::optional<ModelId>& only) {
-    const bool one_source = objects.sources().size() == 1;
+  /// One side of pairs: objects of a list, one per pair.
+  struct Side {
+    const ObjectList& list;
+    const std::uint32_t* objects;
+  };
+
+  /// Pairs of objects that are found on a PE, to the owners that the report names.
+  void add(const Side& first, const Side& second, std::size_t n, const Report& report,
+           PeId found_on) {
+    const auto sources_of = [&](std::size_t i) {
+      return std::pair(first.list.source(first.objects[i]), second.list.source(second.objects[i]));
+    };
+    const bool one_source = first.list.sources().size() == 1 && second.list.sources().size() == 1;
     for (std::size_t begin = 0, end = n; begin < n; begin = end, end = n) {
-      const std::uint32_t a = objects.source(first[begin]), b = objects.source(second[begin]);
+      const auto sources = sources_of(begin);
       if (!one_source) {
         end = begin + 1;
-        while (end < n && objects.source(first[end]) == a && objects.source(second[end]) == b)
-          ++end;
+        while (end < n && sources_of(end) == sources) ++end;
       }
-      const ObjectList::Source &of_a = objects.sources()[a], &of_b = objects.sources()[b];
-      const auto copy = [&](const std::uint32_t* mine, std::uint32_t my_source,
-                            const std::uint32_t* theirs, std::uint32_t their_source) {
-        const OwnerId owner = objects.sources()[my_source].owner;
-        LocalPair* out = room(owner, objects.sources()[their_source].owner, end - begin);
+      const ObjectList::Source &of_a = first.list.sources()[sources.first],
+                               &of_b = second.list.sources()[sources.second];
+      const auto copy = [&](const Side& mine, std::uint32_t my_source, const Side& theirs,
+                            std::uint32_t their_source) {
+        const OwnerId owner = mine.list.sources()[my_source].owner;
+        LocalPair* out = room(owner, theirs.list.sources()[their_source].owner, end - begin);
         for (std::size_t i = begin; i < end; ++i)
-          *out++ = {objects.local(mine[i], my_source), objects.local(theirs[i], their_source)};
+          *out++ = {mine.list.local(mine.objects[i], my_source),
+                    theirs.list.local(theirs.objects[i], their_source)};
       };
-      if (!only || of_a.model == *only) copy(first, a, second, b);
-      if (only ? of_b.model == *only : of_a.owner != of_b.owner) copy(second, b, first, a);
+      const auto [to_a, to_b] = receivers(of_a, of_b, report, found_on);
+      if (to_a) copy(first, sources.first, second, sources.second);
+      if (to_b) copy(second, sources.second, first, sources.first);
     }
   }
   [[nodiscard]] bool empty() const noexcept { return lists_.empty(); }
@@ -48,6 +57,17 @@ class HitSorter {
   }
 
  private:
+  /// Whether the owners of a pair's objects receive it.
+  [[nodiscard]] static std::pair<bool, bool> receivers(const ObjectList::Source& a,
+                                                       const ObjectList::Source& b,
+                                                       const Report& report, PeId found_on) {
+    if (report.only) return {a.model == *report.only, b.model == *report.only};
+    if (a.owner == b.owner) return {true, false};
+    if (report.receivers == Receivers::both_owners) return {true, true};
+    const bool to_b = a.pe != found_on && b.pe == found_on;
+    return {!to_b, to_b};
+  }
+
   using Key = std::pair<OwnerId, OwnerId>;
   struct Hash {
     std::size_t operator()(const Key& key) const {

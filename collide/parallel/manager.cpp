@@ -42,6 +42,9 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   r.delivery->report = report;
   r.delivery->managers = group();
   r.delivery->sort.run(plan, r.delivery->objects);
+  if (machine().n_processes() > 1)
+    r.delivery->sort.note_places(
+        [&](const Index4& voxel) { return voxels_.local(voxel) != nullptr; });
   const std::vector<VoxelRecord>& all = r.delivery->sort.records();
   const auto n = static_cast<std::size_t>(n_pes());
   std::vector<std::uint32_t> home(all.size());
@@ -79,8 +82,8 @@ void Manager::receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bun
 void Manager::answer_if_asked(std::uint64_t step, Round& r) {
   if (!r.records.is_done()) return;
   const auto asked = r.records.received();
-  std::vector<std::span<const VoxelRecord>> records;
-  for (const auto& parcel : asked) records.push_back(parcel.items);
+  std::vector<RecordsOf> records;
+  for (const auto& parcel : asked) records.push_back({PeId{parcel.from}, parcel.items});
   const auto answers = answers_to(records, r.delivery->plan.rules.within_model);
   for (std::size_t i = 0; i < asked.size(); ++i) r.answers.put(asked[i].from, answers[i]);
   r.answers.start(sender<&Manager::receive_answers>(step));
@@ -111,6 +114,7 @@ void Manager::deliver(std::uint64_t step) {
   Round& r = round(step);
   const std::vector<VoxelRecord>& records = r.delivery->sort.records();
   const std::uint32_t end = r.begin + most_entries;
+  std::map<PeId, Shipment> shipments;
   for (; r.n_delivered < records.size() && r.begin < end; ++r.n_delivered) {
     const VoxelRecord& record = records[r.n_delivered];
     const std::uint32_t n = record.n_natives + record.n_visitors;
@@ -120,15 +124,20 @@ void Manager::deliver(std::uint64_t step) {
       continue;
     }
     r.statistics.n_entries += n;
-    r.statistics.n_voxels += answer.makes_it;
+    r.statistics.n_voxels += answer.maker == pe() ? 1U : 0U;
     Part part(r.delivery, r.begin, record.n_natives, record.n_visitors);
-    const std::uint32_t n_senders = answer.n_senders;
-    if (answer.makes_it != 0) {
-      voxels_[record.voxel].send_or_create_here<&Voxel::add>(std::move(part), n_senders);
-    } else {
-      voxels_[record.voxel].send<&Voxel::add>(std::move(part), n_senders);
-    }
     r.begin += n;
+    if (answer.maker == pe())
+      voxels_[record.voxel].send_or_create_here<&Voxel::add>(std::move(part), answer.n_senders);
+    else if (machine().same_process(answer.maker, pe()))
+      voxels_[record.voxel].send<&Voxel::add>(std::move(part), answer.n_senders);
+    else
+      shipments[answer.maker].add(
+          {record.voxel, record.n_natives, record.n_visitors, answer.n_senders}, part.entries());
+  }
+  for (auto& [to, shipment] : shipments) {
+    shipment.pack(*r.delivery);
+    group()[to].send<&Manager::receive_shipment>(std::move(shipment));
   }
   if (r.n_delivered < records.size()) {
     group()[pe()].send<&Manager::deliver>(step);
@@ -136,6 +145,13 @@ void Manager::deliver(std::uint64_t step) {
   }
   last_ = r.statistics;
   rounds_.erase(step);
+}
+
+/// If a voxel was moved, its objects follow it.
+void Manager::receive_shipment(const Shipment& shipment) {
+  shipment.for_each([&](const Shipment::Stop& stop, Part part) {
+    voxels_[stop.voxel].send_or_create_here<&Voxel::add>(std::move(part), stop.n_senders);
+  });
 }
 
 Task Manager::search_in_portions(std::vector<Part> parts) {

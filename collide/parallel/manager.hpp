@@ -5,7 +5,8 @@
 //     begin      sort their objects into voxels, and tell the home of each voxel how many there are
 //     answer     as homes, leave out voxels that can have no pair, and say how many PEs send to a
 //                voxel, and which of them makes it
-//     deliver    send one message per voxel, which starts at once when it has heard from all
+//     deliver    send one message per voxel, which starts at once when it has heard from all; to the
+//                Managers of other processes one message for several voxels
 //
 // There is no barrier: a voxel does not wait for other voxels, and several collisions may overlap.
 // What Managers tell homes, and the answers, are exchanged in a few messages (exchange.hpp).
@@ -16,6 +17,7 @@
 #include "collide/parallel/exchange.hpp"
 #include "collide/parallel/part.hpp"
 #include "collide/parallel/plan.hpp"
+#include "collide/parallel/shipment.hpp"
 #include "collide/parallel/voxel.hpp"
 #include "collide/parallel/voxel_sort.hpp"
 #include "runtime/runtime.hpp"
@@ -49,8 +51,8 @@ class Manager : public Group<Manager> {
 
   /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid;
   /// then no object of the list is accepted.
-  void submit(const Objects& objects) { pending().append(objects); }
-  void submit(const std::vector<Item>& items) { pending().append(items); }
+  void submit(const Objects& objects) { pending().append(objects, pe()); }
+  void submit(const std::vector<Item>& items) { pending().append(items, pe()); }
 
   /// A number for a collision that starts on this PE.
   [[nodiscard]] std::uint64_t new_step() {
@@ -64,6 +66,8 @@ class Manager : public Group<Manager> {
   void receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bundle);
   /// Sends some voxels' parts; then the next ones, when other messages had their turn.
   void deliver(std::uint64_t step);
+  /// The parts for voxels that this PE makes.
+  void receive_shipment(const Shipment& shipment);
   /// Sends the pairs of a voxel on this PE that has too many for one message. The next portion is
   /// searched when the owners have handled the last one; one voxel of a PE after another.
   Task search_in_portions(std::vector<Part> parts);

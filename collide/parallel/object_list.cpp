@@ -1,6 +1,5 @@
 #include "collide/parallel/object_list.hpp"
 
-#include "collide/search/entry.hpp"
 #include "collide/search/survey.hpp"
 #include "runtime/core/error.hpp"
 
@@ -48,20 +47,29 @@ void ObjectList::number_objects() {
 }
 
 /// For a list whose objects have numbers.
-std::uint32_t ObjectList::find_source(OwnerId owner, ModelId model) {
-  const auto is_wanted = [&](const Source& s) { return s.owner == owner && s.model == model; };
+std::uint32_t ObjectList::find_source(Source wanted) {
+  wanted.shift = 0;
+  const auto is_wanted = [&](Source known) {
+    known.shift = 0;
+    return known == wanted;
+  };
   // Most objects have the source of the one before.
   if (!sources_.empty() && is_wanted(sources_.back()))
     return static_cast<std::uint32_t>(sources_.size() - 1);
   const auto known = std::find_if(sources_.begin(), sources_.end(), is_wanted);
   const auto at = static_cast<std::uint32_t>(known - sources_.begin());
-  if (known == sources_.end()) sources_.push_back({owner, model, 0});
+  if (known == sources_.end()) add_source(wanted);
   return at;
+}
+
+void ObjectList::add_source(const Source& source) {
+  several_models_ = several_models_ || (!sources_.empty() && sources_.back().model != source.model);
+  sources_.push_back(source);
 }
 
 /// One pass over the boxes, in blocks that stay in the cache: they are checked, surveyed and copied.
 /// Only then does the list have them.
-void ObjectList::append(const Objects& objects) {
+void ObjectList::append(const Objects& objects, PeId pe) {
   const std::size_t n = objects.boxes.size(), begin = boxes_.size();
   if (n == 0) return;
   check_room(n);
@@ -83,9 +91,9 @@ void ObjectList::append(const Objects& objects) {
   bounds_ = bounds;
   octaves_ = octaves;
   const Source source{
-      objects.owner, objects.model,
+      objects.owner, objects.model, pe,
       static_cast<std::uint32_t>(objects.first) - static_cast<std::uint32_t>(begin)};
-  if (sources_.empty() || sources_.back() != source) sources_.push_back(source);
+  if (sources_.empty() || sources_.back() != source) add_source(source);
   if (sources_.size() > 1 || !source_of_.empty()) {
     set_sources();
     source_of_.insert(source_of_.end(), n, static_cast<std::uint32_t>(sources_.size() - 1));
@@ -94,7 +102,7 @@ void ObjectList::append(const Objects& objects) {
   if (!local_.empty()) number_objects();
 }
 
-void ObjectList::append(std::span<const Item> items) {
+void ObjectList::append(std::span<const Item> items, PeId pe) {
   if (items.empty()) return;
   check_boxes(items);
   check_room(items.size());
@@ -103,16 +111,34 @@ void ObjectList::append(std::span<const Item> items) {
     boxes_.push_back(item.box);
     bounds_ = merged(bounds_, item.box);
     octaves_[search::octave_of(search::longest_extent(item.box))] = 1;
-    source_of_.push_back(find_source(item.id.owner, item.id.model));
+    source_of_.push_back(find_source({item.id.owner, item.id.model, pe, 0}));
     local_.push_back(static_cast<std::uint32_t>(item.id.local));
   }
 }
 
-void ObjectList::append(const ObjectList& from, std::uint32_t object) {
-  const std::uint32_t source = from.source(object);
-  boxes_.push_back(from.boxes_.data()[object]);
-  source_of_.push_back(find_source(from.sources_[source].owner, from.sources_[source].model));
-  local_.push_back(static_cast<std::uint32_t>(from.local(object, source)));
+/// A list keeps the numbers of the sources only from the second source on.
+void ObjectList::append(const ObjectList& from, std::span<const search::Entry> entries,
+                        std::vector<search::Entry>& copies) {
+  constexpr std::size_t ahead = 16;
+  const std::uint32_t begin = size();
+  if (begin != 0 && local_.empty()) number_objects();
+  boxes_.resize(begin + entries.size());
+  local_.resize(begin + entries.size());
+  std::uint32_t source = ~std::uint32_t{0}, at = 0;
+  for (std::uint32_t i = 0; i < entries.size(); ++i) {
+    const std::uint32_t object = search::object_of(entries[i]), to = begin + i;
+    if (i + ahead < entries.size())
+      prefetch(from.boxes().subspan(search::object_of(entries[i + ahead]), 1));
+    if (from.source(object) != source) {
+      source = from.source(object);
+      at = find_source(from.sources_[source]);
+      if (at != 0 && source_of_.empty()) source_of_.assign(to, 0);
+    }
+    if (!source_of_.empty()) source_of_.push_back(at);
+    boxes_.data()[to] = from.boxes_.data()[object];
+    local_[to] = static_cast<std::uint32_t>(from.local(object, source));
+    copies.push_back(search::make_entry(to, search::below_of(entries[i])));
+  }
 }
 
 void ObjectList::clear() {
@@ -120,13 +146,9 @@ void ObjectList::clear() {
   sources_.clear();
   source_of_.clear();
   local_.clear();
+  several_models_ = false;
   bounds_ = no_box<double, 3>();
   octaves_.fill(0);
-}
-
-bool ObjectList::has_one_model() const noexcept {
-  return std::all_of(sources_.begin(), sources_.end(),
-                     [&](const Source& s) { return s.model == sources_.front().model; });
 }
 
 }  // namespace tess::collide

@@ -4,12 +4,17 @@
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
+#include "runtime/core/ids.hpp"
+#include "runtime/core/serialize.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace tess::collide {
@@ -25,12 +30,19 @@ struct Objects {
 
 class ObjectList {
  public:
-  /// Both throw Error (bad_value) with the object if a box is not valid, or with the number of
-  /// objects if it is above 2^28, and change nothing.
-  void append(const Objects& objects);
-  void append(std::span<const Item> items);
-  /// An object of another list. Not counted in bounds() and has_octave().
-  void append(const ObjectList& from, std::uint32_t object);
+  /// Objects that are submitted on a PE. Both throw Error (bad_value) with the object if a box is not
+  /// valid, or with the number of objects if it is above 2^28, and change nothing.
+  void append(const Objects& objects, PeId pe);
+  void append(std::span<const Item> items, PeId pe);
+  /// Objects of another list. Adds their entries in this list to `copies`. They are not counted in
+  /// bounds() and has_octave().
+  void append(const ObjectList& from, std::span<const search::Entry> entries,
+              std::vector<search::Entry>& copies);
+  /// Makes room for objects of other lists.
+  void reserve(std::size_t n) {
+    boxes_.reserve(n);
+    local_.reserve(n);
+  }
   void clear();
 
   [[nodiscard]] std::uint32_t size() const noexcept {
@@ -47,6 +59,7 @@ class ObjectList {
   struct Source {
     OwnerId owner{};
     ModelId model{};
+    PeId pe{};                // where they were submitted
     std::uint32_t shift = 0;  // the number of an object is its position plus this, modulo 2^32
     friend bool operator==(const Source&, const Source&) = default;
   };
@@ -63,14 +76,30 @@ class ObjectList {
     return static_cast<LocalId>(local_.empty() ? object + sources_[source].shift : local_[object]);
   }
   /// True if all objects have one model.
-  [[nodiscard]] bool has_one_model() const noexcept;
+  [[nodiscard]] bool has_one_model() const noexcept { return !several_models_; }
 
+  /// If `keeper` keeps this list, the boxes may be attached to a message.
   template <class Ar>
-  void serialize(Ar& ar) {
-    std::uint64_t n = boxes_.size();
-    ar(n, sources_, source_of_, local_);
-    boxes_.resize(n);
-    ar.bytes(boxes_.data(), n * sizeof(Aabb));
+  void serialize(Ar& ar, const std::shared_ptr<const void>& keeper) {
+    ar(several_models_, sources_, source_of_, local_);
+    if constexpr (Ar::is_reading) {
+      const auto [n, attached] = ar.length_or_attached(sizeof(Aabb));
+      boxes_.resize(n);
+      if (attached)
+        ar.place(boxes_.data(), n * sizeof(Aabb));
+      else
+        ar.bytes(boxes_.data(), n * sizeof(Aabb));
+    } else {
+      const std::uint64_t n = boxes_.size();
+      if constexpr (std::is_same_v<Ar, Writer>) {
+        if (keeper != nullptr && ar.attach(std::as_bytes(boxes()), keeper)) {
+          ar(n | Reader::attached_bit);
+          return;
+        }
+      }
+      ar(n);
+      ar.bytes(boxes_.data(), n * sizeof(Aabb));
+    }
   }
 
  private:
@@ -78,12 +107,14 @@ class ObjectList {
   /// Sets the numbers of the objects that have none.
   void number_objects();
   void set_sources();
-  std::uint32_t find_source(OwnerId owner, ModelId model);
+  std::uint32_t find_source(Source wanted);
+  void add_source(const Source& source);
 
   search::Scratch<Aabb> boxes_;
   std::vector<Source> sources_;
   std::vector<std::uint32_t> source_of_;  // per object; empty: all 0
   std::vector<std::uint32_t> local_;      // per object; empty: by the shift of the source
+  bool several_models_ = false;
   Aabb bounds_ = no_box<double, 3>();
   std::array<std::uint8_t, 2048> octaves_{};
 };

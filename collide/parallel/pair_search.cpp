@@ -25,21 +25,26 @@ struct TooManyPairs {};
 
 /// Sorts pairs by the owners of their objects.
 struct Receiver {
-  const ObjectList& objects;
   const Report& report;
-  HitSorter hits;
+  const ObjectList* of_a = nullptr;  // of the current search
+  const ObjectList* of_b = nullptr;
+  HitSorter hits{};
   std::size_t n_pairs = 0;
 
   static void call(void* context, const std::uint32_t* first, const std::uint32_t* second,
-                   std::size_t n, bool /*swapped*/) {
+                   std::size_t n, bool swapped) {
     auto& self = *static_cast<Receiver*>(context);
     self.n_pairs += n;
     if (self.n_pairs > most_pairs) throw TooManyPairs{};
-    self.hits.add(self.objects, first, second, n, self.report.only);
+    self.hits.add({swapped ? *self.of_b : *self.of_a, first},
+                  {swapped ? *self.of_a : *self.of_b, second}, n, self.report, my_pe());
   }
 };
 
-void solve(const Problem& problem, Search& search) {
+void solve(const PairSets& sets, Receiver& receiver, Search& search) {
+  const Problem& problem = sets.problem;
+  receiver.of_a = sets.of_a;
+  receiver.of_b = sets.of_b;
   // Few objects are compared wherever they are.
   const bool is_small = problem.a.size() + problem.b.size() <= search::costs::few_objects;
   const Aabb bounds = is_small ? Aabb{} : search::bounds_of(problem.boxes_a, problem.a);
@@ -67,37 +72,38 @@ bool search_at_once(std::span<const Part> parts) {
   VoxelProblem& voxel = scratch().problem;
   const Delivery& delivery = parts.front().delivery();
   const PairRules& rules = delivery.plan.rules;
-  voxel.gather(parts);
-  Receiver receiver{voxel.objects(), delivery.report, {}};
+  voxel.gather(parts, rules.within_model);
+  Receiver receiver{delivery.report};
   const bool found = run_search(rules, receiver, [&](Search& search) {
-    voxel.for_each_search(rules.within_model,
-                          [&](const Problem& problem) { solve(problem, search); });
+    voxel.for_each_search([&](const PairSets& sets) { solve(sets, receiver, search); });
   });
   if (found) receiver.hits.send(delivery.report.call);
   return found;
 }
 
 PortionSearch::PortionSearch(std::vector<Part> parts) : parts_(std::move(parts)) {
-  objects_.gather(parts_);
-  objects_.for_each_search(parts_.front().delivery().plan.rules.within_model,
-                           [&](const Problem& problem) { remaining_.push_back(problem); });
+  objects_.gather(parts_, parts_.front().delivery().plan.rules.within_model);
+  objects_.for_each_search([&](const PairSets& sets) { remaining_.push_back(sets); });
 }
 
 HitSorter PortionSearch::next() {
   const Delivery& delivery = parts_.front().delivery();
   while (!remaining_.empty()) {
-    const Problem problem = remaining_.back();
+    const PairSets sets = remaining_.back();
     remaining_.pop_back();
-    Receiver receiver{objects_.objects(), delivery.report, {}};
-    if (!run_search(delivery.plan.rules, receiver, [&](Search& search) { solve(problem, search); }))
-      divide(problem);
+    Receiver receiver{delivery.report};
+    if (!run_search(delivery.plan.rules, receiver,
+                    [&](Search& search) { solve(sets, receiver, search); }))
+      divide(sets);
     else if (!receiver.hits.empty())
       return std::move(receiver.hits);
   }
   return {};
 }
 
-void PortionSearch::divide(const Problem& problem) {
+void PortionSearch::divide(const PairSets& sets) {
+  const Problem& problem = sets.problem;
+  const auto add = [&](const Problem& part) { remaining_.push_back({part, sets.of_a, sets.of_b}); };
   const auto half = [](std::span<const search::Entry> all, bool second) {
     const std::size_t n = all.size() / 2;
     return second ? all.subspan(n) : all.first(n);
@@ -108,9 +114,8 @@ void PortionSearch::divide(const Problem& problem) {
     one.a = a1;
     other.a = a2;
     one.b = other.b = {};
-    remaining_.push_back({problem.boxes_a, problem.boxes_a, a1, a2, false});
-    if (!problem.b.empty())
-      remaining_.push_back({problem.boxes_a, problem.boxes_b, problem.a, problem.b, false});
+    remaining_.push_back({{problem.boxes_a, problem.boxes_a, a1, a2, false}, sets.of_a, sets.of_a});
+    if (!problem.b.empty()) add({problem.boxes_a, problem.boxes_b, problem.a, problem.b, false});
   } else if (problem.a.size() > problem.b.size()) {
     one.a = half(problem.a, false);
     other.a = half(problem.a, true);
@@ -118,8 +123,8 @@ void PortionSearch::divide(const Problem& problem) {
     one.b = half(problem.b, false);
     other.b = half(problem.b, true);
   }
-  remaining_.push_back(one);
-  remaining_.push_back(other);
+  add(one);
+  add(other);
 }
 
 }  // namespace tess::collide

@@ -33,11 +33,11 @@ class PortionSearch {
   [[nodiscard]] const Callback<Hits>& call() const { return parts_.front().delivery().report.call; }
 
  private:
-  void divide(const Problem& problem);
+  void divide(const PairSets& sets);
 
   const std::vector<Part> parts_;
   VoxelProblem objects_;
-  std::vector<Problem> remaining_;
+  std::vector<PairSets> remaining_;
 };
 
 }  // namespace tess::collide

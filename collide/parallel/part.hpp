@@ -1,6 +1,6 @@
 // What a Manager sends to a voxel: the objects of its PE that touch it. Within a process the boxes
-// stay where they are, and a part is a range of a list that all voxels share; to another process the
-// boxes of the part are sent alone.
+// stay where they are, and a part is a range of a list that all voxels share. To another process the
+// boxes of several voxels are sent together (shipment.hpp), or those of a part alone.
 #pragma once
 
 #include "collide/parallel/object_list.hpp"
@@ -32,11 +32,22 @@ struct Delivery {
     sorted.clear();
     sort.clear();
   }
+  /// `keeper` keeps this delivery, if its boxes may be sent from where they are.
   template <class Ar>
-  void serialize(Ar& ar) {
-    ar(plan, report, managers, objects, sorted);
+  void serialize(Ar& ar, const std::shared_ptr<const void>& keeper) {
+    ar(plan, report, managers, sorted);
+    objects.serialize(ar, keeper);
   }
 };
+
+/// A delivery of the same collision without objects.
+[[nodiscard]] inline std::shared_ptr<Delivery> alone(const Delivery& from) {
+  auto out = std::make_shared<Delivery>();
+  out->plan = from.plan;
+  out->report = from.report;
+  out->managers = from.managers;
+  return out;
+}
 
 class Part {
  public:
@@ -50,6 +61,9 @@ class Part {
         n_visitors_(n_visitors) {}
 
   [[nodiscard]] const Delivery& delivery() const noexcept { return *delivery_; }
+  [[nodiscard]] std::span<const search::Entry> entries() const noexcept {
+    return {delivery_->sorted.data() + begin_, n_natives_ + n_visitors_};
+  }
   [[nodiscard]] std::span<const search::Entry> natives() const noexcept {
     return {delivery_->sorted.data() + begin_, n_natives_};
   }
@@ -57,26 +71,18 @@ class Part {
     return {delivery_->sorted.data() + begin_ + n_natives_, n_visitors_};
   }
 
-  /// Adds the objects of some of its entries to a list, and their entries there.
-  void copy(std::span<const search::Entry> entries, ObjectList& objects,
-            std::vector<search::Entry>& copies) const {
-    for (const search::Entry entry : entries) {
-      const std::uint32_t n = objects.size();
-      objects.append(delivery_->objects, search::object_of(entry));
-      copies.push_back(search::make_entry(n, search::below_of(entry)));
-    }
-  }
-
   template <class Ar>
   void serialize(Ar& ar) {
     if constexpr (Ar::is_reading) {
-      auto alone = std::make_shared<Delivery>();
-      ar(n_natives_, n_visitors_, *alone);
+      auto delivery = std::make_shared<Delivery>();
+      ar(n_natives_, n_visitors_);
+      delivery->serialize(ar, nullptr);
       begin_ = 0;
-      delivery_ = std::move(alone);
+      delivery_ = std::move(delivery);
     } else {
       make_alone();
-      ar(n_natives_, n_visitors_, *delivery_);
+      ar(n_natives_, n_visitors_);
+      const_cast<Delivery&>(*delivery_).serialize(ar, nullptr);
     }
   }
 
@@ -84,13 +90,9 @@ class Part {
   /// Copies the objects of this part.
   void make_alone() {
     if (delivery_->sorted.size() == n_natives_ + n_visitors_) return;
-    auto alone = std::make_shared<Delivery>();
-    alone->plan = delivery_->plan;
-    alone->report = delivery_->report;
-    alone->managers = delivery_->managers;
-    copy(natives(), alone->objects, alone->sorted);
-    copy(visitors(), alone->objects, alone->sorted);
-    delivery_ = std::move(alone);
+    const std::shared_ptr<Delivery> copy = alone(*delivery_);
+    copy->objects.append(delivery_->objects, entries(), copy->sorted);
+    delivery_ = copy;
     begin_ = 0;
   }
 

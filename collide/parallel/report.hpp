@@ -26,16 +26,26 @@ struct Hits {
   std::vector<LocalPair> pairs;
 };
 
+/// How many owners of a pair receive it. An owner of both objects receives it once, and `mine` is
+/// either of them.
+enum class Receivers {
+  both_owners,
+  /// One of the two. If an object of the pair was submitted on the PE that finds the pair, it is the
+  /// owner of this object, so most pairs stay on their PE and each PE has its share. Which one it is
+  /// may differ from run to run.
+  one_owner
+};
+
 /// The receivers of hits.
 struct Report {
   Callback<Hits> call;  ///< called per (voxel, owner, other) with hits
-  /// If set, only the owner of the object of this model receives a hit; otherwise both owners do,
-  /// and an owner of both objects once: `mine` is either of them.
+  /// If set, the owner of the object of this model receives a hit, and `receivers` has no effect.
   std::optional<ModelId> only;
+  Receivers receivers = Receivers::both_owners;
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(call, only);
+    ar(call, only, receivers);
   }
 };
 

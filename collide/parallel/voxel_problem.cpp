@@ -5,44 +5,72 @@
 
 namespace tess::collide {
 
-void ByModel::split(std::span<const search::Entry> entries, const ObjectList& objects) {
+void ByModel::add(std::span<const search::Entry> entries, const ObjectList& objects) {
+  if (entries.empty()) return;
+  if (objects.has_one_model()) return add_run(objects.sources().front().model, entries, objects);
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    const ModelId model = objects.model(search::object_of(entries[begin]));
+    end = begin + 1;
+    while (end < entries.size() && objects.model(search::object_of(entries[end])) == model) ++end;
+    add_run(model, entries.subspan(begin, end - begin), objects);
+  }
+}
+
+void ByModel::add_run(ModelId model, std::span<const search::Entry> entries,
+                      const ObjectList& objects) {
+  if (sets_.empty()) together_ = true;
+  together_ = together_ && std::none_of(sets_.begin(), sets_.end(),
+                                        [&](const ModelSet& set) { return set.model == model; });
+  sets_.push_back({model, &objects, entries});
+}
+
+void ByModel::join(ObjectList& merged) {
+  if (sets_.empty() || together_) return;
+  std::stable_sort(sets_.begin(), sets_.end(),
+                   [](const ModelSet& a, const ModelSet& b) { return a.model < b.model; });
+  std::swap(sets_, runs_);
   sets_.clear();
-  bool together = true;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const ModelId model = objects.model(search::object_of(entries[i]));
-    if (!sets_.empty() && sets_.back().model == model) {
-      Set& last = sets_.back();
-      last.entries = {last.entries.data(), last.entries.size() + 1};
+  std::size_t n_entries = 0;
+  for (const ModelSet& run : runs_) n_entries += run.entries.size();
+  copies_.clear();
+  copies_.reserve(n_entries);  // the sets refer to them
+  for (std::size_t begin = 0, end = 0; begin < runs_.size(); begin = end) {
+    const ModelSet& first = runs_[begin];
+    bool one_list = true;
+    for (end = begin; end < runs_.size() && runs_[end].model == first.model; ++end)
+      one_list = one_list && runs_[end].objects == first.objects;
+    if (end == begin + 1) {
+      sets_.push_back(first);
       continue;
     }
-    together = together && std::none_of(sets_.begin(), sets_.end(),
-                                        [&](const Set& set) { return set.model == model; });
-    sets_.push_back({model, entries.subspan(i, 1)});
-  }
-  if (!together) gather(entries);
-}
-
-/// One set for all runs of a model.
-void ByModel::gather(std::span<const search::Entry> entries) {
-  std::stable_sort(sets_.begin(), sets_.end(),
-                   [](const Set& a, const Set& b) { return a.model < b.model; });
-  copies_.clear();
-  copies_.reserve(entries.size());
-  std::vector<Set> joined;
-  for (const Set& run : sets_) {
-    const search::Entry* const at = copies_.data() + copies_.size();
-    copies_.insert(copies_.end(), run.entries.begin(), run.entries.end());
-    if (!joined.empty() && joined.back().model == run.model) {
-      Set& last = joined.back();
-      last.entries = {last.entries.data(), last.entries.size() + run.entries.size()};
-    } else {
-      joined.push_back({run.model, {at, run.entries.size()}});
+    const std::size_t n_before = copies_.size();
+    for (std::size_t r = begin; r < end; ++r) {
+      const std::span<const search::Entry> entries = runs_[r].entries;
+      if (one_list)
+        copies_.insert(copies_.end(), entries.begin(), entries.end());
+      else
+        merged.append(*runs_[r].objects, entries, copies_);
     }
+    sets_.push_back(
+        {first.model, one_list ? first.objects : &merged, std::span(copies_).subspan(n_before)});
   }
-  sets_ = std::move(joined);
 }
 
-void VoxelProblem::gather(std::span<const Part> parts) {
+void VoxelProblem::gather(std::span<const Part> parts, WithinModel within_model) {
+  merged_.clear();
+  objects_ = nullptr;
+  if (within_model == WithinModel::test) return gather_all(parts);
+  natives_by_model_.clear();
+  visitors_by_model_.clear();
+  for (const Part& part : parts) {
+    natives_by_model_.add(part.natives(), part.delivery().objects);
+    visitors_by_model_.add(part.visitors(), part.delivery().objects);
+  }
+  natives_by_model_.join(merged_);
+  visitors_by_model_.join(merged_);
+}
+
+void VoxelProblem::gather_all(std::span<const Part> parts) {
   const Part& first = parts.front();
   if (parts.size() == 1) {
     objects_ = &first.delivery().objects;
@@ -50,11 +78,10 @@ void VoxelProblem::gather(std::span<const Part> parts) {
     visitors_ = first.visitors();
     return;
   }
-  merged_.clear();
   entries_.clear();
-  for (const Part& part : parts) part.copy(part.natives(), merged_, entries_);
+  for (const Part& part : parts) merged_.append(part.delivery().objects, part.natives(), entries_);
   const std::size_t n_natives = entries_.size();
-  for (const Part& part : parts) part.copy(part.visitors(), merged_, entries_);
+  for (const Part& part : parts) merged_.append(part.delivery().objects, part.visitors(), entries_);
   objects_ = &merged_;
   natives_ = std::span(entries_).first(n_natives);
   visitors_ = std::span(entries_).subspan(n_natives);

@@ -11,52 +11,72 @@ namespace tess::collide {
 
 using Problem = search::Problem<double, 3>;
 
-/// Entries by model. They are copied only if the objects of a model do not stand together.
+/// A search of a voxel, and the lists that have the objects of its two sets.
+struct PairSets {
+  Problem problem;
+  const ObjectList* of_a = nullptr;
+  const ObjectList* of_b = nullptr;
+};
+
+/// Some objects of a list, which have one model.
+struct ModelSet {
+  ModelId model{};
+  const ObjectList* objects = nullptr;
+  std::span<const search::Entry> entries;
+};
+
+/// Objects of several parts by model. Entries are copied only if the objects of a model do not stand
+/// together, and boxes only if they stand in several lists. So a voxel of two planes, each on its
+/// own PE, copies nothing.
 class ByModel {
  public:
-  struct Set {
-    ModelId model;
-    std::span<const search::Entry> entries;
-  };
-
-  void split(std::span<const search::Entry> entries, const ObjectList& objects);
-  [[nodiscard]] std::span<const Set> sets() const { return sets_; }
+  /// Starts again.
+  void clear() { sets_.clear(); }
+  void add(std::span<const search::Entry> entries, const ObjectList& objects);
+  /// Makes one set per model. Boxes are copied to `merged`.
+  void join(ObjectList& merged);
+  [[nodiscard]] std::span<const ModelSet> sets() const { return sets_; }
 
  private:
-  void gather(std::span<const search::Entry> entries);
+  void add_run(ModelId model, std::span<const search::Entry> entries, const ObjectList& objects);
 
-  std::vector<Set> sets_;
+  std::vector<ModelSet> sets_, runs_;
   std::vector<search::Entry> copies_;
+  bool together_ = true;  // each model has one set
 };
 
 /// Keeps its memory from voxel to voxel.
 class VoxelProblem {
  public:
   /// The parts remain where they are until the search is done.
-  void gather(std::span<const Part> parts);
+  void gather(std::span<const Part> parts, WithinModel within_model);
 
-  /// Calls run(problem) for the sets whose pairs count: those of different models, or all.
+  /// Calls run(sets) for the sets whose pairs count: those of different models, or all.
   template <class Run>
-  void for_each_search(WithinModel within_model, const Run& run) {
-    const Aabb* const boxes = objects_->boxes().data();
-    if (within_model == WithinModel::test)
-      return run(Problem{boxes, boxes, natives_, visitors_, true});
-    natives_by_model_.split(natives_, *objects_);
-    visitors_by_model_.split(visitors_, *objects_);
+  void for_each_search(const Run& run) const {
+    if (objects_ != nullptr) {
+      const Aabb* const boxes = objects_->boxes().data();
+      return run(PairSets{{boxes, boxes, natives_, visitors_, true}, objects_, objects_});
+    }
+    const auto run_pair = [&](const ModelSet& a, const ModelSet& b) {
+      const Aabb* const boxes_a = a.objects->boxes().data();
+      const Aabb* const boxes_b = b.objects->boxes().data();
+      run(PairSets{{boxes_a, boxes_b, a.entries, b.entries, false}, a.objects, b.objects});
+    };
     const auto natives = natives_by_model_.sets();
     for (std::size_t m = 0; m < natives.size(); ++m) {
       // With the natives of the models after it, and with the visitors of all others.
       for (std::size_t other = m + 1; other < natives.size(); ++other)
-        run(Problem{boxes, boxes, natives[m].entries, natives[other].entries, false});
-      for (const ByModel::Set& visiting : visitors_by_model_.sets())
-        if (visiting.model != natives[m].model)
-          run(Problem{boxes, boxes, natives[m].entries, visiting.entries, false});
+        run_pair(natives[m], natives[other]);
+      for (const ModelSet& visiting : visitors_by_model_.sets())
+        if (visiting.model != natives[m].model) run_pair(natives[m], visiting);
     }
   }
-  [[nodiscard]] const ObjectList& objects() const { return *objects_; }
 
  private:
-  const ObjectList* objects_ = nullptr;
+  void gather_all(std::span<const Part> parts);
+
+  const ObjectList* objects_ = nullptr;  // if pairs within a model count: of all parts
   std::span<const search::Entry> natives_, visitors_;
   ObjectList merged_;
   std::vector<search::Entry> entries_;

@@ -91,7 +91,7 @@ void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level le
     const std::uint32_t n_natives = counts[2 * number], n_visitors = counts[2 * number + 1];
     if (n_natives + n_visitors == 0) continue;
     const Cell cell = numbers.cell(number);
-    records_.push_back({{cell.x, cell.y, cell.z, level}, n_natives, n_visitors, {}, 0});
+    records_.push_back({{cell.x, cell.y, cell.z, level}, n_natives, n_visitors, {}, 0, 0});
   }
 }
 

@@ -6,6 +6,7 @@
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
 #include "collide/serial/cell_numbers.hpp"
+#include "runtime/core/ids.hpp"
 #include "runtime/core/index.hpp"
 
 #include <cstdint>
@@ -21,18 +22,24 @@ struct VoxelRecord {
   std::uint32_t n_visitors = 0;  ///< smaller ones
   ModelId model{};               ///< of the objects, unless there are several
   std::uint32_t several_models = 0;
+  std::uint32_t is_here = 0;  ///< the voxel exists on this PE
 };
 
 /// The answer of the voxel's home.
 struct VoxelAnswer {
   std::uint32_t n_senders = 0;  ///< 0: the voxel is left out
-  std::uint32_t makes_it = 0;   ///< this PE makes the voxel
+  PeId maker{};                 ///< the PE that makes the voxel
 };
 
 /// Keeps its memory from sort to sort.
 class VoxelSort {
  public:
   void run(const Plan& plan, const ObjectList& objects);
+  /// Calls is_here(voxel) for each record.
+  template <class IsHere>
+  void note_places(const IsHere& is_here) {
+    for (VoxelRecord& record : records_) record.is_here = is_here(record.voxel) ? 1 : 0;
+  }
   void clear();
 
   [[nodiscard]] const std::vector<VoxelRecord>& records() const noexcept { return records_; }

@@ -34,7 +34,6 @@ void Client::submit(const Collider& collider) {
 }
 
 void Client::receive(const Hits& hits) {
-  if (hits.owner > hits.other) return;  // the other one counts them
   answer_.n_candidates += hits.pairs.size();
   const std::uint32_t my_first = first_of(index().x, piece_.n_objects),
                       their_first = first_of(index_of(hits.other).x, piece_.n_objects);

@@ -47,7 +47,7 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
       clients_[{c}].send<&Client::take>(std::move(piece));
     }
   });
-  const Report report{report_to<&Client::receive>(clients_), {}};
+  const Report report{report_to<&Client::receive>(clients_), {}, Receivers::one_owner};
   for (int run = 0; run < repeat; ++run) {
     if (run > 0) co_await tess::epoch([&] { clients_.broadcast<&Client::forget>(); });
     const tess::Time begin = tess::now();

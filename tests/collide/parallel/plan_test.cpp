@@ -27,7 +27,8 @@ double objects_per_voxel(int n, std::int32_t n_pes) {
     const std::size_t pes = static_cast<std::size_t>(n_pes);
     const std::size_t begin = boxes.size() * pe / pes, end = boxes.size() * (pe + 1) / pes;
     ObjectList objects;
-    objects.append(Objects{.boxes = std::span(boxes).subspan(begin, end - begin)});
+    objects.append(Objects{.boxes = std::span(boxes).subspan(begin, end - begin)},
+                   PeId{static_cast<std::int32_t>(pe)});
     all = JoinSummaries{}.combine(std::move(all),
                                   Summary(objects, static_cast<std::int32_t>(pe), n_pes));
   }

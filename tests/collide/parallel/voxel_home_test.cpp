@@ -26,17 +26,17 @@ template <std::size_t N>
 std::array<std::uint32_t, N> made(const std::array<std::uint32_t, N>& n_objects) {
   std::vector<std::vector<VoxelRecord>> lists;
   for (std::uint32_t pe = 0; pe < N; ++pe) lists.push_back(records_of(pe, n_objects[pe]));
-  const std::vector<std::span<const VoxelRecord>> spans(lists.begin(), lists.end());
-  const auto answers = answers_to(spans, WithinModel::skip);
+  std::vector<RecordsOf> all;
+  for (std::int32_t pe = 0; const std::vector<VoxelRecord>& list : lists)
+    all.push_back({PeId{pe++}, list});
+  const auto answers = answers_to(all, WithinModel::skip);
   std::array<std::uint32_t, N> result{};
   for (std::uint32_t v = 0; v < n_voxels; ++v) {
-    std::uint32_t n_makers = 0;
     for (std::size_t pe = 0; pe < N; ++pe) {
       REQUIRE(answers[pe][v].n_senders == N);
-      n_makers += answers[pe][v].makes_it;
-      result[pe] += answers[pe][v].makes_it;
+      REQUIRE(answers[pe][v].maker == answers[0][v].maker);
     }
-    REQUIRE(n_makers == 1);
+    ++result.at(static_cast<std::size_t>(answers[0][v].maker.value));
   }
   return result;
 }
@@ -55,6 +55,11 @@ TEST_CASE("PEs with nearly as many objects share the voxels", "[collide][paralle
     CHECK(std::abs(n / double{n_voxels} - 0.25) < 0.05);
 }
 
+TEST_CASE("two PEs with as many objects each make half of the voxels of a row",
+          "[collide][parallel][voxel_home]") {
+  CHECK(made(std::array{64U, 64U}) == std::array{n_voxels / 2, n_voxels / 2});
+}
+
 TEST_CASE("a PE with less than half of the objects of another one makes no voxel",
           "[collide][parallel][voxel_home]") {
   CHECK(made(std::array{100U, 49U}) == std::array{n_voxels, 0U});
@@ -62,6 +67,18 @@ TEST_CASE("a PE with less than half of the objects of another one makes no voxel
   const auto three = made(std::array{10U, 100U, 60U});
   CHECK(three[0] == 0);
   CHECK(three[1] + three[2] == n_voxels);
+}
+
+TEST_CASE("the PE where a voxel is remains its maker, whatever it has",
+          "[collide][parallel][voxel_home]") {
+  std::vector<VoxelRecord> many = records_of(0, 100), few = records_of(1, 1);
+  for (std::size_t v = 0; v < n_voxels; v += 3) few[v].is_here = 1;
+  const std::array all{RecordsOf{PeId{4}, many}, RecordsOf{PeId{7}, few}};
+  const auto answers = answers_to(all, WithinModel::skip);
+  for (std::size_t v = 0; v < n_voxels; ++v) {
+    REQUIRE(answers[0][v].maker == PeId{v % 3 == 0 ? 7 : 4});
+    REQUIRE(answers[1][v].maker == PeId{v % 3 == 0 ? 7 : 4});
+  }
 }
 
 }  // namespace tess::collide
