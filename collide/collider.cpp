@@ -1,6 +1,7 @@
 #include "collide/collider.hpp"
 
 #include <exception>
+#include <utility>
 
 namespace tess::collide {
 
@@ -9,6 +10,13 @@ Collider make_collider(const ColliderOptions& options) {
     static_cast<void>(VoxelGrid(options.origin, options.size));  // throws
   const auto voxels = create<Voxel>(sparse);
   return {voxels, create_group<Manager>(voxels), options};
+}
+
+void Collider::submit_early(Submission objects) const {
+  if (Manager* manager = managers.local_or_null())
+    manager->receive(objects);
+  else
+    managers[my_pe()].send<&Manager::receive>(std::move(objects));
 }
 
 Task run_collision(Collider collider, Report report, Callback<void> taken) {

@@ -59,6 +59,9 @@ struct Collider {
   /// it does.
   void submit(const Objects& objects) const { managers.local().submit(objects); }
   void submit(const std::vector<Item>& items) const { managers.local().submit(items); }
+  /// The same within the epoch that creates the collider. If it is not known on this PE yet, the
+  /// objects are a message that waits for it; then a box that is not valid ends the job.
+  void submit_early(Submission objects) const;
 
   /// Frees the voxels, their balancer and the Managers on all PEs. No collision may be running. The
   /// enclosing epoch includes this.

@@ -160,7 +160,8 @@ class Coupling {
   }
   /// Throws Error (bad_argument) if options contradict each other.
   void check_options() const;
-  Task set_up();
+  /// Creates what the search needs on all PEs.
+  void set_up();
   Task collide_covers();
   Task find_donors(LedgerPage& found);
   /// Gives what the pieces have added to the ledger since the last call.
@@ -190,7 +191,6 @@ Task Coupling<S, T>::search(SearchSummary* summary) {
   const detail::Counted counted(under_way_.n_searches);
   enter("broad");
   const Time start = now();
-  if (setup_.id == CouplingId{}) co_await set_up();
   co_await collide_covers();
   const Time broad = now();
   enter("narrow");
@@ -247,8 +247,7 @@ void Coupling<S, T>::check_options() const {
 }
 
 template <class S, class T>
-Task Coupling<S, T>::set_up() {
-  check_options();
+void Coupling<S, T>::set_up() {
   setup_.source = source_.id();
   setup_.target = target_.id();
   setup_.policy = options_.policy;
@@ -257,18 +256,21 @@ Task Coupling<S, T>::set_up() {
   setup_.clamp = options_.clamp;
   setup_.source_values = options_.source_values;
   setup_.target_values = options_.target_values;
-  co_await epoch([&] {
-    setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
-    setup_.ledger = create_group<Ledger>();
-    if (has_directory()) setup_.directory = create_group<PointDirectory>();
-    // Each coupling has its own collider.
-    setup_.id = CouplingId{setup_.collider.voxels.id().value};
-  });
+  setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
+  setup_.ledger = create_group<Ledger>();
+  if (has_directory()) setup_.directory = create_group<PointDirectory>();
+  // Each coupling has its own collider.
+  setup_.id = CouplingId{setup_.collider.voxels.id().value};
 }
 
 template <class S, class T>
 Task Coupling<S, T>::collide_covers() {
+  const bool is_new = setup_.id == CouplingId{};
+  if (is_new) check_options();
+  // The pieces of conservative kinds call the directory, which must be known on their PEs.
+  if (is_new && is_conservative()) co_await epoch([&] { set_up(); });
   co_await epoch([&] {
+    if (is_new && !is_conservative()) set_up();
     if (is_conservative()) {
       source_.template broadcast<&Piece<S>::m2m_submit_overlap_source>(setup_);
       target_.template broadcast<&Piece<T>::m2m_submit_overlap_target>(setup_);

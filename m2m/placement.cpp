@@ -62,22 +62,19 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
 
   co_await step<&Placer::send_tets>(placers, cut);
   co_await corners;
-  co_await step<&Placer::ask_points>(placers);
-  Future<PlacerReport> answered;
-  Task points = step<&Placer::answer_points>(placers, answered.callback());
-  census->n_unused = (co_await answered).n_unused;
-  // What the Placers do not ask for is not counted.
-  const bool counted = census->n_unused == 0 && setup.halo_layers == 0;
-  if (!counted) co_await points;
-  for (std::int32_t layer = 0; layer < setup.halo_layers; ++layer) {
-    co_await step<&Placer::ask_around>(placers);
-    co_await step<&Placer::ask_halo_points>(placers);
-  }
   Future<PlacerReport> finished;
-  co_await step<&Placer::finish>(placers, finished.callback());
-  if (counted) co_await points;
-  throw_first((co_await finished).error);
-  co_await step<&Placer::load_workers>(placers);
+  co_await step<&Placer::answer_points>(placers, finished.callback());
+  if (setup.halo_layers > 0) {
+    for (std::int32_t layer = 0; layer < setup.halo_layers; ++layer) {
+      co_await step<&Placer::ask_around>(placers);
+      co_await step<&Placer::ask_halo_points>(placers);
+    }
+    co_await step<&Placer::finish>(placers);
+    co_await step<&Placer::load_workers>(placers);
+  }
+  const PlacerReport built = co_await finished;
+  throw_first(built.error);
+  census->n_unused = built.n_unused;
 }
 
 /// `whole`: the mesh if its ranges are sent, otherwise null.

@@ -45,6 +45,13 @@ struct CollisionStatistics {
   }
 };
 
+/// Objects of one owner and model, numbered from 0 on.
+struct Submission {
+  OwnerId owner{};
+  ModelId model{};
+  std::vector<Aabb> boxes{};
+};
+
 class Manager : public Group<Manager> {
  public:
   explicit Manager(ArrayProxy<Voxel> voxels) : voxels_(voxels) {}
@@ -53,6 +60,8 @@ class Manager : public Group<Manager> {
   /// then no object of the list is accepted.
   void submit(const Objects& objects) { pending().append(objects, pe()); }
   void submit(const std::vector<Item>& items) { pending().append(items, pe()); }
+  /// Entry method: the same for objects that were submitted before the Manager was known.
+  void receive(const Submission& late) { submit({late.owner, late.model, late.boxes}); }
 
   /// A number for a collision that starts on this PE.
   [[nodiscard]] std::uint64_t new_step() {

@@ -10,12 +10,23 @@
 
 namespace tess::collide {
 
+namespace {
+
+/// Boxes from which the voxels are chosen. All PEs wait for the one that chooses, so with many of
+/// them these are fewer.
+std::size_t most_sampled(std::int32_t n_pes) {
+  return n_pes <= 64 ? 4096 : 2048;
+}
+
+}  // namespace
+
 Summary::Summary(const ObjectList& objects, std::int32_t pe, std::int32_t n_pes)
     : n(objects.size()), bounds(objects.bounds()) {
   for (std::size_t octave = 0; octave < search::n_octaves<double>; ++octave)
     if (objects.has_octave(octave)) octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
   for (const ObjectList::Source& source : objects.sources()) add(source.model);
-  const std::size_t wanted = std::max<std::size_t>(8, 4096 / static_cast<std::size_t>(n_pes));
+  const std::size_t wanted =
+      std::max<std::size_t>(8, most_sampled(n_pes) / static_cast<std::size_t>(n_pes));
   const std::size_t n_taken = std::min<std::size_t>(n, wanted);
   for (std::size_t i = 0; i < n_taken; ++i)
     sample.push_back(objects.boxes()[search::scattered(i, n_taken, n)]);
@@ -73,8 +84,10 @@ Level Plan::level_of(double longest_extent) const noexcept {
 namespace {
 
 double chosen_size(const Summary& summary, std::int32_t n_pes) {
-  std::vector<search::Entry> all(summary.sample.size());
-  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = search::make_entry(i, 0);
+  const std::size_t n_sampled = summary.sample.size();
+  std::vector<search::Entry> all(std::min(n_sampled, most_sampled(n_pes)));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = search::make_entry(static_cast<std::uint32_t>(i * n_sampled / all.size()), 0);
   const search::Problem<double, 3> problem{
       summary.sample.data(), summary.sample.data(), all, {}, true};
   search::GridChooser<double, 3> chooser;

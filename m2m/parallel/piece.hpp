@@ -121,13 +121,13 @@ class Piece : public OverlapPiece<C> {
     SourceSide& from = couplings.sources[setup.id];
     from.setup = setup;
     const MeshView mesh = chare().mesh_view();
-    setup.collider.submit({me(), detail::source_model, from.start_search(mesh)});
+    setup.collider.submit_early({me(), detail::source_model, from.start_search(mesh)});
     if (from.has_kept_cover()) setup.ledger.local().add(Tally{.n_kept_sources = 1});
   }
   void m2m_submit_target(const CouplingSetup& setup) {
     TargetSide& to = couplings.targets[setup.id];
     to.setup = setup;
-    setup.collider.submit({me(), detail::target_model, to.start_search(chare().mesh_view())});
+    setup.collider.submit_early({me(), detail::target_model, to.start_search(chare().mesh_view())});
   }
   void m2m_hits(CouplingId id, const collide::Hits& hits) {
     if (couplings.is_conservative_target(id))

@@ -9,6 +9,7 @@
 #include "m2m/partition/id_set.hpp"
 #include "m2m/partition/split.hpp"
 
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstdint>
@@ -99,6 +100,11 @@ struct PointQuery {
   std::vector<std::int32_t> sizes{};  ///< vertices per part
   std::vector<VertexId> ids{};        ///< ascending in each part
 };
+/// A part that has ghosts of another one.
+struct GhostUse {
+  std::int32_t owner = 0, user = 0;
+  auto operator<=>(const GhostUse&) const = default;
+};
 /// In the order of a PointQuery.
 struct PointAnswer {
   std::vector<std::int32_t> parts{};
@@ -108,12 +114,13 @@ struct PointAnswer {
   std::vector<std::int32_t> owners{};
   std::vector<std::int32_t> n_users{};  ///< per point, if there is a halo
   std::vector<std::int32_t> users{};    ///< the parts whose tetrahedra use the points
+  std::vector<GhostUse> ghost_uses{};   ///< of the points that these parts own
 };
-/// Vertices that no tetrahedron uses, for the part that owns them.
+/// Vertices that no tetrahedron uses, for the PE of the parts that own them. Most often none.
 struct UnusedPoints {
-  std::int32_t part = 0;
-  std::vector<VertexId> ids;
-  std::vector<Point> points;
+  std::vector<std::int32_t> owners{};
+  std::vector<VertexId> ids{};
+  std::vector<Point> points{};
 };
 
 /// Which tetrahedra of your part are around these vertices?
@@ -149,13 +156,15 @@ class Placer : public Group<Placer> {
   /// them for the first round of a CurveCut. Begins when the corners are here.
   void measure(const Aabb& bounds, Callback<Measured> target);
   void count(const CurveCut& cut, Callback<CellCounts> target);
+  /// Sends the tetrahedra to their parts, and asks for the points of the parts here when all of
+  /// their tetrahedra have arrived: the cut says how many these are.
   void send_tets(const CurveCut& cut);
   void receive_tets(TetBatch batch);
-
-  void ask_points();
   void receive_point_query(PointQuery query);
-  /// Decides about the owners, and answers all queries.
-  void answer_points(Callback<PlacerReport> target);
+
+  /// Decides about the owners, and answers all queries. Without a halo, finish() follows when the
+  /// points asked for are here.
+  void answer_points(Callback<PlacerReport> finished);
   void receive_points(const PointAnswer& answer);
   void receive_unused(const UnusedPoints& unused);
 
@@ -165,8 +174,9 @@ class Placer : public Group<Placer> {
   void ask_halo_points();
   void answer_halo_points(const PointQuery& query);
 
-  /// Builds the parts. Begins when the points asked for are here.
-  void finish(Callback<PlacerReport> target);
+  /// Builds the parts, and tells the owners of their ghosts. Without a halo, load_workers() follows
+  /// when the ghosts of the parts here are known, and the points say from how many parts.
+  void finish();
   void receive_ghosts(GhostList list);
   void load_workers();
 
@@ -177,11 +187,20 @@ class Placer : public Group<Placer> {
     std::int32_t owner = 0;
     Point at{};
   };
-  /// A part under construction. The corners of its tetrahedra are ids in the whole mesh.
+  static bool by_id(const PartPoint& a, const PartPoint& b) { return a.id < b.id; }
+  /// Replaces vertices by their positions in the set.
+  static void number_corners(std::vector<Tet>& tets, const IdSet& vertices) {
+    for (Tet& tet : tets)
+      for (VertexId& v : tet) v = vertices.rank(v);
+  }
+  /// A part under construction. The corners of its tetrahedra are ids in the whole mesh if there is a
+  /// halo, and otherwise positions in `asked`.
   struct Part {
     MeshPart mesh{};
-    std::vector<PartPoint> points{};  // known so far
+    std::vector<PartPoint> points{};  // known so far; of the vertices asked, in their order
     std::vector<VertexId> asked{};    // in the queries under way, ascending
+    std::size_t n_known = 0;          // points before those that are asked for
+    std::vector<PartPoint> unused{};  // that it owns but does not use
     struct Seen {
       std::int32_t part;
       VertexId vertex;
@@ -201,13 +220,36 @@ class Placer : public Group<Placer> {
   };
 
   [[nodiscard]] GlobalId first_of(GlobalId n, std::int32_t pe) const { return n * pe / n_pes_; }
+  /// The PE that keeps a vertex.
+  [[nodiscard]] std::int32_t keeper_of(GlobalId v) const {
+    return static_cast<std::int32_t>(((v + 1) * n_pes_ - 1) / setup_.n_points);
+  }
   [[nodiscard]] PeId home_of(std::int32_t part) const;
+  [[nodiscard]] std::int32_t first_part_of(std::int32_t pe) const {
+    return static_cast<std::int32_t>((std::int64_t{pe} * setup_.n_parts + n_pes_ - 1) / n_pes_);
+  }
+  /// The part that owns a vertex which no tetrahedron uses.
+  [[nodiscard]] std::int32_t owner_of_unused(GlobalId v) const {
+    return static_cast<std::int32_t>(v * setup_.n_parts / setup_.n_points);
+  }
+  [[nodiscard]] GlobalId first_unused_of(std::int32_t part) const {
+    return (part * setup_.n_points + setup_.n_parts - 1) / setup_.n_parts;
+  }
   [[nodiscard]] Part& part(std::int32_t k) {
     return parts_[static_cast<std::size_t>(k - first_part_)];
   }
+  template <class List>
+  static void drop(List& list) {  // frees its memory
+    List().swap(list);
+  }
+  [[nodiscard]] bool has_halo() const { return setup_.halo_layers > 0; }
   void ask_corners();
   void measure_if_complete();
+  void ask_points_if_complete();
+  void ask_points();
+  void send_unused();
   void finish_if_complete();
+  void load_if_complete();
   [[nodiscard]] std::array<Point, 4> corners_of(const Tet& tet) const;
   /// Calls visit(keeper, ids of that keeper) for ascending ids.
   template <class Visit>
@@ -219,7 +261,7 @@ class Placer : public Group<Placer> {
   void send_queries();
   [[nodiscard]] PointAnswer answer(const PointQuery& query) const;
   static void index_tets(Part& part);
-  void build(std::int32_t k, FirstError& error);
+  void build(std::int32_t k, const std::vector<Formula>& formulas, FirstError& error);
 
   PlacerSetup setup_;
   std::int32_t n_pes_ = 1, me_ = 0;
@@ -231,18 +273,37 @@ class Placer : public Group<Placer> {
   enum class Reading : std::uint8_t { before, refused, done } reading_ = Reading::before;
   std::vector<CornerQuery> early_queries_;            // before the points were read
   std::size_t n_corners_due_ = 0, n_points_due_ = 0;  // answers
+  std::size_t n_unused_due_ = 0;                      // messages
   std::optional<Aabb> measures_;                      // from measure() on, until it begins
   Callback<Measured> measured_;
-  Callback<PlacerReport> finished_;   // from finish() on, until it begins
-  std::vector<std::uint64_t> cells_;  // per tetrahedron of the range
+  std::vector<std::uint64_t> cells_;         // per tetrahedron of the range
+  std::uint64_t n_tets_here_ = 0;            // in batches_
+  std::optional<std::uint64_t> n_tets_due_;  // from send_tets() on, until all are here
+  Callback<PlacerReport> finished_;          // from answer_points() on, until the parts are built
+  PlacerReport report_;
+  std::vector<GhostUse> ghost_uses_;  // of parts here
+  bool is_built_ = false;
   std::vector<TetBatch> batches_;
   std::vector<PointQuery> queries_;
   std::vector<std::int32_t> owners_;        // per point kept here
-  std::vector<std::uint32_t> users_begin_;  // per point kept here, in users_
+  std::vector<std::uint32_t> users_begin_;  // if there is a halo: per point kept here, in users_
   std::vector<std::int32_t> users_;         // parts that use it
   std::int32_t first_part_ = 0;
   std::vector<Part> parts_;
   std::vector<GhostList> ghosts_;
 };
+
+template <class Visit>
+void Placer::for_each_keeper(std::span<const VertexId> ids, const Visit& visit) const {
+  while (!ids.empty()) {
+    const GlobalId v = ids.front();
+    const std::int32_t keeper = keeper_of(v);
+    const GlobalId end = first_of(setup_.n_points, keeper + 1);
+    const auto n =
+        static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), end) - ids.begin());
+    visit(keeper, ids.first(n));
+    ids = ids.subspan(n);
+  }
+}
 
 }  // namespace tess::m2m

@@ -36,7 +36,10 @@ class Positions {
 }  // namespace
 
 CurveCut::CurveCut(std::uint64_t n_tets, std::int32_t n_parts)
-    : n_tets_(n_tets), n_parts_(n_parts), cuts_(static_cast<std::size_t>(n_parts) - 1) {
+    : n_tets_(n_tets),
+      n_parts_(n_parts),
+      cuts_(static_cast<std::size_t>(n_parts) - 1),
+      n_before_cuts_(cuts_.size()) {
   if (n_parts == 1) return;
   first_ = {0};
   end_ = {n_parts - 1};
@@ -98,10 +101,16 @@ void CurveCut::refine(const CellCounts& all) {
   const unsigned bits = 3U * static_cast<unsigned>(next - level_);
   const std::uint64_t enough = n_tets_ / static_cast<std::uint64_t>(n_parts_) / 16;
   constexpr std::size_t size = CellCounts::block_size;
-  std::vector<std::uint32_t> counts(((open_.size() << bits) / size + 1) * size);
-  for (std::size_t block = 0; block < all.blocks.size(); ++block)
-    std::copy_n(all.counts.begin() + static_cast<std::ptrdiff_t>(block * size), size,
-                counts.begin() + static_cast<std::ptrdiff_t>(all.blocks[block] * size));
+  const std::size_t n_cells = open_.size() << bits;
+  std::vector<std::uint32_t> spread;
+  std::span<const std::uint32_t> counts(all.counts);
+  if (counts.size() < n_cells) {  // some blocks have none
+    spread.resize((n_cells / size + 1) * size);
+    for (std::size_t block = 0; block < all.blocks.size(); ++block)
+      std::copy_n(all.counts.begin() + static_cast<std::ptrdiff_t>(block * size), size,
+                  spread.begin() + static_cast<std::ptrdiff_t>(all.blocks[block] * size));
+    counts = spread;
+  }
   const CurveCut last = *this;
   first_.clear();
   end_.clear();
@@ -111,9 +120,13 @@ void CurveCut::refine(const CellCounts& all) {
     const std::int32_t end = last.end_[k];
     std::int32_t cut = last.first_[k];
     std::uint64_t before = last.before_[k], wanted = target(cut);
-    for (std::uint64_t i = 0; i < std::uint64_t{1} << bits; ++i) {
-      const std::uint64_t cell = last.open_[k] << bits | i;
+    for (std::uint64_t i = 0; i < std::uint64_t{1} << bits && cut < end; ++i) {
       const std::uint64_t after = before + counts[k << bits | i];
+      if (after <= wanted) {  // most cells have no cut
+        before = after;
+        continue;
+      }
+      const std::uint64_t cell = last.open_[k] << bits | i;
       const bool opens = counts[k << bits | i] > enough && next < hilbert_levels;
       for (bool is_open = false; cut < end && wanted < after; wanted = target(++cut)) {
         if (opens && wanted > before) {
@@ -128,6 +141,7 @@ void CurveCut::refine(const CellCounts& all) {
         } else {
           const bool starts = wanted - before <= after - wanted;
           cuts_[static_cast<std::size_t>(cut)] = begin_of(starts ? cell : cell + 1, next);
+          n_before_cuts_[static_cast<std::size_t>(cut)] = starts ? before : after;
         }
       }
       before = after;
@@ -135,6 +149,14 @@ void CurveCut::refine(const CellCounts& all) {
   }
   level_ = next;
   cut_level_ = next;
+}
+
+std::uint64_t CurveCut::n_tets_of(std::int32_t first, std::int32_t end) const {
+  const auto before = [this](std::int32_t part) {
+    if (part == 0) return std::uint64_t{0};
+    return part == n_parts_ ? n_tets_ : n_before_cuts_[static_cast<std::size_t>(part) - 1];
+  };
+  return before(end) - before(first);
 }
 
 std::vector<std::int32_t> CurveCut::parts(std::span<const std::uint64_t> cells) const {

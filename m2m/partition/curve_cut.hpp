@@ -31,12 +31,15 @@ class CurveCut {
   /// 1/16 of their size, unless more tetrahedra than that have the same cell of the last level.
   void refine(const CellCounts& all);
 
+  /// How many tetrahedra of the whole mesh the parts from `first` to before `end` get. Valid once
+  /// is_done().
+  [[nodiscard]] std::uint64_t n_tets_of(std::int32_t first, std::int32_t end) const;
   /// The part of every tetrahedron.
   [[nodiscard]] std::vector<std::int32_t> parts(std::span<const std::uint64_t> cells) const;
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n_tets_, n_parts_, level_, first_, end_, open_, before_, cuts_, cut_level_);
+    ar(n_tets_, n_parts_, level_, first_, end_, open_, before_, cuts_, n_before_cuts_, cut_level_);
   }
 
  private:
@@ -45,13 +48,14 @@ class CurveCut {
 
   std::uint64_t n_tets_ = 0;
   std::int32_t n_parts_ = 1;
-  std::int32_t level_ = 0;             // of the open cells
-  std::vector<std::int32_t> first_;    // per open cell: the first cut in it
-  std::vector<std::int32_t> end_;      // and the cut after the last one in it
-  std::vector<std::uint64_t> open_;    // positions of the cells that are counted, ascending
-  std::vector<std::uint64_t> before_;  // per open cell: tetrahedra before it on the curve
-  std::vector<std::uint64_t> cuts_;    // position where part i + 1 begins, at the last level
-  std::int32_t cut_level_ = 0;         // cuts stand at borders of cells of this level
+  std::int32_t level_ = 0;                    // of the open cells
+  std::vector<std::int32_t> first_;           // per open cell: the first cut in it
+  std::vector<std::int32_t> end_;             // and the cut after the last one in it
+  std::vector<std::uint64_t> open_;           // positions of the cells that are counted, ascending
+  std::vector<std::uint64_t> before_;         // per open cell: tetrahedra before it on the curve
+  std::vector<std::uint64_t> cuts_;           // position where part i + 1 begins, at the last level
+  std::vector<std::uint64_t> n_before_cuts_;  // tetrahedra before each of these positions
+  std::int32_t cut_level_ = 0;                // cuts stand at borders of cells of this level
 };
 
 }  // namespace tess::m2m

@@ -14,7 +14,7 @@ void BoxBlock::load(std::span<const Point> points, std::span<const Tet> tets,
   for (const std::uint32_t t : members) __builtin_prefetch(&tets[t]);
   for (const std::uint32_t t : members)
     for (const VertexId v : tets[t]) __builtin_prefetch(&points[static_cast<std::size_t>(v)]);
-  const std::size_t n = members.size();
+  const std::size_t n = n_ = members.size();
   Aabb around = collide::no_box<double, 3>();
   for (std::size_t i = 0; i < n; ++i) {
     const Tet& tet = tets[members[i]];
@@ -37,6 +37,10 @@ void BoxBlock::load(std::span<const Point> points, std::span<const Tet> tets,
       high_[axis][i] = box.hi[axis];
     }
   }
+}
+
+void BoxBlock::make_slabs() {
+  const std::size_t n = n_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double per_length = n_slabs / (around_.hi[axis] - around_.lo[axis]);
     per_length_[axis] = std::isfinite(per_length) ? per_length : 0;
@@ -54,6 +58,19 @@ void BoxBlock::load(std::span<const Point> points, std::span<const Tet> tets,
     }
     for (std::size_t k = 1; k < n_slabs; ++k) reaching[k] ^= reaching[k - 1];
   }
+}
+
+std::uint64_t BoxBlock::holding(const Point& p) const {
+  // A byte per box, which the compiler makes with vectors; then a bit.
+  std::array<std::uint8_t, capacity> held;
+  for (std::size_t i = 0; i < capacity; ++i) held[i] = holds(i, p) ? 1 : 0;
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < capacity; i += 8) {
+    std::uint64_t eight = 0;
+    for (std::size_t k = 0; k < 8; ++k) eight |= std::uint64_t{held[i + k]} << k;
+    bits |= eight << i;
+  }
+  return n_ == capacity ? bits : bits & ((std::uint64_t{1} << n_) - 1);
 }
 
 }  // namespace tess::m2m

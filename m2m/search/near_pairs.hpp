@@ -7,6 +7,7 @@
 #include "m2m/search/point_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -28,10 +29,20 @@ class NearPairs {
   /// is not predictable.) `around` contains the boxes.
   template <class Found>
   void visit(const Aabb& around, std::span<const std::uint32_t> tets, const Found& found) {
-    if (!grid_.any_in(around)) return;
+    std::array<std::uint32_t, few> some;
+    const std::size_t n_in = grid_.list_in(around, some);
+    if (n_in == 0) return;
     for (std::size_t first = 0; first < tets.size(); first += BoxBlock::capacity) {
       const auto members = tets.subspan(first, std::min(BoxBlock::capacity, tets.size() - first));
       block_.load(mesh_.points, mesh_.tets, members, reach_);
+      if (n_in <= few) {
+        for (const std::uint32_t at : std::span(some).first(n_in))
+          for (std::uint64_t boxes = block_.holding(grid_.points()[at]); boxes != 0;
+               boxes &= boxes - 1)
+            found(members[static_cast<std::size_t>(std::countr_zero(boxes))], at, true);
+        continue;
+      }
+      block_.make_slabs();
       list_near();
       for (const Near& near : std::span(near_).first(n_near_)) {
         const Point& p = grid_.points()[near.at];
@@ -44,6 +55,8 @@ class NearPairs {
   }
 
  private:
+  /// So many points are compared with all boxes of a block.
+  static constexpr std::size_t few = 8;
   /// A point that some boxes of the block may hold, a bit per box.
   struct Near {
     std::uint64_t boxes;

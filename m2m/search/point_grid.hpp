@@ -24,13 +24,22 @@ class PointGrid {
     return !((p[0] < box.lo[0]) | (p[0] > box.hi[0]) | (p[1] < box.lo[1]) | (p[1] > box.hi[1]) |
              (p[2] < box.lo[2]) | (p[2] > box.hi[2]));
   }
-  /// True if the closed box holds a point.
-  [[nodiscard]] bool any_in(const Aabb& box) const {
-    return !visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t at = first; at < last; ++at)
-        if (is_in(static_cast<std::int32_t>(at), box)) return false;
+  /// Lists the positions of the points in the closed box, in the order of visit_rows(), until `out`
+  /// is full. Returns how many it lists, or one more if there are more.
+  [[nodiscard]] std::size_t list_in(const Aabb& box, std::span<std::uint32_t> out) const {
+    std::size_t n = 0;
+    visit_rows(box, [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t at = first; at < last; ++at) {
+        if (!is_in(static_cast<std::int32_t>(at), box)) continue;
+        if (n == out.size()) {
+          ++n;
+          return false;
+        }
+        out[n++] = at;
+      }
       return true;
     });
+    return n;
   }
 
   /// Calls visit(position, end) for the rows of the cells that the box touches, until it returns

@@ -147,6 +147,12 @@ class Client : public Chare<Client, Index1> {
   void submit_more(const Collider& collider, const Scene& scene) {
     collider.submit(boxes_of(scene, index().x));
   }
+  /// Of one model. Does not need to know the collider.
+  void submit_early(const Collider& collider, const Scene& scene) {
+    std::vector<Aabb> boxes;
+    for (const Item& item : boxes_of(scene, index().x)) boxes.push_back(item.box);
+    collider.submit_early({owner_of(index()), ModelId{}, std::move(boxes)});
+  }
   void gather(Callback<Reports> target) { contribute(Join{}, reported_, std::move(target)); }
   void count_refused(Callback<std::int64_t> target) {
     contribute(sum, n_refused_, std::move(target));
@@ -213,6 +219,18 @@ Task collide_rounds(Problem& problem) {
     fixture.clients.destroy();
   });
   problem.n_left = current_pe().collections().size();
+}
+
+/// The objects are submitted in the epoch that creates the collider.
+Task collide_early(Problem& problem) {
+  Fixture fixture;
+  co_await set_up(problem, fixture);
+  co_await epoch([&] {
+    fixture.collider = make_collider(problem.options);
+    fixture.clients.broadcast<&Client::submit_early>(fixture.collider, problem.scene);
+  });
+  co_await run_collision(fixture.collider, fixture.report);
+  co_await gather(fixture, problem);
 }
 
 Task collide_bad(Problem& problem) {
@@ -449,6 +467,19 @@ TEST_CASE("collisions of one collider overlap when the objects of the one before
       expected.insert(expected.end(), round.begin(), round.end());
     }
     REQUIRE((problem.rounds.front() == in_order(std::move(expected))));
+  });
+}
+
+TEST_CASE("objects are submitted in the epoch that creates the collider", "[collide][parallel]") {
+  test::for_seeds(1, 60, [&](std::uint64_t seed) {
+    Problem problem;
+    problem.scene = {.seed = seed, .n_clients = 5, .n_boxes = 20, .n_models = 1};
+    problem.options.rules.within_model = WithinModel::test;
+    const test::Machine machine{
+        .pes = 4, .per_process = seed % 2 == 0 ? 1 : 0, .seed = seed, .migration = 0.1};
+    machine.run([&]() -> Task { return collide_early(problem); }).require_success();
+    REQUIRE((problem.rounds.front() == oracle(problem.scene, problem.options.rules, {})));
+    REQUIRE_FALSE(problem.rounds.front().empty());
   });
 }
 

@@ -20,6 +20,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <random>
 
 using namespace tess;
@@ -216,6 +217,12 @@ TEST_CASE("counts of ranges that are joined in any order are those of the whole 
     if (round == 0) CHECK(n_counted == cells.size());
     cut.refine(sum);
   }
+  std::vector<std::uint64_t> sizes(300);
+  for (const std::int32_t part : cut.parts(cells)) ++sizes.at(static_cast<std::size_t>(part));
+  for (std::int32_t first = 0; first < 300; first += 7)
+    for (std::int32_t end = first; end <= 300; end += 11)
+      CHECK(cut.n_tets_of(first, end) ==
+            std::accumulate(sizes.begin() + first, sizes.begin() + end, std::uint64_t{0}));
 }
 
 TEST_CASE("neighbours on the Hilbert curve share a face, and every cell is on it once",

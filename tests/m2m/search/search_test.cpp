@@ -99,9 +99,14 @@ TEST_CASE("a grid of points finds those in a box", "[m2m]") {
       });
       for (std::uint32_t k = 0; k < points.size(); ++k)
         if (overlap(box, tess::collide::box_of(points[k]), Touching::counts)) want.push_back(k);
+      std::vector<std::uint32_t> listed(want.size() + 1);
+      listed.resize(grid.list_in(box, listed));
+      for (std::uint32_t& at : listed) at = grid.numbers()[at];
+      REQUIRE(listed == found);
+      std::vector<std::uint32_t> too_short(want.size() - 1);
+      REQUIRE(grid.list_in(box, too_short) == want.size());
       std::sort(found.begin(), found.end());
       REQUIRE(found == want);
-      REQUIRE(grid.any_in(box) == !want.empty());
       n_found += found.size();
     }
     CHECK(n_found >= 70);  // each box has its two corners
@@ -117,6 +122,7 @@ TEST_CASE("a block of boxes names those that hold a point", "[m2m]") {
       for (std::uint32_t i = 0; i < n; ++i) members.push_back(i * 5);
       BoxBlock block;
       block.load(mesh.points, mesh.tets, members);
+      block.make_slabs();
       std::size_t n_found = 0, n_maybe = 0;
       std::vector<Point> points = random_points(300, {1.2, 1.2, 1.2}, -0.1);
       for (Point& p : points) p[2] += offset;
@@ -132,6 +138,7 @@ TEST_CASE("a block of boxes names those that hold a point", "[m2m]") {
                                               tess::collide::box_of(p), Touching::counts);
           REQUIRE((maybe || !holds));
           REQUIRE((maybe && block.holds(i, p)) == holds);
+          REQUIRE((block.holding(p) >> i & 1) == (holds ? 1 : 0));
           n_found += holds ? 1 : 0;
           n_maybe += maybe ? 1 : 0;
         }
