@@ -87,6 +87,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   plot::require_writable("--out", options.out);
   plot::require_writable("--picture", options.picture);
   Problem problem = read(request, progress);
+  problem.collects = !options.out.empty() || !options.picture.empty();
   if (options.explain) {
     progress.clear();
     print(explain(problem, options.out.empty() ? Output::report : Output::mesh));

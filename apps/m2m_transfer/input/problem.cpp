@@ -96,11 +96,11 @@ Problem load(const Request& request, const Machine& machine) {
     mesh.census = validate(mesh.mesh);
     problem.meshes.push_back(std::move(mesh));
   }
-  const Aabb& domain = problem.source_of(problem.pairs.front()).census.bounds;
+  problem.domain = problem.source_of(problem.pairs.front()).census.bounds;
   for (const std::string& option : request.fields)
     for (const std::string& name : split_at_commas(option)) {
       problem.field_names.push_back(name);
-      problem.formulas.push_back(make_formula(name, domain));
+      problem.formulas.push_back(make_formula(name, problem.domain));
     }
   for (std::size_t m = 0; m < names.size(); ++m) sample_fields(problem, m);
   read_motions(request, names, problem);
