@@ -36,6 +36,9 @@ Task move_file_fields(const DriverOptions& options, apps::Progress& progress) {
     fail(ErrorCode::bad_argument,
          "--study and --picture compare with formulas; leave them out for fields and weights of "
          "files");
+  if (options.request.kind == "all")
+    fail(ErrorCode::bad_argument,
+         "--kind all compares kinds with formulas; give one kind for fields and weights of files");
   plot::require_writable("--json", options.json);
   const FileFieldsRequest request = request_of(options);
   FileFieldsReport report;

@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
+#include "apps/m2m_transfer/output/kinds_table.hpp"
 #include "apps/m2m_transfer/output/picture.hpp"
 #include "apps/m2m_transfer/output/table.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
@@ -57,8 +58,19 @@ Request single_request(const DriverOptions& options) {
   return request;
 }
 
+bool wants_all_kinds(const DriverOptions& options) {
+  return options.request.kind == "all";
+}
+
+/// The kinds of a table of kinds. Options that only some of them know are refused before the first runs.
 std::vector<TransferKind> kinds_of(const DriverOptions& options) {
-  if (options.kind_is_given) return {parse_transfer_kind(options.request.kind)};
+  if (options.kind_is_given && !wants_all_kinds(options))
+    return {parse_transfer_kind(options.request.kind)};
+  for (const std::string& policy : options.policies) {
+    Request request = options.request;
+    request.policy = policy;
+    for (const TransferKind kind : all_transfer_kinds) check_kind(kind, request);
+  }
   return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
 }
 
@@ -104,13 +116,42 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   print(text + legend());
 }
 
+/// Every kind, one after the other, from the same meshes and fields.
+Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) {
+  Request request = single_request(options);
+  if (!options.out.empty() || !options.picture.empty())
+    fail(ErrorCode::bad_argument,
+         "--out and --picture are of one result, and --kind all has several; give one kind");
+  const std::vector<TransferKind> kinds = kinds_of(options);
+  plot::require_writable("--json", options.json);
+  request.kind = name_of(kinds.front());
+  const Problem read_once = read(request, progress);
+  const auto gauge = create_group<Gauge>();
+  std::vector<TransferReport> reports;
+  for (const TransferKind kind : kinds) {
+    progress.part(reports.size() / read_once.pairs.size() + 1, kinds.size());
+    Problem problem = read_once;
+    problem.kind = kind;
+    for (TransferReport& report : problem.reports) report.kind = name_of(kind);
+    if (options.explain) {
+      progress.clear();
+      print(name_of(kind), ": ", explain(problem, Output::report));
+    }
+    co_await measure(problem, gauge, progress);
+    for (TransferReport& report : problem.reports) reports.push_back(std::move(report));
+  }
+  if (!options.json.empty()) plot::write_file(options.json, json(reports));
+  progress.clear();
+  print(kinds_table(reports));
+}
+
 Task run_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
   if (!options.out.empty() || !options.picture.empty())
     fail(ErrorCode::bad_argument,
          "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
   std::vector<std::string> kinds{options.request.kind};
-  if (*options.study == "kind") {
+  if (*options.study == "kind" || wants_all_kinds(options)) {
     kinds.clear();
     for (const TransferKind kind : kinds_of(options)) kinds.emplace_back(name_of(kind));
   }
@@ -133,16 +174,18 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   progress.clear();
   const Study study{std::move(reports), options.repeat.value_or(3)};
   print(table(study));
-  if (*options.study == "kind") {
-    const std::vector<Check> rows = checks(study);
-    print(table(rows));
-    failed = !all_ok(rows);
-  }
+  std::vector<Check> rows;
+  if (*options.study == "kind") rows = checks(study);
+  if (!rows.empty()) print(table(rows));
   print(write(study, folder));
   if (!options.json.empty()) plot::write_file(options.json, json(study));
+  failed = !all_ok(rows);
+  if (failed) print(failures(rows));
 }
 
 Task run_steps_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
+  if (wants_all_kinds(options))
+    fail(ErrorCode::bad_argument, "--study steps compares the steps of one kind; give one --kind");
   plot::require_writable("--json", options.json);
   Request request = options.request;
   request.policy = options.policies.front();
@@ -206,7 +249,9 @@ int drive(Setup& setup, const DriverOptions& options) {
       return move_file_fields(options, progress);
     }
     if (options.study == "steps") return run_steps_study(options, progress, failed);
-    return options.study ? run_study(options, progress, failed) : transfer_once(options, progress);
+    if (options.study) return run_study(options, progress, failed);
+    return wants_all_kinds(options) ? transfer_all_kinds(options, progress)
+                                    : transfer_once(options, progress);
   });
   return code == 0 && failed ? 1 : code;
 }

@@ -40,8 +40,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
   line.option("--policy", options.policies,
               "value of vertices outside the source: keep, value:V or nearest");
-  const apps::Option kind =
-      line.option("--kind", request.kind, "how values follow from the source: " + kind_names());
+  const apps::Option kind = line.option(
+      "--kind", request.kind,
+      "how values follow from the source: " + kind_names() + "; all: a table with a row per kind");
   line.option("--round-trips", options.round_trips,
               "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
               "trips: --round-trips 1,2,5,10,20,50,100; for all kinds, or the --kind given");

@@ -76,11 +76,25 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
 
 }  // namespace
 
+void check_kind(TransferKind kind, const Request& request) {
+  if (!is_conservative(kind)) return;
+  const auto refuse = [&](const std::string& option, const char* remedy) {
+    fail(ErrorCode::bad_argument, option, " is for kinds that interpolate, and ", name_of(kind),
+         " has no donors; ", remedy);
+  };
+  if (request.tolerance > 0)
+    refuse(text("--tolerance ", request.tolerance), "leave it out, or give another --kind");
+  if (request.clamp) refuse("--clamp", "leave it out, or give another --kind");
+  if (request.policy == "nearest")
+    refuse("--policy nearest", "give keep or value:V, or another --kind");
+}
+
 Problem load(const Request& request, const Machine& machine) {
   Problem problem;
   problem.policy = parse_policy(request.policy);
   problem.partition = parse_partition_method(request.partition);
   problem.kind = parse_transfer_kind(request.kind);
+  check_kind(problem.kind, request);
   problem.tolerance = request.tolerance;
   problem.clamp = request.clamp;
   problem.repeat = request.repeat;

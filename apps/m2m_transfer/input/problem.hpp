@@ -73,6 +73,10 @@ struct Problem {
   [[nodiscard]] std::int32_t chares() const { return reports.front().chares; }
 };
 
+/// Refuses options that the kind does not know: a conservative one has no donors. Throws Error
+/// (bad_argument) with the option.
+void check_kind(TransferKind kind, const Request& request);
+
 /// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
 [[nodiscard]] Problem load(const Request& request, const Machine& machine);
 
