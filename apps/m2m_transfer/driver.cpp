@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
@@ -76,11 +77,6 @@ std::vector<TransferKind> kinds_of(const DriverOptions& options) {
 
 Task drift_table(const DriverOptions& options, apps::Progress& progress) {
   const Request request = single_request(options);
-  if (!options.out.empty() || !options.picture.empty() || !request.moves.empty() ||
-      !request.pairs.empty() || !request.more.empty())
-    fail(ErrorCode::bad_argument,
-         "--round-trips goes between two meshes that stand still; leave out --out, --picture, "
-         "--move and --pairs");
   const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
   const std::vector<TransferKind> kinds = kinds_of(options);
   plot::require_writable("--json", options.json);
@@ -119,9 +115,6 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
 /// Every kind, one after the other, from the same meshes and fields.
 Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) {
   Request request = single_request(options);
-  if (!options.out.empty() || !options.picture.empty())
-    fail(ErrorCode::bad_argument,
-         "--out and --picture are of one result, and --kind all has several; give one kind");
   const std::vector<TransferKind> kinds = kinds_of(options);
   plot::require_writable("--json", options.json);
   request.kind = name_of(kinds.front());
@@ -146,9 +139,6 @@ Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) 
 }
 
 Task run_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
-  if (!options.out.empty() || !options.picture.empty())
-    fail(ErrorCode::bad_argument,
-         "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
   std::vector<std::string> kinds{options.request.kind};
   if (*options.study == "kind" || wants_all_kinds(options)) {
@@ -184,8 +174,6 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
 }
 
 Task run_steps_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
-  if (wants_all_kinds(options))
-    fail(ErrorCode::bad_argument, "--study steps compares the steps of one kind; give one --kind");
   plot::require_writable("--json", options.json);
   Request request = options.request;
   request.policy = options.policies.front();
@@ -229,29 +217,38 @@ int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& pr
   return std::ranges::all_of(rows, &stability::Row::ok) ? 0 : 1;
 }
 
+Mode mode_of(const DriverOptions& options) {
+  if (!options.round_trips.empty()) return Mode::round_trips;
+  if (moves_file_fields(options)) return Mode::files;
+  return options.study ? Mode::study : Mode::transfer;
+}
+
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  if (options.stability) return run_stability(setup, options, progress);
+  if (options.stability) {
+    refuse_contradictions(options, Mode::stability);
+    refuse_equal_paths(options);
+    return run_stability(setup, options, progress);
+  }
   bool failed = false;
   const int code = tess::run(setup, [&]() -> Task {
-    if (!options.round_trips.empty()) return drift_table(options, progress);
-    if (moves_file_fields(options)) {
-      if (options.request.steps != 1)
-        fail(ErrorCode::bad_argument,
-             "--steps applies donors again to formulas; leave it out for fields and weights of "
-             "files (--step chooses the steps of a file)");
-      if (!options.request.pairs.empty() || !options.request.moves.empty())
-        fail(
-            ErrorCode::bad_argument,
-            "--pairs and --move transfer formulas; leave them out for fields and weights of files");
-      return move_file_fields(options, progress);
+    const Mode mode = mode_of(options);
+    refuse_contradictions(options, mode);
+    refuse_equal_paths(options);
+    switch (mode) {
+      case Mode::round_trips:
+        return drift_table(options, progress);
+      case Mode::files:
+        return move_file_fields(options, progress);
+      case Mode::study:
+        return options.study == "steps" ? run_steps_study(options, progress, failed)
+                                        : run_study(options, progress, failed);
+      default:
+        return wants_all_kinds(options) ? transfer_all_kinds(options, progress)
+                                        : transfer_once(options, progress);
     }
-    if (options.study == "steps") return run_steps_study(options, progress, failed);
-    if (options.study) return run_study(options, progress, failed);
-    return wants_all_kinds(options) ? transfer_all_kinds(options, progress)
-                                    : transfer_once(options, progress);
   });
   return code == 0 && failed ? 1 : code;
 }
