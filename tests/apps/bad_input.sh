@@ -48,7 +48,7 @@ refuses TARGET "${transfer[@]}" kuhn:2
 refuses policy "${transfer[@]}" kuhn:2 kuhn:2 --policy perhaps
 refuses partition "${transfer[@]}" kuhn:2 kuhn:2 --partition perhaps
 refuses perhaps "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)'
-refuses --voxel "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
+refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
 refuses "--voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
