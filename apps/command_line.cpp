@@ -13,7 +13,12 @@ Option& Option::between(std::int64_t least, std::int64_t most) {
 }
 
 Option& Option::positive() {
-  option_->check(CLI::PositiveNumber);
+  option_->check([](const std::string& value) {
+    double number = 0;
+    return CLI::detail::lexical_cast(value, number) && number > 0
+               ? std::string()
+               : value + " is not a number above 0";
+  });
   return *this;
 }
 

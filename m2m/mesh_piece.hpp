@@ -18,8 +18,8 @@
 //         co_await down.apply<&Patch::field, &Patch::field>();
 //
 // The ghosts of a piece are targets as well, so that what it takes it can also give. Each gets the
-// value that the piece which owns the point gets. A piece of a conservative coupling shows
-// view_of(mesh) in a mesh_view() of its own.
+// value that the piece which owns the point gets. A target piece of a conservative coupling shows
+// view_of(mesh) in a mesh_view() of its own, and takes values for the points that it owns alone.
 #pragma once
 
 #include "m2m/mesh_parts.hpp"
@@ -40,7 +40,8 @@ class MeshPiece : public Piece<C> {
   MeshPart mesh;  ///< serialised by the chare if it migrates
 
   [[nodiscard]] MeshView mesh_view() const {
-    return {mesh.points, mesh.tets, mesh.point_ids, mesh.tet_ids, std::ssize(mesh.points)};
+    return {mesh.points,    mesh.tets, mesh.point_ids, mesh.tet_ids, std::ssize(mesh.points),
+            mesh.n_own_tets};
   }
   /// Takes its part, and calls the member function loaded() of the chare.
   void m2m_load(const MeshPart& part) {
@@ -54,11 +55,14 @@ class MeshPiece : public Piece<C> {
 };
 
 /// An array of `n` chares of class C, a MeshPiece with a one-dimensional index. Each gets its part of
-/// the mesh before the enclosing epoch ends. Throws as mesh_parts() does.
+/// the mesh before the enclosing epoch ends, with so many layers of tetrahedra of other parts around its
+/// own: source_halo_layers() and target_halo_layers() (transfer_kind.hpp) say how many a kind needs.
+/// Throws as mesh_parts() does.
 template <class C>
 [[nodiscard]] ArrayProxy<C> create_pieces(const TetMesh& mesh, std::int32_t n,
-                                          PartitionMethod method = PartitionMethod::curve) {
-  const std::vector<MeshPart> parts = mesh_parts(mesh, n, method);
+                                          PartitionMethod method = PartitionMethod::curve,
+                                          std::int32_t halo_layers = 0) {
+  const std::vector<MeshPart> parts = mesh_parts(mesh, n, method, halo_layers);
   const ArrayProxy<C> array = create<C>(range(n));
   for (std::int32_t k = 0; k < n; ++k)
     array[{k}].template send<&MeshPiece<C>::m2m_load>(parts[static_cast<std::size_t>(k)]);

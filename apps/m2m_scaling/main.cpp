@@ -26,6 +26,7 @@ TransferReport run_case(const Request& request, const tess::SimulatedOptions& ma
   tess::Setup setup{tess::make_simulated_machine(machine), {}};
   const int code = tess::run(setup, [&]() -> tess::Task {
     m2m_transfer::Problem problem = m2m_transfer::load(request, tess::machine());
+    problem.collects = true;  // the time of it is a column
     co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
     report = problem.reports.front();
   });

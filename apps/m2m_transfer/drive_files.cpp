@@ -2,7 +2,6 @@
 
 #include "apps/m2m_transfer/file_fields.hpp"
 #include "apps/plot/write_file.hpp"
-#include "runtime/core/error.hpp"
 
 namespace m2m_transfer {
 namespace {
@@ -32,10 +31,6 @@ bool moves_file_fields(const DriverOptions& options) {
 }
 
 Task move_file_fields(const DriverOptions& options, apps::Progress& progress) {
-  if (options.study || !options.picture.empty())
-    fail(ErrorCode::bad_argument,
-         "--study and --picture compare with formulas; leave them out for fields and weights of "
-         "files");
   plot::require_writable("--json", options.json);
   const FileFieldsRequest request = request_of(options);
   FileFieldsReport report;

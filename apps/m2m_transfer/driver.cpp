@@ -1,8 +1,10 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
+#include "apps/m2m_transfer/output/kinds_table.hpp"
 #include "apps/m2m_transfer/output/picture.hpp"
 #include "apps/m2m_transfer/output/table.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
@@ -57,18 +59,24 @@ Request single_request(const DriverOptions& options) {
   return request;
 }
 
+bool wants_all_kinds(const DriverOptions& options) {
+  return options.request.kind == "all";
+}
+
+/// The kinds of a table of kinds. Options that only some of them know are refused before the first runs.
 std::vector<TransferKind> kinds_of(const DriverOptions& options) {
-  if (options.kind_is_given) return {parse_transfer_kind(options.request.kind)};
+  if (options.kind_is_given && !wants_all_kinds(options))
+    return {parse_transfer_kind(options.request.kind)};
+  for (const std::string& policy : options.policies) {
+    Request request = options.request;
+    request.policy = policy;
+    for (const TransferKind kind : all_transfer_kinds) check_kind(kind, request);
+  }
   return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
 }
 
 Task drift_table(const DriverOptions& options, apps::Progress& progress) {
   const Request request = single_request(options);
-  if (!options.out.empty() || !options.picture.empty() || !request.moves.empty() ||
-      !request.pairs.empty() || !request.more.empty())
-    fail(ErrorCode::bad_argument,
-         "--round-trips goes between two meshes that stand still; leave out --out, --picture, "
-         "--move and --pairs");
   const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
   const std::vector<TransferKind> kinds = kinds_of(options);
   plot::require_writable("--json", options.json);
@@ -87,6 +95,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   plot::require_writable("--out", options.out);
   plot::require_writable("--picture", options.picture);
   Problem problem = read(request, progress);
+  problem.collects = !options.out.empty() || !options.picture.empty();
   if (options.explain) {
     progress.clear();
     print(explain(problem, options.out.empty() ? Output::report : Output::mesh));
@@ -103,13 +112,36 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   print(text + legend());
 }
 
+/// Every kind, one after the other, from the same meshes and fields.
+Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) {
+  Request request = single_request(options);
+  const std::vector<TransferKind> kinds = kinds_of(options);
+  plot::require_writable("--json", options.json);
+  request.kind = name_of(kinds.front());
+  const Problem read_once = read(request, progress);
+  const auto gauge = create_group<Gauge>();
+  std::vector<TransferReport> reports;
+  for (const TransferKind kind : kinds) {
+    progress.part(reports.size() / read_once.pairs.size() + 1, kinds.size());
+    Problem problem = read_once;
+    problem.kind = kind;
+    for (TransferReport& report : problem.reports) report.kind = name_of(kind);
+    if (options.explain) {
+      progress.clear();
+      print(name_of(kind), ": ", explain(problem, Output::report));
+    }
+    co_await measure(problem, gauge, progress);
+    for (TransferReport& report : problem.reports) reports.push_back(std::move(report));
+  }
+  if (!options.json.empty()) plot::write_file(options.json, json(reports));
+  progress.clear();
+  print(kinds_table(reports));
+}
+
 Task run_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
-  if (!options.out.empty() || !options.picture.empty())
-    fail(ErrorCode::bad_argument,
-         "--out and --picture do not work with --study; give them for one transfer");
   plot::require_writable("--json", options.json);
   std::vector<std::string> kinds{options.request.kind};
-  if (*options.study == "kind") {
+  if (*options.study == "kind" || wants_all_kinds(options)) {
     kinds.clear();
     for (const TransferKind kind : kinds_of(options)) kinds.emplace_back(name_of(kind));
   }
@@ -132,13 +164,13 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   progress.clear();
   const Study study{std::move(reports), options.repeat.value_or(3)};
   print(table(study));
-  if (*options.study == "kind") {
-    const std::vector<Check> rows = checks(study);
-    print(table(rows));
-    failed = !all_ok(rows);
-  }
+  std::vector<Check> rows;
+  if (*options.study == "kind") rows = checks(study);
+  if (!rows.empty()) print(table(rows));
   print(write(study, folder));
   if (!options.json.empty()) plot::write_file(options.json, json(study));
+  failed = !all_ok(rows);
+  if (failed) print(failures(rows));
 }
 
 Task run_steps_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
@@ -185,27 +217,38 @@ int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& pr
   return std::ranges::all_of(rows, &stability::Row::ok) ? 0 : 1;
 }
 
+Mode mode_of(const DriverOptions& options) {
+  if (!options.round_trips.empty()) return Mode::round_trips;
+  if (moves_file_fields(options)) return Mode::files;
+  return options.study ? Mode::study : Mode::transfer;
+}
+
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  if (options.stability) return run_stability(setup, options, progress);
+  if (options.stability) {
+    refuse_contradictions(options, Mode::stability);
+    refuse_equal_paths(options);
+    return run_stability(setup, options, progress);
+  }
   bool failed = false;
   const int code = tess::run(setup, [&]() -> Task {
-    if (!options.round_trips.empty()) return drift_table(options, progress);
-    if (moves_file_fields(options)) {
-      if (options.request.steps != 1)
-        fail(ErrorCode::bad_argument,
-             "--steps applies donors again to formulas; leave it out for fields and weights of "
-             "files (--step chooses the steps of a file)");
-      if (!options.request.pairs.empty() || !options.request.moves.empty())
-        fail(
-            ErrorCode::bad_argument,
-            "--pairs and --move transfer formulas; leave them out for fields and weights of files");
-      return move_file_fields(options, progress);
+    const Mode mode = mode_of(options);
+    refuse_contradictions(options, mode);
+    refuse_equal_paths(options);
+    switch (mode) {
+      case Mode::round_trips:
+        return drift_table(options, progress);
+      case Mode::files:
+        return move_file_fields(options, progress);
+      case Mode::study:
+        return options.study == "steps" ? run_steps_study(options, progress, failed)
+                                        : run_study(options, progress, failed);
+      default:
+        return wants_all_kinds(options) ? transfer_all_kinds(options, progress)
+                                        : transfer_once(options, progress);
     }
-    if (options.study == "steps") return run_steps_study(options, progress, failed);
-    return options.study ? run_study(options, progress, failed) : transfer_once(options, progress);
   });
   return code == 0 && failed ? 1 : code;
 }

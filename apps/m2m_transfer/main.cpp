@@ -34,14 +34,17 @@ int run(tess::Setup& setup, int argc, char** argv) {
       "--field,--fields", request.fields,
       "gaussian, linear, sin, an expression in x, y, z, or a field of the source file at vertices "
       "or in elements (moved to the target's elements); several as --fields sin,x*y");
-  line.option("--chares", request.n_chares,
-              "chares per mesh (default: --per-pe times the number of PEs)")
-      .between(1, 1 << 20);
-  line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
+  const apps::Option chares =
+      line.option("--chares", request.n_chares,
+                  "chares per mesh (default: --per-pe times the number of PEs)")
+          .between(1, 1 << 20);
+  const apps::Option per_pe =
+      line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
   line.option("--policy", options.policies,
               "value of vertices outside the source: keep, value:V or nearest");
-  const apps::Option kind =
-      line.option("--kind", request.kind, "how values follow from the source: " + kind_names());
+  const apps::Option kind = line.option(
+      "--kind", request.kind,
+      "how values follow from the source: " + kind_names() + "; all: a table with a row per kind");
   line.option("--round-trips", options.round_trips,
               "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
               "trips: --round-trips 1,2,5,10,20,50,100; for all kinds, or the --kind given");
@@ -96,6 +99,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
           .takes(0, 1);
   if (!line.parse(argc, argv)) return 0;
   options.kind_is_given = kind.is_given();
+  if (chares.is_given() && per_pe.is_given())
+    tess::fail(tess::ErrorCode::bad_argument, "--chares ", request.n_chares, " and --per-pe ",
+               request.per_pe, " both say how many chares there are; give one");
   if (studies.is_given()) {
     const bool named = study == "h" || study == "kind" || study == "steps";
     const bool ladder = study.starts_with("kuhn:") && request.source.empty();

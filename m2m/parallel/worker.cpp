@@ -97,4 +97,42 @@ void Worker::gather(Callback<Outcome> target) {
   contribute(JoinOutcomes{}, std::move(outcome), std::move(target));
 }
 
+void Worker::share_status() {
+  ghost_status_.resize(part_.points.size() - status_.size(), Status::outside);
+  for (const Ghosts& ghosts : part_.ghosts) {
+    GhostStatus message{ghosts.there, {}};
+    for (const std::int32_t v : ghosts.here)
+      message.status.push_back(status_[static_cast<std::size_t>(v)]);
+    array()[{ghosts.part}].send<&Worker::receive_status>(std::move(message));
+  }
+}
+
+void Worker::receive_status(const GhostStatus& ghosts) {
+  ghost_status_.resize(part_.points.size() - status_.size(), Status::outside);
+  for (std::size_t i = 0; i < ghosts.rows.size(); ++i)
+    ghost_status_[static_cast<std::size_t>(ghosts.rows[i]) - status_.size()] = ghosts.status[i];
+}
+
+void Worker::measure(const NormsRequest& request, Callback<NormSums> target) {
+  std::vector<Status> status = status_;
+  status.insert(status.end(), ghost_status_.begin(), ghost_status_.end());
+  contribute(JoinNorms{}, norm_sums(mesh_view(), values_, status, request), std::move(target));
+}
+
+void Worker::send_values(GroupProxy<ValueKeeper> keepers, GlobalId n_vertices) {
+  std::vector<KeptRows> of_pe(static_cast<std::size_t>(n_pes()));
+  std::size_t pe = 0;
+  for (std::size_t v = 0; v < status_.size(); ++v) {  // by ascending id
+    const GlobalId id = part_.point_ids[v];
+    while (id >= ValueKeeper::first_of(n_vertices, static_cast<std::int32_t>(pe) + 1, n_pes()))
+      ++pe;
+    of_pe[pe].vertices.push_back(id);
+    const double* const row = values_.data() + v * n_components_;
+    of_pe[pe].values.insert(of_pe[pe].values.end(), row, row + n_components_);
+  }
+  for (std::size_t k = 0; k < of_pe.size(); ++k)
+    if (!of_pe[k].vertices.empty())
+      keepers[PeId{static_cast<std::int32_t>(k)}].send<&ValueKeeper::take>(std::move(of_pe[k]));
+}
+
 }  // namespace tess::m2m

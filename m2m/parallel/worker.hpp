@@ -6,7 +6,9 @@
 // the result of another one completely or not at all.
 #pragma once
 
+#include "m2m/parallel/norm_sums.hpp"
 #include "m2m/parallel/piece.hpp"
+#include "m2m/parallel/value_keeper.hpp"
 #include "m2m/partition/split.hpp"
 #include "m2m/rigid_motion.hpp"
 
@@ -29,6 +31,12 @@ struct GhostRows {
   CouplingId coupling{};
   std::vector<std::int32_t> rows;  ///< of the receiver
   std::vector<double> values;      ///< rows.size() × n_components, row-major
+};
+
+/// The status of ghosts that a Worker holds.
+struct GhostStatus {
+  std::vector<std::int32_t> rows;  ///< of the receiver
+  std::vector<Status> status;
 };
 
 /// The vertices that a Worker owns, with status and values, as gathered from a mesh. Before the
@@ -62,9 +70,17 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
   /// Contributes the owned vertices with their values to a reduction.
   void gather(Callback<Outcome> target);
 
+  /// Sends the status of owned points to their ghosts, for measure().
+  void share_status();
+  void receive_status(const GhostStatus& ghosts);
+  /// Contributes the part's sums to the norms of the mesh (field_norms.hpp).
+  void measure(const NormsRequest& request, Callback<NormSums> target);
+  /// Sends the values of owned points to the keepers of `n_vertices` of the mesh.
+  void send_values(GroupProxy<ValueKeeper> keepers, GlobalId n_vertices);
+
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(couplings, part_, n_components_, values_, status_, distance_, pending_);
+    ar(couplings, part_, n_components_, values_, status_, distance_, ghost_status_, pending_);
   }
 
  private:
@@ -80,9 +96,10 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
 
   MeshPart part_;
   std::uint64_t n_components_ = 0;
-  std::vector<double> values_;    // of all points, row-major
-  std::vector<Status> status_;    // per owned point
-  std::vector<double> distance_;  // per owned point
+  std::vector<double> values_;        // of all points, row-major
+  std::vector<Status> status_;        // per owned point
+  std::vector<double> distance_;      // per owned point
+  std::vector<Status> ghost_status_;  // per ghost, after share_status()
   std::map<CouplingId, Pending> pending_;
 };
 

@@ -48,7 +48,7 @@ refuses TARGET "${transfer[@]}" kuhn:2
 refuses policy "${transfer[@]}" kuhn:2 kuhn:2 --policy perhaps
 refuses partition "${transfer[@]}" kuhn:2 kuhn:2 --partition perhaps
 refuses perhaps "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)'
-refuses --voxel "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
+refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
 refuses "--voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
@@ -57,11 +57,33 @@ refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy n
 refuses SOURCE "${transfer[@]}"
 refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
 refuses "'A:D' is no pair" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3 --pairs A:B,A:D
-refuses "--steps applies donors again to formulas" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
+refuses "--steps 2 does not work with fields and weights of files" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
 refuses "'sideways(1)' is no motion" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --move 'sideways(1)'
-refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --move 'translate(1,0,0)'
+refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --steps 2 --move 'translate(1,0,0)'
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
-refuses "--round-trips .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
+refuses "--move .* --round-trips" "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
+# Options that do not work together, or would overwrite an input.
+alone=("$bin/m2m_transfer" kuhn:2 kuhn:3)
+refuses "--plot $scratch is the folder of --study" "${alone[@]}" --plot "$scratch"
+refuses "--move .* --steps" "${alone[@]}" --move 'translate(1,0,0)'
+refuses "--chares 5 and --per-pe 3" "${alone[@]}" --chares 5 --per-pe 3
+refuses "--study does not work with --round-trips" "${alone[@]}" --round-trips 1 --study h
+refuses "--steps 5 does not work with --round-trips" "${alone[@]}" --round-trips 1 --steps 5
+refuses "--kind linear does not work with --stability" "${alone[@]}" --kind linear --stability
+refuses "mesh kuhn:4 does not work with --stability" "${alone[@]}" kuhn:4 --stability
+refuses "--move .* does not work with --study" "${alone[@]}" --study steps --move 'translate(1,0,0)'
+refuses "--pairs B:A does not work with --study" "${alone[@]}" --study h --pairs B:A
+refuses "mesh kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
+refuses "--repeat 3 does not work with fields and weights" "${alone[@]}" --repeat 3 --weights "$scratch/w.nc"
+refuses "--picture .* --kind all" "${alone[@]}" --kind all --picture "$scratch/cut.svg"
+refuses "--kind all does not work with --study steps" "${alone[@]}" --kind all --study steps
+refuses "--policy nearest is for kinds that interpolate, and conservative" "${alone[@]}" --kind all --policy nearest
+refuses "--clamp is for kinds that interpolate" "${alone[@]}" --kind conservative --clamp
+cp "$scratch/box.msh" "$scratch/kept.msh"
+refuses "would overwrite TARGET" "$bin/m2m_transfer" kuhn:2 "$scratch/kept.msh" --out "$scratch/./kept.msh"
+refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --json "$scratch/kept.msh"
+refuses "would overwrite --out" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
+cmp -s "$scratch/box.msh" "$scratch/kept.msh" || fail "a mesh that is read was overwritten"
 refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps
 refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch/empty.exo"
 refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability
@@ -85,7 +107,7 @@ study=("$bin/m2m_transfer" --json "$scratch/result.json")
 refuses kuhn:x "${study[@]}" kuhn:2,x --study "$scratch/result.exo"
 refuses missing.msh "${study[@]}" "kuhn:2,4" "$scratch/missing.msh" --study "$scratch/result.exo"
 refuses empty.exo "${study[@]}" kuhn:2,4 kuhn:3 --study "$scratch/empty.exo"
-refuses "do not work with --study" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
+refuses "--out .* does not work with --study" "${transfer[@]}" kuhn:2,4 kuhn:3 --study "$scratch/study"
 
 # A job of several processes prints the error once, and all of them end with 2. (mpirun reports the exit code of the first
 # process that failed; --quiet suppresses its own messages.)

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 
 using namespace tess;
 using namespace tess::m2m;
@@ -81,7 +82,118 @@ Task there_and_back(Counts& there_found, Counts& back_found) {
   back_found = co_await back_counts;
 }
 
+using ValueOf = std::map<GlobalId, double>;
+
+struct JoinValues {
+  ValueOf operator()(ValueOf a, const ValueOf& b) const {
+    for (const auto& [point, value] : b) {
+      TESS_CHECK(!a.contains(point) || a[point] == value, "two values at point ", point);
+      a[point] = value;
+    }
+    return a;
+  }
+};
+
+/// A piece whose ghosts are no targets, as conservative kinds want it.
+struct Owner : Chare<Owner>, MeshPiece<Owner> {
+  void loaded() {
+    for (const Point& p : mesh.points) field.push_back(std::sin(3 * p[0]) * p[1] + p[2]);
+    result.assign(static_cast<std::size_t>(mesh.n_owned), -100);
+  }
+  [[nodiscard]] MeshView mesh_view() const { return view_of(mesh); }
+  void values(Callback<ValueOf> target) {
+    ValueOf all;
+    for (std::size_t v = 0; v < result.size(); ++v) all[mesh.point_ids[v]] = result[v];
+    contribute(JoinValues{}, std::move(all), std::move(target));
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(couplings, mesh, field, result);
+  }
+  std::vector<double> field, result;
+};
+
+/// The same with targets in its ghosts.
+struct WithGhosts : Chare<WithGhosts>, MeshPiece<WithGhosts> {
+  void loaded() {
+    for (const Point& p : mesh.points) field.push_back(std::sin(3 * p[0]) * p[1] + p[2]);
+    result.assign(mesh.points.size(), -100);
+  }
+  void values(Callback<ValueOf> target) {
+    ValueOf all;
+    for (std::size_t v = 0; v < result.size(); ++v) all[mesh.point_ids[v]] = result[v];
+    contribute(JoinValues{}, std::move(all), std::move(target));
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(couplings, mesh, field, result);
+  }
+  std::vector<double> field, result;
+};
+
+/// One transfer of C's field by a kind, between meshes in so many pieces, with the halos of the kind.
+template <class C>
+Task transfer_in(std::int32_t n_source, std::int32_t n_target, TransferKind kind, ValueOf& found) {
+  ArrayProxy<C> source, target;
+  co_await epoch([&] {
+    source = create_pieces<C>(kuhn_mesh({4, 0.2}), n_source, PartitionMethod::curve,
+                              source_halo_layers(kind));
+    target = create_pieces<C>(kuhn_mesh({5, 0.1}), n_target, PartitionMethod::rcb,
+                              target_halo_layers(kind));
+  });
+  CouplingOptions options;
+  options.kind = kind;
+  Coupling coupling(source, target, options);
+  co_await coupling.search();
+  co_await coupling.template apply<&C::field, &C::result>();
+  Future<ValueOf> values;
+  target.template broadcast<&C::values>(values.callback());
+  found = co_await values;
+}
+
+/// The integral of the linear interpolant.
+double integral(const TetMesh& mesh, const ValueOf& values) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t)
+    for (const VertexId v : mesh.tets[t])
+      sum += std::abs(signed_volume(mesh, t)) / 4 * values.at(v);
+  return sum;
+}
+
+template <class C>
+void check_same_in_any_pieces(TransferKind kind, ValueOf& whole) {
+  const test::Machine one{.pes = 1, .seed = 1};
+  one.run([&]() -> Task { return transfer_in<C>(1, 1, kind, whole); }).require_success();
+  REQUIRE(whole.size() == 216);
+  test::for_seeds(1, 9, [&](std::uint64_t seed) {
+    ValueOf found;
+    const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
+    const auto n = static_cast<std::int32_t>(seed);
+    machine.run([&]() -> Task { return transfer_in<C>(1 + n % 5, 2 + n % 3, kind, found); })
+        .require_success();
+    REQUIRE(found == whole);
+  });
+}
+
 }  // namespace
+
+TEST_CASE("pieces in a conservative coupling keep the integral, and the same bits in any number",
+          "[m2m]") {
+  ValueOf whole, start;
+  check_same_in_any_pieces<Owner>(TransferKind::conservative, whole);
+  const TetMesh mesh = kuhn_mesh({4, 0.2});
+  for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+    const Point& p = mesh.points[v];
+    start[static_cast<GlobalId>(v)] = std::sin(3 * p[0]) * p[1] + p[2];
+  }
+  CHECK(integral(kuhn_mesh({5, 0.1}), whole) == Approx(integral(mesh, start)).epsilon(1e-13));
+}
+
+TEST_CASE("pieces with halos have the same bits by kinds with gradients, in any number", "[m2m]") {
+  ValueOf whole;
+  for (const TransferKind kind : {TransferKind::second_order, TransferKind::limited})
+    check_same_in_any_pieces<WithGhosts>(kind, whole);
+}
 
 TEST_CASE("pieces that the library creates take a field in their ghosts and give it back",
           "[m2m]") {

@@ -38,19 +38,4 @@ double typical_edge(const TetMesh& mesh) {
   return std::cbrt(6 * volume / static_cast<double>(mesh.n_tets()));
 }
 
-std::vector<double> row_sums(const TetMesh& mesh) {
-  std::vector<double> sums(mesh.n_points());
-  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    const double quarter = std::abs(signed_volume(mesh, t)) / 4;
-    for (const VertexId v : mesh.tets[t]) sums[static_cast<std::size_t>(v)] += quarter;
-  }
-  return sums;
-}
-
-double integral(const std::vector<double>& row_sums, const std::vector<double>& values) {
-  double sum = 0;
-  for (std::size_t v = 0; v < values.size(); ++v) sum += row_sums[v] * values[v];
-  return sum;
-}
-
 }  // namespace m2m_transfer

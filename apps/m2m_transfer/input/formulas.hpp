@@ -6,7 +6,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace m2m_transfer {
 
@@ -26,14 +25,5 @@ namespace m2m_transfer {
 [[nodiscard]] constexpr double linear_bound(double longest, double second_derivative) {
   return 3.0 / 16 * longest * longest * second_derivative;
 }
-
-/// The integral of the hat function of each vertex: a quarter of the volume of its tetrahedra. These
-/// are the row sums of the mass matrix.
-[[nodiscard]] std::vector<double> row_sums(const TetMesh& mesh);
-
-/// The integral of the linear interpolant of values at the vertices. The sum runs in the order of
-/// the vertices.
-[[nodiscard]] double integral(const std::vector<double>& row_sums,
-                              const std::vector<double>& values);
 
 }  // namespace m2m_transfer

@@ -55,12 +55,14 @@ StepMotion parse_motion(const std::string& text, const std::vector<std::string>&
   return out;
 }
 
-void undo(std::vector<Point>& points, const std::vector<RigidMotion>& motions) {
+std::vector<RigidMotion> opposite(const std::vector<RigidMotion>& motions) {
+  std::vector<RigidMotion> back;
   for (auto motion = motions.rbegin(); motion != motions.rend(); ++motion) {
     const auto& [x, y, z] = motion->translation;
-    move_points(points, {.translation = {-x, -y, -z}});
-    move_points(points, {.axis = motion->axis, .angle = -motion->angle, .centre = motion->centre});
+    back.push_back({.translation = {-x, -y, -z}});
+    back.push_back({.axis = motion->axis, .angle = -motion->angle, .centre = motion->centre});
   }
+  return back;
 }
 
 }  // namespace m2m_transfer

@@ -76,11 +76,25 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
 
 }  // namespace
 
+void check_kind(TransferKind kind, const Request& request) {
+  if (!is_conservative(kind)) return;
+  const auto refuse = [&](const std::string& option, const char* remedy) {
+    fail(ErrorCode::bad_argument, option, " is for kinds that interpolate, and ", name_of(kind),
+         " has no donors; ", remedy);
+  };
+  if (request.tolerance > 0)
+    refuse(text("--tolerance ", request.tolerance), "leave it out, or give another --kind");
+  if (request.clamp) refuse("--clamp", "leave it out, or give another --kind");
+  if (request.policy == "nearest")
+    refuse("--policy nearest", "give keep or value:V, or another --kind");
+}
+
 Problem load(const Request& request, const Machine& machine) {
   Problem problem;
   problem.policy = parse_policy(request.policy);
   problem.partition = parse_partition_method(request.partition);
   problem.kind = parse_transfer_kind(request.kind);
+  check_kind(problem.kind, request);
   problem.tolerance = request.tolerance;
   problem.clamp = request.clamp;
   problem.repeat = request.repeat;
@@ -96,11 +110,11 @@ Problem load(const Request& request, const Machine& machine) {
     mesh.census = validate(mesh.mesh);
     problem.meshes.push_back(std::move(mesh));
   }
-  const Aabb& domain = problem.source_of(problem.pairs.front()).census.bounds;
+  problem.domain = problem.source_of(problem.pairs.front()).census.bounds;
   for (const std::string& option : request.fields)
     for (const std::string& name : split_at_commas(option)) {
       problem.field_names.push_back(name);
-      problem.formulas.push_back(make_formula(name, domain));
+      problem.formulas.push_back(make_formula(name, problem.domain));
     }
   for (std::size_t m = 0; m < names.size(); ++m) sample_fields(problem, m);
   read_motions(request, names, problem);

@@ -37,14 +37,16 @@ struct Request {
   std::vector<std::string> moves{};
 };
 
-/// A mesh of a run. `fields`: before the run what the mesh starts with, after it the results, with
-/// an additional field "status" if a pair writes the mesh.
+/// A mesh of a run. `fields`: what the mesh starts with. After a run that collects its results
+/// (Problem::collects) a mesh that a pair writes has these instead, with an additional field "status".
 struct RunMesh {
   std::string name{};
   TetMesh mesh{};
   MeshCensus census{};
   std::vector<Field> fields{};
   std::vector<StepMotion> motions{};
+  /// After a run that collects its results: of the points, to where the formulas hold.
+  std::vector<RigidMotion> back{};
 };
 
 struct Problem {
@@ -52,12 +54,14 @@ struct Problem {
   std::vector<Pair> pairs{};
   std::vector<std::string> field_names{};
   std::vector<Formula> formulas{};  ///< per field
+  Aabb domain{};                    ///< of the formulas: the bounds of the first source
   OutsidePolicy policy{};
   PartitionMethod partition{};
   TransferKind kind{};
   Point voxel{};
   double tolerance = 0;
   bool clamp = false;
+  bool collects = false;  ///< bring all results to PE 0, to write or draw them
   std::int32_t repeat = 1, steps = 1;
   std::vector<TransferReport>
       reports{};  ///< per pair; load() fills in what is known before the run
@@ -68,6 +72,10 @@ struct Problem {
   [[nodiscard]] const RunMesh& target_of(const Pair& pair) const { return meshes[pair.target]; }
   [[nodiscard]] std::int32_t chares() const { return reports.front().chares; }
 };
+
+/// Refuses options that the kind does not know: a conservative one has no donors. Throws Error
+/// (bad_argument) with the option.
+void check_kind(TransferKind kind, const Request& request);
 
 /// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
 [[nodiscard]] Problem load(const Request& request, const Machine& machine);

@@ -144,7 +144,9 @@ void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
 std::string picture(const Problem& problem) {
   const RunMesh& target = problem.target_of(problem.pairs.back());
   const Field& field = target.fields.front();
-  const Field truth = sample(target.mesh, field.name, problem.formulas.front());
+  TetMesh there = target.mesh;
+  for (const RigidMotion& motion : target.back) move_points(there.points, motion);
+  const Field truth = sample(there, field.name, problem.formulas.front());
   std::vector<double> error(field.values.size());
   for (std::size_t v = 0; v < error.size(); ++v)
     error[v] = std::abs(field.values[v] - truth.values[v]);

@@ -1,42 +1,24 @@
 #include "apps/m2m_transfer/run/drift.hpp"
 
-#include "apps/m2m_transfer/input/formulas.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "runtime/core/error.hpp"
 
-#include <cmath>
-
 namespace m2m_transfer {
 namespace {
 
-double l2_norm(const std::vector<double>& masses, const std::vector<double>& values) {
-  double sum = 0;
-  for (std::size_t v = 0; v < values.size(); ++v) sum += masses[v] * values[v] * values[v];
-  return std::sqrt(sum);
-}
-
-DriftRow compare(const RunMesh& start, const std::vector<double>& masses, std::size_t field,
-                 const std::vector<double>& values) {
-  const std::vector<double>& before = start.fields[field].values;
-  std::vector<double> magnitude, difference;
-  DriftRow row;
-  for (std::size_t v = 0; v < values.size(); ++v) {
-    magnitude.push_back(std::abs(before[v]));
-    difference.push_back(values[v] - before[v]);
-    row.linf = std::max(row.linf, std::abs(difference[v]));
-  }
+/// The truth of `norms` is the start.
+DriftRow row_of(const std::string& field, const FieldNorms& norms) {
   const auto relative = [](double value, double whole) {
     return whole > 0 ? value / whole : value;
   };
-  const double norm = l2_norm(masses, before);
-  row.field = start.fields[field].name;
-  row.l2_relative = relative(l2_norm(masses, difference), norm);
-  row.l2_kept = relative(l2_norm(masses, values), norm);
-  row.integral = integral(masses, values);
-  row.integral_change =
-      relative(row.integral - integral(masses, before), integral(masses, magnitude));
-  row.hash = result_hash(values);
+  DriftRow row;
+  row.field = field;
+  row.l2_relative = norms.all.l2_relative;
+  row.linf = norms.all.linf;
+  row.l2_kept = relative(norms.l2, norms.truth_l2);
+  row.integral = norms.integral;
+  row.integral_change = relative(norms.integral - norms.truth_integral, norms.truth_magnitude);
   return row;
 }
 
@@ -49,7 +31,10 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Pr
   GraphRun graph(problem, meshes, progress);
   co_await graph.search();
   const RunMesh& start = problem.meshes.front();
-  const std::vector<double> masses = row_sums(start.mesh);
+  const auto n_points = static_cast<GlobalId>(start.mesh.n_points());
+  NormsRequest request{start.name, {}, {}};
+  for (const std::string& name : problem.field_names)
+    request.truth.push_back({name, problem.domain});
   std::int32_t done = 0;
   double elapsed = 0;
   for (const std::int32_t count : trips) {
@@ -58,10 +43,12 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Pr
     co_await graph.steps();
     elapsed += seconds_since(begin);
     done = count;
-    Gathered now_there;
-    co_await gather(meshes.front(), start.mesh.n_points(), now_there);
-    for (std::size_t f = 0; f < start.fields.size(); ++f) {
-      DriftRow row = compare(start, masses, f, now_there.values[f]);
+    std::vector<FieldNorms> norms;
+    co_await measure_norms(meshes.front(), request, &norms);
+    for (std::size_t f = 0; f < norms.size(); ++f) {
+      DriftRow row = row_of(problem.field_names[f], norms[f]);
+      const std::vector<FieldColumns> column{{f, 1}};
+      co_await hash_values(meshes.front(), n_points, column, &row.hash);
       row.kind = name_of(problem.kind);
       row.trips = count;
       drift.rows.push_back(std::move(row));

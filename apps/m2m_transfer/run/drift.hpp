@@ -1,6 +1,6 @@
 // How fields drift when they go from one mesh to another and back, many times, with one pair of
-// handles. All sums run in the order of the vertices, so the table is the same bit for bit for any
-// number of parts, PEs and processes.
+// handles. The table is the same bit for bit for any number of parts, PEs and processes
+// (m2m/field_norms.hpp).
 #pragma once
 
 #include "apps/m2m_transfer/input/problem.hpp"

@@ -18,40 +18,40 @@ void keep_fastest(PhaseSeconds& best, const PhaseSeconds& other, bool first) {
   best.apply = other.apply;
 }
 
-/// Compares the result of a pair with the formulas at the places where the target is now. The
-/// formulas follow the mesh that the values were sampled on.
-void compare_with_truth(Problem& problem, const GraphRun& graph, std::size_t p,
-                        const Gathered& result, const std::vector<double>& source_integrals) {
+void report_audit(Problem& problem, std::size_t p, const PairAudit& audit) {
   TransferReport& report = problem.reports[p];
   const Pair& pair = problem.pairs[p];
-  RunMesh& target = problem.target_of(pair);
-  std::vector<bool> found(result.status.size());
-  for (std::size_t v = 0; v < found.size(); ++v) found[v] = result.status[v] != Status::outside;
-  TetMesh there;
-  there.points = target.mesh.points;
-  undo(there.points, graph.motions(graph.origin(pair.target)));
-  const std::vector<double> masses = row_sums(target.mesh);
-  const Aabb domain = bounds(problem.source_of(problem.pairs.front()).mesh);
-  std::uint64_t hash = result_hash({});
-  target.fields.clear();
-  for (std::size_t f = 0; f < problem.formulas.size(); ++f) {
+  for (std::size_t f = 0; f < problem.field_names.size(); ++f) {
     const std::string& name = problem.field_names[f];
-    const std::vector<double>& values = result.values[f];
-    const Field truth = sample(there, name, problem.formulas[f]);
-    FieldError error{name, error_norms(target.mesh, values, truth.values),
-                     error_norms(target.mesh, values, truth.values, found)};
-    error.source_integral = source_integrals[f];
-    error.target_integral = integral(masses, values);
+    FieldError error{name, audit.target[f].all, audit.target[f].found};
+    error.source_integral = audit.source[f].integral;
+    error.target_integral = audit.target[f].integral;
     if (problem.kind == TransferKind::linear && needs_values(pair.source, problem.pairs))
-      if (const auto second = largest_second_derivative(name, domain))
+      if (const auto second = largest_second_derivative(name, problem.domain))
         error.bound = linear_bound(longest_edge(problem.source_of(pair).mesh), *second);
     report.fields.push_back(std::move(error));
-    hash = result_hash(values, hash);
-    target.fields.push_back({name, 1, values});
   }
-  target.fields.push_back(status_field(result.status));
-  report.result_hash = hash;
-  report.worst_at = target.mesh.points[static_cast<std::size_t>(report.fields.front().norms.worst)];
+  report.result_hash = audit.result_hash;
+  report.worst_at = audit.target.front().worst_at;
+}
+
+/// Brings the fields of the meshes that were written to this PE.
+Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const GraphRun& graph) {
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (!is_written(m, problem.pairs)) continue;
+    RunMesh& mesh = problem.meshes[m];
+    const Time begin = now();
+    Gathered result;
+    co_await gather(meshes[m], mesh.mesh.n_points(), result);
+    const double took = seconds_since(begin);
+    for (std::size_t p = 0; p < problem.pairs.size(); ++p)
+      if (problem.pairs[p].target == m) problem.reports[p].seconds.gather = took;
+    mesh.fields.clear();
+    for (std::size_t f = 0; f < problem.field_names.size(); ++f)
+      mesh.fields.push_back({problem.field_names[f], 1, std::move(result.values[f])});
+    mesh.fields.push_back(status_field(result.status));
+    mesh.back = graph.back(m);
+  }
 }
 
 }  // namespace
@@ -70,7 +70,10 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   for (std::int32_t round = 0; round < problem.repeat; ++round) {
     graph.emplace(problem, meshes, progress);
     co_await graph->search();
-    co_await graph->steps();
+    if (round + 1 < problem.repeat)
+      co_await graph->steps();
+    else
+      co_await graph->steps_with_audits();
     for (std::size_t p = 0; p < problem.reports.size(); ++p)
       keep_fastest(problem.reports[p].seconds, graph->seconds()[p], round == 0);
     if (round == 0) {
@@ -81,29 +84,18 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
     }
     if (round + 1 < problem.repeat) co_await graph->destroy();
   }
-  progress.phase("comparison with the truth");
-  std::vector<std::vector<double>> integrals(problem.pairs.size());
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    const std::size_t source = problem.pairs[p].source;
-    const RunMesh& mesh = problem.meshes[source];
-    Gathered values;
-    if (is_written(source, problem.pairs))
-      co_await gather(meshes[source], mesh.mesh.n_points(), values);
-    const std::vector<double> masses = row_sums(mesh.mesh);
-    for (std::size_t f = 0; f < mesh.fields.size(); ++f)
-      integrals[p].push_back(
-          integral(masses, values.values.empty() ? mesh.fields[f].values : values.values[f]));
+  for (std::size_t p = 0; p < problem.pairs.size(); ++p)
+    report_audit(problem, p, graph->audits()[p]);
+  if (problem.collects) {
+    progress.phase("gather");
+    co_await collect(problem, meshes, *graph);
   }
-  co_await graph->finish([&](std::size_t p, const Gathered& result) {
-    compare_with_truth(problem, *graph, p, result, integrals[p]);
-  });
   co_await graph->destroy();
   gauge.broadcast<&Gauge::read>(most.callback());
   const Footprint peak = co_await most;
   for (std::size_t p = 0; p < problem.reports.size(); ++p) {
     TransferReport& report = problem.reports[p];
     report.seconds.setup = setup;
-    report.seconds.gather = graph->seconds()[p].gather;
     report.counts = graph->found()[p].tally.counts;
     report.worst = graph->found()[p].worst;
     report.n_candidates = graph->found()[p].tally.n_candidates;

@@ -12,13 +12,12 @@ namespace {
 /// All PEs read and cut together, and evaluate the fields where the points are.
 Task place_together(const Problem& problem, TransferKind kind, std::int32_t n_parts,
                     std::vector<DistributedMesh>& meshes) {
-  const Aabb& domain = problem.source_of(problem.pairs.front()).census.bounds;
   std::vector<PlacedMesh> placed(problem.meshes.size());
   std::vector<Task> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
     PlaceOptions options{n_parts, halo_for(kind, m, problem.pairs), {}};
     for (const std::string& name : problem.field_names)
-      options.fields.push_back({needs_values(m, problem.pairs) ? name : "0", domain});
+      options.fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});
     tasks.push_back(tess::m2m::place(problem.meshes[m].name, options, &placed[m]));
   }
   for (Task& task : tasks) co_await task;

@@ -28,7 +28,6 @@ GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps:
     transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);
   found_.resize(problem.pairs.size());
   seconds_.resize(problem.pairs.size());
-  early_.resize(problem.pairs.size());
   motions_.resize(meshes.size());
   for (std::size_t m = 0; m < meshes.size(); ++m) origin_.push_back(m);
 }
@@ -51,8 +50,13 @@ Task GraphRun::steps() {
     if (problem_.steps > 1) progress_.part(step + 1, problem_.steps);
     if (step != 0) co_await move_meshes();
     progress_.phase("apply");
-    co_await apply_levels(step + 1 == problem_.steps);
+    co_await apply_levels(!audits_.empty() && step + 1 == problem_.steps);
   }
+}
+
+Task GraphRun::steps_with_audits() {
+  audits_.resize(problem_.pairs.size());
+  return steps();
 }
 
 Task GraphRun::move_meshes() {
@@ -88,22 +92,23 @@ Task GraphRun::search_again() {
   ++searches_;
 }
 
-Task GraphRun::apply_levels(bool last) {
+Task GraphRun::apply_levels(bool audited) {
   std::size_t n_levels = 0;
   for (const Pair& pair : problem_.pairs) n_levels = std::max(n_levels, pair.level + 1);
   for (std::size_t level = 0; level < n_levels; ++level) {
-    std::vector<Task> tasks;
-    tasks.reserve(transfers_.size());
+    std::vector<std::size_t> pairs;
     for (std::size_t p = 0; p < transfers_.size(); ++p)
-      if (problem_.pairs[p].level == level) tasks.push_back(apply(p));
+      if (problem_.pairs[p].level == level) pairs.push_back(p);
+    if (audited)
+      for (const std::size_t p : pairs) co_await audit_source(p);
+    std::vector<Task> tasks;
+    tasks.reserve(pairs.size());
+    for (const std::size_t p : pairs) tasks.push_back(apply(p));
     for (Task& task : tasks) co_await task;
-    for (std::size_t p = 0; p < transfers_.size(); ++p) {
-      const Pair& pair = problem_.pairs[p];
-      if (pair.level != level) continue;
-      origin_[pair.target] = origin_[pair.source];
-      if (last && is_overwritten(p))
-        co_await gather(meshes_[pair.target], problem_.target_of(pair).mesh.n_points(), early_[p]);
-    }
+    for (const std::size_t p : pairs)
+      origin_[problem_.pairs[p].target] = origin_[problem_.pairs[p].source];
+    if (audited)
+      for (const std::size_t p : pairs) co_await audit_target(p);
   }
 }
 
@@ -113,24 +118,24 @@ Task GraphRun::apply(std::size_t pair) {
   keep_least(seconds_[pair].apply, seconds_since(begin));
 }
 
-bool GraphRun::is_overwritten(std::size_t pair) const {
-  for (std::size_t later = pair + 1; later < problem_.pairs.size(); ++later)
-    if (problem_.pairs[later].target == problem_.pairs[pair].target) return true;
-  return false;
+Task GraphRun::audit_source(std::size_t pair) {
+  const std::size_t source = problem_.pairs[pair].source;
+  NormsRequest request{problem_.meshes[source].name, {}, {}};
+  request.truth.resize(problem_.field_names.size(), {"0", {}});
+  co_await measure_norms(meshes_[source], std::move(request), &audits_[pair].source);
 }
 
-Task GraphRun::finish(const AtEnd& at_end) {
-  for (std::size_t p = 0; p < transfers_.size(); ++p) {
-    const Pair& pair = problem_.pairs[p];
-    Gathered& result = early_[p];
-    if (result.status.empty()) {
-      const Time begin = now();
-      co_await gather(meshes_[pair.target], problem_.target_of(pair).mesh.n_points(), result);
-      seconds_[p].gather = seconds_since(begin);
-    }
-    at_end(p, result);
-    result = {};
-  }
+/// Compares with the formulas at the places where the target is now. The formulas follow the mesh that
+/// the values were sampled on.
+Task GraphRun::audit_target(std::size_t pair) {
+  const std::size_t target = problem_.pairs[pair].target;
+  const RunMesh& mesh = problem_.meshes[target];
+  NormsRequest request{mesh.name, {}, back(target)};
+  for (const std::string& name : problem_.field_names)
+    request.truth.push_back({name, problem_.domain});
+  co_await measure_norms(meshes_[target], std::move(request), &audits_[pair].target);
+  co_await hash_values(meshes_[target], static_cast<GlobalId>(mesh.mesh.n_points()),
+                       scalar_columns(problem_.field_names.size()), &audits_[pair].result_hash);
 }
 
 Task GraphRun::destroy() {

@@ -2,17 +2,22 @@
 #pragma once
 
 #include "apps/m2m_transfer/run/meshes.hpp"
+#include "m2m/field_norms.hpp"
 
-#include <functional>
+#include <cstdint>
 #include <vector>
 
 namespace m2m_transfer {
 
+/// What a pair did when it was applied for the last time.
+struct PairAudit {
+  std::vector<FieldNorms> source;  ///< per field: what it read
+  std::vector<FieldNorms> target;  ///< per field: what it wrote, against the formulas
+  std::uint64_t result_hash = 0;   ///< of what it wrote
+};
+
 class GraphRun {
  public:
-  /// Called when a pair was applied for the last time and its target has these values.
-  using AtEnd = std::function<void(std::size_t pair, const Gathered& result)>;
-
   /// `problem` and `meshes` outlive the run. Its meshes move with the steps.
   GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps::Progress& progress);
 
@@ -20,17 +25,17 @@ class GraphRun {
   Task search();
   /// All steps. Fills in the fastest times of searches again and of applications.
   Task steps();
-  /// The result of every pair: gathered after the pair's level in the last step if a later pair
-  /// overwrites it, otherwise now. Call before destroy().
-  Task finish(const AtEnd& at_end);
+  /// The same, and audits every pair in the last step, before a later pair overwrites what it read
+  /// and wrote.
+  Task steps_with_audits();
   Task destroy();
 
-  /// The mesh whose motion the values of a mesh follow: the one that they were sampled on.
-  [[nodiscard]] std::size_t origin(std::size_t mesh) const { return origin_[mesh]; }
-  /// The motions made so far.
-  [[nodiscard]] const std::vector<RigidMotion>& motions(std::size_t mesh) const {
-    return motions_[mesh];
+  /// The motions that lead the points of a mesh to where the formulas hold that its values follow.
+  [[nodiscard]] std::vector<RigidMotion> back(std::size_t mesh) const {
+    return opposite(motions_[origin_[mesh]]);
   }
+  /// Per pair, after steps_with_audits().
+  [[nodiscard]] const std::vector<PairAudit>& audits() const { return audits_; }
   [[nodiscard]] const std::vector<SearchSummary>& found() const { return found_; }
   [[nodiscard]] const std::vector<PhaseSeconds>& seconds() const { return seconds_; }
   [[nodiscard]] std::int32_t searches() const { return searches_; }
@@ -38,9 +43,10 @@ class GraphRun {
  private:
   Task move_meshes();
   Task search_again();
-  Task apply_levels(bool last);
+  Task apply_levels(bool audited);
   Task apply(std::size_t pair);
-  [[nodiscard]] bool is_overwritten(std::size_t pair) const;
+  Task audit_source(std::size_t pair);
+  Task audit_target(std::size_t pair);
 
   Problem& problem_;
   std::vector<DistributedMesh>& meshes_;
@@ -48,9 +54,9 @@ class GraphRun {
   std::vector<Transfer> transfers_;
   std::vector<SearchSummary> found_;
   std::vector<PhaseSeconds> seconds_;
-  std::vector<Gathered> early_;  // per pair; empty: gathered at the end
-  std::vector<std::size_t> origin_;
-  std::vector<std::vector<RigidMotion>> motions_;
+  std::vector<PairAudit> audits_;    // empty: none are wanted
+  std::vector<std::size_t> origin_;  // per mesh: the one whose values it has, as they were sampled
+  std::vector<std::vector<RigidMotion>> motions_;  // per mesh, made so far
   std::int32_t searches_ = 0;
 };
 

@@ -16,8 +16,9 @@ struct Case {
   double value = 0;         ///< of the parameter
   TetMesh source{}, target{};
   std::vector<double> values{};  ///< at the source vertices
-  std::vector<double> truth{};   ///< at the target vertices; empty: the values name the donors
-  double tolerance = 0;          ///< of |value - truth| at the vertices found
+  /// At the target vertices, NaN where it is not known; empty: the values name the donors.
+  std::vector<double> truth{};
+  double tolerance = 0;  ///< of |value - truth| at the vertices found
   /// Vertices outside, if it is known.
   std::optional<std::size_t> outside = 0;
   bool may_be_refused = false;  ///< beyond the limits of m2m/README.md

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace m2m_transfer::stability {
 namespace {
@@ -120,8 +121,10 @@ Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* befor
       row.lost += is_held(c.source, c.target.points[v]) ? 1U : 0U;
     } else if (c.truth.empty()) {
       row.lost += names_a_donor(c, v, first.values[v]) ? 0U : 1U;
-    } else {
-      row.error = std::max(row.error, std::abs(first.values[v] - c.truth[v]));
+    } else if (!std::isnan(c.truth[v])) {
+      const double error = std::abs(first.values[v] - c.truth[v]);
+      row.error =
+          std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(row.error, error);
     }
   }
   if (c.outside && row.outside > *c.outside)

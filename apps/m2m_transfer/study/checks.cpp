@@ -74,4 +74,21 @@ std::string table(const std::vector<Check>& checks) {
   return out;
 }
 
+std::string failures(const std::vector<Check>& checks) {
+  std::string out;
+  bool an_order = false;
+  for (const Check& check : checks) {
+    if (check.ok()) continue;
+    out += fmt::format("FAILED: {}: claimed {:.4e}, measured {:.4e}\n", check.what, check.limit,
+                       check.value);
+    an_order = an_order || !check.at_most;
+  }
+  if (an_order)
+    out +=
+        "an order is claimed of meshes that resolve the field; give a ladder of finer ones, such "
+        "as "
+        "kuhn:16,32\n";
+  return out;
+}
+
 }  // namespace m2m_transfer

@@ -23,5 +23,7 @@ struct Check {
 
 [[nodiscard]] bool all_ok(const std::vector<Check>& checks);
 [[nodiscard]] std::string table(const std::vector<Check>& checks);
+/// A line per check that failed, with figure and bound, and what to do about an order.
+[[nodiscard]] std::string failures(const std::vector<Check>& checks);
 
 }  // namespace m2m_transfer

@@ -29,10 +29,8 @@ Task run_steps(Problem& problem, std::vector<DistributedMesh>& meshes, std::int3
 
 Task hash_of(const Problem& problem, const std::vector<DistributedMesh>& meshes,
              std::uint64_t& hash) {
-  Gathered result;
-  co_await gather(meshes[1], problem.meshes[1].mesh.n_points(), result);
-  hash = result_hash({});
-  for (const std::vector<double>& values : result.values) hash = result_hash(values, hash);
+  co_await hash_values(meshes[1], static_cast<GlobalId>(problem.meshes[1].mesh.n_points()),
+                       scalar_columns(problem.field_names.size()), &hash);
 }
 
 }  // namespace

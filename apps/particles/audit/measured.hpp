@@ -2,13 +2,15 @@
 // for every order in which particles, blocks and PEs are joined.
 #pragma once
 
-#include "apps/particles/audit/exact_sum.hpp"
+#include "runtime/core/exact_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 namespace particles {
+
+using tess::ExactSum;
 
 struct Measured {
   std::uint64_t particles = 0;

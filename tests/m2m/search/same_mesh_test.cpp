@@ -3,7 +3,7 @@
 
 #include "m2m/coupling.hpp"
 #include "m2m/kuhn.hpp"
-#include "m2m/mesh_parts.hpp"
+#include "m2m/mesh_piece.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/testing.hpp"
@@ -35,17 +35,16 @@ double field_at(const Point& p) {
   return p[0] * p[0] - 3 * p[1] * p[2] + p[2];
 }
 
-class MovedPatch : public tess::Chare<MovedPatch>, public Piece<MovedPatch> {
+class MovedPatch : public tess::Chare<MovedPatch>, public MeshPiece<MovedPatch> {
  public:
-  void load(MeshPart part) {
-    part_ = std::move(part);
-    at_first_ = part_.points;
-    for (const Point& p : part_.points) field_.push_back(field_at(p));
+  void loaded() {
+    at_first_ = mesh.points;
+    for (const Point& p : mesh.points) field_.push_back(field_at(p));
     kept_.assign(field_.size(), -1);
     fresh_ = kept_;
   }
   void move(const Point& by) {
-    for (Point& p : part_.points)
+    for (Point& p : mesh.points)
       for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += by[axis];
   }
   void change(Change what, std::uint64_t seed) {
@@ -56,22 +55,19 @@ class MovedPatch : public tess::Chare<MovedPatch>, public Piece<MovedPatch> {
       case Change::shift:
         return move({0.125, 0, -0.0625});
       case Change::one_point:
-        part_.points[random.below(part_.points.size())][random.below(3)] += 0x1p-10;
+        mesh.points[random.below(mesh.points.size())][random.below(3)] += 0x1p-10;
         break;
       case Change::back:
-        part_.points = at_first_;
+        mesh.points = at_first_;
         break;
       case Change::other_corners:  // the same tetrahedra, and their weights in another order
-        for (Tet& tet : part_.tets) std::swap(tet[0], tet[1]), std::swap(tet[2], tet[3]);
+        for (Tet& tet : mesh.tets) std::swap(tet[0], tet[1]), std::swap(tet[2], tet[3]);
         break;
       case Change::other_ids:
-        for (GlobalId& id : part_.tet_ids) id = 100'000 - id;
-        for (GlobalId& id : part_.point_ids) id = 100'000 - id;
+        for (GlobalId& id : mesh.tet_ids) id = 100'000 - id;
+        for (GlobalId& id : mesh.point_ids) id = 100'000 - id;
         break;
     }
-  }
-  MeshView mesh_view() const {
-    return {part_.points, part_.tets, part_.point_ids, part_.tet_ids, std::ssize(part_.points)};
   }
   std::span<const double> give() const { return field_; }
   std::span<double> take_kept() { return kept_; }
@@ -89,22 +85,13 @@ class MovedPatch : public tess::Chare<MovedPatch>, public Piece<MovedPatch> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(couplings, part_, at_first_, field_, kept_, fresh_);
+    ar(couplings, mesh, at_first_, field_, kept_, fresh_);
   }
 
  private:
-  MeshPart part_;
   std::vector<Point> at_first_;
   std::vector<double> field_, kept_, fresh_;
 };
-
-ArrayProxy<MovedPatch> make_patches(int n, int n_parts) {
-  const auto array = create<MovedPatch>(range(n_parts));
-  const auto parts = mesh_parts(kuhn_mesh({n}), n_parts, PartitionMethod::curve);
-  for (int k = 0; k < n_parts; ++k)
-    array[{k}].send<&MovedPatch::load>(parts[static_cast<std::size_t>(k)]);
-  return array;
-}
 
 struct Searches {
   std::uint64_t n_searches = 0, n_different = 0, n_kept = 0, n_kept_wanted = 0;
@@ -116,7 +103,10 @@ Task search_again(std::uint64_t seed, Searches& found) {
   Random random(seed);
   ArrayProxy<MovedPatch> source, target;
   const int n_parts = 1 + static_cast<int>(random.below(3));
-  co_await epoch([&] { source = make_patches(4, n_parts), target = make_patches(3, 2); });
+  co_await epoch([&] {
+    source = create_pieces<MovedPatch>(kuhn_mesh({4}), n_parts);
+    target = create_pieces<MovedPatch>(kuhn_mesh({3}), 2);
+  });
   CouplingOptions options;
   options.policy = Nearest{};
   options.tolerance = random.chance(0.5) ? 0 : 0.1;

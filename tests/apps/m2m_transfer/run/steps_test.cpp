@@ -8,6 +8,7 @@
 #include "tests/support/scratch.hpp"
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 using namespace tess;
 using namespace m2m_transfer;
@@ -42,9 +43,13 @@ DriverOptions options_of(const std::vector<std::string>& meshes, const std::stri
   return options;
 }
 
-std::vector<std::string> hashes(const nlohmann::json& pairs) {
+/// All figures of the result, which depend on no machine.
+std::vector<std::string> figures(const nlohmann::json& pairs) {
   std::vector<std::string> out;
-  for (const auto& pair : pairs) out.push_back(pair["result_hash"].get<std::string>());
+  for (const auto& pair : pairs)
+    for (const char* name :
+         {"result_hash", "inside", "outside", "farthest", "l2", "rms", "linf", "found", "fields"})
+      out.push_back(pair[name].dump());
   return out;
 }
 
@@ -53,10 +58,10 @@ nlohmann::json same_everywhere(DriverOptions options) {
   options.request.n_chares = 1;
   const nlohmann::json first = pairs_of(threads(1), options);
   options.request.n_chares = 6;
-  CHECK(hashes(pairs_of(threads(2), options)) == hashes(first));
+  CHECK(figures(pairs_of(threads(2), options)) == figures(first));
   options.request.n_chares = 16;
-  CHECK(hashes(pairs_of(simulated("pes=6,seed=2"), options)) == hashes(first));
-  CHECK(hashes(pairs_of(simulated("pes=5,per-process=1,seed=7"), options)) == hashes(first));
+  CHECK(figures(pairs_of(simulated("pes=6,seed=2"), options)) == figures(first));
+  CHECK(figures(pairs_of(simulated("pes=5,per-process=1,seed=7"), options)) == figures(first));
   return first;
 }
 
@@ -94,6 +99,30 @@ TEST_CASE("two pairs with one target give the second one's values, and both resu
   CHECK(both[0]["result_hash"] != both[1]["result_hash"]);
 }
 
+TEST_CASE("a pair that is overwritten is compared with the field that it moved", "[apps][graph]") {
+  // A and B have moved apart, and the formula moves with each. Linear fields are exact.
+  auto options = options_of({"kuhn:4", "kuhn:4", "kuhn:3"}, "A:C,B:C");
+  options.request.fields = {"linear"};
+  options.request.steps = 2;
+  options.request.moves = {"A:translate(0.05,0,0)"};
+  const nlohmann::json pairs = pairs_of(threads(2), options);
+  CHECK(pairs[0]["outside"].get<int>() > 0);
+  CHECK(pairs[0]["found"]["linf"].get<double>() < 1e-12);
+  CHECK(pairs[1]["linf"].get<double>() < 1e-12);
+}
+
+TEST_CASE("the integral of the source is that of the values which the pair read", "[apps][graph]") {
+  auto options = options_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6"}, "A:B,B:C,C:A");
+  const auto source = [](const nlohmann::json& pair) {
+    return pair["fields"][1]["integral"]["source"].get<double>();
+  };
+  const nlohmann::json cycle = pairs_of(threads(2), options);
+  options.request.pairs = "A:B,B:C";  // without the pair that writes A later
+  CHECK(source(cycle[0]) == source(pairs_of(threads(2), options)[0]));
+  const double target = cycle[0]["fields"][1]["integral"]["target"].get<double>();
+  CHECK(source(cycle[1]) == target);
+}
+
 TEST_CASE("a mesh that moves is searched again, with the same bits on every machine",
           "[apps][motion]") {
   auto options = options_of({"kuhn:6@0.2", "kuhn:5"}, "");
@@ -111,8 +140,15 @@ TEST_CASE("meshes that move together transfer as if they stood still", "[apps][m
   options.request.steps = 5;
   // About a common point, so that both stay together; the formula moves with its mesh.
   options.request.moves = {"A:rotate(1,1,0,20deg,0,0,0)", "B:rotate(1,1,0,20deg,0,0,0)"};
+  const Scratch scratch;
+  options.picture = scratch.path("cut.svg");
   const nlohmann::json pairs = pairs_of(threads(2), options);
   CHECK(pairs[0]["linf"].get<double>() < 1e-12);
+  const std::string picture = slurp(options.picture);
+  const std::size_t last = picture.rfind("text-anchor=\"end\">");
+  REQUIRE(last != std::string::npos);
+  CHECK(std::stod(picture.substr(last + 18)) < 1e-12);  // the greatest error drawn
+  options.picture.clear();
   // The target alone: the linear field is exact where it is found, at the new place.
   options.request.moves = {"B:translate(0.1,0.05,0)"};
   const nlohmann::json alone = pairs_of(threads(2), options);

@@ -1,8 +1,11 @@
 #include "apps/m2m_transfer/stability/rows.hpp"
 
+#include "apps/m2m_transfer/stability/made.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/support/catch.hpp"
+
+#include <limits>
 
 using namespace tess;
 using namespace m2m_transfer;
@@ -39,6 +42,17 @@ TEST_CASE("the stability report of a user's mesh has rows for it", "[apps][stabi
   }
 }
 
+TEST_CASE("a user's mesh may have unused vertices, and several at one place", "[apps][stability]") {
+  TetMesh unused = kuhn_mesh({3});
+  unused.points.insert(unused.points.end(), {{9, 9, 9}, {0.5, 0.5, 0.5}});
+  const TetMesh apart = exploded(kuhn_mesh({2}));
+  for (const TetMesh& mesh : {unused, apart})
+    for (const Row& row : rows_of(cases_of(mesh, 100))) {
+      INFO(table({row}));
+      CHECK(row.ok);
+    }
+}
+
 TEST_CASE("a row fails if a point is lost, an error is large, or bits differ",
           "[apps][stability]") {
   Case c = cases_of(kuhn_mesh({2}), 40).front();
@@ -52,6 +66,9 @@ TEST_CASE("a row fails if a point is lost, an error is large, or bits differ",
   std::vector<Answer> wrong = right;
   for (Answer& answer : wrong) answer.values[3] += 1e-15;
   CHECK_FALSE(judge(c, wrong, nullptr).ok);
+  std::vector<Answer> nothing = right;
+  for (Answer& answer : nothing) answer.values[3] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(judge(c, nothing, nullptr).ok);
   std::vector<Answer> other = right;
   other[1].status[0] = Status::inside;
   CHECK_FALSE(judge(c, other, nullptr).same_bits);

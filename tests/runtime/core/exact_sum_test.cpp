@@ -1,4 +1,4 @@
-#include "apps/particles/audit/exact_sum.hpp"
+#include "runtime/core/exact_sum.hpp"
 
 #include "runtime/core/hash.hpp"
 
@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-using particles::ExactSum;
+using tess::ExactSum;
 
-TEST_CASE("an exact sum does not depend on its order or its parts", "[particles]") {
+TEST_CASE("an exact sum does not depend on its order or its parts", "[runtime][core]") {
   tess::Random random(7);
   std::vector<double> values;
   for (int i = 0; i < 3000; ++i)
@@ -28,7 +28,7 @@ TEST_CASE("an exact sum does not depend on its order or its parts", "[particles]
   }
 }
 
-TEST_CASE("an exact sum with a value that is not finite is not finite", "[particles]") {
+TEST_CASE("an exact sum with a value that is not finite is not finite", "[runtime][core]") {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   ExactSum up, down;
   up.add(1.5);
@@ -47,7 +47,7 @@ TEST_CASE("an exact sum with a value that is not finite is not finite", "[partic
   CHECK(std::isnan(none.total()));
 }
 
-TEST_CASE("values of an exact sum cancel without rounding", "[particles]") {
+TEST_CASE("values of an exact sum cancel without rounding", "[runtime][core]") {
   ExactSum sum;
   for (const double value : {1e300, 3.0, -1e300, 1e-300, -0.5}) sum.add(value);
   CHECK(sum.total() == 2.5);

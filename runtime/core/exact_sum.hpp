@@ -1,23 +1,27 @@
-// A sum of doubles without rounding: energies are the same for every order in which particles,
-// blocks and PEs are added. A fixed-point number wide enough for all doubles (Kulisch): 32 bits per
-// limb, each limb in 64 bits, so that carries can wait for 2³⁰ additions.
+// A sum of doubles without rounding: it is the same for every order in which values, elements and PEs
+// are added. A reduction of such sums (AddExactSums) gives the same bits for any number of elements,
+// where in_order() gives them for any placement of the same elements. A fixed-point number wide
+// enough for all doubles (Kulisch): 32 bits per limb, each limb in 64 bits, so that carries can wait
+// for 2³⁰ additions. It takes 592 bytes, and an addition about 5 ns.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
-namespace particles {
+namespace tess {
 
 class ExactSum {
  public:
   void add(double value) {
     if (!std::isfinite(value)) beyond_ += value;
     if (value == 0 || !std::isfinite(value)) return;
-    int exponent = 0;
-    const double fraction = std::frexp(std::abs(value), &exponent);  // [1/2, 1)
-    const auto bits = static_cast<std::uint64_t>(std::ldexp(fraction, 53));
-    const auto shift = static_cast<std::size_t>(exponent - 53 + bias);  // of the lowest bit
+    const auto image = std::bit_cast<std::uint64_t>(value);
+    const std::uint64_t exponent = image >> 52U & 0x7FFU;  // 0: subnormal, of the same unit as 1
+    constexpr std::uint64_t implied = std::uint64_t{1} << 52U;
+    const std::uint64_t bits = (image & (implied - 1)) | (exponent == 0 ? 0 : implied);
+    const std::size_t shift = (exponent == 0 ? 0 : exponent - 1) + lowest;
     const auto wide = static_cast<Wide>(bits) << shift % 32;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto part = static_cast<std::int64_t>(wide >> 32 * i & 0xFFFFFFFFU);
@@ -44,10 +48,10 @@ class ExactSum {
       for (std::int64_t& limb : whole.limbs_) limb = -limb;
       whole.carry();
     }
-    double sum = 0;
+    double rounded = 0;
     for (std::size_t i = limbs_.size(); i-- > 0;)
-      sum += std::ldexp(static_cast<double>(whole.limbs_[i]), static_cast<int>(32 * i) - bias);
-    return sign * sum;
+      rounded += std::ldexp(static_cast<double>(whole.limbs_[i]), static_cast<int>(32 * i) - bias);
+    return sign * rounded;
   }
 
   template <class Ar>
@@ -58,6 +62,7 @@ class ExactSum {
  private:
   __extension__ using Wide = unsigned __int128;
   static constexpr int bias = 1074 + 53;
+  static constexpr std::size_t lowest = 53;  ///< where the lowest bit of a subnormal number is
   static constexpr std::uint32_t most = 1U << 30U;
 
   /// Brings all limbs but the highest into 0 … 2³² − 1: one form per value.
@@ -75,4 +80,12 @@ class ExactSum {
   double beyond_ = 0;  // ±infinity and NaN add up to the same in every order
 };
 
-}  // namespace particles
+/// Joins sums in a reduction.
+struct AddExactSums {
+  ExactSum operator()(ExactSum a, const ExactSum& b) const {
+    a.add(b);
+    return a;
+  }
+};
+
+}  // namespace tess

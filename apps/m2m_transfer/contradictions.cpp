@@ -1,0 +1,119 @@
+#include "apps/m2m_transfer/contradictions.hpp"
+
+#include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace m2m_transfer {
+namespace {
+
+/// An option as it was given, "--steps 5"; empty: it was not given.
+using Given = std::string;
+
+Given given(const char* option, const std::string& value) {
+  return value.empty() ? Given() : text(option, " ", value);
+}
+
+void refuse(const std::string& mode, const std::vector<Given>& unused) {
+  for (const Given& option : unused)
+    if (!option.empty())
+      fail(ErrorCode::bad_argument, option, " does not work with ", mode,
+           "; leave one of them out");
+}
+
+/// The options of a graph of meshes that moves.
+std::vector<Given> graph_options(const Request& r) {
+  return {given("mesh", r.more.empty() ? std::string() : r.more.front()), given("--pairs", r.pairs),
+          given("--move", r.moves.empty() ? std::string() : r.moves.front()),
+          r.steps == 1 ? Given() : text("--steps ", r.steps)};
+}
+
+std::vector<Given> result_files(const DriverOptions& o) {
+  return {given("--out", o.out), given("--picture", o.picture)};
+}
+
+std::vector<Given> joined(std::vector<Given> a, const std::vector<Given>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return a == b || std::filesystem::equivalent(a, b, error) ||
+         std::filesystem::absolute(a).lexically_normal() ==
+             std::filesystem::absolute(b).lexically_normal();
+}
+
+}  // namespace
+
+void refuse_contradictions(const DriverOptions& o, Mode mode) {
+  const Request& r = o.request;
+  const Given repeat = o.repeat ? text("--repeat ", *o.repeat) : Given();
+  const Given explain = o.explain ? "--explain" : "";
+  const std::vector<Given> of_files{given("--step", o.step), given("--weights", o.weights),
+                                    given("--from-weights", o.from_weights)};
+  switch (mode) {
+    case Mode::stability:
+      refuse("--stability",
+             {o.study ? "--study" : "", given("--round-trips", o.round_trips),
+              given("--plot", o.plot), o.kind_is_given ? "--kind " + r.kind : "", explain, repeat,
+              r.tolerance != 0 ? text("--tolerance ", r.tolerance) : Given(),
+              r.clamp ? "--clamp" : ""});
+      refuse("--stability", joined(joined(graph_options(r), result_files(o)), of_files));
+      return;
+    case Mode::round_trips:
+      refuse("--round-trips", {o.study ? "--study" : "", explain, repeat});
+      refuse("--round-trips, which goes between two meshes that stand still",
+             joined(joined(graph_options(r), result_files(o)), of_files));
+      return;
+    case Mode::files:
+      refuse("fields and weights of files",
+             {o.study ? "--study" : "", given("--picture", o.picture), given("--plot", o.plot),
+              explain, repeat, r.kind == "all" ? "--kind all" : "",
+              o.policies.size() > 1 ? "a second --policy" : ""});
+      refuse(
+          "fields and weights of files, which go from SOURCE to TARGET once (--step chooses the "
+          "steps of a file)",
+          graph_options(r));
+      return;
+    case Mode::study:
+      refuse("--study", joined(graph_options(r), result_files(o)));
+      if (o.study == "steps")
+        refuse("--study steps", {r.kind == "all" ? "--kind all" : "", explain,
+                                 o.policies.size() > 1 ? "a second --policy" : ""});
+      return;
+    case Mode::transfer:
+      if (!o.plot.empty())
+        fail(ErrorCode::bad_argument, "--plot ", o.plot,
+             " is the folder of --study and --round-trips; give one of them, or --picture");
+      if (!r.moves.empty() && r.steps == 1)
+        fail(ErrorCode::bad_argument, "--move ", r.moves.front(),
+             " moves a mesh before every step but the first, and there is one; give --steps");
+      if (r.kind == "all") refuse("--kind all, which has several results", result_files(o));
+  }
+}
+
+void refuse_equal_paths(const DriverOptions& o) {
+  std::vector<std::pair<std::string, std::string>> taken;  // option or side, path
+  for (const std::string& mesh : o.request.more) taken.emplace_back("a mesh", mesh);
+  taken.emplace_back("SOURCE", o.request.source);
+  taken.emplace_back("TARGET", o.request.target);
+  taken.emplace_back("--from-weights", o.from_weights);
+  for (const auto& [option, path] : {std::pair<std::string, std::string>{"--out", o.out},
+                                     {"--picture", o.picture},
+                                     {"--json", o.json},
+                                     {"--weights", o.weights}}) {
+    if (path.empty()) continue;
+    for (const auto& [other, other_path] : taken)
+      if (!other_path.empty() && is_same_file(path, other_path))
+        fail(ErrorCode::bad_argument, option, " ", path, " would overwrite ", other, " ",
+             other_path, "; give another file");
+    taken.emplace_back(option, path);
+  }
+}
+
+}  // namespace m2m_transfer
