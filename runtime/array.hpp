@@ -90,6 +90,7 @@ CollectionId create_collection(const Range& range, Args&&... args) {
 /// Checks the arguments of create().
 template <class C, class... Args>
 void check_creation(const Range& range) {
+  static_assert(IsChare<C>, "create<C>() needs a class C that derives from tess::Chare<C, Index>");
   static_assert(!OnePerPe<C>, "a group is made by create_group()");
   // Without coordinates there are no initial elements, and insert() has its own arguments.
   static_assert(
@@ -118,6 +119,8 @@ ArrayProxy<C> create(const Range& range, Args&&... args) {
 /// The same of tess::sparse: no elements yet. The arguments of constructors are those of insert().
 template <class C>
 ArrayProxy<C> create(const Sparse& range) {
+  static_assert(detail::IsChare<C>,
+                "create<C>() needs a class C that derives from tess::Chare<C, Index>");
   static_assert(!detail::OnePerPe<C>, "a group is made by create_group()");
   return ArrayProxy<C>(detail::create_collection<C>(range));
 }

@@ -5,6 +5,7 @@
 
 #include "runtime/element_proxy.hpp"
 
+#include <concepts>
 #include <type_traits>
 #include <utility>
 
@@ -35,6 +36,12 @@ class ArrayProxy {
   template <class Of = C>
   [[nodiscard]] ElementProxy<Of> operator[](const typename Of::Index& index) const {
     return ElementProxy<Of>(id_, index);
+  }
+  /// The element x of an array of one axis: array[3] is array[{3}].
+  template <std::integral X, class Of = C>
+    requires std::same_as<typename Of::Index, Index1>
+  [[nodiscard]] ElementProxy<Of> operator[](X x) const {
+    return ElementProxy<Of>(id_, Index1{detail::axis_of(x)});
   }
   /// {1} would be (1, 0) otherwise.
   template <class Of = C>

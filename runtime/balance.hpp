@@ -29,6 +29,7 @@
 #include "runtime/array.hpp"
 #include "runtime/balance/rounds/balancer.hpp"
 #include "runtime/balance_options.hpp"
+#include "runtime/core/error.hpp"
 
 namespace tess {
 
@@ -94,10 +95,14 @@ BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options
 }
 
 /// Starts balancing with the user's own strategy: Assignment(const Snapshot&). Elements that may
-/// not move stay, whatever it returns.
+/// not move stay, whatever it returns. Throws Error also for an empty function.
 template <class C>
 BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options,
                               balance::Strategy strategy) {
+  if (!strategy)
+    fail(ErrorCode::bad_argument,
+         "start_balancing: the strategy is an empty function; give one, or leave it out to use "
+         "options.strategy");
   return BalancerProxy(balance::start(array.id(), options, std::move(strategy)));
 }
 

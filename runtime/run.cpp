@@ -205,6 +205,10 @@ Setup take_options(int& argc, char** argv) {
   if (setup.options.audit && !setup.options.trace.empty())
     fail(ErrorCode::bad_argument, "--audit --trace ", setup.options.trace,
          ": both number the messages; run the program once with each");
+  if (simulates && pes != 0)
+    fail(ErrorCode::bad_argument, "--sim ", simulated, " --pes ", pes,
+         ": the simulated machine has the PEs of its keys; leave --pes out, and write --sim pes=",
+         pes, ",…");
   if (simulates) {
     const SimulatedOptions options = parse_simulated(simulated);
     setup.machine = make_simulated_machine(options);

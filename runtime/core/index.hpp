@@ -3,6 +3,7 @@
 // extent) of such tuples.
 #pragma once
 
+#include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/serialize.hpp"
@@ -14,6 +15,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace tess {
 
@@ -72,6 +74,15 @@ concept Coordinates =
 
 template <Coordinates Index>
 inline constexpr std::int32_t n_axes_of = static_cast<std::int32_t>(sizeof(Index) / 4);
+
+namespace detail {
+/// A coordinate from an integer of any type.
+template <std::integral X>
+[[nodiscard]] std::int32_t axis_of(X x) {
+  TESS_CHECK(std::in_range<std::int32_t>(x), "an index is ", x, ", but a coordinate has 32 bits");
+  return static_cast<std::int32_t>(x);
+}
+}  // namespace detail
 
 /// The hash of an index. It is the same in every process, since homes are computed from it.
 template <class Index>

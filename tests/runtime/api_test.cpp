@@ -217,6 +217,14 @@ TEST_CASE("an element is found on its PE only", "[api]") {
           }) == 0);
 }
 
+TEST_CASE("an element of one axis is named by an integer of any type, too", "[api]") {
+  const tess::ArrayProxy<Node> nodes(tess::CollectionId{7});
+  CHECK(nodes[3] == nodes[{3}]);
+  CHECK(nodes[std::size_t{4}] == nodes[{4}]);
+  CHECK(nodes[std::int64_t{-1}] == nodes[{-1}]);
+  CHECK(nodes[0] == nodes[tess::Index1{}]);
+}
+
 TEST_CASE("indices of several axes are proxies' keys", "[api]") {
   CHECK(tess::index_text(tess::Index3{1, -2, 3}) == "[1,-2,3]");
   const tess::ElementProxy<Cube> a(tess::CollectionId{1}, {1, 2, 3}),

@@ -248,6 +248,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
     {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},
+    {"index_of_64_bits", [] { blocks()[std::int64_t{1} << 32U].send<&Block::nothing>(); }},
     {"empty_array_target",
      [] {
        blocks().broadcast<&Block::report>(tess::ArrayProxy<Block>().target<&Block::nothing>());

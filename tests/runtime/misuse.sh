@@ -57,6 +57,7 @@ here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructo
 everywhere different_targets "contributions to one reduction have different targets: " "Block::take of Block\\[0\\]" "Block::take of Block\\[1\\]"
 here different_operations "operations .*Scaled of different state"
 here empty_proxy "a message to an empty ElementProxy<.*Block>: assign array\\[index\\] to it first"
+here index_of_64_bits "an index is 4294967296, but a coordinate has 32 bits"
 here empty_array "a broadcast of Block::nothing to an empty proxy: assign what create() returned to it first"
 everywhere empty_array_target "a broadcast of Block::nothing to an empty proxy"
 here empty_array_size "an empty proxy is used: assign what create() returned to it first"

@@ -220,7 +220,10 @@ Task Balancer::forget_all() {
 // The phase that a checkpoint interrupted counts if it was at least half as long as the last one.
 Task Balancer::place_again() {
   TESS_CHECK(coordinator_ != nullptr, "rounds are requested on ", plan_.coordinator, " only");
-  TESS_CHECK(!running_, "a round while another runs: await that one first");
+  TESS_CHECK(
+      !running_,
+      "a round while another runs: await that one first; where elements call at_sync(), the rounds "
+      "begin by themselves and round() is not called");
   running_ = true;
   co_await attached();
   Future<PastLoad> summed;
@@ -406,6 +409,8 @@ void Balancer::alarm() {
 }
 
 GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, Strategy users) {
+  TESS_CHECK(array != CollectionId{},
+             "start_balancing() of an empty proxy: assign what create() returned to it first");
   Pe& pe = current_pe();
   validate(options, pe.n_pes());
   const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;

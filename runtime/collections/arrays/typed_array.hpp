@@ -29,6 +29,10 @@ concept Migratable = std::is_default_constructible_v<C> && serialization::HasSer
 
 namespace detail {
 
+/// It derives from Chare or Group.
+template <class C>
+concept IsChare = std::is_base_of_v<Element, C> && requires { typename C::Index; };
+
 /// A member of a group.
 template <class C>
 concept OnePerPe = requires { C::one_per_pe; };

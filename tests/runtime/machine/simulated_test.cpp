@@ -94,6 +94,15 @@ TEST_CASE("a bad runtime option is refused", "[runtime]") {
   }
 }
 
+TEST_CASE("a number of PEs beside the simulated machine's own is refused", "[runtime]") {
+  std::string program = "test", sim = "--sim=pes=4", pes = "--pes=3";
+  std::array<char*, 4> argv{program.data(), sim.data(), pes.data(), nullptr};
+  int argc = 3;
+  CHECK_THROWS_WITH(tess::take_options(argc, argv.data()),
+                    Catch::Matchers::StartsWith("--sim pes=4 --pes 3: ") &&
+                        Catch::Matchers::EndsWith("write --sim pes=3,…"));
+}
+
 namespace {
 
 /// A file of parameters with this content.
