@@ -5,7 +5,8 @@
     apps/bench/predict.py here.sim [--built build/release/bin] [--repeat 5] [--only stencil] [--within 15] [--quick]
 
 Each run is measured and predicted in turns; medians count. With --within the exit code is 1 if a prediction differs by more
-percent. --quick runs small problems once: to try out, not to measure. Run it on an idle machine: the load is printed.
+percent. --recalibrate calibrates anew before each turn, for a machine whose cores are not always the same ones, as a virtual one:
+FILE is written. --quick runs small problems once: to try out, not to measure. Run it on an idle machine: the load is printed.
 """
 import argparse
 import os
@@ -43,13 +44,14 @@ def arguments():
     parser.add_argument("--repeat", type=int, default=5, help="runs of each")
     parser.add_argument("--only", default="", help="cases whose name has this text")
     parser.add_argument("--within", type=float, help="percent")
+    parser.add_argument("--recalibrate", action="store_true", help="calibrate before each turn; writes the file")
     parser.add_argument("--quick", action="store_true", help="small problems, once")
     given = parser.parse_args()
     if given.repeat < 1:
         parser.error(f"--repeat {given.repeat}: give at least 1")
     if not any(given.only in case[0] for case in CASES):
         parser.error(f"--only {given.only}: no case has this in its name; there are " + "; ".join(case[0] for case in CASES))
-    if not os.access(given.file, os.R_OK):
+    if not given.recalibrate and not os.access(given.file, os.R_OK):
         parser.error(f"{given.file} cannot be read: write it with bench --calibrate {given.file}")
     return given
 
@@ -63,9 +65,20 @@ def seconds_of(command, pattern):
     return float(found.group(1))
 
 
+def calibrate(start, n_pes, given):
+    command = start + [str(pathlib.Path(given.built) / "bench"), "--pes", str(n_pes), "--calibrate", given.file]
+    command += ["--quick"] if given.quick else []
+    done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600)
+    if done.returncode != 0:
+        sys.exit(f"predict.py: {' '.join(command)}: exit code {done.returncode}, its output:\n{done.stdout}")
+
+
 def main():
     given = arguments()
     mpirun = ["mpirun", "--oversubscribe"] + (["--allow-run-as-root"] if os.geteuid() == 0 else [])
+    if given.recalibrate:
+        for _, _, n_pes, n_processes in MACHINES[1:]:
+            calibrate(mpirun + ["-n", str(n_processes)] if n_processes > 1 else [], n_pes, given)
     print("load before:", *(f"{load:.2f}" for load in os.getloadavg()))
     print(f"{'':<38} {'':<8} {'measured ms':>12} {'spread':>7} {'predicted ms':>13} {'spread':>7} {'differs':>8}")
     worst = 0.0
@@ -78,6 +91,8 @@ def main():
             start = mpirun + ["-n", str(n_processes)] if n_processes > 1 else []
             measured, predicted = [], []
             for _ in range(1 if given.quick else given.repeat):
+                if given.recalibrate and n_pes * n_processes == 2:
+                    calibrate(start, n_pes, given)
                 measured.append(seconds_of(start + command + ["--pes", str(n_pes)], pattern))
                 predicted.append(seconds_of(command + ["--sim", f"file={given.file},{simulated}"], pattern))
             middle = [statistics.median(times) for times in (measured, predicted)]

@@ -27,8 +27,8 @@ struct Event {
   }
 };
 
-std::size_t bytes_of(const Parcel& parcel) {
-  std::size_t n_bytes = parcel.head.size();
+std::size_t bytes_of_parts(const Parcel& parcel) {
+  std::size_t n_bytes = 0;
   for (const auto part : parcel.parts) n_bytes += part.size();
   return n_bytes;
 }
@@ -84,8 +84,8 @@ class SimulatedMachine final : public Machine {
 
   void post(PeId from, PeId to, Link* message, std::size_t bytes, Traffic traffic) override {
     const NotWork pause(*this);
-    push(departs({from, to, message, {}}, bytes, traffic, within_), to.value, message, nullptr,
-         from != to);
+    push(departs({from, to, message, {}}, bytes, bytes, traffic, within_), to.value, message,
+         nullptr, from != to);
   }
   void hand_in(PeId to, Link* message) override {
     auto* outside = new Outside;
@@ -107,7 +107,7 @@ class SimulatedMachine final : public Machine {
     const NotWork pause(*this);
     const PeId taker{to.value * pes_per_process_};
     const std::int64_t time = departs({from, taker, nullptr, {bytes.data(), bytes.size()}},
-                                      bytes.size(), Traffic::user, between_);
+                                      bytes.size(), bytes.size(), Traffic::user, between_);
     // A copy: the sender keeps its memory, as it does on a real machine.
     Buffer copy(bytes.size());
     std::copy(bytes.data(), bytes.data() + bytes.size(), copy.data());
@@ -115,11 +115,11 @@ class SimulatedMachine final : public Machine {
   }
   void send(PeId from, ProcessId to, Parcel&& parcel) override {
     const NotWork pause(*this);
-    const std::size_t n_bytes = bytes_of(parcel);
+    const std::size_t n_head = parcel.head.size();
     const PeId taker{to.value * pes_per_process_};
     const std::int64_t time =
-        departs({from, taker, nullptr, {parcel.head.data(), parcel.head.size()}}, n_bytes,
-                Traffic::user, between_);
+        departs({from, taker, nullptr, {parcel.head.data(), n_head}},
+                n_head + bytes_of_parts(parcel), n_head, Traffic::user, between_);
     push(time, taker.value, nullptr, new Parcel(std::move(parcel)));
   }
 
@@ -196,16 +196,16 @@ class SimulatedMachine final : public Machine {
   [[nodiscard]] bool draws() const {
     return options_.seed.has_value() && options_.adversary == nullptr;
   }
-  /// What passing on so many bytes takes each end.
+  /// What passing on so many bytes takes each end, if they are copied.
   static Time cpu_time(const Wire& wire, std::size_t bytes) {
     if (wire.copy == 0) return wire.overhead;
     return wire.overhead +
            Time(static_cast<std::int64_t>(static_cast<double>(bytes) * 1e9 / wire.copy));
   }
-  /// A message is sent: charges the sender, and returns when it arrives.
-  std::int64_t departs(const Sending& sending, std::size_t bytes, Traffic traffic,
-                       const Wire& wire) {
-    if (sending.from != sending.to) charge(sending.from, cpu_time(wire, bytes));
+  /// A message is sent, of which some bytes are copied: charges the sender, and returns when it arrives.
+  std::int64_t departs(const Sending& sending, std::size_t bytes, std::size_t copied,
+                       Traffic traffic, const Wire& wire) {
+    if (sending.from != sending.to) charge(sending.from, cpu_time(wire, copied));
     return arrival(sending, bytes, traffic, wire);
   }
   std::int64_t arrival(Sending sending, std::size_t bytes, Traffic traffic, const Wire& wire) {
@@ -271,7 +271,7 @@ void SimulatedMachine::run(Program& program) {
       program.accept(pe, event.message);
       look(event.pe);
     } else if (event.parcel != nullptr) {
-      charge(pe, cpu_time(between_, bytes_of(*event.parcel)));
+      charge(pe, cpu_time(between_, event.parcel->head.size()));
       deliver(program, pe, *std::unique_ptr<Parcel>(event.parcel));
       look(event.pe);
     } else {

@@ -20,7 +20,7 @@ tess::Time whole_nanoseconds(double nanoseconds) {
 struct Guess {
   double overhead = 0, latency = 0;
   double per_byte = 0;       // under way
-  double copy_per_byte = 0;  // of CPU time, of each end
+  double copy_per_byte = 0;  // of CPU time, of each end, unless a message travels alone in place
 
   [[nodiscard]] tess::Wire wire() const {
     return {whole_nanoseconds(latency), std::min(most_bandwidth, 1e9 / std::max(1e-12, per_byte)),
@@ -49,17 +49,13 @@ FittedWire fit_wire(const WireTimes& measured, const SimulateWire& simulate) {
     guess.latency =
         std::max(0.0, guess.latency + (measured.ping - is.ping) - 2 * (guess.overhead - overhead));
     if (measured.large > 0) {
-      // Nanoseconds per byte of a large message, from one end to the other; a part of it is CPU time
-      // of both ends.
-      const double all =
-          std::max(0.0, guess.per_byte + 2 * guess.copy_per_byte +
-                            ((measured.large - measured.ping) - (is.large - is.ping)) /
-                                static_cast<double>(large_bytes));
+      guess.per_byte =
+          std::max(0.0, guess.per_byte + ((measured.large - measured.ping) - (is.large - is.ping)) /
+                                             static_cast<double>(large_bytes));
       const double lacks =
           (measured.exchange_packed - measured.exchange) - (is.exchange_packed - is.exchange);
-      guess.copy_per_byte = std::clamp(
-          guess.copy_per_byte + lacks / (2 * static_cast<double>(packed_bytes)), 0.0, all / 2);
-      guess.per_byte = all - 2 * guess.copy_per_byte;
+      guess.copy_per_byte =
+          std::max(0.0, guess.copy_per_byte + lacks / (2 * static_cast<double>(packed_bytes)));
     }
     result.wire = guess.wire();
     result.simulated = simulate(result.wire);

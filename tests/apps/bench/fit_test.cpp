@@ -24,8 +24,7 @@ WireTimes formula(const Wire& wire, double own) {
   const double way = own + nanoseconds(wire.latency) + 2 * nanoseconds(wire.overhead);
   const double exchange = own + 2 * nanoseconds(wire.overhead);
   const double copy = wire.copy > 0 ? 2e9 / wire.copy : 0;  // ns per byte, of both ends
-  return {way,
-          way + 3 * own + static_cast<double>(bench::large_bytes) * (1e9 / wire.bandwidth + copy),
+  return {way, way + 3 * own + static_cast<double>(bench::large_bytes) * 1e9 / wire.bandwidth,
           exchange, exchange + own + static_cast<double>(bench::packed_bytes) * copy};
 }
 
@@ -49,6 +48,14 @@ TEST_CASE("the fitted parameters are those of the measured machine", "[bench]") 
   CHECK(fitted.wire.bandwidth == Approx(wire.bandwidth).epsilon(1e-6));
   CHECK(fitted.wire.copy == Approx(wire.copy).epsilon(1e-6));
   CHECK(fitted.simulated.ping == Approx(formula(wire, 45).ping));
+}
+
+TEST_CASE("copies of packed messages may take longer per byte than a large message", "[bench]") {
+  const Wire wire{Time(300), 4e9, Time(90), 3.5e9};
+  const auto simulate = [](const Wire& guess) { return formula(guess, 45); };
+  const bench::FittedWire fitted = bench::fit_wire(formula(wire, 45), simulate);
+  CHECK(fitted.wire.bandwidth == Approx(wire.bandwidth).epsilon(1e-6));
+  CHECK(fitted.wire.copy == Approx(wire.copy).epsilon(1e-6));
 }
 
 TEST_CASE("what the simulation costs itself is no part of the parameters", "[bench]") {

@@ -103,6 +103,17 @@ class Tourist : public tess::Chare<Tourist, tess::Index1> {
   std::uint64_t n_;
 };
 
+/// A vector on its way to another process.
+struct Load {
+  nanoseconds sent_at{0};
+  std::vector<char> bytes{};
+};
+nanoseconds took{0};
+class Parcels : public tess::Group<Parcels> {
+ public:
+  void take(const Load& load) { took = tess::now() - load.sent_at; }
+};
+
 /// Gives the number of messages that each PE has run.
 class Counter : public tess::Group<Counter> {
  public:
@@ -179,6 +190,22 @@ TEST_CASE("the busy time of --stats is the cost of each message and the work tha
           1e-9 * (static_cast<double>(n_messages) * 100 + static_cast<double>(n_filed) * 7001);
       CHECK(busy == Approx(expected).margin(1e-6));  // it is printed to a microsecond
     }
+  }
+}
+
+TEST_CASE("both ends copy the bytes of packed messages, and none of a large vector",
+          "[runtime][simulated]") {
+  for (const std::size_t n_bytes : {std::size_t{1000}, std::size_t{4000}, std::size_t{1'000'000}}) {
+    CAPTURE(n_bytes);
+    REQUIRE(simulate("pes=2,per-process=1,bandwidth=1GB/s,process-copy=1GB/s", [n_bytes] {
+              tess::create_group<Parcels>()[tess::PeId{1}].send<&Parcels::take>(
+                  Load{tess::now(), std::vector<char>(n_bytes)});
+            }) == 0);
+    const auto bytes = static_cast<std::int64_t>(n_bytes);
+    const std::int64_t under_way = bytes + latency.count();  // a nanosecond per byte
+    const std::int64_t copies = n_bytes < 100'000 ? 2 * bytes : 0;
+    CHECK(took.count() >= under_way + copies);
+    CHECK(took.count() <= under_way + copies + 2000);
   }
 }
 
