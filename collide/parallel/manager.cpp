@@ -113,7 +113,8 @@ void Manager::deliver(std::uint64_t step) {
   constexpr std::uint32_t most_entries = 4096;
   Round& r = round(step);
   const std::vector<VoxelRecord>& records = r.delivery->sort.records();
-  const std::uint32_t end = r.begin + most_entries;
+  const std::size_t first = r.n_delivered;
+  const std::uint32_t first_begin = r.begin, end = r.begin + most_entries;
   std::map<PeId, Shipment> shipments;
   for (; r.n_delivered < records.size() && r.begin < end; ++r.n_delivered) {
     const VoxelRecord& record = records[r.n_delivered];
@@ -125,26 +126,38 @@ void Manager::deliver(std::uint64_t step) {
     }
     r.statistics.n_entries += n;
     r.statistics.n_voxels += answer.maker == pe() ? 1U : 0U;
-    Part part(r.delivery, r.begin, record.n_natives, record.n_visitors);
-    r.begin += n;
-    if (answer.maker == pe())
-      voxels_[record.voxel].send_or_create_here<&Voxel::add>(std::move(part), answer.n_senders);
-    else if (machine().same_process(answer.maker, pe()))
-      voxels_[record.voxel].send<&Voxel::add>(std::move(part), answer.n_senders);
-    else
+    if (!machine().same_process(answer.maker, pe()))
       shipments[answer.maker].add(
-          {record.voxel, record.n_natives, record.n_visitors, answer.n_senders}, part.entries());
+          {record.voxel, record.n_natives, record.n_visitors, answer.n_senders},
+          std::span(r.delivery->sorted).subspan(r.begin, n));
+    r.begin += n;
   }
+  // What has the longest way leaves first.
   for (auto& [to, shipment] : shipments) {
     shipment.pack(*r.delivery);
     group()[to].send<&Manager::receive_shipment>(std::move(shipment));
   }
+  deliver_here(r, first, first_begin);
   if (r.n_delivered < records.size()) {
     group()[pe()].send<&Manager::deliver>(step);
     return;
   }
   last_ = r.statistics;
   rounds_.erase(step);
+}
+
+void Manager::deliver_here(const Round& r, std::size_t first, std::uint32_t begin) {
+  for (std::size_t i = first; i < r.n_delivered; ++i) {
+    const VoxelRecord& record = r.delivery->sort.records()[i];
+    const VoxelAnswer& answer = r.answer_of[i];
+    if (answer.n_senders == 0) continue;
+    Part part(r.delivery, begin, record.n_natives, record.n_visitors);
+    begin += record.n_natives + record.n_visitors;
+    if (answer.maker == pe())
+      voxels_[record.voxel].send_or_create_here<&Voxel::add>(std::move(part), answer.n_senders);
+    else if (machine().same_process(answer.maker, pe()))
+      voxels_[record.voxel].send<&Voxel::add>(std::move(part), answer.n_senders);
+  }
 }
 
 /// If a voxel was moved, its objects follow it.

@@ -111,6 +111,9 @@ class Manager : public Group<Manager> {
   auto sender(std::uint64_t step);
   void answer_if_asked(std::uint64_t step, Round& round);
   void deliver_if_answered(std::uint64_t step, Round& round);
+  /// Sends the parts of this process, of the records from `first` to r.n_delivered, whose entries
+  /// begin at `begin`.
+  void deliver_here(const Round& r, std::size_t first, std::uint32_t begin);
 
   const ArrayProxy<Voxel> voxels_;
   DeliveryPool pool_;
