@@ -1,6 +1,6 @@
 // What a Manager sends to a voxel: the objects of its PE that touch it. Within a process the boxes
-// stay where they are, and a part is a range of a list that all voxels share; to another process the
-// boxes of the part are sent alone.
+// stay where they are, and a part is a range of a list that all voxels share; to another process only the
+// boxes of the part are sent.
 #pragma once
 
 #include "collide/parallel/object_list.hpp"

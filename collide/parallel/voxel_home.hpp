@@ -12,8 +12,8 @@ namespace tess::collide {
 /// Which PE is the home of a voxel.
 [[nodiscard]] std::size_t home_of(const Index4& voxel, std::size_t n_pes);
 
-/// One answer per record; `records` by PE, of those PEs that have any. A voxel is left out if it can
-/// have no pair: one object, objects of one model alone, or no object of its own level. Otherwise
+/// One answer per record; `records` are by PE, and only of PEs that have any. A voxel is left out if it can
+/// have no pair: one object, objects of only one model, or no object of its own level. Otherwise
 /// one of the PEs makes it that have at least half as many objects as the PE with most: another one
 /// for another voxel.
 [[nodiscard]] std::vector<std::vector<VoxelAnswer>> answers_to(
