@@ -48,7 +48,7 @@ struct PairStatistics {
   std::uint64_t n_levels = 0;      ///< grids for objects of different sizes
   std::uint64_t n_voxels = 0;      ///< that were searched
   std::uint64_t n_entries = 0;     ///< objects in voxels: an object counts in each that it touches
-  std::uint64_t n_left_out = 0;    ///< of them, in voxels that one model alone touches
+  std::uint64_t n_left_out = 0;    ///< of them, in voxels that only one model touches
   std::uint64_t n_candidates = 0;  ///< pairs whose boxes overlap
   std::uint64_t n_pairs = 0;       ///< pairs that intersect
   std::size_t bytes = 0;           ///< memory beside the objects

@@ -28,7 +28,7 @@ namespace tess::m2m {
 struct CellOutcome {
   std::vector<Field> fields;  ///< n_tets × n_components of the target each
   /// Per target tetrahedron: where its centroid is; of conservative kinds, if it is covered; of
-  /// `nearest` always outside, since that kind compares centroids alone.
+  /// `nearest` always outside, since that kind compares only centroids.
   std::vector<Status> status;
   SearchSummary search;
 };

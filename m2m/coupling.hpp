@@ -38,7 +38,7 @@
 //
 // Conservative kinds also take and give values in cells (CouplingOptions::source_values): cells get
 // the mean of the source over what it covers of them. Their status is `inside` if the source covers
-// the cell, or all cells around the point, `snapped` if it covers them in part, and else `outside`.
+// the cell, or all cells around the point, `snapped` if it covers them in part, otherwise `outside`.
 //
 // The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
 // voxels, or the order of messages.

@@ -7,7 +7,7 @@
 //     send      every tetrahedron goes to the PE of its part
 //     points    a part asks the keepers for its points; the lowest part that asks owns a point
 //     halo      per layer: asks the other parts at its points for their tetrahedra there
-//     ghosts    a part tells the owners of its ghosts where they are, and evaluates its fields
+//     ghosts    a part reports to the owners of its ghosts where they are, and evaluates its fields
 //     load      the parts, complete, go to their Workers
 //
 // The parts are those of split(), and depend only on the mesh, their number and the halo.

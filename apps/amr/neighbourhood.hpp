@@ -52,7 +52,7 @@ class Neighbourhood {
   /// True if the choice rose.
   [[nodiscard]] bool hear(const Choice& of_neighbour);
 
-  /// What will be behind the faces after the change: of this leaf, if it stays, or else of the parent
+  /// What will be behind the faces after the change: of this leaf, if it stays, otherwise of the parent
   /// or the child that has its part `octant`. Faces within the parent or this leaf are 0.
   [[nodiscard]] Sides next_sides() const;
   [[nodiscard]] Sides next_sides(std::int32_t octant) const;

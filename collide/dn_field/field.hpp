@@ -40,7 +40,7 @@ struct Field {
   float jump = HUGE_VALF;
 
   std::uint64_t surface = 0;  ///< fingerprint() of the surface it was built from; 0: of none
-  std::shared_ptr<const Planes> planes{};  ///< of a compressed field (compressed.hpp); else null
+  std::shared_ptr<const Planes> planes{};  ///< of a compressed field; null for others
 
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] Content content() const;

@@ -2,14 +2,14 @@
 // objects to it. In a collision the Managers
 //
 //     prepare    say what they have; one PE makes the plan
-//     begin      sort their objects into voxels, and tell the home of each voxel how many there are
+//     begin      sort their objects into voxels, and report their number to the home of each voxel
 //     answer     as homes, leave out voxels that can have no pair, and say how many PEs send to a
 //                voxel, and which of them makes it
 //     deliver    send one message per voxel, which starts at once when it has heard from all; to the
 //                Managers of other processes one message for several voxels
 //
 // There is no barrier: a voxel does not wait for other voxels, and several collisions may overlap.
-// What Managers tell homes, and the answers, are exchanged in a few messages (exchange.hpp).
+// The reports of Managers to homes, and the answers, are exchanged in a few messages (exchange.hpp).
 #pragma once
 
 #include "collide/hit.hpp"

@@ -4,7 +4,7 @@
 //     load_i = integral of u_source psi_i = sum over a of w_ia u_a,
 //     w_ia = sum over source tetrahedra S and target tetrahedra T of (integral over S ∩ T of phi_a psi_i) .
 //
-// The weights depend on the meshes alone; a search computes them once.
+// The weights depend only on the meshes, so a search computes them once.
 //
 // Each integral is rounded to a multiple of the quantum of i, which is so large that all sums of
 // integrals with psi_i are exact. So weights have the same bits for every order of addition: wherever

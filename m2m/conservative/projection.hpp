@@ -14,7 +14,7 @@
 //
 // With the diagonal as preconditioner all eigenvalues lie in [1/2, 5/2] (mass_matrix.hpp). So a fixed
 // number of Chebyshev steps solves the system to the last digits (Saad 2003, section 12.3.2). Unlike
-// conjugate gradients they need no sum over the mesh: a part waits for its neighbours alone, and the
+// conjugate gradients they need no sum over the mesh: a part waits only for its neighbours, and the
 // result has the same bits for every partition.
 //
 // The solver knows no messages. step() computes until it needs values of ghosts, which their owners

@@ -9,7 +9,7 @@
 //   answer     rows of weights          OverlapAnswer → adds up what is covered
 //   share                               ← SharedRows    names the rows of several source pieces
 //   part       gives these away         PartialRows →   adds them up
-//   finish                                              masses; tells the pieces beside it
+//   finish                                              masses; reports to the pieces beside it
 //   give       loads                    GivenValues →   starts a projection
 //   solve                                               GhostValues to and from pieces beside it
 #pragma once

@@ -1,6 +1,6 @@
 // Finds the ghosts of the points of a mesh: which pieces hold a copy of a point that another piece
-// owns. Every piece reports its points to the PE that a hash of the id names; that PE compares, and
-// tells owners and holders of ghosts of each other.
+// owns. Every piece reports its points to the PE that a hash of the id names; that PE compares
+// them, and reports to each piece the others that share the point.
 #pragma once
 
 #include "collide/collider.hpp"
@@ -22,7 +22,7 @@ struct PointReport {
   double volume = 0;            ///< of these, if the point is owned
 };
 
-/// Tells a piece of a point that it shares with another piece.
+/// Reports to a piece a point that it shares with another piece.
 struct SharedPoint {
   collide::OwnerId other{};
   GlobalId id = 0;

@@ -20,7 +20,7 @@ bool blurs(const FieldOptions& options) {
 void check(const Surface& surface, const Grid& grid, const FieldOptions& options) {
   if (options.method == Method::normals && options.sides == Sides::two)
     fail(ErrorCode::bad_argument,
-         "a two-sided field by the normals method, which serves one side alone; take the potential "
+         "a two-sided field by the normals method, which serves only one side; take the potential "
          "or the exact method");
   validate(surface);
   if (!(options.thickness >= 2 * grid.cell))

@@ -97,7 +97,7 @@ inline L settled(L mask) {
   return mask;
 }
 
-/// v where the mask holds, else zero.
+/// v where the mask holds, otherwise zero.
 template <class M, class V>
 inline V only(M mask, V v) {
   return (V)(mask & (M)v);

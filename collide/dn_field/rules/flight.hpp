@@ -1,5 +1,5 @@
 // The flight of a step without a surface. Accelerations and linear drags have an exact solution.
-// Explosions and quadratic air drag change the velocity alone; quadratic drag acts for half a step
+// Explosions and quadratic air drag change only the velocity; quadratic drag acts for half a step
 // before and half a step after the flight, which is of second order in the step (Strang 1968), and
 // exact for the velocity where nothing else acts. Private to the step loop.
 #pragma once

@@ -57,7 +57,7 @@ void BlockFlight::sample_all(const Run& run, std::span<const PlacedObject> objec
 /// The correction of springs after the rules of the surface, for particles that one voxel's plane
 /// misleads: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
 /// the side and would gain potential energy. after_ has the depth at the end of the step. A particle
-/// with more energy than it had loses speed; if its depth alone takes more, it returns: it is put
+/// with more energy than it had loses speed; if its depth by itself takes more, it returns: it is put
 /// back to its start, which moved with the surface, with reversed velocity relative to the surface.
 /// Returns whether a particle did.
 bool BlockFlight::limit_springs(const Run& run, const ParticleSpan& span) {
