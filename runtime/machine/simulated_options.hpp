@@ -4,7 +4,8 @@
 //
 // A message to another PE takes the sender `overhead`, is under way for latency + bytes / bandwidth,
 // and takes the receiver `overhead` again. Between processes a transfer of packed messages does the
-// same with parameters of its own, and its bytes are copied by both.
+// same with parameters of its own, and its bytes are copied by both; those of a large vector, which
+// is received in place, are not.
 #pragma once
 
 #include "runtime/machine/machine.hpp"
