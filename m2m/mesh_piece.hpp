@@ -19,7 +19,7 @@
 //
 // The ghosts of a piece are targets as well, so that what it takes it can also give. Each gets the
 // value that the piece which owns the point gets. A target piece of a conservative coupling shows
-// view_of(mesh) in a mesh_view() of its own, and takes values for the points that it owns alone.
+// view_of(mesh) in a mesh_view() of its own, and takes values only for the points that it owns.
 #pragma once
 
 #include "m2m/mesh_parts.hpp"

@@ -53,6 +53,18 @@ Point low_at(double fraction) {
   return {0.3 + 0.1 * std::cos(fraction), 0.3 + 0.1 * std::sin(fraction), 0.3};
 }
 
+/// The steps of a run. Throws Error (bad_argument) if they are too many.
+std::int32_t steps_of(const Options& options, double spacing) {
+  constexpr double most = 1e6;
+  const double longest = 0.1 * spacing * spacing;
+  const double n = std::ceil(options.end / longest);
+  if (!(n <= most))
+    tess::fail(tess::ErrorCode::bad_argument, "--time ", options.end, " takes ", n,
+               " steps of at most ", longest, ", and at most ", most, " are run; give at most ",
+               most * longest);
+  return static_cast<std::int32_t>(n);
+}
+
 tess::Task compute(Options options) {
   const std::int32_t n_slabs = options.n_slabs != 0 ? options.n_slabs : 2 * tess::n_pes();
   Box big{.n = options.n, .n_slabs = n_slabs, .reaction = options.reaction};
@@ -63,6 +75,7 @@ tess::Task compute(Options options) {
                   .n_slabs = n_slabs,
                   .has_fringe = true,
                   .reaction = options.reaction};
+  const std::int32_t n_steps = steps_of(options, small.spacing());
   const auto background = tess::create<Slab>(tess::range(n_slabs), big);
   const auto overset = tess::create<Slab>(tess::range(n_slabs), small);
   Balancers balancers;
@@ -74,8 +87,6 @@ tess::Task compute(Options options) {
     background.broadcast<&Slab::exchange>();
     overset.broadcast<&Slab::exchange>();
   };
-  const auto n_steps =
-      static_cast<std::int32_t>(std::ceil(options.end / (0.1 * small.spacing() * small.spacing())));
   const double dt = options.end / n_steps;
   const tess::Time begin = tess::now();
   for (std::int32_t k = 0; k < n_steps; ++k) {
@@ -129,13 +140,21 @@ int main(int argc, char** argv) {
     line.option("--reaction", options.reaction.factor,
                 "burn where the field is warm: factor of Arrhenius's law (default: 0)")
         .between(0, 1e6);
-    line.option("--substeps", options.reaction.n_substeps, "of the reaction (default: 20)")
-        .between(1, 10'000);
+    const apps::Option substeps =
+        line.option("--substeps", options.reaction.n_substeps, "of the reaction (default: 20)")
+            .between(1, 10'000);
     line.option("--balance", balance,
                 "slabs migrate between steps: a strategy, as greedy_refine[,when=automatic]");
-    line.option("--balance-every", options.balance_every, "steps between rounds (default: 5)")
-        .between(1, 1'000'000);
+    const apps::Option balance_every =
+        line.option("--balance-every", options.balance_every, "steps between rounds (default: 5)")
+            .between(1, 1'000'000);
     if (!line.parse(argc, argv)) return 0;
+    if (substeps.is_given() && options.reaction.factor == 0)
+      tess::fail(tess::ErrorCode::bad_argument, "--substeps ", options.reaction.n_substeps,
+                 " are those of a reaction, and there is none; give --reaction, too");
+    if (balance_every.is_given() && balance.empty())
+      tess::fail(tess::ErrorCode::bad_argument, "--balance-every ", options.balance_every,
+                 " is for a balancer, and there is none; give --balance, too");
     if (!balance.empty()) {
       options.balance = tess::parse_balance(balance);
       if (options.balance->when == tess::BalanceWhen::periodic)

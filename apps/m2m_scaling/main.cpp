@@ -5,6 +5,8 @@
 #include "apps/command_line.hpp"
 #include "apps/m2m_scaling/report.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
+#include "apps/plot/write_file.hpp"
+#include "m2m/transfer_kind.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/simulated.hpp"
 
@@ -12,6 +14,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <fmt/core.h>
+#include <string>
 #include <vector>
 
 namespace m2m_scaling {
@@ -19,19 +22,17 @@ namespace {
 
 using m2m_transfer::Request;
 
-/// Runs on a machine of its own.
-TransferReport run_case(const Request& request, const tess::SimulatedOptions& machine) {
-  TransferReport report;
+/// Runs on a machine of its own. Returns the exit code.
+int run_case(const Request& request, const tess::SimulatedOptions& machine,
+             TransferReport& report) {
   apps::Progress progress(stderr);
   tess::Setup setup{tess::make_simulated_machine(machine), {}};
-  const int code = tess::run(setup, [&]() -> tess::Task {
+  return tess::run(setup, [&]() -> tess::Task {
     m2m_transfer::Problem problem = m2m_transfer::load(request, tess::machine());
     problem.collects = true;  // the time of it is a column
     co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
     report = problem.reports.front();
   });
-  if (code != 0) tess::exit(code);
-  return report;
 }
 
 int study(int argc, char** argv) {
@@ -56,19 +57,27 @@ int study(int argc, char** argv) {
     tess::fail(tess::ErrorCode::bad_argument,
                "give a source and a target mesh, such as kuhn:40 kuhn:41 (--help lists the "
                "arguments)");
+  (void)tess::m2m::parse_transfer_kind(request.kind);
+  if (sim.starts_with("pes=") || sim.find(",pes=") != std::string::npos)
+    tess::fail(tess::ErrorCode::bad_argument, "--sim ", sim,
+               " names a number of PEs; give them with --pes 1,4,16");
+  if (!out.empty())
+    for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
   tess::SimulatedOptions machine = tess::parse_simulated(sim);
   std::ranges::sort(pes);
-  fmt::print("{}", head());
   std::vector<TransferReport> rows;
   for (const std::int32_t n : pes) {
     machine.n_pes = n;
-    TransferReport best = run_case(request, machine);
+    TransferReport best;
+    if (const int code = run_case(request, machine, best); code != 0) return code;
     for (std::int32_t i = 1; i < repeat; ++i) {
-      TransferReport next = run_case(request, machine);
+      TransferReport next;
+      if (const int code = run_case(request, machine, next); code != 0) return code;
       const double gather = std::min(best.seconds.gather, next.seconds.gather);
       if (distributed_seconds(next) < distributed_seconds(best)) best = std::move(next);
       best.seconds.gather = gather;
     }
+    if (rows.empty()) fmt::print("{}", head());
     rows.push_back(std::move(best));
     fmt::print("{}", m2m_scaling::line(rows.back(), rows.front()));
     std::fflush(stdout);

@@ -21,9 +21,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
   apps::CommandLine line(
       "Moves fields between two tetrahedral meshes, and prints the error and the time.",
       "m2m_transfer");
-  line.option(
-      "SOURCE", request.source,
-      "mesh: an ExodusII or gmsh (2.2, 4.1) file, or kuhn:N, a generated box of 6 N^3 tetrahedra");
+  line.option("SOURCE", request.source,
+              "mesh: an ExodusII, gmsh (2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
+              "tetrahedra");
   line.option("TARGET", request.target, "mesh of the same kinds");
   line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
   line.option("--pairs", request.pairs,

@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
+#include <string>
+#include <system_error>
 
 namespace overset {
 namespace {
@@ -73,6 +76,32 @@ tess::Task time_wall(Options options) {
   co_return;
 }
 
+/// Throws Error (bad_argument) for an option that a study does not use, and for a folder where the
+/// files of --plot would replace an input.
+void refuse_contradictions(const Options& options) {
+  const std::string study = "--study " + options.study;
+  const auto refuse = [&](const std::string& option) {
+    tess::fail(tess::ErrorCode::bad_argument, option, " does not work with ", study,
+               "; leave one of them out");
+  };
+  if (!options.study.empty()) {
+    if (!options.json.empty()) refuse("--json " + options.json);
+    if (!options.request.wall.empty()) refuse("--wall " + options.request.wall);
+    if (options.explain) refuse("--explain");
+    if (options.study == "wall" && !options.plot.empty()) refuse("--plot " + options.plot);
+    return;
+  }
+  for (const char* file : {"background.exo", "overset.exo", "before.svg", "after.svg"})
+    for (const std::string& input :
+         {options.request.background, options.request.overset, options.request.wall}) {
+      std::error_code error;
+      if (!options.plot.empty() &&
+          std::filesystem::equivalent(std::filesystem::path(options.plot) / file, input, error))
+        tess::fail(tess::ErrorCode::bad_argument, "--plot ", options.plot, " would overwrite ",
+                   input, "; give another folder");
+    }
+}
+
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
   options.problem.n_parts = 0;
@@ -111,6 +140,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   if (!options.study.empty() && !names_body(options.request.overset))
     tess::fail(tess::ErrorCode::bad_argument, "--study: ", options.request.overset,
                " cannot be refined; give OVERSET as ball:N, box:N, star:N or torus:N");
+  refuse_contradictions(options);
   return tess::run(setup, [&] {
     if (options.study.empty()) return run_once(options);
     return options.study == "h" ? run_refined(options) : time_wall(options);

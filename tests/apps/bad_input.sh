@@ -99,6 +99,23 @@ refuses "least-quality" "${overset[@]}" --least-quality 2
 refuses "layers" "${overset[@]}" --layers 0
 refuses "cannot be refined" "${overset[@]}" kuhn:4 kuhn:4 --study h
 
+refuses "--json .* does not work with --study h" "${overset[@]}" --study h
+refuses "--plot .* does not work with --study wall" "$bin/overset" --study wall --plot "$scratch"
+mkdir "$scratch/meshes" && "$bin/m2m_transfer" kuhn:2 kuhn:4 --out "$scratch/meshes/background.exo" >"$scratch/out"
+refuses "--plot .* would overwrite" "$bin/overset" "$scratch/meshes/background.exo" ball:2 --plot "$scratch/meshes"
+
+refuses "--time 1e+09 takes .* steps" "$bin/coupled" --time 1e9
+refuses "--time: nan is not a number above 0" "$bin/coupled" --time nan
+refuses "--substeps 3 .* --reaction" "$bin/coupled" --substeps 3
+refuses "--balance-every 3 .* --balance" "$bin/coupled" --balance-every 3
+
+scaling=("$bin/m2m_scaling" --pes 1)
+refuses "missing.exo: cannot be opened" "${scaling[@]}" "$scratch/missing.exo" kuhn:2
+refuses "nan.msh: vertex" "${scaling[@]}" kuhn:2 "$scratch/nan.msh"
+refuses "kind 'all' is unknown" "${scaling[@]}" kuhn:2 kuhn:2 --kind all
+refuses "--sim pes=3 names a number of PEs" "${scaling[@]}" kuhn:2 kuhn:2 --sim pes=3
+refuses "--out $scratch/missing/x.svg: cannot be written" "${scaling[@]}" kuhn:2 kuhn:2 --out "$scratch/missing/x"
+
 # A study leaves nothing in its folder.
 refuses "missing/result.json: cannot be written: its folder" "$bin/m2m_transfer" kuhn:2 kuhn:3 --json "$scratch/missing/result.json"
 refuses "--picture $scratch: cannot be written: is a directory" "$bin/m2m_transfer" kuhn:2 kuhn:3 --picture "$scratch"
