@@ -26,8 +26,8 @@ struct KeyTraits<K T::*> {
 };
 }  // namespace detail
 
-/// The second parameter tells messages of the same name apart that are local to two files: g++ 12
-/// gives both files one Mailbox<&Local::key> otherwise.
+/// The second parameter distinguishes messages of the same name that are local to two files:
+/// without it g++ 12 gives both files one Mailbox<&Local::key>.
 template <auto KeyMember, class Message = typename detail::KeyTraits<decltype(KeyMember)>::Value>
 class Mailbox {
  public:

@@ -17,7 +17,7 @@
 //     const double value = caches.read([](const Cache& cache) { return cache.get(3); });
 //
 // The class needs no base and no lock: the group holds one. read() and const entry methods run while
-// others read, on any PE of the process; write() and other entry methods run alone. So none of them
+// others read, on any PE of the process; write() and other entry methods exclude all others. So none of them
 // may wait, and none may call read() or write() of the same group: that ends the job.
 //
 // Data that is never written needs no lock. It is sent once to each process:
@@ -239,7 +239,7 @@ class ProcessGroupProxy {
                   "read() and write() return values: a reference would outlive the lock");
     return GroupProxy<Part>(id_).local().read(f);
   }
-  /// Returns f(G&) for the object of this process, alone.
+  /// Returns f(G&) for the object of this process, while no other call reads or writes it.
   template <class F>
   auto write(const F& f) const {
     static_assert(std::is_invocable_v<const F&, G&>, "write() takes a function of (G&)");

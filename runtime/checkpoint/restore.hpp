@@ -1,8 +1,8 @@
 // Restores the latest good checkpoint of a folder. All steps are led by the main coroutine on PE 0:
 //
 //     choose    the files of the latest checkpoint are read and compared with its manifest; if one
-//               is damaged, that is reported, and its copy on any host or else the checkpoint before
-//               is tried
+//               is damaged, that is reported, and its copy on any host is tried, then the
+//               checkpoint before
 //     plan      the program has all the classes, and groups fit the number of PEs
 //     create    every PE makes the collections, empty, with the ids that they had
 //     restore   the PEs read the files and send each element to its home

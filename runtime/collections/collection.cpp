@@ -54,6 +54,20 @@ PeId Collection::mapped_home(const void* index) const {
   return index_map_->home(index, range_, pe_.n_pes());
 }
 
+std::pair<std::int64_t, std::int64_t> Collection::ranks_of_blocks(bool class_places) const {
+  const auto size = static_cast<std::int64_t>(range_.size());
+  if (class_places || index_map_ != nullptr) return {0, size};
+  const auto pe = static_cast<std::int64_t>(pe_.id().value);
+  const std::int64_t n_pes = pe_.n_pes();
+  return {(pe * size + n_pes - 1) / n_pes, ((pe + 1) * size + n_pes - 1) / n_pes};
+}
+
+void Collection::refuse_place(const std::string& index, PeId at) const {
+  check_failed("place()", __FILE__, __LINE__,
+               text("place() of ", name(), " puts the element ", index, " on ", at,
+                    ", but the run has ", pe_.n_pes(), pe_.n_pes() == 1 ? " PE" : " PEs"));
+}
+
 KeptScans& Collection::kept_scans() {
   if (!scans_) scans_ = std::make_unique<KeptScans>();
   return *scans_;

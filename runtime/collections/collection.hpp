@@ -163,6 +163,12 @@ class Collection : public HostedCollection {
   /// The number of bytes that a migration to another process would send.
   [[nodiscard]] virtual std::uint64_t packed_bytes(Element& element) const;
 
+  /// Writes an element: its index, its state and the user's members.
+  using PackElement = void (*)(Element& element, Writer& ar);
+  /// What `pack` writes: the number of bytes, and the bytes.
+  [[nodiscard]] static std::uint64_t n_bytes_of(Element& element, PackElement pack);
+  [[nodiscard]] static Buffer bytes_of(Element& element, PackElement pack);
+
   /// Called after code of the element ran: the element leaves or is destroyed now if that was
   /// requested and none of its code waits.
   virtual void settle(Element& element) = 0;
@@ -214,6 +220,15 @@ class Collection : public HostedCollection {
  protected:
   /// The home of an index, which has the array's type, by the map that the array was created with.
   [[nodiscard]] PeId mapped_home(const void* index) const;
+  /// The ranks in the range, first and end, among which are the initial elements of this PE: its
+  /// block, or all if the class or a map places them.
+  [[nodiscard]] std::pair<std::int64_t, std::int64_t> ranks_of_blocks(bool class_places) const;
+  /// Misuse: place() of the class gave a PE that does not exist.
+  [[noreturn]] void refuse_place(const std::string& index, PeId at) const;
+  /// Reads the user's members from the rest of the bytes; misuse if they read more or less.
+  void read_all_members(Element& element, Reader& ar) const;
+  /// Reads the user's members.
+  virtual void read_members(Element& element, Reader& ar) const = 0;
   /// Writes the index and the user's members.
   virtual void save_element(Element& element, Writer& ar) = 0;
   /// Writes the indices with this home whose elements were destroyed; returns their number.

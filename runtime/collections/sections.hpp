@@ -3,7 +3,7 @@
 //
 // An element becomes a member by the message Join, which the section's root sends to each index of
 // its list. Until then it may contribute already: then it neither moves nor ends before Join has
-// reached it. So a member that ends always knows that it is one, and tells the root.
+// reached it. So a member that ends always knows that it is one, and reports its end to the root.
 //
 // A member receives each multicast once, since the root sends it once (see SectionLists), and in the
 // order of the numbers: what arrives before its turn waits with the member.

@@ -5,7 +5,7 @@
 //     take_in → accept → step → network (when idle, or when due) → idle → rest
 //
 // Invariant: no inbox is read between the first PE's return from its loop and the last PE's, and no
-// PE posts after the last one's. So each PE can take what remains and finish alone.
+// PE posts after the last one's. So each PE can take what remains and finish without the others.
 #pragma once
 
 #include "runtime/base/backoff.hpp"

@@ -54,8 +54,8 @@ struct MemberTraits<R (C::*)(P...) const noexcept> : MemberTraits<R (C::*)(P...)
 template <auto F>
 using EntryTraits = MemberTraits<decltype(F)>;
 
-/// True if some number of type From cannot be a To for its type alone: 3.7 as an integer, a double
-/// as a float, a 64-bit number as one of 32 bits. (A sign is looked at when the number is sent.)
+/// True if the type To cannot hold every number of type From: 3.7 as an integer, a double as a
+/// float, a 64-bit number as one of 32 bits. (Signs are checked when the number is sent.)
 template <class To, class From>
 inline constexpr bool loses_digits =
     std::is_arithmetic_v<To> && std::is_arithmetic_v<From> && !std::is_same_v<To, bool> &&

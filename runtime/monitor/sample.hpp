@@ -1,4 +1,4 @@
-// What a PE tells the monitor: counters since the start of the run, and what is there now.
+// What a PE reports to the monitor: counters since the start of the run, and what is there now.
 #pragma once
 
 #include "runtime/core/ids.hpp"

@@ -83,7 +83,7 @@ class Meter {
 
   /// From now on each scope is shown to the watch of this PE, with the element of its context.
   void show_to(Pe& pe) { watched_ = &pe; }
-  /// From now on the listener hears of each scope; null: none does. Not owned.
+  /// From now on the listener is called for each scope; null: none is. Not owned.
   void set_listener(ScopeListener* listener) { listener_ = listener; }
 
   // The PE calls these.

@@ -62,7 +62,7 @@ class Runtime final : public Program {
   /// Called before run(). The service lives until the run has ended.
   void serve(ProcessService& service) { service_ = &service; }
   [[nodiscard]] ProcessService& service() { return *service_; }
-  /// Called before run(): the PEs measure their idle time, and the monitor hears of what happens.
+  /// Called before run(): the PEs measure their idle time, and the monitor is called for what happens.
   void watch(ProcessMonitor& monitor);
   /// Null if the run is not monitored.
   [[nodiscard]] ProcessMonitor* monitor() { return monitor_; }

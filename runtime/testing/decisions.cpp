@@ -29,7 +29,7 @@ Label label_of(const Sending& sending) {
     const auto& envelope = static_cast<const Envelope&>(*sending.link);
     return {*envelope.action, envelope.source, envelope.target};
   }
-  PackedHeader header;  // where messages are intercepted, each is packed alone
+  PackedHeader header;  // where messages are intercepted, each has a buffer of its own
   std::memcpy(&header, sending.bytes.subspan(sizeof(PackedFrom)).data(), sizeof header);
   return {static_cast<const Action&>(Registry::at(header.action)), header.source, header.target};
 }

@@ -1,5 +1,6 @@
 #include "runtime/collections/arrays/array_of.hpp"
 
+#include "runtime/collections/arrays/arrival.hpp"
 #include "runtime/collections/arrays/moving.hpp"
 #include "runtime/collections/arrays/routing.hpp"
 #include "runtime/collections/arrays/saving.hpp"
@@ -9,5 +10,9 @@ namespace tess::detail {
 template class ArrayOf<Index1>;
 template class ArrayOf<Index2>;
 template class ArrayOf<Index3>;
+
+template struct Arrival<Index1>;
+template struct Arrival<Index2>;
+template struct Arrival<Index3>;
 
 }  // namespace tess::detail

@@ -25,7 +25,11 @@
 #include "runtime/location/index_table.hpp"
 #include "runtime/scheduler/block.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -83,13 +87,16 @@ enum class DeadLetters : std::uint8_t {
 };
 
 template <class Index>
+struct Arrival;
+struct ArrivalAction;
+
+template <class Index>
 class ArrayOf : public Collection {
  public:
   using Indexed = TessIndexedElement<Index>;
   using CallMessage = ElementMessage<Index>;
 
-  ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
-      : Collection(pe, id, std::move(name), range), block_map_(range, pe.n_pes()), table_(range) {}
+  ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range);
   ArrayOf(const ArrayOf&) = delete;
   ArrayOf& operator=(const ArrayOf&) = delete;
   ~ArrayOf() override;
@@ -131,18 +138,21 @@ class ArrayOf : public Collection {
 
   /// A message has arrived; it runs if its element is here.
   void arrive(CallMessage* message) {
-    if (message->receiver != nullptr && message->n_departures == n_departures_) [[likely]] {
-      execute(static_cast<Indexed&>(*message->receiver), message);
-      return;
+    if (message->receiver == nullptr || message->n_departures != n_departures_) {
+      message->receiver = nullptr;
+      Record* record = table_.find(message->index);
+      if (record == nullptr || record->state() != IndexState::here) [[unlikely]]
+        return route(message, record);
+      message->receiver = record->element();
     }
-    message->receiver = nullptr;
-    Record* record = table_.find(message->index);
-    if (record != nullptr && record->state() == IndexState::here) [[likely]] {
-      execute(*record->element(), message);
-    } else {
-      route(message, record);
-    }
+    execute(static_cast<Indexed&>(*message->receiver), message);
   }
+
+  /// Runs a message to an element of an array with this type of index (Action::run). It waits if the
+  /// array is not known here yet.
+  static void run_message(Pe& pe, Envelope* envelope);
+  /// Ends such a message whose array has ended. Returns the number of dead letters, 0 or 1.
+  static std::uint64_t drop_message(Pe& pe, Envelope& envelope);
 
   /// The element of this index if it may be called now, inside another entry method; otherwise null.
   [[nodiscard]] Indexed* free_to_run(const Index& index) {
@@ -199,6 +209,11 @@ class ArrayOf : public Collection {
   void restore_sections(Reader& ar) override;
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;
+  [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override;
+  /// An element arrives from another PE.
+  void take_in(Arrival<Index>& arrival);
+  /// An element that arrives after the end of its array is destroyed, and no epoch waits for it.
+  static std::uint64_t drop_arrival(Pe& pe, Envelope& envelope);
   [[nodiscard]] std::string constructed_text(const void* index) const override {
     return name() + index_text(*static_cast<const Index*>(index));
   }
@@ -252,8 +267,15 @@ class ArrayOf : public Collection {
   /// Constructs an element by its default constructor; misuse if it has none.
   virtual Indexed* construct_default() = 0;
   virtual void destroy(Indexed& element) = 0;
-  /// Sends the element to another PE; it is no longer listed here.
-  virtual void ship(Indexed& element, PeId to, Memberships&& memberships) = 0;
+  /// The action of its migrating elements; null if the class cannot migrate.
+  [[nodiscard]] virtual const ArrivalAction* arrival_action() const = 0;
+#ifdef TESS_CHECKS_ALL
+  /// Describes how the element differs from the members that were sent; empty if it does not.
+  [[nodiscard]] virtual std::string difference_from(std::span<const std::byte> sent,
+                                                    Indexed& element) const = 0;
+#endif
+  /// Constructs an element that is to be read from bytes.
+  Indexed* construct_again(const Index& index);
   [[nodiscard]] virtual DeadLetters dead_letters() const = 0;
 
   /// Constructs an element on this PE.
@@ -274,9 +296,6 @@ class ArrayOf : public Collection {
     run_after_construction();
   }
 
-  /// Adds an element that arrived from another PE.
-  void add_arrived(Indexed* element, PeId from, Memberships&& memberships);
-
   void destroy_all();
   /// Adds an element that was read from a checkpoint.
   void add_restored(Indexed& element, std::uint32_t incarnation);
@@ -293,6 +312,8 @@ class ArrayOf : public Collection {
   static constexpr std::uint8_t most_hops = 6;
   static constexpr std::size_t most_hints = 1U << 18U;
 
+  /// Adds an element that arrived from another PE.
+  void add_arrived(Indexed* element, PeId from, Memberships&& memberships);
   void add_constructed(Indexed& element, const Index& index, Version version);
   void execute(Indexed& element, CallMessage* message);
   /// insert() of an element that exists: misuse unless the message allows for that.
@@ -309,6 +330,8 @@ class ArrayOf : public Collection {
   void grant(const Index& index, Version version);
   void forward(CallMessage* message, const Place& place);
   void depart(Indexed& element, PeId to);
+  /// Sends the element to another PE; it is no longer listed here.
+  void ship(Indexed& element, PeId to, Memberships&& memberships);
   void destroy_here(Indexed& element);
   void dead_letter(CallMessage* message);
   void end_element(Indexed& element);

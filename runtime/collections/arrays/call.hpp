@@ -1,19 +1,19 @@
-// The typed messages of an array: calls of entry methods, constructor calls, migrating elements,
-// and broadcasts.
+// The typed messages of an array: calls of entry methods, constructor calls, and broadcasts.
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"
 #include "runtime/collections/elements/make_chare.hpp"
-#include "runtime/core/round_trip.hpp"
 #include "runtime/messages/entry_attributes.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/block.hpp"
 
+#ifdef TESS_CHECKS_ALL
+#include "runtime/core/round_trip.hpp"
+#endif
+
 namespace tess::detail {
 
-template <class C>
-class Array;
-
+#ifdef TESS_CHECKS_ALL
 /// Describes the first argument that differs after a round trip through bytes; empty if all are
 /// equal.
 template <class... T>
@@ -25,6 +25,7 @@ template <class... T>
   std::apply([&look](const auto&... argument) { (look(argument), ...); }, arguments);
   return found;
 }
+#endif
 
 /// The packed size of a message's arguments.
 template <class... T>
@@ -61,22 +62,7 @@ struct TypedMessage : ElementMessage<typename C::Index> {
 #endif
     return pe.stamp(message);
   }
-  static void run(Pe& pe, Envelope* envelope) {
-    auto* message = static_cast<Derived*>(envelope);
-    Collection* collection = find_collection(pe, message->collection);
-    if (collection == nullptr) [[unlikely]] {
-      pe.keep_early(message->collection, envelope, &drop);
-      return;
-    }
-    static_cast<ArrayOf<Index>*>(collection)->arrive(message);
-  }
-  static std::uint64_t drop(Pe& pe, Envelope& envelope) {
-    const auto& of = static_cast<const ElementAction<Index>&>(*envelope.action);
-    if (of.undelivered != nullptr)
-      of.undelivered(pe, static_cast<ElementMessage<Index>&>(envelope));
-    pe.completion().processed(envelope.epoch);
-    return of.n_dead_letters();
-  }
+  static constexpr Action::Run run = &ArrayOf<Index>::run_message;
   static void destroy(Envelope* envelope) {
     auto* message = static_cast<Derived*>(envelope);
     message->~Derived();
@@ -207,45 +193,6 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
   }
   static inline const ElementAction<Index> entry{std::type_identity<Awakening>{},
                                                  &Awakening::invoke, nullptr, Traffic::control};
-};
-
-/// A migrating element. Within a process the object itself travels (except with TESS_CHECKS=all);
-/// between processes its serialised state.
-template <class C>
-struct Arrival final : Envelope {
-  CollectionId collection{};
-  PeId from{};
-  C* element = nullptr;
-  Buffer state;  // the serialised state, once the object is gone
-  Memberships memberships;
-
-  static void run(Pe& pe, Envelope* envelope) {
-    auto* arrival = static_cast<Arrival*>(envelope);
-    Collection* collection = find_collection(pe, arrival->collection);
-    if (collection == nullptr) {
-      pe.keep_early(arrival->collection, envelope, &drop);
-      return;
-    }
-    static_cast<Array<C>*>(collection)->take_in(*arrival);
-    destroy(envelope);
-  }
-  static void destroy(Envelope* envelope) {
-    auto* arrival = static_cast<Arrival*>(envelope);
-    delete arrival->element;
-    delete arrival;
-  }
-  /// The array has ended: the element is destroyed with the message, and no epoch waits for it.
-  static std::uint64_t drop(Pe& pe, Envelope& envelope);
-  /// Replaces the object by its bytes.
-  void pack_state();
-  static void pack(Envelope& envelope, Writer& ar);
-  static Envelope* unpack(Pe& /*pe*/, Reader& ar) {
-    auto arrival = std::make_unique<Arrival>();
-    ar(arrival->collection, arrival->from, arrival->state, arrival->memberships);
-    return arrival.release();
-  }
-  static inline const Action entry{naming::name_of<Arrival>(), &run, &destroy, &pack, &unpack,
-                                   Traffic::migration};
 };
 
 /// A call of entry method F of all elements.

@@ -3,7 +3,12 @@
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"
+#include "runtime/collections/arrays/arrival.hpp"
 #include "runtime/collections/ending.hpp"
+
+#include <memory>
+#include <span>
+#include <string>
 
 namespace tess::detail {
 
@@ -22,6 +27,84 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
   pe_.completion().sent(pe_.context().epoch);
   ship(element, to, leave_sections(element));
   reductions().advance();
+}
+
+template <class Index>
+void ArrayOf<Index>::ship(Indexed& element, PeId to, Memberships&& memberships) {
+  const ArrivalAction* action = arrival_action();
+  TESS_CHECK(action != nullptr, name(),
+             " cannot migrate: it needs a default constructor and serialize()");
+  auto* arrival = pe_.stamp(new Arrival<Index>());
+  arrival->action = action;
+  arrival->collection = id();
+  arrival->from = pe_.id();
+  arrival->element = &element;
+  arrival->memberships = std::move(memberships);
+#ifdef TESS_CHECKS_ALL
+  // Within a process the element is also rebuilt from its bytes, so members that serialize()
+  // omits are lost on one PE as they are on a cluster.
+  arrival->pack_state();
+#endif
+  pe_.send(to, arrival);
+}
+
+template <class Index>
+auto ArrayOf<Index>::construct_again(const Index& index) -> Indexed* {
+  const Pe::Construction construction(pe_, &index, this);
+  Indexed* const element = construct_default();
+  // The first construction has already done what the constructor asks for.
+  drop_after_construction();
+  element->migrate_to_ = PeId{-1};
+  element->destroy_requested_ = false;
+  return element;
+}
+
+template <class Index>
+void ArrayOf<Index>::take_in(Arrival<Index>& arrival) {
+  if (arrival.element == nullptr) {
+    const std::span<const std::byte> state(arrival.state.data(), arrival.state.size());
+    Reader ar(state);
+    const auto index = ar.template take<Index>();
+    arrival.element = construct_again(index);
+    ar(arrival.element->state_);
+    unpack_record(*arrival.element, ar);
+    [[maybe_unused]] const auto sent = state.last(ar.remaining());
+    read_all_members(*arrival.element, ar);
+#ifdef TESS_CHECKS_ALL
+    const std::string difference = difference_from(sent, *arrival.element);
+    TESS_CHECK(difference.empty(), index_text(index), " of ", difference);
+#endif
+  }
+  add_arrived(std::exchange(arrival.element, nullptr), arrival.from,
+              std::move(arrival.memberships));
+}
+
+template <class Index>
+std::uint64_t ArrayOf<Index>::drop_arrival(Pe& pe, Envelope& envelope) {
+  auto& arrival = static_cast<Arrival<Index>&>(envelope);
+  if (arrival.element != nullptr) {
+    drop_record(pe, *arrival.element);
+  } else {
+    Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
+    (void)ar.template take<Index>();
+    drop_record(pe, ar);
+  }
+  tess::detail::drop(pe, arrival.memberships);
+  pe.completion().processed(arrival.epoch);
+  if (arrival.element == nullptr) return 0;
+  // The part of the array that the element left may have been freed, but its destructor may call
+  // array().
+  const auto& action = static_cast<const ArrivalAction&>(*arrival.action);
+  const std::unique_ptr<Collection> gone = action.kind.make(pe, arrival.collection, Range{});
+  arrival.element->collection_ = gone.get();
+  delete std::exchange(arrival.element, nullptr);
+  return 0;
+}
+
+template <class Index>
+std::uint64_t ArrayOf<Index>::packed_bytes(Element& element) const {
+  const ArrivalAction* action = arrival_action();
+  return action == nullptr ? 0 : n_bytes_of(element, action->pack_element);
 }
 
 template <class Index>

@@ -6,6 +6,30 @@
 namespace tess::detail {
 
 template <class Index>
+ArrayOf<Index>::ArrayOf(Pe& pe, CollectionId id, std::string name, const Range& range)
+    : Collection(pe, id, std::move(name), range), block_map_(range, pe.n_pes()), table_(range) {}
+
+template <class Index>
+void ArrayOf<Index>::run_message(Pe& pe, Envelope* envelope) {
+  auto* message = static_cast<CallMessage*>(envelope);
+  Collection* collection = find_collection(pe, message->collection);
+  if (collection == nullptr) [[unlikely]] {
+    pe.keep_early(message->collection, envelope, &drop_message);
+    return;
+  }
+  static_cast<ArrayOf*>(collection)->arrive(message);
+}
+
+template <class Index>
+std::uint64_t ArrayOf<Index>::drop_message(Pe& pe, Envelope& envelope) {
+  const auto& action = static_cast<const ElementAction<Index>&>(*envelope.action);
+  if (action.undelivered != nullptr)
+    action.undelivered(pe, static_cast<ElementMessage<Index>&>(envelope));
+  pe.completion().processed(envelope.epoch);
+  return action.n_dead_letters();
+}
+
+template <class Index>
 void ArrayOf<Index>::add_constructed(Indexed& element, const Index& index, Version version) {
   element.state_.version = version;
   register_new(element);

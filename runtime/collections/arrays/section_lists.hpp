@@ -9,8 +9,8 @@
 //     not listed A member that has joined since gets ordinary messages from the root; one that has not
 //                joined yet gets all multicasts once it has.
 //
-// So it is settled when a multicast is numbered which PE sends it to a member, and a stale list costs
-// a hop, nothing else. A member that gets an ordinary message reports its place to the root. Once the
+// So when a multicast is numbered, it is decided which PE sends it to each member, and a stale list
+// costs only a hop. A member that gets an ordinary message reports its place to the root. Once the
 // stale entries are a sixteenth of the members the root makes new lists: their next generation. A PE
 // keeps a generation until it has delivered all its multicasts (Retire gives their number).
 //

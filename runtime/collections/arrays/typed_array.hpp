@@ -6,12 +6,12 @@
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"
+#include "runtime/collections/arrays/arrival.hpp"
 #include "runtime/collections/arrays/call.hpp"
 #include "runtime/collections/arrays/moving.hpp"
 #include "runtime/collections/arrays/routing.hpp"
 #include "runtime/collections/arrays/saving.hpp"
 #include "runtime/collections/elements/make_chare.hpp"
-#include "runtime/messages/read_all.hpp"
 
 #include <array>
 #include <memory>
@@ -53,6 +53,10 @@ template <class Index>
                                         static_cast<std::uint64_t>(n_pes))};
 }
 
+/// Names the action of arriving elements of C.
+template <class C>
+struct ArrivalOf;
+
 template <class C>
 class Array final : public ArrayOf<typename C::Index> {
  public:
@@ -71,9 +75,7 @@ class Array final : public ArrayOf<typename C::Index> {
       return this->mapped_home(&index);
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
       const PeId at = C::place(index, this->pe_.n_pes());
-      TESS_CHECK(at.value >= 0 && at.value < this->pe_.n_pes(), "place() of ", this->name(),
-                 " puts the element ", index_text(index), " on ", at, ", but the run has ",
-                 this->pe_.n_pes(), this->pe_.n_pes() == 1 ? " PE" : " PEs");
+      if (at.value < 0 || at.value >= this->pe_.n_pes()) this->refuse_place(index_text(index), at);
       return at;
     } else {
       if constexpr (Coordinates<Index>) {
@@ -91,19 +93,10 @@ class Array final : public ArrayOf<typename C::Index> {
     constexpr bool constructs =
         sizeof...(Args) > 0 || OnePerPe<C> || std::is_default_constructible_v<C>;
     if constexpr (Coordinates<Index> && constructs) {
-      const auto size = static_cast<std::int64_t>(this->range().size());
-      std::int64_t first = 0, last = size;
-      if constexpr (OnePerPe<C>) {
-        first = this->pe_.id().value;
-        last = first + 1;
-      } else if (!requires(Index i) { C::place(i, 1); } && this->index_map() == nullptr) {
-        const auto rank = static_cast<std::int64_t>(this->pe_.id().value);
-        const std::int64_t n_pes = this->pe_.n_pes();
-        first = (rank * size + n_pes - 1) / n_pes;
-        last = ((rank + 1) * size + n_pes - 1) / n_pes;
-      }
+      constexpr bool places = !OnePerPe<C> && requires(Index i) { C::place(i, 1); };
       this->construct_initial([&] {
-        for (std::int64_t rank = first; rank < last; ++rank) {
+        const std::pair<std::int64_t, std::int64_t> ranks = this->ranks_of_blocks(places);
+        for (std::int64_t rank = ranks.first; rank < ranks.second; ++rank) {
           const auto index = index_at<Index>(this->range(), rank);
           if (home(index) != this->pe_.id()) continue;
           this->construct(index, Version{1, 1}, [&args...] { return make_chare<C>(args...); });
@@ -115,52 +108,14 @@ class Array final : public ArrayOf<typename C::Index> {
   /// The runtime's part of an element: the user's class may have members of the same names.
   static Indexed& own(C& element) { return element; }
 
-  void take_in(Arrival<C>& arrival) {
-    if (arrival.element == nullptr) {
-      if constexpr (Migratable<C>) {
-        const std::span<const std::byte> state(arrival.state.data(), arrival.state.size());
-        Reader ar(state);
-        const auto index = ar.template take<Index>();
-        arrival.element = construct_again(index);
-        ar(own(*arrival.element).state_);
-        this->unpack_record(*arrival.element, ar);
-        [[maybe_unused]] const auto sent = state.last(ar.remaining());
-        read_members(*arrival.element, ar);
-#ifdef TESS_CHECKS_ALL
-        const std::string difference = difference_from_bytes(sent, *arrival.element);
-        TESS_CHECK(difference.empty(), index_text(index), " of ", difference);
-#endif
-      }
-    }
-    this->add_arrived(std::exchange(arrival.element, nullptr), arrival.from,
-                      std::move(arrival.memberships));
-  }
-
-  static void pack_element(C& element, Writer& ar) {
+  /// Writes an element: its index, its state and the user's members.
+  static void pack_element(Element& element, Writer& ar) {
     if constexpr (Migratable<C>) {
-      ar(own(element).index_, own(element).state_);
-      Base::pack_record(own(element), ar);
-      element.serialize(ar);
+      C& chare = static_cast<C&>(element);
+      ar(own(chare).index_, own(chare).state_);
+      Base::pack_record(own(chare), ar);
+      chare.serialize(ar);
     }
-  }
-
-  /// An element that arrives after the end of the array is destroyed.
-  static void drop(Pe& pe, Arrival<C>& arrival) {
-    if (arrival.element != nullptr) {
-      Base::drop_record(pe, own(*arrival.element));
-    } else {
-      Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
-      (void)ar.template take<Index>();
-      Base::drop_record(pe, ar);
-    }
-    tess::detail::drop(pe, arrival.memberships);
-    pe.completion().processed(arrival.epoch);
-    if (arrival.element == nullptr) return;
-    // The part of the array that the element left may have been freed, but its destructor may call
-    // array().
-    Array gone(pe, arrival.collection, Range{});
-    own(*arrival.element).collection_ = &gone;
-    delete std::exchange(arrival.element, nullptr);
   }
 
   void resume(Element& element) override {
@@ -186,12 +141,6 @@ class Array final : public ArrayOf<typename C::Index> {
       return static_cast<const C&>(element).describe_state();
     return Base::state_of(element);
   }
-  [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override {
-    Writer count{std::span<std::byte>()};
-    pack_element(static_cast<C&>(element), count);
-    return count.n_bytes();
-  }
-
   [[nodiscard]] bool migratable() const override { return Migratable<C> && !OnePerPe<C>; }
   [[nodiscard]] const CollectionKind& kind() const override { return kind_; }
 
@@ -200,13 +149,13 @@ class Array final : public ArrayOf<typename C::Index> {
     if (!alive) return this->restore_destroyed(index, incarnation);
     if constexpr (Migratable<C>) {
       if constexpr (OnePerPe<C>) index = Index{this->pe_.id().value};
-      std::unique_ptr<C> element(construct_again(index));
-      read_members(*element, ar);
+      std::unique_ptr<Indexed> element(this->construct_again(index));
+      this->read_all_members(*element, ar);
       if (!OnePerPe<C> || this->n_local() == 0)
         return this->add_restored(*element.release(), incarnation);
-      own(*element).collection_ = this;
+      element->collection_ = this;
       if constexpr (Absorbs<C>)
-        static_cast<C&>(*this->elements().front()).absorb(std::move(*element));
+        static_cast<C&>(*this->elements().front()).absorb(std::move(static_cast<C&>(*element)));
     }
   }
   void restored() override {
@@ -239,22 +188,18 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   void destroy(Indexed& element) override { delete &static_cast<C&>(element); }
-  void ship(Indexed& element, PeId to, Memberships&& memberships) override {
-    TESS_CHECK(Migratable<C>, this->name(),
-               " cannot migrate: it needs a default constructor and serialize()");
-    Pe& pe = this->pe_;
-    auto* arrival = pe.stamp(new Arrival<C>());
-    arrival->action = &Arrival<C>::entry;
-    arrival->collection = this->id();
-    arrival->from = pe.id();
-    arrival->element = &static_cast<C&>(element);
-    arrival->memberships = std::move(memberships);
+  [[nodiscard]] const ArrivalAction* arrival_action() const override {
+    return Migratable<C> ? &arrival_ : nullptr;
+  }
 #ifdef TESS_CHECKS_ALL
-    // Within a process the element is also rebuilt from its bytes, so members that serialize()
-    // omits are lost on one PE as they are on a cluster.
-    arrival->pack_state();
+  [[nodiscard]] std::string difference_from(std::span<const std::byte> sent,
+                                            Indexed& element) const override {
+    if constexpr (Migratable<C>) return difference_from_bytes(sent, static_cast<C&>(element));
+    return {};
+  }
 #endif
-    pe.send(to, arrival);
+  void read_members(Element& element, Reader& ar) const override {
+    if constexpr (Migratable<C>) static_cast<C&>(element).serialize(ar);
   }
   void save_element(Element& element, Writer& ar) override {
     if constexpr (Migratable<C>) {
@@ -274,24 +219,6 @@ class Array final : public ArrayOf<typename C::Index> {
   }
 
  private:
-  /// Constructs an element that is to be read from bytes.
-  C* construct_again(const Index& index) {
-    const Pe::Construction construction(this->pe_, &index, this);
-    C* const element = make_chare<C>();
-    // The first construction has already done what the constructor asks for.
-    this->drop_after_construction();
-    own(*element).migrate_to_ = PeId{-1};
-    own(*element).destroy_requested_ = false;
-    return element;
-  }
-  void read_members(C& element, Reader& ar) {
-    read_all(
-        ar, [&] { return this->name() + index_text(own(element).index_); },
-        [&element](Reader& rest) {
-          element.serialize(rest);
-          return true;
-        });
-  }
   static std::unique_ptr<Collection> make(Pe& pe, CollectionId id, const Range& range) {
     return std::make_unique<Array>(pe, id, range);
   }
@@ -303,30 +230,9 @@ class Array final : public ArrayOf<typename C::Index> {
                                            : Absorbs<C> ? CollectionKind::Members::absorbed
                                                         : CollectionKind::Members::fixed,
                                            &make};
+  static inline const ArrivalAction arrival_{naming::name_of<ArrivalOf<C>>(),
+                                             std::type_identity<Index>(), &pack_element, kind_};
 };
-
-template <class C>
-void Arrival<C>::pack(Envelope& envelope, Writer& ar) {
-  auto& arrival = static_cast<Arrival&>(envelope);
-  if (arrival.element != nullptr) arrival.pack_state();
-  ar(arrival.collection, arrival.from, arrival.state, arrival.memberships);
-}
-
-template <class C>
-std::uint64_t Arrival<C>::drop(Pe& pe, Envelope& envelope) {
-  Array<C>::drop(pe, static_cast<Arrival&>(envelope));
-  return 0;
-}
-
-template <class C>
-void Arrival<C>::pack_state() {
-  Writer count{std::span<std::byte>()};
-  Array<C>::pack_element(*element, count);
-  state.resize(count.n_bytes());
-  Writer write{std::span(state.data(), state.size())};
-  Array<C>::pack_element(*element, write);
-  delete std::exchange(element, nullptr);
-}
 
 }  // namespace detail
 

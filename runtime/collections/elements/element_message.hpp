@@ -58,7 +58,7 @@ struct ElementAction : Action {
   template <class Message>
   explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
                          Traffic t = Traffic::user, Undelivered u = nullptr)
-      : Action(naming::name_of<Message>(), &Message::run, &Message::destroy, &Message::pack,
+      : Action(naming::name_of<Message>(), Message::run, &Message::destroy, &Message::pack,
                &Message::unpack, t, priority_function<Message>()),
         invoke(i),
         construct(c),

@@ -1,4 +1,5 @@
-// What the runtime tells the monitor of its process (--monitor). The monitor layer implements it.
+// The interface by which the runtime reports to the monitor of its process (--monitor). The monitor
+// layer implements it.
 #pragma once
 
 #include <string>

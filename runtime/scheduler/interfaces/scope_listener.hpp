@@ -1,4 +1,4 @@
-// What the heat maps of the live view hear from a PE's meter.
+// The interface by which a PE's meter reports its scopes to the heat maps of the live view.
 #pragma once
 
 #include <cstdint>
