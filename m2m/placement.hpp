@@ -1,5 +1,7 @@
 // Set-up of a distributed mesh by all PEs together: no PE holds the whole mesh. A group, one Placer
-// per PE, is led by place() in steps that each end with an epoch or a reduction:
+// per PE, is led by place(). All PEs wait for each other after `read`, after each round of `count`,
+// and before the owners of points are decided; without a halo, for the rest a PE knows how many
+// tetrahedra, points and lists of ghosts it gets, and goes on when they are here:
 //
 //     read      every PE reads a range of the points, of which it is the keeper, and of the tetrahedra
 //     corners   asks the keepers for the corners of its tetrahedra; both are checked as by validate()
