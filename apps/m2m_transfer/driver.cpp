@@ -16,6 +16,7 @@
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/read_mesh.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -93,7 +94,11 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   const Request request = single_request(options);
   plot::require_writable("--json", options.json);
   plot::require_writable("--out", options.out);
+  require_result_format(options.out);
   plot::require_writable("--picture", options.picture);
+  if (!options.picture.empty() && !options.picture.ends_with(".svg"))
+    fail(ErrorCode::bad_argument, "--picture ", options.picture,
+         ": pictures are SVG; give a file that ends in .svg");
   Problem problem = read(request, progress);
   problem.collects = !options.out.empty() || !options.picture.empty();
   if (options.explain) {

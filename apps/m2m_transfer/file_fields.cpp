@@ -289,6 +289,7 @@ void check_options(const FileFieldsRequest& request) {
   if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind), request.clamp);
   plot::require_writable("--weights", request.weights);
   plot::require_writable("--out", request.out);
+  require_result_format(request.out);
 }
 
 }  // namespace

@@ -71,8 +71,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "point, or 'B:translate(0.1,0,0)'; repeat for several");
   line.option(
       "--out", options.out,
-      "write the target mesh with the fields and the status to this file: VTU if it ends in "
-      ".vtu, otherwise ExodusII; with several targets to FILE.B.exo, FILE.C.exo");
+      "write the target mesh with the fields and the status to this file: ExodusII if it ends in "
+      ".exo, .e, .ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu; with several targets to "
+      "FILE.B.exo, FILE.C.exo");
   line.option("--step", options.step,
               "step of the fields that the source file has: a number from 0 on, or all (default: "
               "the last); --out then holds all steps");

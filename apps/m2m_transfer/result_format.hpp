@@ -1,4 +1,4 @@
-// The format of a result: ExodusII, or VTU if the path ends in .vtu.
+// The format of a result: the ending of its path chooses ExodusII or VTU.
 #pragma once
 
 #include "apps/m2m_transfer/names.hpp"
@@ -6,14 +6,31 @@
 #include "m2m/mesh.hpp"
 #include "m2m/write_exodus.hpp"
 #include "m2m/write_vtu.hpp"
+#include "runtime/core/error.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace m2m_transfer {
 
 [[nodiscard]] inline bool is_vtu(const std::string& path) {
   return path.ends_with(".vtu");
+}
+
+/// The path of a result, or empty. Throws Error (bad_argument) if its ending names no format that is
+/// written.
+inline void require_result_format(const std::string& path) {
+  constexpr std::array<std::string_view, 8> endings{".vtu", ".exo",  ".e",   ".ex2",
+                                                    ".g",   ".exii", ".gen", ".ncdf"};
+  const bool is_known = std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) {
+    return path.ends_with(ending);
+  });
+  if (!path.empty() && !is_known)
+    fail(ErrorCode::bad_argument, "--out ", path,
+         ": the ending chooses the format; give .exo (ExodusII) or .vtu (VTK)");
 }
 
 /// Throws Error (bad_file) with the path if it cannot be written.
