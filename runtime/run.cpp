@@ -20,12 +20,15 @@
 namespace tess {
 namespace {
 
-std::int32_t whole_number(std::string_view option, std::string_view value, std::int32_t least) {
+/// Each PE is a thread; far more of them than cores only wait for each other.
+constexpr std::int32_t most_pes = 4096;
+
+std::int32_t number_of_pes(std::string_view value) {
   std::int32_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc() || end != value.data() + value.size() || number < least)
-    fail(ErrorCode::bad_argument, option, ": ", value, " is not a whole number of at least ",
-         least);
+  if (error != std::errc() || end != value.data() + value.size() || number < 1 || number > most_pes)
+    fail(ErrorCode::bad_argument, "--pes: ", value, " is not a whole number from 1 to ", most_pes,
+         "; --sim pes=N simulates more");
   return number;
 }
 
@@ -178,7 +181,7 @@ Setup take_options(int& argc, char** argv) {
       return false;
     };
     if (takes_value("--pes")) {
-      pes = whole_number("--pes", value, 1);
+      pes = number_of_pes(value);
     } else if (takes_value("--sim")) {
       simulates = true;
       simulated = value;

@@ -52,6 +52,7 @@ refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --v
 refuses "--voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
+refuses "--pes: 100000 is not a whole number from 1 to 4096" "$bin/hello" --pes 100000
 refuses --nonsense "$bin/hello" --nonsense
 refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy nearest
 refuses SOURCE "${transfer[@]}"
