@@ -104,14 +104,14 @@ class Tourist : public tess::Chare<Tourist, tess::Index1> {
 };
 
 /// A vector on its way to another process.
-struct Load {
+struct Shipped {
   nanoseconds sent_at{0};
   std::vector<char> bytes{};
 };
 nanoseconds took{0};
 class Parcels : public tess::Group<Parcels> {
  public:
-  void take(const Load& load) { took = tess::now() - load.sent_at; }
+  void take(const Shipped& load) { took = tess::now() - load.sent_at; }
 };
 
 /// Gives the number of messages that each PE has run.
@@ -199,7 +199,7 @@ TEST_CASE("both ends copy the bytes of packed messages, and none of a large vect
     CAPTURE(n_bytes);
     REQUIRE(simulate("pes=2,per-process=1,bandwidth=1GB/s,process-copy=1GB/s", [n_bytes] {
               tess::create_group<Parcels>()[tess::PeId{1}].send<&Parcels::take>(
-                  Load{tess::now(), std::vector<char>(n_bytes)});
+                  Shipped{tess::now(), std::vector<char>(n_bytes)});
             }) == 0);
     const auto bytes = static_cast<std::int64_t>(n_bytes);
     const std::int64_t under_way = bytes + latency.count();  // a nanosecond per byte
