@@ -2,7 +2,7 @@
 # Each misuse of a coupling ends the job with exit code 1 and a line that says what is wrong.
 #
 #     misuse.sh PROGRAM
-source "$(dirname "$0")/../support/checks.sh"
+source "$(dirname "$0")/../../support/checks.sh"
 program=$1
 
 # ends MISUSE TEXT: for kinds of each sort, in one process and between processes.
