@@ -30,6 +30,10 @@ class MemberWriter {
   void operator()(const T&... values) {
     (members.push_back({name_of_type<T>, to_bytes(values)}), ...);
   }
+  void bytes(const void* data, std::size_t n) {
+    const auto* first = static_cast<const std::byte*>(data);
+    members.push_back({"bytes", {first, first + n}});
+  }
   std::vector<Member> members;
 };
 
