@@ -87,11 +87,17 @@ CollectionId create_collection(const Range& range, Args&&... args) {
   return id;
 }
 
+/// Checks the class of create().
+template <class C>
+consteval void check_class() {
+  static_assert(IsChare<C>, "create<C>() needs a class C that derives from tess::Chare<C, Index>");
+  static_assert(!OnePerPe<C>, "a group is made by create_group()");
+}
+
 /// Checks the arguments of create().
 template <class C, class... Args>
 void check_creation(const Range& range) {
-  static_assert(IsChare<C>, "create<C>() needs a class C that derives from tess::Chare<C, Index>");
-  static_assert(!OnePerPe<C>, "a group is made by create_group()");
+  check_class<C>();
   // Without coordinates there are no initial elements, and insert() has its own arguments.
   static_assert(
       (!Coordinates<typename C::Index> && sizeof...(Args) == 0) ||
@@ -119,9 +125,7 @@ ArrayProxy<C> create(const Range& range, Args&&... args) {
 /// The same of tess::sparse: no elements yet. The arguments of constructors are those of insert().
 template <class C>
 ArrayProxy<C> create(const Sparse& range) {
-  static_assert(detail::IsChare<C>,
-                "create<C>() needs a class C that derives from tess::Chare<C, Index>");
-  static_assert(!detail::OnePerPe<C>, "a group is made by create_group()");
+  detail::check_class<C>();
   return ArrayProxy<C>(detail::create_collection<C>(range));
 }
 

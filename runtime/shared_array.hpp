@@ -51,24 +51,14 @@ class SharedArray {
   template <class Ar>
   void serialize(Ar& ar) {
     if constexpr (Ar::is_reading) {
-      const auto [n, attached] = ar.length_or_attached(sizeof(T));
       std::vector<T> values;
-      resize_uninitialised(values, n);
-      if (attached)
-        ar.place(values.data(), n * sizeof(T));  // the vector moves, its memory does not
-      else
-        ar.bytes(values.data(), n * sizeof(T));
-      *this = SharedArray(std::move(values));
-    } else if constexpr (std::is_same_v<Ar, Writer>) {
-      const std::uint64_t n = size();
-      if (ar.attach(std::as_bytes(view()), values_)) {
-        ar(n | Reader::attached_bit);
-      } else {
-        ar(n);
-        ar.bytes(data(), n * sizeof(T));
-      }
+      ar.template numbers<T>([&values](std::size_t n) {
+        resize_uninitialised(values, n);
+        return values.data();
+      });
+      *this = SharedArray(std::move(values));  // the vector moves, its memory does not
     } else {
-      ar(values_ ? *values_ : std::vector<T>());  // an archive that only compares
+      ar.numbers(view(), values_);
     }
   }
 

@@ -1,9 +1,9 @@
 #include "apps/m2m_transfer/contradictions.hpp"
 
+#include "apps/plot/write_file.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,13 +39,6 @@ std::vector<Given> result_files(const DriverOptions& o) {
 std::vector<Given> joined(std::vector<Given> a, const std::vector<Given>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
-}
-
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return a == b || std::filesystem::equivalent(a, b, error) ||
-         std::filesystem::absolute(a).lexically_normal() ==
-             std::filesystem::absolute(b).lexically_normal();
 }
 
 }  // namespace
@@ -109,7 +102,7 @@ void refuse_equal_paths(const DriverOptions& o) {
                                      {"--weights", o.weights}}) {
     if (path.empty()) continue;
     for (const auto& [other, other_path] : taken)
-      if (!other_path.empty() && is_same_file(path, other_path))
+      if (plot::is_same_file(path, other_path))
         fail(ErrorCode::bad_argument, option, " ", path, " would overwrite ", other, " ",
              other_path, "; give another file");
     taken.emplace_back(option, path);

@@ -95,10 +95,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   plot::require_writable("--json", options.json);
   plot::require_writable("--out", options.out);
   require_result_format(options.out);
-  plot::require_writable("--picture", options.picture);
-  if (!options.picture.empty() && !options.picture.ends_with(".svg"))
-    fail(ErrorCode::bad_argument, "--picture ", options.picture,
-         ": pictures are SVG; give a file that ends in .svg");
+  plot::require_picture("--picture", options.picture);
   Problem problem = read(request, progress);
   problem.collects = !options.out.empty() || !options.picture.empty();
   if (options.explain) {

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <string>
-#include <system_error>
 
 namespace overset {
 namespace {
@@ -93,13 +92,11 @@ void refuse_contradictions(const Options& options) {
   }
   for (const char* file : {"background.exo", "overset.exo", "before.svg", "after.svg"})
     for (const std::string& input :
-         {options.request.background, options.request.overset, options.request.wall}) {
-      std::error_code error;
+         {options.request.background, options.request.overset, options.request.wall})
       if (!options.plot.empty() &&
-          std::filesystem::equivalent(std::filesystem::path(options.plot) / file, input, error))
+          plot::is_same_file(std::filesystem::path(options.plot) / file, input))
         tess::fail(tess::ErrorCode::bad_argument, "--plot ", options.plot, " would overwrite ",
                    input, "; give another folder");
-    }
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {

@@ -41,8 +41,16 @@ void require_writable(const std::string& option, const std::string& path) {
 }
 
 void require_picture(const std::string& option, const std::string& path) {
-  if (!path.empty()) (void)data_path(path);
   require_writable(option, path);
+  if (!path.empty()) (void)data_path(path);
+}
+
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (a.empty() || b.empty()) return false;
+  std::error_code error;
+  return std::filesystem::equivalent(a, b, error) ||
+         std::filesystem::absolute(a).lexically_normal() ==
+             std::filesystem::absolute(b).lexically_normal();
 }
 
 void write_file(const std::string& path, std::string_view content) {

@@ -83,22 +83,12 @@ class ObjectList {
   void serialize(Ar& ar, const std::shared_ptr<const void>& keeper) {
     ar(several_models_, sources_, source_of_, local_);
     if constexpr (Ar::is_reading) {
-      const auto [n, attached] = ar.length_or_attached(sizeof(Aabb));
-      boxes_.resize(n);
-      if (attached)
-        ar.place(boxes_.data(), n * sizeof(Aabb));
-      else
-        ar.bytes(boxes_.data(), n * sizeof(Aabb));
+      ar.template numbers<Aabb>([this](std::size_t n) {
+        boxes_.resize(n);
+        return boxes_.data();
+      });
     } else {
-      const std::uint64_t n = boxes_.size();
-      if constexpr (std::is_same_v<Ar, Writer>) {
-        if (keeper != nullptr && ar.attach(std::as_bytes(boxes()), keeper)) {
-          ar(n | Reader::attached_bit);
-          return;
-        }
-      }
-      ar(n);
-      ar.bytes(boxes_.data(), n * sizeof(Aabb));
+      ar.numbers(boxes(), keeper);
     }
   }
 

@@ -30,9 +30,9 @@ class MemberWriter {
   void operator()(const T&... values) {
     (members.push_back({name_of_type<T>, to_bytes(values)}), ...);
   }
-  void bytes(const void* data, std::size_t n) {
-    const auto* first = static_cast<const std::byte*>(data);
-    members.push_back({"bytes", {first, first + n}});
+  template <class Each>
+  void numbers(std::span<const Each> values, const std::shared_ptr<const void>& /*keeper*/) {
+    (*this)(std::vector<Each>(values.begin(), values.end()));
   }
   std::vector<Member> members;
 };

@@ -110,15 +110,10 @@ class Writer {
   /// The bytes written, or needed.
   [[nodiscard]] std::size_t n_bytes() const { return n_bytes_; }
 
-  /// Attaches memory that `keeper` holds. Returns false if the memory has to be copied instead. The
-  /// caller then writes the length, with Reader::attached_bit if the memory is attached
-  /// (shared_array.hpp).
-  bool attach(std::span<const std::byte> memory, std::shared_ptr<const void> keeper) {
-    if (attached_ == nullptr || !fits(memory.size())) return false;
-    add_part(memory);
-    attached_->keepers.push_back(std::move(keeper));
-    return true;
-  }
+  /// Writes their number and the numbers, which may be attached if `keeper` keeps them; null: they are
+  /// copied. Reader::numbers() reads them.
+  template <class Each>
+  void numbers(std::span<const Each> values, std::shared_ptr<const void> keeper);
   [[nodiscard]] std::size_t position() const { return n_bytes_; }
   /// Overwrites eight bytes that were written at this position.
   void patch(std::size_t position, std::uint64_t value) {
@@ -130,7 +125,7 @@ class Writer {
   }
 
  private:
-  /// During its lifetime memory is attached only by attach().
+  /// During its lifetime memory is attached only by numbers().
   class CopiesAll {
    public:
     explicit CopiesAll(Writer& writer)
@@ -214,6 +209,22 @@ class Reader {
       refuse_part(n_bytes, " bytes here");
     places_->taken.emplace_back(static_cast<std::byte*>(memory), n_bytes);
   }
+  /// Reads numbers that may be attached: make_room(n) gives their place, which must not move until
+  /// the message runs.
+  template <class Each, class MakeRoom>
+  void numbers(const MakeRoom& make_room) {
+    const auto [n, attached] = length_or_attached(sizeof(Each));
+    Each* const to = make_room(n);
+    if (attached)
+      place(to, n * sizeof(Each));
+    else
+      bytes(to, n * sizeof(Each));
+  }
+  static constexpr std::uint64_t attached_bit = std::uint64_t{1} << 63U;
+
+ private:
+  template <class T>
+  void get(T& value);
   /// The length of data that may be attached, in items of `bytes_each` bytes, and whether it is
   /// attached.
   [[nodiscard]] std::pair<std::size_t, bool> length_or_attached(std::size_t bytes_each) {
@@ -226,11 +237,6 @@ class Reader {
       refuse_part(length, " elements here");
     return {length, true};
   }
-  static constexpr std::uint64_t attached_bit = std::uint64_t{1} << 63U;
-
- private:
-  template <class T>
-  void get(T& value);
   void need(std::size_t n) const {
     if (n > remaining()) refuse_bytes(n);
   }
@@ -252,6 +258,19 @@ class Reader {
   std::size_t at_ = 0;
   detail::Places* places_;
 };
+
+template <class Each>
+void Writer::numbers(std::span<const Each> values, std::shared_ptr<const void> keeper) {
+  const auto memory = std::as_bytes(values);
+  if (keeper != nullptr && attached_ != nullptr && fits(memory.size())) {
+    put(std::uint64_t{values.size() | Reader::attached_bit});
+    add_part(memory);
+    attached_->keepers.push_back(std::move(keeper));
+  } else {
+    put(std::uint64_t{values.size()});
+    bytes(memory.data(), memory.size());
+  }
+}
 
 template <class T>
 void Writer::put(const T& value) {
@@ -359,15 +378,13 @@ void Reader::get(T& value) {
   } else if constexpr (Resizable<T>) {
     using Each = typename T::value_type;
     if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, detail::Buffer>)) {
-      const auto [n, attached] = length_or_attached(sizeof(Each));
-      if constexpr (IsVector<T>::value)
-        resize_uninitialised(value, n);
-      else
-        value.resize(n);
-      if (attached)
-        place(value.data(), n * sizeof(Each));
-      else
-        bytes(value.data(), n * sizeof(Each));
+      numbers<Each>([&value](std::size_t n) {
+        if constexpr (IsVector<T>::value)
+          resize_uninitialised(value, n);
+        else
+          value.resize(n);
+        return value.data();
+      });
     } else if constexpr (Bitwise<Each>) {
       value.resize(length(sizeof(Each)));
       bytes(value.data(), value.size() * sizeof(Each));

@@ -84,7 +84,7 @@ cp "$scratch/box.msh" "$scratch/kept.msh"
 refuses "would overwrite TARGET" "$bin/m2m_transfer" kuhn:2 "$scratch/kept.msh" --out "$scratch/./kept.msh"
 refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --json "$scratch/kept.msh"
 refuses "kept.xyz: the ending chooses the format; give .exo" "${alone[@]}" --out "$scratch/kept.xyz"
-refuses "cut.png: pictures are SVG" "${alone[@]}" --picture "$scratch/cut.png"
+refuses "cut.png: a picture's name must end in .svg" "${alone[@]}" --picture "$scratch/cut.png"
 refuses "would overwrite --out" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
 cmp -s "$scratch/box.msh" "$scratch/kept.msh" || fail "a mesh that is read was overwritten"
 refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps

@@ -94,42 +94,34 @@ struct JoinValues {
   }
 };
 
-/// A piece whose ghosts are no targets, as conservative kinds want it.
-struct Owner : Chare<Owner>, MeshPiece<Owner> {
-  void loaded() {
-    for (const Point& p : mesh.points) field.push_back(std::sin(3 * p[0]) * p[1] + p[2]);
-    result.assign(static_cast<std::size_t>(mesh.n_owned), -100);
-  }
-  [[nodiscard]] MeshView mesh_view() const { return view_of(mesh); }
-  void values(Callback<ValueOf> target) {
-    ValueOf all;
-    for (std::size_t v = 0; v < result.size(); ++v) all[mesh.point_ids[v]] = result[v];
-    contribute(JoinValues{}, std::move(all), std::move(target));
-  }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(couplings, mesh, field, result);
-  }
-  std::vector<double> field, result;
-};
+enum class Targets : std::uint8_t { owned, with_ghosts };
 
-/// The same with targets in its ghosts.
-struct WithGhosts : Chare<WithGhosts>, MeshPiece<WithGhosts> {
+/// Its ghosts are targets or, as conservative kinds want it, not.
+template <Targets targets>
+struct Wave : Chare<Wave<targets>>, MeshPiece<Wave<targets>> {
   void loaded() {
-    for (const Point& p : mesh.points) field.push_back(std::sin(3 * p[0]) * p[1] + p[2]);
-    result.assign(mesh.points.size(), -100);
+    for (const Point& p : this->mesh.points) field.push_back(std::sin(3 * p[0]) * p[1] + p[2]);
+    result.assign(static_cast<std::size_t>(mesh_view().n_owned), -100);
+  }
+  [[nodiscard]] MeshView mesh_view() const {
+    if constexpr (targets == Targets::owned)
+      return view_of(this->mesh);
+    else
+      return MeshPiece<Wave>::mesh_view();
   }
   void values(Callback<ValueOf> target) {
     ValueOf all;
-    for (std::size_t v = 0; v < result.size(); ++v) all[mesh.point_ids[v]] = result[v];
-    contribute(JoinValues{}, std::move(all), std::move(target));
+    for (std::size_t v = 0; v < result.size(); ++v) all[this->mesh.point_ids[v]] = result[v];
+    this->contribute(JoinValues{}, std::move(all), std::move(target));
   }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(couplings, mesh, field, result);
+    ar(this->couplings, this->mesh, field, result);
   }
   std::vector<double> field, result;
 };
+using Owner = Wave<Targets::owned>;
+using WithGhosts = Wave<Targets::with_ghosts>;
 
 /// One transfer of C's field by a kind, between meshes in so many pieces, with the halos of the kind.
 template <class C>
