@@ -108,6 +108,10 @@ void Pe::stop_brief_meter() {
   if (measures_briefly_) idle_meter_ = std::move(meter_);
   measures_briefly_ = false;
 }
+void Pe::forget(const LoadRecord& record) {
+  for (Meter* meter : {meter_.get(), idle_meter_.get()})
+    if (meter != nullptr) meter->forget(&record);
+}
 void Pe::start_trace(std::size_t most_records) {
   start_meter();
   trace_ = std::make_unique<Trace>(most_records);

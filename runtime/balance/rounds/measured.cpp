@@ -34,7 +34,6 @@ void Measured::entered(Element& element) {
 
 void Measured::left(Element& element) {
   BalanceRecord& record = *Collection::record_of(element);
-  meter_.forget(&record.load);
   record.load.of_pe = nullptr;
   if (record.position != BalanceRecord::nowhere) reported_[record.position] = nullptr;
   record.position = BalanceRecord::nowhere;

@@ -2,6 +2,7 @@
 
 #include "runtime/collections/elements/element.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/pe.hpp"
 
 namespace tess::detail {
 namespace {
@@ -20,6 +21,7 @@ struct PackedTraffic {
 }  // namespace
 
 void EndRecord::operator()(BalanceRecord* record) const {
+  if (Pe* const pe = current_pe_or_null()) pe->forget(record->load);
   delete record;
 }
 

@@ -29,7 +29,7 @@ class Collection;
 class Sections;
 struct BalanceRecord;
 
-/// Frees a record; not inline, since most elements have none.
+/// Frees a record, which the meter of this PE forgets; not inline, since most elements have none.
 struct EndRecord {
   void operator()(BalanceRecord* record) const;
 };

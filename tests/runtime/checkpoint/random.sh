@@ -45,7 +45,7 @@ leg() {
   # mpirun may end with 1 where a rank ends with 143.
   if [[ $2 == KILL && $code -ne 137 || $2 == TERM && $code -ne 143 && $code -ne 1 ]] || grep -q 'wrong answer\|deadlock\|expected' "$scratch/leg"; then
     fail "time $i: exit code $code: $1 $problem $options"
-    tail -3 "$scratch/leg"
+    head -40 "$scratch/leg"
   fi
   n_killed=$((n_killed + 1))
   last=$(begun)
