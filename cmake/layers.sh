@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks every include against layers.txt; `--picture` prints rooms, floors and upward arrows of each module instead.
+# Checks every include against layers.txt, and that each arrow and each file there is in use; `--picture` prints rooms, floors and upward arrows of each module instead.
 # `cmake/layers.sh --root ROOT` checks the tree at ROOT, without git.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -53,6 +53,12 @@ sources |
       else if (!((from, to) in allowed)) { ++upward[module_of(from)]; if (!picture) refuse(at[1] ":" at[2] ": " from " may not include " to " (" target ")") }
     }
     END {
+      for (key in allowed) {
+        split(key, pair, SUBSEP)
+        if (!(key in seen) && !picture) refuse(lines ": nothing in " pair[1] " includes " pair[2] ": remove it from its line")
+      }
+      for (file in member)
+        if (system("test -f " file)) refuse(lines ": there is no file " file)
       if (picture) {
         printf "%-10s %6s %7s %7s %s\n", "module", "rooms", "floors", "arrows", "not allowed"
         for (k = 1; k <= n_known; ++k) {  # from below: what a room includes has its floor already
@@ -65,6 +71,6 @@ sources |
         }
         for (key in seen) { split(key, pair, SUBSEP); if (module_of(pair[1]) == module_of(pair[2])) ++n_arrows[module_of(pair[1])] }
         for (module in n_rooms) printf "%-10s %6d %7d %7d %d\n", module, n_rooms[module], top[module], n_arrows[module], upward[module]
-      } else if (!failed) print "layers: every include is allowed"
+      } else if (!failed) print "layers: every include is allowed, every arrow is used"
       exit failed
     }'

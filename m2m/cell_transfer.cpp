@@ -1,7 +1,7 @@
 #include "m2m/cell_transfer.hpp"
 
 #include "m2m/mesh_parts.hpp"
-#include "m2m/parallel/cell_worker.hpp"
+#include "m2m/workers/cell_worker.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 

@@ -1,6 +1,6 @@
 #include "m2m/field_norms.hpp"
 
-#include "m2m/parallel/value_keeper.hpp"
+#include "m2m/workers/value_keeper.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "m2m/field.hpp"
-#include "m2m/parallel/norm_sums.hpp"
-#include "m2m/parallel/scatter.hpp"
+#include "m2m/workers/norm_sums.hpp"
+#include "m2m/workers/scatter.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,8 +1,8 @@
 #include "m2m/placement.hpp"
 
 #include "m2m/io/ranges/mesh_ranges.hpp"
-#include "m2m/parallel/placer.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/workers/placer.hpp"
 #include "runtime/core/error.hpp"
 
 #include <optional>

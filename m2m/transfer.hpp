@@ -48,8 +48,8 @@
 #pragma once
 
 #include "m2m/coupling.hpp"
-#include "m2m/parallel/scatter.hpp"
-#include "m2m/parallel/worker.hpp"
+#include "m2m/workers/scatter.hpp"
+#include "m2m/workers/worker.hpp"
 
 namespace tess::m2m {
 

@@ -1,7 +1,7 @@
 // Fields in elements, moved by each kind between meshes of each type of element.
 #include "m2m/cell_transfer.hpp"
 
-#include "m2m/parallel/cell_worker.hpp"
+#include "m2m/workers/cell_worker.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"

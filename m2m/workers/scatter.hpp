@@ -4,8 +4,8 @@
 
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
-#include "m2m/parallel/worker.hpp"
 #include "m2m/partition_method.hpp"
+#include "m2m/workers/worker.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>

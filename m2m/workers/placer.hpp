@@ -4,10 +4,10 @@
 
 #include "m2m/checks/mesh_findings.hpp"
 #include "m2m/field.hpp"
-#include "m2m/parallel/worker.hpp"
 #include "m2m/partition/curve_cut.hpp"
 #include "m2m/partition/id_set.hpp"
 #include "m2m/partition/split.hpp"
+#include "m2m/workers/worker.hpp"
 
 #include <algorithm>
 #include <array>

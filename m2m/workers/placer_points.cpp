@@ -1,4 +1,4 @@
-#include "m2m/parallel/placer.hpp"
+#include "m2m/workers/placer.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "m2m/parallel/norm_sums.hpp"
+#include "m2m/workers/norm_sums.hpp"
 
 #include <array>
 #include <cmath>

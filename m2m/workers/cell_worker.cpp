@@ -1,4 +1,4 @@
-#include "m2m/parallel/cell_worker.hpp"
+#include "m2m/workers/cell_worker.hpp"
 
 #include "m2m/reconstruct/second_order.hpp"
 

@@ -6,11 +6,11 @@
 // the result of another one completely or not at all.
 #pragma once
 
-#include "m2m/parallel/norm_sums.hpp"
 #include "m2m/parallel/piece.hpp"
-#include "m2m/parallel/value_keeper.hpp"
 #include "m2m/partition/split.hpp"
 #include "m2m/rigid_motion.hpp"
+#include "m2m/workers/norm_sums.hpp"
+#include "m2m/workers/value_keeper.hpp"
 
 #include <cstdint>
 #include <map>

@@ -1,4 +1,4 @@
-#include "m2m/parallel/worker.hpp"
+#include "m2m/workers/worker.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "m2m/parallel/scatter.hpp"
+#include "m2m/workers/scatter.hpp"
 
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"

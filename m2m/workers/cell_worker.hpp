@@ -2,9 +2,9 @@
 #pragma once
 
 #include "m2m/parallel/piece.hpp"
-#include "m2m/parallel/worker.hpp"
 #include "m2m/partition/split.hpp"
 #include "m2m/reconstruct/element_corners.hpp"
+#include "m2m/workers/worker.hpp"
 
 #include <cstdint>
 #include <span>

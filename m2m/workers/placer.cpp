@@ -1,4 +1,4 @@
-#include "m2m/parallel/placer.hpp"
+#include "m2m/workers/placer.hpp"
 
 #include "m2m/io/ranges/mesh_ranges.hpp"
 #include "runtime/core/error.hpp"

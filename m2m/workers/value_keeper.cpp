@@ -1,4 +1,4 @@
-#include "m2m/parallel/value_keeper.hpp"
+#include "m2m/workers/value_keeper.hpp"
 
 #include "m2m/field.hpp"
 #include "runtime/core/check.hpp"
