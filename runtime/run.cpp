@@ -212,6 +212,10 @@ Setup take_options(int& argc, char** argv) {
     fail(ErrorCode::bad_argument, "--sim ", simulated, " --pes ", pes,
          ": the simulated machine has the PEs of its keys; leave --pes out, and write --sim pes=",
          pes, ",…");
+  if (simulates && processes_of_job() != 1)
+    fail(ErrorCode::bad_argument, "--sim ", simulated,
+         ": each process of the job would simulate the whole machine; start the program without "
+         "mpirun, and write --sim pes=N,per-process=M,… for processes of M PEs");
   if (simulates) {
     const SimulatedOptions options = parse_simulated(simulated);
     setup.machine = make_simulated_machine(options);

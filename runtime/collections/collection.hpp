@@ -66,6 +66,8 @@ class Collection : public HostedCollection {
   [[nodiscard]] Sections& sections();
   /// The contributions to scans that wait on this PE; made by the first call.
   [[nodiscard]] KeptScans& kept_scans();
+  /// From now on the messages of its reductions run before those of users. Called on every PE.
+  void expedite_reductions() { reduction_host_.expedite(); }
   /// Sets a library's tree, to which messages of the second track go; the library owns it.
   void set_second_tree(ReductionTree& tree) { second_tree_ = &tree; }
 

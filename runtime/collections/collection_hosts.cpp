@@ -2,6 +2,7 @@
 
 #include "runtime/collections/collection.hpp"
 #include "runtime/collections/collection_action.hpp"
+#include "runtime/messages/entry_attributes.hpp"
 
 namespace tess::detail {
 namespace {
@@ -46,6 +47,12 @@ std::uint64_t NumberedCall::drop(Pe& pe) const {
   return number == 0 ? 1 : 0;
 }
 
+std::int64_t ReductionReport::priority() const {
+  return expedites ? expedited.value : 0;
+}
+std::int64_t ReductionBegin::priority() const {
+  return expedites ? expedited.value : 0;
+}
 std::uint64_t ReductionReport::drop(Pe& pe) const {
   settle(pe.completion(), shares);
   return 0;
@@ -71,6 +78,7 @@ void BroadcastHostOfCollection::apply(const NumberedCall& call) {
 }
 
 void ReductionHostOfCollection::send(PeId to, ReductionReport&& report) {
+  report.expedites = expedites_;
   if (report.value.held) report.value.held->leave();
   if (track_ == Track::own) {
     send_to_collection<&report_arrives<Track::own>>(collection_, to, std::move(report));
@@ -79,10 +87,12 @@ void ReductionHostOfCollection::send(PeId to, ReductionReport&& report) {
   }
 }
 void ReductionHostOfCollection::send(PeId to, const ReductionBegin& begin) {
+  ReductionBegin sent = begin;
+  sent.expedites = expedites_;
   if (track_ == Track::own) {
-    send_to_collection<&begin_arrives<Track::own>>(collection_, to, begin);
+    send_to_collection<&begin_arrives<Track::own>>(collection_, to, sent);
   } else {
-    send_to_collection<&begin_arrives<Track::second>>(collection_, to, begin);
+    send_to_collection<&begin_arrives<Track::second>>(collection_, to, sent);
   }
 }
 

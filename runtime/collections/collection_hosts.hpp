@@ -40,10 +40,13 @@ class ReductionHostOfCollection final : public ReductionHost {
   [[nodiscard]] std::uint64_t applied_broadcast() const override;
   void postpone_new_elements() override;
   void deliver(Partial& result, EpochId epoch) override;
+  /// From now on the messages of the tree run before those of users. Called on every PE.
+  void expedite() { expedites_ = true; }
 
  private:
   Collection& collection_;
   const Track track_;
+  bool expedites_ = false;
 };
 
 }  // namespace tess::detail

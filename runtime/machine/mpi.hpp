@@ -24,6 +24,10 @@ struct MpiOptions {
 /// True if mpirun started this process. Reads the environment, not MPI.
 [[nodiscard]] bool under_mpirun();
 
+/// The number of processes that mpirun or srun started, by the environment; 1 for a process that was
+/// started alone, and 0 if it is not known.
+[[nodiscard]] int processes_of_job();
+
 /// True between MPI_Init and MPI_Finalize of the program: a run then uses its processes, through a
 /// communicator of its own.
 [[nodiscard]] bool program_owns_mpi();
@@ -46,6 +50,7 @@ namespace tess {
 
 using detail::make_mpi_machine;
 using detail::MpiOptions;
+using detail::processes_of_job;
 using detail::program_owns_mpi;
 using detail::speaks_for_job;
 using detail::under_mpirun;

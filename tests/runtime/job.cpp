@@ -117,8 +117,7 @@ void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
   tess::exit(first);
 }
 
-int job(int argc, char** argv) {
-  tess::Setup setup = tess::take_options(argc, argv);
+int job(tess::Setup& setup, int argc, char** argv) {
   const std::string ending = argc > 1 ? argv[1] : "";
   return tess::run(setup, [ending] {
     const auto crowd = tess::create_group<Crowd>();
@@ -146,5 +145,5 @@ int job(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return tess::guarded(argv[0], [&] { return job(argc, argv); });
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return job(setup, argc, argv); });
 }

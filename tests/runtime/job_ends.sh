@@ -62,6 +62,10 @@ ends 7 "" -n 2 "$job" move --pes 2
 ends 2 "different programs" -n 1 "$job" exit --pes 1 : -n 1 "$other" exit --pes 1
 once "different programs"
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
+# The simulated machine is one process; with one process mpirun changes nothing.
+ends 2 "job: error: --sim pes=2: each process of the job would simulate the whole machine; start .* without mpirun" -n 2 "$job" exit --sim pes=2
+once "would simulate the whole machine"
+ends 5 "" -n 1 "$job" exit --sim pes=2,cost=100ns
 # An element whose serialize() forgets: within a process and between two.
 if [[ ${4:-} == all ]]; then
   for pes in "-n 1 --pes 2" "-n 2 --pes 1"; do

@@ -2,6 +2,7 @@
 // misuse.sh.
 //
 //     test_misuse NAME_OF_THE_MISUSE
+#include "runtime/balance.hpp"
 #include "runtime/index_map.hpp"
 #include "runtime/runtime.hpp"
 
@@ -231,6 +232,12 @@ void draw_circle() {
   tess::create<Block>(tess::range(n))[{n - 1}].send<&Block::draw>(std::make_unique<Circle>());
 }
 
+tess::Task balance_after_end() {
+  const auto blocks = tess::create<Block>(tess::range(3));
+  co_await tess::epoch([&] { blocks.destroy(); });
+  (void)tess::start_balancing(blocks);
+}
+
 auto blocks() {
   return tess::create<Block>(tess::range(3));
 }
@@ -300,6 +307,7 @@ const std::map<std::string, std::function<void()>> misuses{
        early.local().nothing();
      }},
     {"array_after_end", [] { const tess::Task task = use_after_end(); }},
+    {"balance_after_end", [] { const tess::Task task = balance_after_end(); }},
     {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
 };
 

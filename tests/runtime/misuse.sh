@@ -73,6 +73,7 @@ here negative_argument "an argument is -1, but the entry method takes 0 to 18446
 here array_not_known "the array of this proxy is not known yet on PE 0: create it inside an awaited epoch"
 here group_not_known "this group is not known yet on PE 0: create it inside an awaited epoch"
 here array_after_end "the array of this proxy was destroyed on PE 0"
+here balance_after_end "start_balancing() of an array that was destroyed on PE 0"
 here group_after_end "this group was destroyed on PE 0"
 everywhere sum_of_none "waits for a future of int" "Block has no elements: its reductions have no result"
 everywhere sum_of_empty_section "waits for a future of int" "a section of Block has no elements: its reductions have no result"

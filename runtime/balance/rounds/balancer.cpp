@@ -56,6 +56,7 @@ Balancer::Balancer(const Plan& plan)
                group()[plan.coordinator].target<&Balancer::reached>()),
       measured_(current_pe(), plan.indices) {
   Pe& pe = current_pe();
+  if (plan_.when == BalanceWhen::periodic) constructing_collection(pe)->expedite_reductions();
   // Immediately if the array is known: messages sent after start_balancing() arrive later.
   if (Collection* array = find_collection(pe, plan_.array); array != nullptr) watch(*array);
   const Attach attach{group().id(), plan_.array, plan_.epoch};
@@ -70,6 +71,7 @@ Balancer::Balancer(const Plan& plan)
 void Balancer::watch(Collection& array) {
   TESS_CHECK(array.watcher() == nullptr, array.name(), " has a balancer already");
   array_ = &array;
+  array_name_ = array.name();
   array.set_watcher(*this);
   measured_.attach(array);
 }
@@ -238,9 +240,7 @@ Task Balancer::place_again() {
   } else {
     co_await forget_all();
   }
-  phase_began_ = current_pe().now();
-  running_ = false;
-  end_if_over();
+  round_is_over();
 }
 
 Task Balancer::phase_ends() {
@@ -261,38 +261,79 @@ Task Balancer::phase_ends() {
   } else {
     co_await forget_all();
   }
-  phase_began_ = current_pe().now();
-  running_ = false;
-  end_if_over();
+  round_is_over();
 }
 
-Task Balancer::due(std::uint64_t seen) {
+void Balancer::due(std::uint64_t seen) {
   // Several PEs may request a round, each by its own clock; one round answers them all.
   const Time period(plan_.period_ns);
   if (!ready_ || running_ || array_ended_ || seen < n_rounds_ ||
       current_pe().now() - phase_began_ < period * 9 / 10)
-    co_return;
+    return;
   running_ = true;
+  if (plan_.distributed != DistributedStrategy::none) {
+    const Task task = distributed_round_beside();
+    return;
+  }
+  begin_round();
+  group().broadcast<&Balancer::collect>(group()[pe()].target<&Balancer::collected>());
+}
+
+void Balancer::collected(const std::vector<PeReport>& reports) {
+  std::vector<std::vector<Move>> moves = decide(reports);
+  n_moving_ = 1;
+  for (std::size_t to = 0; to < moves.size(); ++to) {
+    if (moves[to].empty()) continue;
+    ++n_moving_;
+    group()[pe_at(to)].send<&Balancer::move_beside>(std::move(moves[to]));
+  }
+  moved();
+}
+
+void Balancer::move_beside(const std::vector<Move>& moves) {
+  move(moves);
+  group()[plan_.coordinator].send<&Balancer::moved>();
+}
+
+void Balancer::moved() {
+  if (--n_moving_ != 0) return;
+  end_round();
+  round_is_over();
+}
+
+Task Balancer::distributed_round_beside() {
   co_await round();
+  round_is_over();
+}
+
+void Balancer::round_is_over() {
   phase_began_ = current_pe().now();
   running_ = false;
   end_if_over();
 }
 
 Task Balancer::round() {
-  Pe& pe = current_pe();
-  const Time began = pe.now();
-  ++n_rounds_;
+  begin_round();
   if (plan_.distributed == DistributedStrategy::none) {
     co_await central_round();
   } else {
     co_await distributed_round();
   }
+  end_round();
+}
+
+void Balancer::begin_round() {
+  ++n_rounds_;
+  round_began_ = current_pe().now();
+}
+
+void Balancer::end_round() {
+  Pe& pe = current_pe();
   const Round& round =
-      coordinator_->finish(seconds(pe.now() - began), seconds(began - phase_began_));
+      coordinator_->finish(seconds(pe.now() - round_began_), seconds(round_began_ - phase_began_));
   const bool prints = coordinator_->options().lines == RoundLines::print;
   detail::ProcessMonitor* const monitor = pe.runtime().monitor();
-  if (!prints && monitor == nullptr) co_return;
+  if (!prints && monitor == nullptr) return;
   const std::vector<Round>& history = coordinator_->history();
   const std::string line =
       describe(round, history.size() > 1 ? &history[history.size() - 2] : nullptr);
@@ -303,11 +344,19 @@ Task Balancer::round() {
   }
 }
 
+std::vector<std::vector<Move>> Balancer::decide(const std::vector<PeReport>& reports) {
+  try {
+    return coordinator_->decide(reports);
+  } catch (const Error& error) {
+    fail(error.code(), "array ", array_name_, ": ", error.what());
+  }
+}
+
 Task Balancer::central_round() {
   Future<std::vector<PeReport>> collected;
   group().broadcast<&Balancer::collect>(collected.callback());
   const std::vector<PeReport> reports = co_await collected;
-  std::vector<std::vector<Move>> moves = coordinator_->decide(reports);
+  std::vector<std::vector<Move>> moves = decide(reports);
   co_await epoch([&] {
     for (std::size_t to = 0; to < moves.size(); ++to)
       if (!moves[to].empty()) group()[pe_at(to)].send<&Balancer::move>(std::move(moves[to]));
@@ -412,6 +461,7 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
   TESS_CHECK(array != CollectionId{},
              "start_balancing() of an empty proxy: assign what create() returned to it first");
   Pe& pe = current_pe();
+  TESS_CHECK(!pe.ended(array), "start_balancing() of an array that was destroyed on ", pe.id());
   validate(options, pe.n_pes());
   const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;
   const DistributedStrategy distributed =

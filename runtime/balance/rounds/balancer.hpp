@@ -7,6 +7,11 @@
 //         move     ->  elements migrate                  (an epoch: it ends when all have arrived)
 //         resume   ->  every element continues
 //
+// A periodic round runs beside the elements' work. Its messages are expedited, and it neither awaits
+// an epoch nor continues a coroutine, since both take their turn after the messages that are ready:
+//
+//     due -> collect -> (reduction) -> collected -> move_beside -> moved
+//
 // The balancer ends with its array: as soon as the array has ended on the coordinator, or after the
 // round that runs then.
 //
@@ -79,9 +84,12 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void late_arrival();
   void begin();
   Task reached(std::uint64_t n_elements);
-  Task due(std::uint64_t round);
+  void due(std::uint64_t round);
   void sum_up(const Callback<PhaseSums>& target);
   void collect(const Callback<std::vector<PeReport>>& target);
+  void collected(const std::vector<PeReport>& reports);
+  void move_beside(const std::vector<Move>& moves);
+  void moved();
   void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
   void forget(const Callback<std::uint64_t>& done);
@@ -90,6 +98,13 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void prepare(const Callback<PhaseSums>& target);
   void fetch();
   void sum_outcome(const Callback<Outcome>& target);
+
+  /// Those of a periodic round, which elements' messages would otherwise delay at each of its steps.
+  using EntryAttributes =
+      Attributes<EntryMethod<&Balancer::due, expedited>, EntryMethod<&Balancer::collect, expedited>,
+                 EntryMethod<&Balancer::collected, expedited>,
+                 EntryMethod<&Balancer::move_beside, expedited>,
+                 EntryMethod<&Balancer::moved, expedited>>;
 
  private:
   // ElementWatcher.
@@ -103,6 +118,11 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Task attached();
   Task forget_all();
   Task round();
+  void begin_round();
+  void end_round();
+  void round_is_over();
+  Task distributed_round_beside();
+  [[nodiscard]] std::vector<std::vector<Move>> decide(const std::vector<PeReport>& reports);
   Task central_round();
   Task distributed_round();
   [[nodiscard]] double speed() const;
@@ -116,6 +136,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Barrier barrier_;
   Measured measured_;
   Collection* array_ = nullptr;   // set once its elements are measured
+  std::string array_name_;        // set with it
   bool barrier_is_open_ = false;  // on this PE; before, elements are only measured
   std::uint64_t n_collected_ = 0;
   std::uint64_t n_rounds_seen_ = 0;  // periodic: rounds that this member knows of
@@ -130,6 +151,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   Callback<std::uint64_t> when_attached_;  // target for a round that waits for it
   bool ready_ = false;                     // all members of round 0 are known
   bool running_ = false;
+  std::size_t n_moving_ = 0;  // periodic: PEs that have not begun the round's moves yet, and 1
+  Time round_began_{0};
   bool array_ended_ = false;  // on this PE: the balancer ends after the current round
   Time phase_began_{0};
 };

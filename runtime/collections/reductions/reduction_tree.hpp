@@ -66,16 +66,24 @@ struct ReductionReport {
   Cause cause;
   PartialBox value;
   std::vector<EpochShare> shares;
+  bool expedites = false;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, n, change, late, joins, cause, value, shares);
+    ar(number, n, change, late, expedites, joins, cause, value, shares);
   }
+  [[nodiscard]] std::int64_t priority() const;
   std::uint64_t drop(Pe& pe) const;  // the collection has ended
 };
 /// A ready PE asks the PEs below it for their reports.
 struct ReductionBegin {
   std::uint32_t number = 0;
   Cause cause;
+  bool expedites = false;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(number, cause, expedites);
+  }
+  [[nodiscard]] std::int64_t priority() const;
 };
 
 /// What a ReductionTree needs of its PE and its collection.

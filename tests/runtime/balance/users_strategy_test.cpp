@@ -73,13 +73,13 @@ TEST_CASE("the assignment of a user's strategy is followed", "[balance]") {
 TEST_CASE("an assignment that is none ends the run with an error that says why", "[balance]") {
   const std::pair<balance::Strategy, std::string> wrong[] = {
       {[](const Snapshot& s) { return Assignment(s.elements.size() - 1); },
-       "balance strategy: returned 11 PEs for 12 elements"},
+       "array Phased: balance strategy: returned 11 PEs for 12 elements"},
       {[](const Snapshot& /*s*/) { return Assignment(); },
-       "balance strategy: returned 0 PEs for 12 elements"},
+       "array Phased: balance strategy: returned 0 PEs for 12 elements"},
       {[](const Snapshot& s) { return Assignment(s.elements.size(), PeId{99}); },
-       "balance strategy: element 0 to PE 99; choose one of 4"},
+       "array Phased: balance strategy: element 0 to PE 99; choose one of 4"},
       {[](const Snapshot& s) { return Assignment(s.elements.size(), PeId{-1}); },
-       "balance strategy: element 0 to PE -1; choose one of 4"},
+       "array Phased: balance strategy: element 0 to PE -1; choose one of 4"},
       {[](const Snapshot& /*s*/) -> Assignment { throw std::runtime_error("no idea"); }, "no idea"},
       {balance::Strategy(), "the strategy is an empty function"},
   };
