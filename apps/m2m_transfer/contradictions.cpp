@@ -57,6 +57,11 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
               r.tolerance != 0 ? text("--tolerance ", r.tolerance) : Given(),
               r.clamp ? "--clamp" : ""});
       refuse("--stability", joined(joined(graph_options(r), result_files(o)), of_files));
+      refuse("--stability, whose cases have fields, parts and voxels of their own",
+             {o.fields_are_given ? "--fields " + r.fields.front() : "",
+              o.chares_are_given ? "--chares or --per-pe" : "",
+              r.voxel > 0 ? text("--voxel ", r.voxel) : Given(),
+              o.policies.size() > 1 ? "a second --policy" : ""});
       return;
     case Mode::round_trips:
       refuse("--round-trips", {o.study ? "--study" : "", explain, repeat});

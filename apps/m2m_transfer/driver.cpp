@@ -198,6 +198,9 @@ Task run_steps_study(const DriverOptions& options, apps::Progress& progress, boo
 int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& progress) {
   constexpr std::size_t n_points = 40000;
   plot::require_writable("--json", options.json);
+  stability::Ways ways{.policy = parse_policy(options.policies.front())};
+  if (options.partition_is_given)
+    ways.partition = parse_partition_method(options.request.partition);
   std::vector<stability::Case> cases = stability::generated_cases(n_points);
   std::vector<TetMesh> meshes;
   for (const std::string& name : {options.request.source, options.request.target}) {
@@ -211,7 +214,7 @@ int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& pr
     cases.push_back(stability::case_between(meshes[0], meshes[1]));
     cases.push_back(stability::case_between(meshes[1], meshes[0]));
   }
-  const std::vector<stability::Row> rows = stability::run_cases(setup, cases, progress);
+  const std::vector<stability::Row> rows = stability::run_cases(setup, cases, ways, progress);
   progress.clear();
   if (setup.machine->process().value != 0) return 0;
   tess::print_text(stability::table(rows));

@@ -23,6 +23,8 @@ struct DriverOptions {
   std::string round_trips;           ///< "1,2,5"; empty: no drift table
   bool stability = false;            ///< the table of extreme cases; also of the meshes given
   bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
+  bool fields_are_given = false, partition_is_given = false;
+  bool chares_are_given = false;  ///< --chares or --per-pe
 };
 
 /// Returns the exit code.

@@ -30,7 +30,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file: "
               "--pairs A:B,B:C. Pairs run in the order given where they share a mesh that is "
               "written, otherwise at once");
-  line.option(
+  const apps::Option fields = line.option(
       "--field,--fields", request.fields,
       "gaussian, linear, sin, an expression in x, y, z, or a field of the source file at vertices "
       "or in elements (moved to the target's elements); several as --fields sin,x*y");
@@ -50,8 +50,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "trips: --round-trips 1,2,5,10,20,50,100; for all kinds, or the --kind given");
   line.option("--plot", options.plot,
               "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
-  line.option("--partition", request.partition,
-              "method that cuts the meshes into chares: curve (by all PEs together), rcb or hsfc");
+  const apps::Option partition = line.option(
+      "--partition", request.partition,
+      "method that cuts the meshes into chares: curve (by all PEs together), rcb or hsfc");
   line.option("--tolerance", request.tolerance,
               "vertices outside the source but nearer than this length snap to it");
   line.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
@@ -85,10 +86,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "draw the first field and its error in a cut through the target, as SVG");
   line.option("--json", options.json, "write the report to this JSON file");
   line.flag("--explain", options.explain, "print what this transfer uses and what it leaves out");
-  line.flag("--stability", options.stability,
-            "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
-            "points lost, error, bits; exit code 1 if a row fails: m2m_transfer --stability "
-            "part.exo");
+  line.flag(
+      "--stability", options.stability,
+      "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
+      "points lost, error, bits; exit code 1 if a row fails; --policy and --partition (default: "
+      "rcb) hold for every case: m2m_transfer --stability part.exo");
   std::string study;
   const apps::Option studies =
       line.option(
@@ -100,6 +102,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
           .takes(0, 1);
   if (!line.parse(argc, argv)) return 0;
   options.kind_is_given = kind.is_given();
+  options.fields_are_given = fields.is_given();
+  options.partition_is_given = partition.is_given();
+  options.chares_are_given = chares.is_given() || per_pe.is_given();
   if (chares.is_given() && per_pe.is_given())
     tess::fail(tess::ErrorCode::bad_argument, "--chares ", request.n_chares, " and --per-pe ",
                request.per_pe, " both say how many chares there are; give one");

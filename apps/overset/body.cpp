@@ -124,6 +124,11 @@ Point placed(const Body& body, Point p) {
 
 }  // namespace
 
+bool names_shape(std::string_view name) {
+  return std::any_of(shapes.begin(), shapes.end(),
+                     [&](const auto& shape) { return name == shape.first; });
+}
+
 bool names_body(std::string_view name) {
   return std::any_of(shapes.begin(), shapes.end(), [&](const auto& shape) {
     return name.starts_with(shape.first) && name.substr(shape.first.size()).starts_with(':');

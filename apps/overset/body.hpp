@@ -28,6 +28,8 @@ struct Body {
   Point turn{0.3, 0.5, 0.7};  ///< angles about x, y, z in radians, in this order
 };
 
+/// True for "ball" and the like.
+[[nodiscard]] bool names_shape(std::string_view name);
 /// True for "ball:12" and the like.
 [[nodiscard]] bool names_body(std::string_view name);
 /// Throws Error (bad_argument) for a number that is not from 2 to 200.

@@ -8,10 +8,13 @@
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <string>
+#include <vector>
 
 namespace overset {
 namespace {
@@ -21,12 +24,10 @@ struct Options {
   Problem problem;  // without the meshes
   std::string json, plot, study;
   bool explain = false;
+  std::vector<std::int32_t> refinements;    ///< of --study h: cubes on an edge of the background
+  std::string body;                         ///< of a study: "ball"
+  std::vector<std::string> given_for_once;  ///< options of a run that --study wall does not use
 };
-
-/// "ball" of "ball:12".
-std::string shape_of(const Options& options) {
-  return options.request.overset.substr(0, options.request.overset.find(':'));
-}
 
 tess::Task run_once(Options options) {
   Problem problem = read_problem(options.request);
@@ -45,10 +46,9 @@ tess::Task run_once(Options options) {
 /// Both meshes refined together: the background of n cubes, the mesh around the body of n / 2 edges.
 tess::Task run_refined(Options options) {
   std::vector<StudyRow> rows;
-  const std::string body = shape_of(options);
-  for (const std::int32_t n : {16, 24, 32, 48, 64}) {
+  for (const std::int32_t n : options.refinements) {
     options.request.background = fmt::format("kuhn:{}", n);
-    options.request.overset = fmt::format("{}:{}", body, n / 2);
+    options.request.overset = fmt::format("{}:{}", options.body, n / 2);
     Problem problem = read_problem(options.request);
     problem.field = options.problem.field;
     problem.options = options.problem.options;
@@ -71,8 +71,53 @@ tess::Task run_refined(Options options) {
 }
 
 tess::Task time_wall(Options options) {
-  tess::print(wall_study(shape_of(options)));
+  tess::print(wall_study(options.body));
   co_return;
+}
+
+/// The numbers of "kuhn:16,24,32".
+std::vector<std::int32_t> refinements_of(const std::string& background) {
+  std::vector<std::int32_t> out;
+  const std::string text = background.starts_with("kuhn:") ? background.substr(5) : "";
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at != end) {
+    std::int32_t n = 0;
+    const auto [after, error] = std::from_chars(at, end, n);
+    const bool ends_well = after == end || (*after == ',' && after + 1 != end);
+    if (error != std::errc() || !ends_well || n < 4 || n > 400 || n % 2 != 0 ||
+        (!out.empty() && n <= out.back()))
+      break;
+    out.push_back(n);
+    at = after == end ? end : after + 1;
+  }
+  if (at != end || out.size() < 2)
+    tess::fail(tess::ErrorCode::bad_argument, "--study h: BACKGROUND ", background,
+               " is no ladder; give two or more even numbers from 4 to 400 in ascending order, as "
+               "in kuhn:16,24,32");
+  return out;
+}
+
+/// Takes BACKGROUND and OVERSET of a study, where a body without a number can stand alone.
+void read_study(Options& options, bool has_background, bool has_overset) {
+  std::string& background = options.request.background;
+  std::string& body = options.request.overset;
+  if (has_background && !has_overset && names_shape(background)) {
+    body = background;
+    has_background = false;
+    has_overset = true;
+  }
+  if (!has_overset) body = "ball";
+  if (!names_shape(body))
+    tess::fail(tess::ErrorCode::bad_argument, "--study: OVERSET ", body,
+               " cannot be refined; give ball, box, star or torus without a number, as the study "
+               "chooses the sizes");
+  options.body = body;
+  if (options.study == "h")
+    options.refinements =
+        has_background ? refinements_of(background) : std::vector<std::int32_t>{16, 24, 32, 48, 64};
+  else if (has_background)
+    options.given_for_once.insert(options.given_for_once.begin(), "BACKGROUND " + background);
 }
 
 /// Throws Error (bad_argument) for an option that a study does not use, and for a folder where the
@@ -88,6 +133,8 @@ void refuse_contradictions(const Options& options) {
     if (!options.request.wall.empty()) refuse("--wall " + options.request.wall);
     if (options.explain) refuse("--explain");
     if (options.study == "wall" && !options.plot.empty()) refuse("--plot " + options.plot);
+    if (options.study == "wall" && !options.given_for_once.empty())
+      refuse(options.given_for_once.front());
     return;
   }
   for (const char* file : {"background.exo", "overset.exo", "before.svg", "after.svg"})
@@ -107,9 +154,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
       "body.",
       "overset");
   line.option("BACKGROUND", options.request.background,
-              "mesh: an ExodusII or gmsh file, or kuhn:N, the unit cube of 6 N^3 tetrahedra");
+              "mesh: an ExodusII or gmsh file, or kuhn:N, the unit cube of 6 N^3 tetrahedra; with "
+              "--study h a ladder such as kuhn:16,24,32");
   line.option("OVERSET", options.request.overset,
-              "mesh around a body: a file, or ball:N, box:N, star:N, torus:N");
+              "mesh around a body: a file, or ball:N, box:N, star:N, torus:N; with --study ball, "
+              "box, star or torus");
   line.option("--wall", options.request.wall,
               "the wall: a side set of OVERSET, or an OBJ, PLY or STL file (default: the cavities "
               "of OVERSET)");
@@ -134,9 +183,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
   if (!(least >= 0 && least <= 1))
     tess::fail(tess::ErrorCode::bad_argument, "--least-quality: ", least, " is not from 0 to 1");
   plot::require_writable("--json", options.json);
-  if (!options.study.empty() && !names_body(options.request.overset))
-    tess::fail(tess::ErrorCode::bad_argument, "--study: ", options.request.overset,
-               " cannot be refined; give OVERSET as ball:N, box:N, star:N or torus:N");
+  for (const char* option : {"--field", "--layers", "--least-quality", "--chares"})
+    if (line.is_given(option)) options.given_for_once.emplace_back(option);
+  if (!options.study.empty())
+    read_study(options, line.is_given("BACKGROUND"), line.is_given("OVERSET"));
   refuse_contradictions(options);
   return tess::run(setup, [&] {
     if (options.study.empty()) return run_once(options);

@@ -72,6 +72,12 @@ refuses "--study does not work with --round-trips" "${alone[@]}" --round-trips 1
 refuses "--steps 5 does not work with --round-trips" "${alone[@]}" --round-trips 1 --steps 5
 refuses "--kind linear does not work with --stability" "${alone[@]}" --kind linear --stability
 refuses "mesh kuhn:4 does not work with --stability" "${alone[@]}" kuhn:4 --stability
+refuses "--fields sin does not work with --stability" "${alone[@]}" --stability --fields sin
+refuses "--voxel 0.5 does not work with --stability" "${alone[@]}" --stability --voxel 0.5
+refuses "--per-pe does not work with --stability" "${alone[@]}" --stability --per-pe 3
+refuses "a second --policy does not work with --stability" "${alone[@]}" --stability --policy keep --policy nearest
+refuses "policy 'perhaps' is unknown" "${alone[@]}" --stability --policy perhaps
+refuses "partition method 'perhaps'" "${alone[@]}" --stability --partition perhaps
 refuses "--move .* does not work with --study" "${alone[@]}" --study steps --move 'translate(1,0,0)'
 refuses "--pairs B:A does not work with --study" "${alone[@]}" --study h --pairs B:A
 refuses "mesh kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
@@ -100,7 +106,13 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/sheet.obj"
 refuses "the wall is open" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/sheet.obj"
 refuses "least-quality" "${overset[@]}" --least-quality 2
 refuses "layers" "${overset[@]}" --layers 0
-refuses "cannot be refined" "${overset[@]}" kuhn:4 kuhn:4 --study h
+refuses "kuhn:4 cannot be refined" "${overset[@]}" kuhn:4 kuhn:4 --study h
+refuses "ball:8 cannot be refined" "${overset[@]}" kuhn:8,16 ball:8 --study h
+refuses "BACKGROUND kuhn:16 is no ladder" "${overset[@]}" kuhn:16 --study h
+refuses "BACKGROUND kuhn:16,8 is no ladder" "${overset[@]}" kuhn:16,8 ball --study h
+refuses "BACKGROUND kuhn:8,15 is no ladder" "${overset[@]}" kuhn:8,15 ball --study h
+refuses "BACKGROUND kuhn:8,16 does not work with --study wall" "$bin/overset" kuhn:8,16 ball --study wall
+refuses "--field does not work with --study wall" "$bin/overset" --field sin --study wall
 
 refuses "--json .* does not work with --study h" "${overset[@]}" --study h
 refuses "--plot .* does not work with --study wall" "$bin/overset" --study wall --plot "$scratch"

@@ -110,6 +110,9 @@ check "background.exo of overset cannot be read" $?
 timeout 100 "$bin/overset" --study h --pes 2 >"$scratch/out" 2>&1 && tail -1 "$scratch/out" |
   python3 -c "import sys; order = float(sys.stdin.read().split()[-1]); sys.exit(0 if 1.8 < order < 2.2 else 1)"
 check "overset is not second order" $?
+answers '^ +16 .*[0-9]$' "$bin/overset" kuhn:8,16 box --study h --pes 2
+[[ $(grep -c '^ ' "$scratch/out") -eq 3 ]]
+check "overset does not refine what is given" $?
 # The program compares winding numbers with solid angles.
 answers "^ +101568 +[0-9.]+ +[0-9]+ +522754$" "$bin/overset" --study wall --pes 1
 

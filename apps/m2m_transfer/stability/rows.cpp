@@ -52,37 +52,44 @@ bool names_a_donor(const Case& c, std::size_t v, double value) {
          holds(c.source, static_cast<std::size_t>(std::llround(value)), c.target.points[v], -1e-9);
 }
 
+/// Of a target that started with zeros.
+bool has_wrong_value_outside(const OutsidePolicy& policy, double value) {
+  if (std::holds_alternative<Nearest>(policy)) return false;
+  const auto* const given = std::get_if<UseValue>(&policy);
+  return !same_bits(value, given != nullptr ? given->value : 0.0);
+}
+
 /// One run of all cases. Cases that are refused have no answer.
-Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, apps::Progress& progress,
-             Answers& answers) {
+Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, const Ways& ways,
+             apps::Progress& progress, Answers& answers) {
   for (std::size_t k = 0; k < cases.size(); ++k) {
     progress.part(k + 1, cases.size());
     if (!refusal(cases[k]).empty()) continue;
     Answer answer;
-    co_await answer_of(cases[k], n_parts, answer);
+    co_await answer_of(cases[k], n_parts, ways, answer);
     answers[k].push_back(std::move(answer));
   }
 }
 
 Task run_parts(const std::vector<Case>& cases, const std::vector<std::int32_t>& parts,
-               apps::Progress& progress, Answers& answers) {
+               const Ways& ways, apps::Progress& progress, Answers& answers) {
   for (const std::int32_t n_parts : parts) {
     progress.phase(n_parts == 1 ? "one part" : "several parts");
-    co_await run_all(cases, n_parts, progress, answers);
+    co_await run_all(cases, n_parts, ways, progress, answers);
   }
 }
 
 }  // namespace
 
-Task answer_of(const Case& c, std::int32_t n_parts, Answer& answer) {
+Task answer_of(const Case& c, std::int32_t n_parts, const Ways& ways, Answer& answer) {
   const std::vector<Field> source_fields{{"f", 1, c.values}};
   const std::vector<Field> target_fields{{"f", 1, std::vector<double>(c.target.n_points(), 0.0)}};
   std::vector<DistributedMesh> meshes;
   co_await epoch([&] {
-    meshes.push_back(scatter(c.source, source_fields, n_parts, PartitionMethod::rcb));
-    meshes.push_back(scatter(c.target, target_fields, n_parts, PartitionMethod::rcb));
+    meshes.push_back(scatter(c.source, source_fields, n_parts, ways.partition));
+    meshes.push_back(scatter(c.target, target_fields, n_parts, ways.partition));
   });
-  const TransferOptions options;
+  const TransferOptions options{.policy = ways.policy};
   Transfer transfer(meshes[0], meshes[1], options);
   co_await transfer.search();
   co_await transfer.apply();
@@ -104,7 +111,8 @@ std::string refusal(const Case& c) {
   return {};
 }
 
-Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before) {
+Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before,
+          const OutsidePolicy& policy) {
   Row row{.name = c.name, .parameter = c.parameter, .value = c.value};
   row.n_points = c.target.n_points();
   row.n_runs = answers.size();
@@ -118,6 +126,8 @@ Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* befor
     row.snapped += first.status[v] == Status::snapped ? 1U : 0U;
     if (first.status[v] == Status::outside) {
       ++row.outside;
+      if (has_wrong_value_outside(policy, first.values[v]))
+        row.error = std::numeric_limits<double>::infinity();
       row.lost += is_held(c.source, c.target.points[v]) ? 1U : 0U;
     } else if (c.truth.empty()) {
       row.lost += names_a_donor(c, v, first.values[v]) ? 0U : 1U;
@@ -137,15 +147,16 @@ Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* befor
   return row;
 }
 
-std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases, apps::Progress& progress) {
+std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases, const Ways& ways,
+                           apps::Progress& progress) {
   Answers answers(cases.size());
   // Named: the coroutines refer to them.
   const std::vector<std::int32_t> parts{1, 6, 16}, several{6, 16};
-  int code = tess::run(setup, [&] { return run_parts(cases, parts, progress, answers); });
+  int code = tess::run(setup, [&] { return run_parts(cases, parts, ways, progress, answers); });
   if (setup.machine->n_processes() == 1)
     for (const char* keys : {"pes=6,seed=2", "pes=16,per-process=1,seed=3"}) {
       Setup other{make_simulated_machine(parse_simulated(keys)), {}};
-      code += tess::run(other, [&] { return run_parts(cases, several, progress, answers); });
+      code += tess::run(other, [&] { return run_parts(cases, several, ways, progress, answers); });
     }
   if (code != 0) fail(ErrorCode::environment, "--stability: a run ended with an error");
   std::vector<Row> rows;
@@ -153,7 +164,8 @@ std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases, apps::P
   progress.phase("judging");
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const bool has_before = k > 0 && !answers[k - 1].empty();
-    rows.push_back(judge(cases[k], answers[k], has_before ? &answers[k - 1].front() : nullptr));
+    rows.push_back(
+        judge(cases[k], answers[k], has_before ? &answers[k - 1].front() : nullptr, ways.policy));
   }
   return rows;
 }

@@ -3,6 +3,8 @@
 
 #include "apps/m2m_transfer/stability/cases.hpp"
 #include "apps/progress.hpp"
+#include "m2m/partition_method.hpp"
+#include "m2m/policy.hpp"
 #include "m2m/status.hpp"
 #include "runtime/runtime.hpp"
 
@@ -31,20 +33,28 @@ struct Answer {
   std::vector<double> values;
 };
 
-/// Runs a case with so many parts per mesh.
-Task answer_of(const Case& c, std::int32_t n_parts, Answer& answer);
+/// How every case is run.
+struct Ways {
+  PartitionMethod partition = PartitionMethod::rcb;
+  OutsidePolicy policy = Keep{};
+};
+
+/// Runs a case with so many parts per mesh. The target starts with zeros.
+Task answer_of(const Case& c, std::int32_t n_parts, const Ways& ways, Answer& answer);
 
 /// The reason why a mesh of the case is refused; empty if it is valid.
 [[nodiscard]] std::string refusal(const Case& c);
 
 /// Judges the first answer, and compares the others with it. `before`: the answer of the case before,
-/// for cases with an order; may be null.
-[[nodiscard]] Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before);
+/// for cases with an order; may be null. A point outside whose value is not that of the policy has an
+/// infinite error.
+[[nodiscard]] Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before,
+                        const OutsidePolicy& policy = Keep{});
 
 /// All cases on `setup` with 1, 6 and 16 parts, and if it has one process, on simulated machines of
 /// 6 and 16 PEs. Rows stay empty on processes other than the first.
 [[nodiscard]] std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases,
-                                         apps::Progress& progress);
+                                         const Ways& ways, apps::Progress& progress);
 
 [[nodiscard]] std::string table(const std::vector<Row>& rows);
 [[nodiscard]] std::string json(const std::vector<Row>& rows);

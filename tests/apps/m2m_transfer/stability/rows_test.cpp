@@ -13,10 +13,10 @@ using namespace m2m_transfer::stability;
 
 namespace {
 
-std::vector<Row> rows_of(const std::vector<Case>& cases) {
+std::vector<Row> rows_of(const std::vector<Case>& cases, const Ways& ways = {}) {
   Setup setup{make_threads_machine(2), {}};
   apps::Progress progress(nullptr);
-  return run_cases(setup, cases, progress);
+  return run_cases(setup, cases, ways, progress);
 }
 
 }  // namespace
@@ -40,6 +40,19 @@ TEST_CASE("the stability report of a user's mesh has rows for it", "[apps][stabi
     CHECK(row.note.empty());
     CHECK(row.name.starts_with("kuhn:4@0.2 "));
   }
+}
+
+TEST_CASE("the policy and the partition hold for every case", "[apps][stability]") {
+  const std::vector<Case> cases = cases_of(kuhn_mesh({3, 0.2}), 100);
+  for (const Row& row : rows_of(cases, {PartitionMethod::curve, UseValue{7}})) {
+    INFO(table({row}));
+    CHECK(row.ok);
+  }
+  Case apart = case_between(kuhn_mesh({2}), kuhn_mesh({3}));
+  for (Point& p : apart.target.points) p[0] += 9;
+  CHECK(rows_of({apart}, {PartitionMethod::rcb, UseValue{7}}).front().ok);
+  CHECK(rows_of({apart}, {PartitionMethod::hsfc, Nearest{}}).front().ok);
+  CHECK(rows_of({apart}).front().ok);
 }
 
 TEST_CASE("a user's mesh may have unused vertices, and several at one place", "[apps][stability]") {
@@ -74,6 +87,14 @@ TEST_CASE("a row fails if a point is lost, an error is large, or bits differ",
   CHECK_FALSE(judge(c, other, nullptr).same_bits);
   c.truth.clear();  // the values name donors
   CHECK(judge(c, right, nullptr).lost > 0);
+  // A value outside is that of the policy.
+  Case apart = c;
+  apart.outside = apart.target.n_points();
+  for (Point& p : apart.target.points) p[0] += 9;
+  const Answer outside{std::vector(inside.size(), Status::outside),
+                       std::vector<double>(inside.size(), 7)};
+  CHECK_FALSE(judge(apart, {outside}, nullptr).ok);
+  CHECK(judge(apart, {outside}, nullptr, UseValue{7}).ok);
   // A mesh that is refused fails, unless that is expected.
   c.source.points[0][0] = 1e200;
   CHECK_FALSE(judge(c, {}, nullptr).ok);
