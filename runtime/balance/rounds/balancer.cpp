@@ -190,7 +190,7 @@ void Balancer::pass(Element& element) {
 Task Balancer::reached(std::uint64_t /*n_elements*/) {
   const std::uint32_t barrier = barriers_++;
   if (array_ended_) co_return;
-  co_await phase_ends();
+  co_await phase_ends(Others::balanced);
   group().broadcast<&Balancer::resume>(barrier);
 }
 
@@ -234,7 +234,7 @@ Task Balancer::place_again() {
                                        recalled.callback());
   const std::uint64_t n_known = co_await recalled;
   if (n_known != 0) {
-    co_await round();
+    co_await round(Others::fixed);
   } else {
     co_await forget_all();
   }
@@ -243,7 +243,7 @@ Task Balancer::place_again() {
   end_if_over();
 }
 
-Task Balancer::phase_ends() {
+Task Balancer::phase_ends(Others others) {
   TESS_CHECK(coordinator_ != nullptr, "rounds are requested on ", plan_.coordinator, " only");
   TESS_CHECK(!array_ended_, "a round of an array that was destroyed");
   TESS_CHECK(!running_, "a round while another runs: await that one first");
@@ -252,12 +252,12 @@ Task Balancer::phase_ends() {
   bool worth = true;
   if (plan_.when == BalanceWhen::automatic) {
     Future<PhaseSums> sums;
-    group().broadcast<&Balancer::sum_up>(sums.callback());
+    group().broadcast<&Balancer::sum_up>(others, sums.callback());
     const PhaseSums phase = co_await sums;
     worth = coordinator_->worth(phase);
   }
   if (worth) {
-    co_await round();
+    co_await round(others);
   } else {
     co_await forget_all();
   }
@@ -273,20 +273,20 @@ Task Balancer::due(std::uint64_t seen) {
       current_pe().now() - phase_began_ < period * 9 / 10)
     co_return;
   running_ = true;
-  co_await round();
+  co_await round(Others::balanced);
   phase_began_ = current_pe().now();
   running_ = false;
   end_if_over();
 }
 
-Task Balancer::round() {
+Task Balancer::round(Others others) {
   Pe& pe = current_pe();
   const Time began = pe.now();
   ++n_rounds_;
   if (plan_.distributed == DistributedStrategy::none) {
-    co_await central_round();
+    co_await central_round(others);
   } else {
-    co_await distributed_round();
+    co_await distributed_round(others);
   }
   const Round& round =
       coordinator_->finish(seconds(pe.now() - began), seconds(began - phase_began_));
@@ -303,9 +303,9 @@ Task Balancer::round() {
   }
 }
 
-Task Balancer::central_round() {
+Task Balancer::central_round(Others others) {
   Future<std::vector<PeReport>> collected;
-  group().broadcast<&Balancer::collect>(collected.callback());
+  group().broadcast<&Balancer::collect>(others, collected.callback());
   const std::vector<PeReport> reports = co_await collected;
   std::vector<std::vector<Move>> moves = coordinator_->decide(reports);
   co_await epoch([&] {
@@ -314,14 +314,15 @@ Task Balancer::central_round() {
   });
 }
 
-Task Balancer::distributed_round() {
+Task Balancer::distributed_round(Others others) {
   Future<PhaseSums> prepared;
-  group().broadcast<&Balancer::prepare>(prepared.callback());
+  group().broadcast<&Balancer::prepare>(others, prepared.callback());
   const PhaseSums before = co_await prepared;
   const double average = before.average_time();
   Future<std::uint64_t> traded;
   plan_.exchange[pe()].send<&Exchange::run>(
-      Exchange::Order{plan_.distributed, average, before.mean_load()}, traded.callback());
+      Exchange::Order{plan_.distributed, average, before.mean_load(), coordinator_->options().seed},
+      traded.callback());
   co_await traded;
   co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
   Future<Outcome> summed;
@@ -341,14 +342,14 @@ double Balancer::speed() const {
   return plan_.speeds.empty() ? 1 : plan_.speeds[slot(pe())];
 }
 
-void Balancer::sum_up(const Callback<PhaseSums>& target) {
-  contribute(MergeSums{}, measured_.sums(speed()), target);
+void Balancer::sum_up(Others others, const Callback<PhaseSums>& target) {
+  contribute(MergeSums{}, measured_.sums(speed(), others), target);
 }
 
-void Balancer::collect(const Callback<std::vector<PeReport>>& target) {
+void Balancer::collect(Others others, const Callback<std::vector<PeReport>>& target) {
   ++n_rounds_seen_;
   std::vector<PeReport> mine;
-  mine.push_back(measured_.report(n_collected_++));
+  mine.push_back(measured_.report(n_collected_++, others));
   contribute(in_order(concatenate), std::move(mine), target);
 }
 
@@ -375,10 +376,10 @@ void Balancer::recall(bool interrupted, const Callback<std::uint64_t>& done) {
   contribute(sum, measured_.recall(interrupted), done);
 }
 
-void Balancer::prepare(const Callback<PhaseSums>& target) {
+void Balancer::prepare(Others others, const Callback<PhaseSums>& target) {
   ++n_rounds_seen_;
-  const PhaseSums before = measured_.sums(speed());
-  const PeReport report = measured_.report(n_collected_++);
+  const PhaseSums before = measured_.sums(speed(), others);
+  const PeReport report = measured_.report(n_collected_++, others);
   const std::uint64_t limit =
       plan_.memory_limit_bytes.empty() ? 0 : plan_.memory_limit_bytes[slot(pe())];
   plan_.exchange.local().hold(report, speed(), limit);
@@ -412,7 +413,7 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
   TESS_CHECK(array != CollectionId{},
              "start_balancing() of an empty proxy: assign what create() returned to it first");
   Pe& pe = current_pe();
-  validate(options, pe.n_pes());
+  validate(options, pe.n_pes(), users ? StrategyOf::user : StrategyOf::runtime);
   const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;
   const DistributedStrategy distributed =
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);
