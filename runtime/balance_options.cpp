@@ -82,9 +82,14 @@ BalanceOptions parse_balance(std::string_view given) {
   return options;
 }
 
-void balance::validate(const BalanceOptions& options, std::int32_t n_pes) {
-  (void)make_strategy(options.strategy, options.seed);
-  (void)parse_prediction(options.prediction);
+void balance::validate(const BalanceOptions& options, std::int32_t n_pes, StrategyOf strategy) {
+  const bool is_users = strategy == StrategyOf::user;
+  if (!is_users) (void)make_strategy(options.strategy, options.seed);
+  if (parse_prediction(options.prediction) != Prediction::last && !is_users &&
+      is_distributed(options.strategy))
+    fail(ErrorCode::bad_argument, "balance prediction: ", options.prediction, ", but ",
+         options.strategy,
+         " is distributed and knows the last phase only; choose last, or another strategy");
   if (options.window == 0)
     fail(ErrorCode::bad_argument, "balance window: 0 phases; a prediction looks back at least one");
   if (options.when == BalanceWhen::periodic && options.period.count() <= 0)

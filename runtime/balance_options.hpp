@@ -16,14 +16,15 @@ enum class BalanceWhen : std::uint8_t { at_sync, periodic, automatic };
 
 struct BalanceOptions {
   /// A name of balance::strategy_names(). With `none`, at_sync() is no barrier: elements continue
-  /// immediately.
+  /// immediately. With the user's own strategy: its name in reports, `own` if it has none.
   std::string strategy = "greedy_refine";
   BalanceWhen when = BalanceWhen::at_sync;
   std::chrono::nanoseconds period{0};  ///< period of periodic rounds, for which it is above 0
-  std::string prediction = "last";     ///< last, moving_average, linear_trend
-  std::uint64_t window = 5;            ///< number of phases that a prediction uses
-  std::uint64_t seed = 1;              ///< seed of strategies that use random numbers
-  std::vector<double> speeds{};        ///< relative speed of each PE; empty: all equal
+  /// last, moving_average, linear_trend. Distributed strategies (diffusion, gossip) know `last` only.
+  std::string prediction = "last";
+  std::uint64_t window = 5;                         ///< number of phases that a prediction uses
+  std::uint64_t seed = 1;                           ///< seed of strategies that use random numbers
+  std::vector<double> speeds{};                     ///< relative speed of each PE; empty: all equal
   std::vector<std::uint64_t> memory_limit_bytes{};  ///< of each PE; 0 or empty: none
   RoundLines lines = RoundLines::none;              ///< or one line per round to standard error
   /// text: snapshots have the index of each element, which costs a string per element and round.
@@ -35,8 +36,12 @@ struct BalanceOptions {
 [[nodiscard]] BalanceOptions parse_balance(std::string_view text);
 
 namespace balance {
-/// Throws Error that names the option, its value, and what it may be.
-void validate(const BalanceOptions& options, std::int32_t n_pes);
+enum class StrategyOf : std::uint8_t { runtime, user };
+
+/// Throws Error that names the option, its value, and what it may be. 0 PEs: their number is not
+/// known yet. With the user's own strategy, options.strategy may be any name.
+void validate(const BalanceOptions& options, std::int32_t n_pes,
+              StrategyOf strategy = StrategyOf::runtime);
 /// For a chare without balance_position(): throws Error that names it and the strategy if that one
 /// needs positions.
 void require_no_positions(const BalanceOptions& options, std::string_view chare);

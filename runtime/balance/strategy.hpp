@@ -26,6 +26,10 @@ using Strategy = std::function<Assignment(const Snapshot&)>;
 /// True for a strategy that places elements by their positions.
 [[nodiscard]] bool needs_positions(std::string_view name);
 
+/// True for a strategy that the PEs of a run carry out among themselves, without a list of all
+/// elements. It uses the loads of the last phase.
+[[nodiscard]] bool is_distributed(std::string_view name);
+
 /// Why the strategy of this name cannot serve a snapshot, as a sentence; empty if it can.
 [[nodiscard]] std::string obstacle(std::string_view name, const Snapshot& snapshot);
 

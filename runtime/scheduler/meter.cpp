@@ -103,6 +103,17 @@ void Meter::remove_alarms(const void* owner) {
   std::erase_if(alarms_, [owner](const Alarm& alarm) { return alarm.owner == owner; });
 }
 
+std::uint64_t Meter::in_balanced() const {
+  std::uint64_t all = balanced_before_;
+  for (const std::uint64_t* sum : balanced_) all += *sum;
+  return all;
+}
+
+void Meter::remove_balanced(const std::uint64_t* sum) {
+  balanced_before_ += *sum;
+  std::erase(balanced_, sum);
+}
+
 void Meter::tell(std::uint64_t at) const {
   listener_->changed(at);
 }

@@ -86,6 +86,12 @@ class Meter {
   /// From now on the listener is called for each scope; null: none is. Not owned.
   void set_listener(ScopeListener* listener) { listener_ = listener; }
 
+  /// Ticks of the elements of all balanced arrays here; each balancer adds the sum of its own, which
+  /// it counts up until it removes it.
+  [[nodiscard]] std::uint64_t in_balanced() const;
+  void add_balanced(const std::uint64_t* sum) { balanced_.push_back(sum); }
+  void remove_balanced(const std::uint64_t* sum);
+
   // The PE calls these.
   void step_begins();
   void step_ends();
@@ -140,6 +146,8 @@ class Meter {
   };
   Pe* watched_ = nullptr;
   ScopeListener* listener_ = nullptr;
+  std::vector<const std::uint64_t*> balanced_;
+  std::uint64_t balanced_before_ = 0;  // the sums that were removed
   std::vector<Alarm> alarms_;
   std::uint64_t alarm_at_ = ~std::uint64_t{0};  // the earliest alarm
 };

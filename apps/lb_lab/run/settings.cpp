@@ -15,6 +15,14 @@ template <class... Parts>
   tess::fail(tess::ErrorCode::bad_argument, parts...);
 }
 
+/// Why a strategy cannot serve these settings, as a sentence; empty if it can.
+std::string obstacle(const Settings& s, const std::string& name) {
+  if (tess::balance::is_distributed(name) &&
+      tess::balance::parse_prediction(s.prediction) != tess::balance::Prediction::last)
+    return "it is distributed and knows the last phase only, without --prediction " + s.prediction;
+  return tess::balance::obstacle(name, {});
+}
+
 void expand_names(Settings& s) {
   if (std::ranges::count(s.workloads, "all") > 0) {
     s.workloads.clear();
@@ -24,12 +32,12 @@ void expand_names(Settings& s) {
   if (std::ranges::count(s.strategies, "all") > 0) {
     s.strategies.clear();
     for (const std::string& name : tess::balance::strategy_names()) {
-      const std::string why = tess::balance::obstacle(name, {});
+      const std::string why = obstacle(s, name);
       (why.empty() ? s.strategies : s.left_out).push_back(why.empty() ? name : name + ": " + why);
     }
   }
   for (const std::string& name : s.strategies)
-    if (const std::string why = tess::balance::obstacle(name, {}); !why.empty())
+    if (const std::string why = obstacle(s, name); !why.empty())
       refuse("--strategy: ", name, ": ", why, "; choose another, or all, which leaves it out");
   for (const std::string& name : s.strategies) (void)tess::balance::make_strategy(name, s.seed);
   // What is gained is gained over none.

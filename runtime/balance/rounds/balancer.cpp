@@ -192,7 +192,7 @@ void Balancer::pass(Element& element) {
 Task Balancer::reached(std::uint64_t /*n_elements*/) {
   const std::uint32_t barrier = barriers_++;
   if (array_ended_) co_return;
-  co_await phase_ends();
+  co_await phase_ends(Others::balanced);
   group().broadcast<&Balancer::resume>(barrier);
 }
 
@@ -236,14 +236,14 @@ Task Balancer::place_again() {
                                        recalled.callback());
   const std::uint64_t n_known = co_await recalled;
   if (n_known != 0) {
-    co_await round();
+    co_await round(Others::fixed);
   } else {
     co_await forget_all();
   }
   round_is_over();
 }
 
-Task Balancer::phase_ends() {
+Task Balancer::phase_ends(Others others) {
   TESS_CHECK(coordinator_ != nullptr, "rounds are requested on ", plan_.coordinator, " only");
   TESS_CHECK(!array_ended_, "a round of an array that was destroyed");
   TESS_CHECK(!running_, "a round while another runs: await that one first");
@@ -252,12 +252,12 @@ Task Balancer::phase_ends() {
   bool worth = true;
   if (plan_.when == BalanceWhen::automatic) {
     Future<PhaseSums> sums;
-    group().broadcast<&Balancer::sum_up>(sums.callback());
+    group().broadcast<&Balancer::sum_up>(others, sums.callback());
     const PhaseSums phase = co_await sums;
     worth = coordinator_->worth(phase);
   }
   if (worth) {
-    co_await round();
+    co_await round(others);
   } else {
     co_await forget_all();
   }
@@ -276,7 +276,8 @@ void Balancer::due(std::uint64_t seen) {
     return;
   }
   begin_round();
-  group().broadcast<&Balancer::collect>(group()[pe()].target<&Balancer::collected>());
+  group().broadcast<&Balancer::collect>(Others::balanced,
+                                        group()[pe()].target<&Balancer::collected>());
 }
 
 void Balancer::collected(const std::vector<PeReport>& reports) {
@@ -302,7 +303,7 @@ void Balancer::moved() {
 }
 
 Task Balancer::distributed_round_beside() {
-  co_await round();
+  co_await round(Others::balanced);
   round_is_over();
 }
 
@@ -312,12 +313,12 @@ void Balancer::round_is_over() {
   end_if_over();
 }
 
-Task Balancer::round() {
+Task Balancer::round(Others others) {
   begin_round();
   if (plan_.distributed == DistributedStrategy::none) {
-    co_await central_round();
+    co_await central_round(others);
   } else {
-    co_await distributed_round();
+    co_await distributed_round(others);
   }
   end_round();
 }
@@ -352,9 +353,9 @@ std::vector<std::vector<Move>> Balancer::decide(const std::vector<PeReport>& rep
   }
 }
 
-Task Balancer::central_round() {
+Task Balancer::central_round(Others others) {
   Future<std::vector<PeReport>> collected;
-  group().broadcast<&Balancer::collect>(collected.callback());
+  group().broadcast<&Balancer::collect>(others, collected.callback());
   const std::vector<PeReport> reports = co_await collected;
   std::vector<std::vector<Move>> moves = decide(reports);
   co_await epoch([&] {
@@ -363,14 +364,15 @@ Task Balancer::central_round() {
   });
 }
 
-Task Balancer::distributed_round() {
+Task Balancer::distributed_round(Others others) {
   Future<PhaseSums> prepared;
-  group().broadcast<&Balancer::prepare>(prepared.callback());
+  group().broadcast<&Balancer::prepare>(others, prepared.callback());
   const PhaseSums before = co_await prepared;
   const double average = before.average_time();
   Future<std::uint64_t> traded;
   plan_.exchange[pe()].send<&Exchange::run>(
-      Exchange::Order{plan_.distributed, average, before.mean_load()}, traded.callback());
+      Exchange::Order{plan_.distributed, average, before.mean_load(), coordinator_->options().seed},
+      traded.callback());
   co_await traded;
   co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
   Future<Outcome> summed;
@@ -390,14 +392,14 @@ double Balancer::speed() const {
   return plan_.speeds.empty() ? 1 : plan_.speeds[slot(pe())];
 }
 
-void Balancer::sum_up(const Callback<PhaseSums>& target) {
-  contribute(MergeSums{}, measured_.sums(speed()), target);
+void Balancer::sum_up(Others others, const Callback<PhaseSums>& target) {
+  contribute(MergeSums{}, measured_.sums(speed(), others), target);
 }
 
-void Balancer::collect(const Callback<std::vector<PeReport>>& target) {
+void Balancer::collect(Others others, const Callback<std::vector<PeReport>>& target) {
   ++n_rounds_seen_;
   std::vector<PeReport> mine;
-  mine.push_back(measured_.report(n_collected_++));
+  mine.push_back(measured_.report(n_collected_++, others));
   contribute(in_order(concatenate), std::move(mine), target);
 }
 
@@ -424,10 +426,10 @@ void Balancer::recall(bool interrupted, const Callback<std::uint64_t>& done) {
   contribute(sum, measured_.recall(interrupted), done);
 }
 
-void Balancer::prepare(const Callback<PhaseSums>& target) {
+void Balancer::prepare(Others others, const Callback<PhaseSums>& target) {
   ++n_rounds_seen_;
-  const PhaseSums before = measured_.sums(speed());
-  const PeReport report = measured_.report(n_collected_++);
+  const PhaseSums before = measured_.sums(speed(), others);
+  const PeReport report = measured_.report(n_collected_++, others);
   const std::uint64_t limit =
       plan_.memory_limit_bytes.empty() ? 0 : plan_.memory_limit_bytes[slot(pe())];
   plan_.exchange.local().hold(report, speed(), limit);
@@ -462,7 +464,7 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
              "start_balancing() of an empty proxy: assign what create() returned to it first");
   Pe& pe = current_pe();
   TESS_CHECK(!pe.ended(array), "start_balancing() of an array that was destroyed on ", pe.id());
-  validate(options, pe.n_pes());
+  validate(options, pe.n_pes(), users ? StrategyOf::user : StrategyOf::runtime);
   const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;
   const DistributedStrategy distributed =
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);

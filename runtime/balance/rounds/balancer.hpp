@@ -77,7 +77,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   /// On the coordinator: a round by the loads of a checkpoint.
   Task place_again();
   /// On the coordinator: ends a phase without a barrier of the elements.
-  Task phase_ends();
+  Task phase_ends(Others others = Others::fixed);
 
   // Entry methods.
   void attached_everywhere(std::int64_t n_under_way);
@@ -85,8 +85,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void begin();
   Task reached(std::uint64_t n_elements);
   void due(std::uint64_t round);
-  void sum_up(const Callback<PhaseSums>& target);
-  void collect(const Callback<std::vector<PeReport>>& target);
+  void sum_up(Others others, const Callback<PhaseSums>& target);
+  void collect(Others others, const Callback<std::vector<PeReport>>& target);
   void collected(const std::vector<PeReport>& reports);
   void move_beside(const std::vector<Move>& moves);
   void moved();
@@ -95,7 +95,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void forget(const Callback<std::uint64_t>& done);
   void sum_past(const Callback<PastLoad>& target);
   void recall(bool interrupted, const Callback<std::uint64_t>& done);
-  void prepare(const Callback<PhaseSums>& target);
+  void prepare(Others others, const Callback<PhaseSums>& target);
   void fetch();
   void sum_outcome(const Callback<Outcome>& target);
 
@@ -117,14 +117,14 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void watch(Collection& array);
   Task attached();
   Task forget_all();
-  Task round();
+  Task round(Others others);
   void begin_round();
   void end_round();
   void round_is_over();
   Task distributed_round_beside();
   [[nodiscard]] std::vector<std::vector<Move>> decide(const std::vector<PeReport>& reports);
-  Task central_round();
-  Task distributed_round();
+  Task central_round(Others others);
+  Task distributed_round(Others others);
   [[nodiscard]] double speed() const;
   void pass(Element& element);
   void begin_if_ready();

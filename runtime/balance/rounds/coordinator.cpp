@@ -12,7 +12,9 @@ namespace tess::balance {
 namespace {
 
 constexpr double counts_in_vain = 0.1;  // share of the imbalance that a round left
-constexpr double noise = 0.01;  // share of the average: smaller differences of loads are ignored
+constexpr double noise = 0.01;    // share of the average: smaller differences of loads are ignored
+constexpr double persists = 0.5;  // share of the predicted gain that shows that loads persist
+constexpr double most_patience = 1e12;  // so that it stays finite
 
 double slowest(const Snapshot& s, const Assignment& placement) {
   return measure(s, placement).max_over_average * average_time(s);
@@ -26,10 +28,17 @@ std::map<std::string, double> by_entry(const std::vector<PeReport>& reports) {
   return result;
 }
 
+/// Reports do not give the name of a built-in strategy to the user's own.
+std::string name_of(const BalanceOptions& options, bool is_users) {
+  const bool built_in = std::ranges::count(strategy_names(), options.strategy) > 0;
+  return is_users && built_in ? "own" : options.strategy;
+}
+
 }  // namespace
 
 Coordinator::Coordinator(BalanceOptions options, Strategy users)
     : options_(std::move(options)),
+      name_(name_of(options_, users != nullptr)),
       strategy_(users ? make_strategy(std::move(users))
                       : make_strategy(options_.strategy, options_.seed)) {
   const Prediction prediction = parse_prediction(options_.prediction);
@@ -40,10 +49,24 @@ bool Coordinator::worth(const PhaseSums& phase) {
   if (phase.n_measured == 0) return false;
   if (judges_) return true;
   const double average = phase.average_time();
+  if (judges_distributed_ && average > 0) {
+    judges_distributed_ = false;
+    Round& last = history_.back();
+    last.measured = phase.slowest / average;
+    learn(last.before - last.predicted, last.before - last.measured,
+          phase.slowest - last.before * average);
+  }
   const double above_floor = std::max(0.0, phase.slowest - (floor_ + noise) * average);
   const double in_vain = std::max(0.0, phase.slowest - (1 + noise) * average) - above_floor;
   lost_ += above_floor + counts_in_vain * in_vain;
-  return lost_ > cost_;
+  return lost_ > patience_ * (cost_ + harm_);
+}
+
+/// Gains in any unit; harm in seconds.
+void Coordinator::learn(double promised, double gain, double harm) {
+  const bool persistent = gain >= persists * promised;
+  patience_ = persistent ? 1 : std::min(2 * patience_, most_patience);
+  harm_ = persistent ? 0 : std::max(harm, 0.0);
 }
 
 Assignment Coordinator::before_last_round(const Snapshot& measured) const {
@@ -62,6 +85,7 @@ void Coordinator::judge_last_round(const Snapshot& measured, double now) {
   const double without = slowest(measured, before_last_round(measured));
   last.measured = now / average;
   last.gain = 1 - now / without;
+  if (judges_) learn(promised_, last.gain, now - without);
 }
 
 Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
@@ -77,6 +101,7 @@ Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
     round.skipped = true;
     return measured.elements.pe;
   }
+  searched_ = true;
   const Snapshot predicted = predictor_ ? predictor_->predict(measured) : Snapshot{};
   const Snapshot& expected = predictor_ ? predicted : measured;
   const auto began = std::chrono::steady_clock::now();
@@ -84,8 +109,9 @@ Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
   round.strategy_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   round.predicted = measure(expected, wanted).max_over_average;
-  if (automatic &&
-      slowest(expected, wanted) >= std::min(now, slowest(expected, expected.elements.pe))) {
+  const double stays = slowest(expected, expected.elements.pe);
+  promised_ = stays > 0 ? 1 - slowest(expected, wanted) / stays : 0;
+  if (automatic && slowest(expected, wanted) >= std::min(now, stays)) {
     floor_ = round.before;
     round.skipped = true;
     return measured.elements.pe;
@@ -99,7 +125,7 @@ std::vector<std::vector<Move>> Coordinator::decide(const std::vector<PeReport>& 
   if (predictor_) predictor_->record(measured);
   Round round;
   round.number = history_.size();
-  round.strategy = options_.strategy;
+  round.strategy = name_;
   round.n_elements = measured.elements.size();
   round.n_unknown = measured.elements.size() - n_known_loads(measured);
   round.seconds_by_entry = by_entry(reports);
@@ -107,6 +133,7 @@ std::vector<std::vector<Move>> Coordinator::decide(const std::vector<PeReport>& 
   judge_last_round(measured, round.before * average_time(measured));
   const bool blind = round.n_elements > 0 && round.n_unknown == round.n_elements;
   round.skipped = blind;
+  searched_ = false;
   const Assignment wanted = blind ? measured.elements.pe : choose(measured, round);
   const Metrics metrics = measure(measured, wanted);
   if (round.skipped || round.rolled_back) round.predicted = metrics.max_over_average;
@@ -131,10 +158,14 @@ std::vector<std::vector<Move>> Coordinator::decide(const std::vector<PeReport>& 
 
 void Coordinator::record_distributed(Round round) {
   round.number = history_.size();
-  round.strategy = options_.strategy;
-  if (!history_.empty()) history_.back().measured = round.before;
+  round.strategy = name_;
+  // `automatic` may run this round many phases after the last: worth() saw the phase after that.
+  if (!history_.empty() && options_.when != BalanceWhen::automatic)
+    history_.back().measured = round.before;
   floor_ = round.predicted;
   lost_ = 0;
+  searched_ = true;
+  judges_distributed_ = options_.when == BalanceWhen::automatic && round.n_moved != 0;
   history_.push_back(std::move(round));
 }
 
@@ -142,7 +173,7 @@ const Round& Coordinator::finish(double round_seconds, double phase_seconds) {
   Round& round = history_.back();
   round.round_seconds = round_seconds;
   round.phase_seconds = phase_seconds;
-  if (round.strategy_seconds > 0) cost_ = round_seconds;
+  if (searched_) cost_ = round_seconds;
   return round;
 }
 

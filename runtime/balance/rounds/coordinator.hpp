@@ -7,6 +7,12 @@
 // the last round could not remove counts a tenth; otherwise a single heavy element would cause
 // useless rounds for ever. After a round loads are collected once more: the loads of the next phase
 // under the placement before the round show the gain, and a negative gain undoes the moves.
+//
+// That holds while loads persist. If a round gained less than half of what it predicted, they do
+// not: the next round waits until twice as much is lost, counted from its cost plus the seconds that
+// its moves cost the phase after it. So loads that change at random cause ever fewer rounds. A
+// round that gains what it predicted ends this. The gain of a distributed round is the difference
+// of max/average before and after it, and its moves are not undone.
 #pragma once
 
 #include "runtime/balance/prediction.hpp"
@@ -55,15 +61,23 @@ class Coordinator {
   void judge_last_round(const Snapshot& measured, double now);
   [[nodiscard]] Assignment choose(const Snapshot& measured, Round& round);
 
+  void learn(double promised, double gain, double harm);
+
   const BalanceOptions options_;
+  const std::string name_;  // of the strategy, in the history
   Strategy strategy_;
   std::optional<Predictor> predictor_;  // none: the next phase is expected to be like the last
   std::vector<Round> history_;
-  Placement moved_from_;  // placement before the last round
-  double cost_ = 0;       // seconds of the last round with a strategy
-  double lost_ = 0;       // seconds lost to imbalance since the last round
-  double floor_ = 1;      // max/average after the last round
-  bool judges_ = false;   // automatic: the last round moved elements, and its gain is not known yet
+  Placement moved_from_;   // placement before the last round
+  bool searched_ = false;  // the last round ran a strategy
+  double cost_ = 0;        // seconds of the last round that ran one
+  double promised_ = 0;    // its predicted gain
+  double harm_ = 0;        // seconds by which its moves prolonged the next phase
+  double patience_ = 1;    // how many times its cost has to be lost before the next round
+  double lost_ = 0;        // seconds lost to imbalance since the last round
+  double floor_ = 1;       // max/average after the last round
+  bool judges_ = false;  // automatic: the last round moved elements, and its gain is not known yet
+  bool judges_distributed_ = false;  // the same after a distributed round
 };
 
 }  // namespace tess::balance

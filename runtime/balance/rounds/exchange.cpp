@@ -34,9 +34,9 @@ void take(LocalPe& self, const Item& item, const std::vector<Item>& change) {
 }  // namespace
 
 DistributedStrategy distributed_strategy(std::string_view name) {
-  return name == "diffusion" ? DistributedStrategy::diffusion
-         : name == "gossip"  ? DistributedStrategy::gossip
-                             : DistributedStrategy::none;
+  return !is_distributed(name) ? DistributedStrategy::none
+         : name == "gossip"    ? DistributedStrategy::gossip
+                               : DistributedStrategy::diffusion;
 }
 
 void Exchange::hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes) {
@@ -168,7 +168,7 @@ Task Exchange::run_gossip(Order order) {
 
 void Exchange::begin_gossip(Order order, const Callback<std::uint64_t>& done) {
   weigh_unknown(order.mean_load);
-  gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), order.average_time, 1);
+  gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), order.average_time, order.seed);
   contribute(sum, std::uint64_t{0}, done);
 }
 

@@ -48,6 +48,7 @@ class Exchange final : public Group<Exchange> {
     DistributedStrategy strategy = DistributedStrategy::none;
     double average_time = 0;  ///< of all PEs, in seconds
     double mean_load = 0;     ///< weight of an element with unknown load, at speed 1
+    std::uint64_t seed = 1;   ///< of gossip's random peers
   };
   /// On one member: makes all members carry out the strategy; `done` receives the number of trades.
   Task run(Order order, Callback<std::uint64_t> done);

@@ -13,6 +13,7 @@ constexpr std::uint64_t rounds_between_weighings = 16;
 
 void Measured::attach(Collection& array) {
   array_ = &array;
+  meter_.add_balanced(&in_elements_);
   begin_phase();
   for (Element* element : array.elements())
     if (element != nullptr) entered(*element);
@@ -22,6 +23,7 @@ void Measured::detach() {
   if (array_ == nullptr) return;
   for (Element* element : array_->elements())
     if (element != nullptr) left(*element);
+  meter_.remove_balanced(&in_elements_);
   array_ = nullptr;
 }
 
@@ -39,14 +41,22 @@ void Measured::left(Element& element) {
   record.position = BalanceRecord::nowhere;
 }
 
-double Measured::busy_outside() const {
-  const std::uint64_t busy = meter_.busy() - busy_before_;
-  return meter_.seconds(busy - std::min(busy, in_elements_));
+// Stolen time is subtracted from both counters, possibly after the phase that it belongs to.
+double Measured::busy_outside(Others others) const {
+  const auto since = [](std::uint64_t now, std::uint64_t then) {
+    return now - std::min(now, then);
+  };
+  const std::uint64_t busy = since(meter_.busy(), busy_before_);
+  const std::uint64_t left_out = others == Others::balanced
+                                     ? since(meter_.in_balanced(), in_balanced_before_)
+                                     : since(in_elements_, in_elements_before_);
+  return meter_.seconds(since(busy, left_out));
 }
 
 void Measured::begin_phase() {
   busy_before_ = meter_.busy();
-  in_elements_ = 0;
+  in_elements_before_ = in_elements_;
+  in_balanced_before_ = meter_.in_balanced();
 }
 
 void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
@@ -79,9 +89,9 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
   record.load.clear();
 }
 
-PeReport Measured::report(std::uint64_t round) {
+PeReport Measured::report(std::uint64_t round, Others others) {
   PeReport report;
-  report.background = busy_outside();
+  report.background = busy_outside(others);
   begin_phase();
   for (Element* element : reported_)
     if (element != nullptr) Collection::record_of(*element)->position = BalanceRecord::nowhere;
@@ -92,11 +102,11 @@ PeReport Measured::report(std::uint64_t round) {
   return report;
 }
 
-PhaseSums Measured::sums(double speed) const {
+PhaseSums Measured::sums(double speed, Others others) const {
   double seconds = 0;
   std::uint64_t n_measured = 0, n_unknown = 0;
   if (array_ == nullptr) {
-    seconds = busy_outside();
+    seconds = busy_outside(others);
     return {seconds, seconds * speed, speed, 0, 0, 0};
   }
   for (const Element* element : array_->elements()) {
@@ -109,7 +119,7 @@ PhaseSums Measured::sums(double speed) const {
       ++n_unknown;
     }
   }
-  const double all = seconds + busy_outside();
+  const double all = seconds + busy_outside(others);
   return {all, all * speed, speed, seconds * speed, n_measured, n_unknown};
 }
 

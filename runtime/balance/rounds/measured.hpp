@@ -9,6 +9,12 @@
 
 namespace tess::balance {
 
+/// What the load of other balanced arrays on a PE is to a round.
+enum class Others : std::uint8_t {
+  fixed,     ///< background: only this array moves. For rounds that take turns
+  balanced,  ///< nothing: their own rounds run beside this one, and would correct the same imbalance
+};
+
 class Measured {
  public:
   Measured(Pe& pe, SnapshotIndices indices)
@@ -22,13 +28,13 @@ class Measured {
   void left(Element& element);
 
   /// The loads since the last phase began; begins a new phase.
-  [[nodiscard]] PeReport report(std::uint64_t round);
+  [[nodiscard]] PeReport report(std::uint64_t round, Others others);
   /// The element at this position of the last report; null if it has left or ended.
   [[nodiscard]] Element* reported(std::size_t position) const { return reported_[position]; }
   [[nodiscard]] std::size_t n_reported() const { return reported_.size(); }
 
   /// The sums of this PE in the phase so far, at a speed.
-  [[nodiscard]] PhaseSums sums(double speed) const;
+  [[nodiscard]] PhaseSums sums(double speed, Others others) const;
   /// Begins a new phase and discards earlier measurements.
   void clear();
 
@@ -47,7 +53,7 @@ class Measured {
 
  private:
   void add(Element& element, std::uint64_t round, PeReport& report);
-  [[nodiscard]] double busy_outside() const;
+  [[nodiscard]] double busy_outside(Others others) const;
   void begin_phase();
 
   Pe& pe_;
@@ -55,8 +61,11 @@ class Measured {
   const SnapshotIndices indices_;
   Collection* array_ = nullptr;
   std::vector<Element*> reported_;
-  std::uint64_t busy_before_;      // the meter's busy ticks when the phase began
-  std::uint64_t in_elements_ = 0;  // ticks of the array's elements on this PE since the phase began
+  std::uint64_t in_elements_ = 0;  // ticks of the array's elements on this PE
+  // When the phase began: the meter's busy ticks, those of these elements, of all balanced arrays.
+  std::uint64_t busy_before_;
+  std::uint64_t in_elements_before_ = 0;
+  std::uint64_t in_balanced_before_ = 0;
 };
 
 }  // namespace tess::balance

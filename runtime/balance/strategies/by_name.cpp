@@ -79,6 +79,10 @@ bool needs_positions(std::string_view name) {
   return needs_of(name) == Needs::positions;
 }
 
+bool is_distributed(std::string_view name) {
+  return name == "diffusion" || name == "gossip";
+}
+
 std::string obstacle(std::string_view name, const Snapshot& s) {
   if (needs_positions(name) && s.elements.position.empty() && s.elements.size() > 0)
     return "the snapshot does not have the positions of all elements";

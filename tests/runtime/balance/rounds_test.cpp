@@ -205,6 +205,66 @@ TEST_CASE("automatic undoes a round that made it worse", "[balance][rounds]") {
     CHECK(phases.pe_of(element) == before.pe_of(element));
 }
 
+TEST_CASE("automatic runs ever fewer rounds while loads do not persist", "[balance][rounds]") {
+  // Each phase the heavy elements are those that share a PE, wherever a round has put them.
+  Phases phases({{9, 9}, {1, 1}});
+  Coordinator coordinator(automatic(), {});
+  int n_searches = 0;
+  constexpr int n_phases = 400;
+  for (int phase = 0; phase < n_phases; ++phase) {
+    const std::size_t heavy = phases.pe_of(phase % 2 == 0 ? 0U : 100U);
+    for (const std::uint64_t element : {0U, 1U, 100U, 101U})
+      phases.set_load(element, phases.pe_of(element) == heavy ? 9 : 1);
+    if (!coordinator.worth(phases.sums())) continue;
+    phases.move(coordinator.decide(phases.reports));
+    const Round& round = coordinator.finish(1e-3, 9);
+    if (round.n_moved != 0 && !round.rolled_back) ++n_searches;
+  }
+  CHECK(n_searches >= 2);
+  CHECK(n_searches <= 12);  // about log2 of the phases
+}
+
+TEST_CASE("automatic weighs the cost of a distributed round, and waits longer if it gained nothing",
+          "[balance][rounds]") {
+  BalanceOptions options = automatic();
+  options.strategy = "gossip";
+  const auto rounds_of = [&](double measured_after) {
+    Coordinator coordinator(options, {});
+    int n_rounds = 0;
+    for (int phase = 0; phase < 200; ++phase) {
+      // On two PEs with 10 s of work: 0.5 s are lost in a phase without a round that helps.
+      const double slowest = n_rounds == 0 ? 5.5 : measured_after;
+      if (!coordinator.worth({slowest, 10, 2, 10, 8, 0})) continue;
+      ++n_rounds;
+      Round round;
+      round.before = slowest / 5;
+      round.predicted = 1;
+      round.n_moved = 2;
+      coordinator.record_distributed(round);
+      coordinator.finish(2, 5);
+    }
+    CHECK(coordinator.history().at(0).measured == Approx(measured_after / 5));
+    return n_rounds;
+  };
+  CHECK(rounds_of(5) == 1);
+  const int in_vain = rounds_of(5.5);  // once the cost of 2 s is lost, then twice, four times …
+  CHECK(in_vain >= 3);
+  CHECK(in_vain <= 8);
+}
+
+TEST_CASE("a history names the user's strategy as the user does", "[balance][rounds]") {
+  const auto name = [](const std::string& given) {
+    BalanceOptions options;
+    options.strategy = given;
+    Phases phases({{1, 2}, {3}});
+    Coordinator coordinator(options, [](const Snapshot& s) { return s.elements.pe; });
+    (void)coordinator.decide(phases.reports);
+    return coordinator.history().at(0).strategy;
+  };
+  CHECK(name("by_column") == "by_column");
+  CHECK(name(BalanceOptions().strategy) == "own");  // never the name of a built-in strategy
+}
+
 TEST_CASE("a report names elements in one snapshot; parcels to strangers are left out",
           "[balance][rounds]") {
   Phases phases({{1, 2}, {3}});
@@ -236,6 +296,11 @@ TEST_CASE("balance options in one line of text", "[balance][rounds]") {
   CHECK(message_of("greedy,period=5").find("5 is not a time") != std::string::npos);
   CHECK(message_of("greedy,window=0").find("window") != std::string::npos);
   CHECK(message_of("greedy,often").find("unknown key often") != std::string::npos);
+  CHECK(
+      message_of("gossip,prediction=linear_trend") ==
+      "balance prediction: linear_trend, but gossip is distributed and knows the last phase only; "
+      "choose last, or another strategy");
+  CHECK(message_of("gossip,prediction=last").empty());
   BalanceOptions three;
   three.speeds = {1, 2, 3};
   CHECK_THROWS_AS(validate(three, 2), Error);
