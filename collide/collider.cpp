@@ -23,7 +23,8 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
   const ColliderOptions& o = collider.options;
   const std::uint64_t step = collider.managers.local().new_step();
   Future<Summary> known;
-  collider.managers.broadcast<&Manager::prepare>(step, known.callback());
+  collider.managers.broadcast<&Manager::prepare>(step, n_sampled_per_pe(o.size, n_pes()),
+                                                 known.callback());
   const Summary summary = co_await known;
   if (taken) taken();
   Plan plan;

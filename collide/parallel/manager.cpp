@@ -16,8 +16,8 @@ ObjectList& Manager::pending() {
   return pending_->objects;
 }
 
-void Manager::prepare(std::uint64_t step, const Callback<Summary>& target) {
-  contribute(JoinSummaries{}, Summary(pending(), pe().value, n_pes()), target);
+void Manager::prepare(std::uint64_t step, std::size_t n_sampled, const Callback<Summary>& target) {
+  contribute(JoinSummaries{}, Summary(pending(), pe().value, n_sampled), target);
   round(step).delivery = std::move(pending_);
 }
 

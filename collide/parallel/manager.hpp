@@ -68,7 +68,8 @@ class Manager : public Group<Manager> {
     return static_cast<std::uint64_t>(pe().value) << 40 | ++n_steps_;
   }
 
-  void prepare(std::uint64_t step, const Callback<Summary>& target);
+  /// The summary has so many boxes of this PE.
+  void prepare(std::uint64_t step, std::size_t n_sampled, const Callback<Summary>& target);
   /// Without a plan: the objects are dropped.
   void begin(std::uint64_t step, const Plan& plan, const Report& report);
   void receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bundle);

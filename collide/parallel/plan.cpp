@@ -20,14 +20,12 @@ std::size_t most_sampled(std::int32_t n_pes) {
 
 }  // namespace
 
-Summary::Summary(const ObjectList& objects, std::int32_t pe, std::int32_t n_pes)
+Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampled)
     : n(objects.size()), bounds(objects.bounds()) {
   for (std::size_t octave = 0; octave < search::n_octaves<double>; ++octave)
     if (objects.has_octave(octave)) octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
   for (const ObjectList::Source& source : objects.sources()) add(source.model);
-  const std::size_t wanted =
-      std::max<std::size_t>(8, most_sampled(n_pes) / static_cast<std::size_t>(n_pes));
-  const std::size_t n_taken = std::min<std::size_t>(n, wanted);
+  const std::size_t n_taken = std::min<std::size_t>(n, n_sampled);
   for (std::size_t i = 0; i < n_taken; ++i)
     sample.push_back(objects.boxes()[search::scattered(i, n_taken, n)]);
   if (n_taken != 0) sampled.push_back({pe, static_cast<std::uint32_t>(n_taken)});
@@ -115,6 +113,11 @@ double chosen_size(const Summary& summary, std::int32_t n_pes) {
 }
 
 }  // namespace
+
+std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept {
+  if (size != Point{0, 0, 0}) return 0;
+  return std::max<std::size_t>(2, most_sampled(n_pes) / static_cast<std::size_t>(n_pes));
+}
 
 Plan make_plan(const Summary& summary, std::int32_t n_pes, const Point& origin, const Point& size,
                PairRules rules, std::uint64_t step) {

@@ -30,8 +30,8 @@ struct Summary {
   std::vector<ModelId> models;              ///< at most three different ones
 
   Summary() = default;
-  /// Of the objects on one of so many PEs.
-  Summary(const ObjectList& objects, std::int32_t pe, std::int32_t n_pes);
+  /// Of the objects on a PE, with so many of their boxes as a sample.
+  Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampled);
   void add(ModelId model);
 
   template <class Ar>
@@ -61,6 +61,10 @@ struct Plan {
   [[nodiscard]] VoxelGrid grid(Level level) const;
   [[nodiscard]] Level level_of(double longest_extent) const noexcept;
 };
+
+/// How many boxes each of so many PEs gives to the sample from which a size of zero is chosen. Another
+/// size needs none. All PEs wait for the sample, so many PEs give few.
+[[nodiscard]] std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept;
 
 /// For so many PEs. With a size of zero, the size that is expected to cost least. A size that is too small costs time
 /// but no memory: objects stand on the level of their size. Throws Error (out_of_range) if a

@@ -281,19 +281,29 @@ void growth_rows(Output& output) {
     for (int log = 10; log <= (output.options().quick ? 12 : 22); ++log) {
       Case grown = of;
       grown.scene = fmt::format("{}:{}", of.scene.substr(0, of.scene.find(':')), 1 << log);
-      const Problem problem = make_problem(grown);
+      // Small scenes are searched in turns, each with another seed: of one small scene the processor
+      // learns every branch, which makes 1 024 objects a third faster than they are in a program.
+      const int n_scenes = std::max(1, (1 << 17) >> log);
+      std::vector<Problem> problems;
+      for (int i = 0; i < n_scenes; ++i)
+        problems.push_back(make_problem(grown, static_cast<std::uint64_t>(i) + 1));
       for (const MethodKind& kind : method_kinds()) {
         if (kind.whose != Whose::ours) continue;
-        const auto method = kind.make(problem);
-        if (!method) continue;
-        const std::uint64_t expected = method->count();
+        std::vector<std::unique_ptr<Method>> methods;
+        std::vector<std::uint64_t> expected;
+        for (const Problem& problem : problems) {
+          auto method = kind.make(problem);
+          if (!method) break;
+          expected.push_back(method->count());
+          methods.push_back(std::move(method));
+        }
+        if (methods.size() != problems.size()) continue;
         Samples samples;
-        const std::int64_t times = std::max(1, (1 << 17) >> log);
         for (int i = 0; i < output.options().repeat; ++i) {
           const ProcessWatch watch;
-          for (std::int64_t k = 0; k < times; ++k)
-            require(method->count() == expected, grown.scene, kind.name, "another count");
-          samples.add(watch.nanoseconds() / static_cast<double>(times << log));
+          for (std::size_t k = 0; k < methods.size(); ++k)
+            require(methods[k]->count() == expected[k], grown.scene, kind.name, "another count");
+          samples.add(watch.nanoseconds() / static_cast<double>(std::int64_t{n_scenes} << log));
         }
         output.row("growth", fmt::format("growth_{}_{}_{}", name, kind.name, 1 << log), samples,
                    "ns");

@@ -56,8 +56,8 @@ std::size_t Problem::second_set() const {
   return static_cast<std::size_t>(std::find(models.begin(), models.end(), 1) - models.begin());
 }
 
-Problem make_problem(const Case& of) {
-  const collide_scene::Scene scene = collide_scene::make_scene(of.scene);
+Problem make_problem(const Case& of, std::uint64_t seed) {
+  const collide_scene::Scene scene = collide_scene::make_scene(of.scene, seed);
   Problem out{boxes_of(scene), {}, {}, {}, {}, of.pairing, of.touching};
   if (of.pairing == Pairing::across_models) out.models = scene.models;
   if (of.exact) out.triangles = scene.triangles;

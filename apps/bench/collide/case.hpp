@@ -52,7 +52,8 @@ struct Problem {
            (triangles.empty() || intersect(triangles[a], triangles[b], touching));
   }
 };
-[[nodiscard]] Problem make_problem(const Case& of);
+/// `seed`: of scenes with random places.
+[[nodiscard]] Problem make_problem(const Case& of, std::uint64_t seed = 1);
 
 /// The problem of the rounded objects, as doubles.
 [[nodiscard]] Problem widened(const Problem& problem);
