@@ -409,8 +409,7 @@ void Balancer::alarm() {
 }
 
 GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, Strategy users) {
-  TESS_CHECK(array != CollectionId{},
-             "start_balancing() of an empty proxy: assign what create() returned to it first");
+  if (array == CollectionId{}) detail::refuse_empty_proxy("start_balancing() of");
   Pe& pe = current_pe();
   validate(options, pe.n_pes());
   const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;
