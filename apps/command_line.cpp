@@ -85,6 +85,11 @@ std::string CommandLine::value(const std::string& name) const {
   return text;
 }
 
+void refuse_together(std::string_view option, std::string_view other) {
+  tess::fail(tess::ErrorCode::bad_argument, option, " does not work with ", other,
+             "; leave one of them out");
+}
+
 template Option CommandLine::option(const std::string&, std::int32_t&, const std::string&);
 template Option CommandLine::option(const std::string&, std::uint64_t&, const std::string&);
 template Option CommandLine::option(const std::string&, double&, const std::string&);

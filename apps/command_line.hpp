@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -62,5 +63,9 @@ class CommandLine {
  private:
   std::unique_ptr<CLI::App> app_;
 };
+
+/// Throws tess::Error (bad_argument): two options are given of which each works only without the other.
+/// Both as they were given: "--steps 5".
+[[noreturn]] void refuse_together(std::string_view option, std::string_view other);
 
 }  // namespace apps

@@ -36,7 +36,6 @@
 #include "collide/parallel/voxel.hpp"
 #include "runtime/runtime.hpp"
 
-#include <utility>
 #include <vector>
 
 namespace tess::collide {

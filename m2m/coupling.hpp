@@ -51,7 +51,6 @@
 #include <concepts>
 #include <functional>
 #include <utility>
-#include <vector>
 
 namespace tess::m2m {
 

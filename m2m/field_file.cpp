@@ -5,7 +5,6 @@
 #include "runtime/core/error.hpp"
 
 #include <fmt/core.h>
-#include <utility>
 
 namespace tess::m2m {
 

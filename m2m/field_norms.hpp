@@ -9,7 +9,6 @@
 #include "m2m/workers/scatter.hpp"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace tess::m2m {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <charconv>
-#include <cstdlib>
 #include <fmt/core.h>
 
 namespace tess::m2m {

@@ -5,7 +5,6 @@
 #include "m2m/workers/placer.hpp"
 #include "runtime/core/error.hpp"
 
-#include <optional>
 #include <utility>
 
 namespace tess::m2m {

@@ -32,7 +32,6 @@
 
 #include "runtime/group.hpp"
 
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>

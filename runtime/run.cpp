@@ -126,6 +126,58 @@ void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
   (void)setup.machine->agree(refused);
 }
 
+/// What the command line says about the machine.
+struct MachineChoice {
+  std::int32_t pes = 0;  ///< 0: not given
+  std::optional<std::string> simulated{};
+};
+
+/// Moves the runtime's options from the command line to `options` and to what it returns.
+MachineChoice take_values(int& argc, char** argv, RuntimeOptions& options) {
+  MachineChoice choice;
+  std::optional<std::string_view> monitor;
+  std::string_view token;
+  int kept = 1;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view option = argv[i];
+    std::string_view value;
+    const auto takes_value = [&](std::string_view name) {  // --name value, or --name=value
+      if (option == name) {
+        if (++i >= argc) fail(ErrorCode::bad_argument, name, " needs a value");
+        value = argv[i];
+        return true;
+      }
+      if (!option.starts_with(name) || !option.substr(name.size()).starts_with('=')) return false;
+      value = option.substr(name.size() + 1);
+      return true;
+    };
+    if (takes_value("--pes")) {
+      choice.pes = number_of_pes(value);
+    } else if (takes_value("--sim")) {
+      choice.simulated = value;
+    } else if (takes_value("--message-memory")) {
+      options.messages.memory_bytes = memory_size("--message-memory", value);
+    } else if (takes_value("--trace")) {
+      options.trace = value;
+    } else if (takes_value("--monitor")) {
+      monitor = value;
+    } else if (takes_value("--monitor-token")) {
+      token = value;
+    } else if (takes_value("--hang-report")) {
+      options.hang_report = number_of_seconds("--hang-report", value);
+    } else if (option == "--audit") {
+      options.audit = true;
+    } else if (option == "--stats") {
+      options.statistics = true;
+    } else {
+      argv[kept++] = argv[i];
+    }
+  }
+  argc = kept;
+  if (monitor) options.monitor = monitor_options(*monitor, token);
+  return choice;
+}
+
 }  // namespace
 
 std::string options_help() {
@@ -159,72 +211,27 @@ std::string options_help() {
 
 Setup take_options(int& argc, char** argv) {
   Setup setup;
-  std::int32_t pes = 0;
-  std::string simulated;
-  bool simulates = false;
-  std::optional<std::string_view> monitor;
-  std::string_view token;
-  int kept = 1;
-  for (int i = 1; i < argc; ++i) {
-    std::string_view option = argv[i];
-    std::string_view value;
-    const auto takes_value = [&](std::string_view name) {
-      if (option == name) {
-        if (++i >= argc) fail(ErrorCode::bad_argument, name, " needs a value");
-        value = argv[i];
-        return true;
-      }
-      if (option.starts_with(name) && option.size() > name.size() && option[name.size()] == '=') {
-        value = option.substr(name.size() + 1);
-        return true;
-      }
-      return false;
-    };
-    if (takes_value("--pes")) {
-      pes = number_of_pes(value);
-    } else if (takes_value("--sim")) {
-      simulates = true;
-      simulated = value;
-    } else if (takes_value("--message-memory")) {
-      setup.options.messages.memory_bytes = memory_size("--message-memory", value);
-    } else if (takes_value("--trace")) {
-      setup.options.trace = value;
-    } else if (takes_value("--monitor")) {
-      monitor = value;
-    } else if (takes_value("--monitor-token")) {
-      token = value;
-    } else if (takes_value("--hang-report")) {
-      setup.options.hang_report = number_of_seconds("--hang-report", value);
-    } else if (option == "--audit") {
-      setup.options.audit = true;
-    } else if (option == "--stats") {
-      setup.options.statistics = true;
-    } else {
-      argv[kept++] = argv[i];
-    }
-  }
-  argc = kept;
-  if (monitor) setup.options.monitor = monitor_options(*monitor, token);
+  const MachineChoice choice = take_values(argc, argv, setup.options);
   if (setup.options.audit && !setup.options.trace.empty())
     fail(ErrorCode::bad_argument, "--audit --trace ", setup.options.trace,
          ": both number the messages; run the program once with each");
-  if (simulates && pes != 0)
-    fail(ErrorCode::bad_argument, "--sim ", simulated, " --pes ", pes,
+  if (choice.simulated && choice.pes != 0)
+    fail(ErrorCode::bad_argument, "--sim ", *choice.simulated, " --pes ", choice.pes,
          ": the simulated machine has the PEs of its keys; leave --pes out, and write --sim pes=",
-         pes, ",…");
-  if (simulates && processes_of_job() != 1)
-    fail(ErrorCode::bad_argument, "--sim ", simulated,
+         choice.pes, ",…");
+  if (choice.simulated && processes_of_job() != 1)
+    fail(ErrorCode::bad_argument, "--sim ", *choice.simulated,
          ": each process of the job would simulate the whole machine; start the program without "
          "mpirun, and write --sim pes=N,per-process=M,… for processes of M PEs");
-  if (simulates) {
-    const SimulatedOptions options = parse_simulated(simulated);
+  if (choice.simulated) {
+    const SimulatedOptions options = parse_simulated(*choice.simulated);
     setup.machine = make_simulated_machine(options);
     setup.options.seed = options.seed.value_or(1);
     setup.options.migration_chance = migration_chance(options);
   } else if (is_in_job()) {
-    setup.machine = make_mpi_machine(argc, argv, MpiOptions{.pes_per_process = pes});
+    setup.machine = make_mpi_machine(argc, argv, MpiOptions{.pes_per_process = choice.pes});
   } else {
-    setup.machine = make_threads_machine(pes);
+    setup.machine = make_threads_machine(choice.pes);
   }
   return setup;
 }

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
-#include <string>
 #include <utility>
 
 namespace tess {

@@ -1,5 +1,7 @@
 #include "apps/collide_fuzz/look.hpp"
 
+#include "runtime/core/hash.hpp"
+
 #include <cmath>
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "collide/box.hpp"
-#include "runtime/core/hash.hpp"
 
 #include <array>
 #include <cstdint>

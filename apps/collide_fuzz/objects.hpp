@@ -4,10 +4,11 @@
 #include "apps/collide_fuzz/look.hpp"
 #include "collide/swept.hpp"
 #include "collide/tetrahedron.hpp"
+#include "runtime/core/hash.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 #include <vector>
 
 namespace collide_fuzz {

@@ -4,7 +4,6 @@
 //     collide_scaling --study strong       a crowd of moving bodies, with the balancer on and off
 #include "apps/collide_scaling/report.hpp"
 #include "apps/command_line.hpp"
-#include "runtime/core/error.hpp"
 
 #include <cstdio>
 #include <fmt/core.h>

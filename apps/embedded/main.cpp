@@ -8,7 +8,6 @@
 #include <mpi.h>
 
 #include <array>
-#include <cstdio>
 #include <string_view>
 
 namespace {

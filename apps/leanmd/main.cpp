@@ -85,7 +85,7 @@ void check(Settings& s) {
   if (s.study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
     refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
            ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
-  if (s.study && s.stability) refuse("--study: cannot be combined with --stability");
+  if (s.study && s.stability) apps::refuse_together("--study", "--stability");
   if ((s.study || s.stability) && s.options.checkpoints.are_used())
     refuse("--checkpoint and --restart: not for --study and --stability");
   if (s.explain && s.options.checkpoints.restarts())

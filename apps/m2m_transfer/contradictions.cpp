@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/contradictions.hpp"
 
+#include "apps/command_line.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
@@ -20,9 +21,7 @@ Given given(const char* option, const std::string& value) {
 
 void refuse(const std::string& mode, const std::vector<Given>& unused) {
   for (const Given& option : unused)
-    if (!option.empty())
-      fail(ErrorCode::bad_argument, option, " does not work with ", mode,
-           "; leave one of them out");
+    if (!option.empty()) apps::refuse_together(option, mode);
 }
 
 /// The options of a graph of meshes that moves.

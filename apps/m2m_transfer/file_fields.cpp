@@ -292,6 +292,29 @@ void check_options(const FileFieldsRequest& request) {
   require_result_format(request.out);
 }
 
+/// The next steps, as many as are moved together; `next` is a position in fields.steps().
+Batch read_batch(const SourceFields& fields, std::size_t& next) {
+  Batch batch;
+  std::size_t n_components = 0;
+  do {
+    const std::size_t step = fields.steps()[next++];
+    batch.steps.push_back(step);
+    const std::size_t each = batch.vertices.add(fields.at(step, FieldPlace::vertices)) +
+                             batch.cells.add(fields.at(step, FieldPlace::tets));
+    n_components += each;
+    if (n_components + each > batch_components) break;
+  } while (next < fields.steps().size());
+  return batch;
+}
+
+/// Adds fields of a result to its hash, and to the most points that got NaN in one field.
+void add_result(const std::vector<Field>& fields, std::uint64_t& hash, std::size_t& n_nan) {
+  for (const Field& field : fields) {
+    hash = result_hash(field.values, hash);
+    n_nan = std::max(n_nan, count_nan_rows(field.values, field.n_components));
+  }
+}
+
 }  // namespace
 
 bool is_for_files(const FileFieldsRequest& request) {
@@ -330,18 +353,8 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
          "or --weights and --from-weights");
   if (!request.from_weights.empty()) read_matrix(run, *report);
   ResultFile out(request.out, run.target);
-  std::size_t next = 0;
-  while (next < fields.steps().size()) {
-    Batch batch;
-    std::size_t n_components = 0;
-    do {
-      const std::size_t step = fields.steps()[next++];
-      batch.steps.push_back(step);
-      const std::size_t each = batch.vertices.add(fields.at(step, FieldPlace::vertices)) +
-                               batch.cells.add(fields.at(step, FieldPlace::tets));
-      n_components += each;
-      if (n_components + each > batch_components) break;
-    } while (next < fields.steps().size());
+  for (std::size_t next = 0; next < fields.steps().size();) {
+    const Batch batch = read_batch(fields, next);
     if (report->fields.empty()) name_fields(batch, *report);
     std::vector<Field> values = start_values(batch.vertices.fields, run.target.n_points());
     if (!request.from_weights.empty()) {
@@ -358,15 +371,8 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
       std::vector<Field> in_cells = batch.cells.of_step(cells.fields, k);
       const double time = fields.time_of(batch.steps[k]);
       MovedStep step{batch.steps[k], time, 0, 0, result_hash({})};
-      for (const Field& field : result) {
-        step.result_hash = result_hash(field.values, step.result_hash);
-        step.n_nan = std::max(step.n_nan, count_nan_rows(field.values, field.n_components));
-      }
-      for (const Field& field : in_cells) {
-        step.result_hash = result_hash(field.values, step.result_hash);
-        step.n_nan_cells =
-            std::max(step.n_nan_cells, count_nan_rows(field.values, field.n_components));
-      }
+      add_result(result, step.result_hash, step.n_nan);
+      add_result(in_cells, step.result_hash, step.n_nan_cells);
       report->steps.push_back(step);
       if (!run.status.empty()) result.push_back(status_field(run.status));
       if (report->has_cells) in_cells.push_back(status_field(cells.status));

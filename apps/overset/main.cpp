@@ -124,10 +124,7 @@ void read_study(Options& options, bool has_background, bool has_overset) {
 /// files of --plot would replace an input.
 void refuse_contradictions(const Options& options) {
   const std::string study = "--study " + options.study;
-  const auto refuse = [&](const std::string& option) {
-    tess::fail(tess::ErrorCode::bad_argument, option, " does not work with ", study,
-               "; leave one of them out");
-  };
+  const auto refuse = [&](const std::string& option) { apps::refuse_together(option, study); };
   if (!options.study.empty()) {
     if (!options.json.empty()) refuse("--json " + options.json);
     if (!options.request.wall.empty()) refuse("--wall " + options.request.wall);

@@ -11,7 +11,6 @@
 #include "runtime/runtime.hpp"
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

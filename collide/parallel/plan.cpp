@@ -5,7 +5,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace tess::collide {

@@ -4,7 +4,6 @@
 
 #include "collide/box.hpp"
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>

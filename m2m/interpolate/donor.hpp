@@ -5,7 +5,6 @@
 #include "m2m/interpolate/locate.hpp"
 
 #include <array>
-#include <cstdint>
 #include <type_traits>
 
 namespace tess::m2m {

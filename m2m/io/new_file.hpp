@@ -2,7 +2,6 @@
 // then renamed. The writers of VTU and weights use it.
 #pragma once
 
-#include <cstddef>
 #include <cstdio>
 #include <span>
 #include <string>

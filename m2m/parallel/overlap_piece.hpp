@@ -16,7 +16,6 @@
 
 #include "m2m/parallel/couplings.hpp"
 
-#include <span>
 #include <utility>
 #include <vector>
 

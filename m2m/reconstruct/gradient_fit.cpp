@@ -46,6 +46,52 @@ void orthogonalise(std::array<std::span<double>, 3> a, std::array<Point, 3>& v) 
   }
 }
 
+/// The columns of a system, orthonormalised one by one (Gram-Schmidt, twice): Q and the triangular R.
+class Terms {
+ public:
+  /// `q` takes the columns of Q, of `n` numbers each.
+  Terms(std::vector<double>& q, std::size_t n) : q_(q), n_(n) { q_.clear(); }
+
+  [[nodiscard]] std::size_t size() const { return n_terms_; }
+  /// Returns the part of the column that is independent of those before it; 0: it is left out.
+  double append(std::span<double> column) {
+    const double length = std::sqrt(dot(column, column));
+    if (!(length > 0)) return 0;
+    std::array<double, all_terms> along{};
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t t = 0; t < n_terms_; ++t) {
+        const std::span<const double> q = std::span(q_).subspan(t * n_, n_);
+        const double part = dot(q, column);
+        along[t] += part;
+        for (std::size_t j = 0; j < n_; ++j) column[j] -= part * q[j];
+      }
+    }
+    const double rest = std::sqrt(dot(column, column));
+    if (!(rest > least_independent * length)) return 0;
+    for (double& x : column) x /= rest;
+    along[n_terms_] = rest;
+    r_[n_terms_++] = along;
+    q_.insert(q_.end(), column.begin(), column.end());
+    return rest / length;
+  }
+  /// The y with Rᵀ y = e_i: row i of the pseudo-inverse is Q y.
+  [[nodiscard]] std::array<double, all_terms> solve(std::size_t i) const {
+    std::array<double, all_terms> y{};
+    for (std::size_t t = i; t < n_terms_; ++t) {
+      double rest = t == i ? 1.0 : 0.0;
+      for (std::size_t k = i; k < t; ++k) rest -= r_[t][k] * y[k];
+      y[t] = rest / r_[t][t];
+    }
+    return y;
+  }
+
+ private:
+  std::vector<double>& q_;
+  std::size_t n_;
+  std::size_t n_terms_ = 0;
+  std::array<std::array<double, all_terms>, all_terms> r_{};  // by columns
+};
+
 }  // namespace
 
 /// Fills axes_ and basis_; returns the number of directions with an extent.
@@ -88,64 +134,29 @@ double GradientFit::compute(std::span<const Point> offsets, FitDegree degree) {
     for (std::size_t k = 0; k < n_axes; ++k) squared += axis(k)[j] * axis(k)[j];
     if (squared > 0) importance[j] = 1 / std::sqrt(squared);  // a neighbour at the point counts not
   }
-  // Columns of the system, orthonormalised one by one (Gram-Schmidt, twice). Linear terms come
-  // first: they are independent of each other, because the axes are orthogonal.
-  q_.clear();
-  std::size_t n_terms = 0;
+  // Linear terms come first: they are independent of each other, because the axes are orthogonal.
+  Terms terms(q_, n);
   double determined = n_axes == 3 ? 1 : 0;
-  std::array<std::array<double, all_terms>, all_terms> r{};
   std::vector<double> column(n);
-  const auto append = [&] {
-    const double length = std::sqrt(dot(column, column));
-    if (!(length > 0)) {
-      determined = 0;
-      return;
-    }
-    std::array<double, all_terms> along{};
-    for (int pass = 0; pass < 2; ++pass) {
-      for (std::size_t t = 0; t < n_terms; ++t) {
-        const std::span<const double> q = std::span(q_).subspan(t * n, n);
-        const double part = dot(q, column);
-        along[t] += part;
-        for (std::size_t j = 0; j < n; ++j) column[j] -= part * q[j];
-      }
-    }
-    const double rest = std::sqrt(dot(column, column));
-    if (!(rest > least_independent * length)) {
-      determined = 0;
-      return;
-    }
-    determined = std::min(determined, rest / length);
-    for (double& x : column) x /= rest;
-    along[n_terms] = rest;
-    r[n_terms++] = along;  // column n_terms of the triangular factor
-    q_.insert(q_.end(), column.begin(), column.end());
-  };
   for (std::size_t k = 0; k < n_axes; ++k) {
     for (std::size_t j = 0; j < n; ++j) column[j] = importance[j] * axis(k)[j];
-    append();
+    determined = std::min(determined, terms.append(column));
   }
-  const std::size_t n_linear = n_terms;
+  const std::size_t n_linear = terms.size();
   if (n_linear < n_axes) return 0;  // cannot be but for numbers that are not finite
   if (degree == FitDegree::quadratic) {
     for (std::size_t k = 0; k < n_axes; ++k) {
       for (std::size_t l = k; l < n_axes; ++l) {
         for (std::size_t j = 0; j < n; ++j) column[j] = importance[j] * axis(k)[j] * axis(l)[j];
-        append();
+        determined = std::min(determined, terms.append(column));
       }
     }
   }
-  // Row i of the pseudo-inverse is Q y with Rᵀ y = e_i.
   for (std::size_t i = 0; i < n_linear; ++i) {
-    std::array<double, all_terms> y{};
-    for (std::size_t t = i; t < n_terms; ++t) {
-      double rest = t == i ? 1.0 : 0.0;
-      for (std::size_t k = i; k < t; ++k) rest -= r[t][k] * y[k];
-      y[t] = rest / r[t][t];
-    }
+    const std::array<double, all_terms> y = terms.solve(i);
     for (std::size_t j = 0; j < n; ++j) {
       double weight = 0;
-      for (std::size_t t = i; t < n_terms; ++t) weight += y[t] * q_[t * n + j];
+      for (std::size_t t = i; t < terms.size(); ++t) weight += y[t] * q_[t * n + j];
       weight *= importance[j];
       for (std::size_t k = 0; k < 3; ++k) weights_[j][k] += weight * basis_[i][k];
     }

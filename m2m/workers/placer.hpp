@@ -262,6 +262,8 @@ class Placer : public Group<Placer> {
   [[nodiscard]] PointAnswer answer(const PointQuery& query) const;
   static void index_tets(Part& part);
   void build(std::int32_t k, const std::vector<Formula>& formulas, FirstError& error);
+  /// Fills the rows of the part with the values of formulas.
+  void evaluate(Part& part, const std::vector<Formula>& formulas, FirstError& error) const;
 
   PlacerSetup setup_;
   std::int32_t n_pes_ = 1, me_ = 0;

@@ -79,6 +79,11 @@ void Placer::build(std::int32_t k, const std::vector<Formula>& formulas, FirstEr
     group()[to].send<&Placer::receive_ghosts>(std::move(list));
   }
 
+  evaluate(part, formulas, error);
+}
+
+void Placer::evaluate(Part& part, const std::vector<Formula>& formulas, FirstError& error) const {
+  const MeshPart& mesh = part.mesh;
   const std::size_t n_fields = formulas.size();
   part.rows.resize(mesh.points.size() * n_fields);
   for (std::size_t f = 0; f < n_fields; ++f) {

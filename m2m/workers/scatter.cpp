@@ -4,8 +4,6 @@
 #include "m2m/partition/split.hpp"
 #include "runtime/core/check.hpp"
 
-#include <span>
-
 namespace tess::m2m {
 namespace {
 

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <coroutine>
 #include <exception>
 
 namespace tess::detail {
@@ -234,6 +233,54 @@ void require_own(const std::string& folder, const Listing& listing,
            " is a checkpoint of another run: restart from ", folder, ", or give another folder");
 }
 
+Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& options) {
+  Manifest manifest;
+  manifest.number = before.numbers.empty() ? 1 : before.numbers.front() + 1;
+  manifest.n_pes = pe.n_pes();
+  manifest.n_processes = pe.machine().n_processes();
+  manifest.program = Registry::fingerprint();
+  manifest.note = options.note;
+  manifest.buddy_copies = options.buddy_copies;
+  return manifest;
+}
+
+std::vector<SavedCollection> collections_to_save(Pe& pe) {
+  std::vector<SavedCollection> all;
+  for (const Collection* collection : saved_collections(pe))
+    all.push_back({collection->id(), collection->range(), std::string(collection->kind().key()),
+                   collection->name(), false, 0, to_saved(collection->index_map())});
+  return all;
+}
+
+/// Adds what one PE has saved.
+void add_answer(SaveAnswer& answer, Manifest& manifest, MainPart& main) {
+  fail_for_first({answer.error});
+  manifest.files.push_back(std::move(answer.file));
+  main.numbers.push_back(answer.numbers);
+  main.places_of_futures = std::max(main.places_of_futures, answer.places_of_futures);
+  main.sections.insert(main.sections.end(), answer.sections.begin(), answer.sections.end());
+  for (std::size_t i = 0; i < answer.collections.size(); ++i) {
+    SavedCollection& all = main.collections.at(i);
+    const HereSaved& one = answer.collections[i];
+    TESS_CHECK(all.id == one.id, "the PEs have different collections at a checkpoint");
+    all.has_sections = all.has_sections || one.has_sections;
+    all.n_elements += one.n_elements;
+  }
+}
+
+/// The checkpoints to remove once another one is written: all that cannot be restarted from, and those
+/// beyond `keep`, the new one counted.
+std::vector<std::uint64_t> to_remove(const Listing& before,
+                                     const std::vector<std::uint64_t>& refused, int keep) {
+  std::vector<std::uint64_t> numbers;
+  int n_kept = 1;
+  for (const std::uint64_t number : before.numbers) {
+    const bool is_good = before.is_complete(number) && std::ranges::count(refused, number) == 0;
+    if (!is_good || n_kept++ >= keep) numbers.push_back(number);
+  }
+  return numbers;
+}
+
 /// A checkpoint that is being written.
 struct Begun {
   std::vector<PeId> writers;  // the first PE of each host; none before the first file
@@ -262,40 +309,17 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
   } else {
     listing = list_shared(folder, pe.n_pes());
   }
-  const std::vector<std::uint64_t>& before = listing.numbers;
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
   require_own(folder, listing, ours);
-  Manifest manifest;
-  manifest.number = before.empty() ? 1 : before.front() + 1;
-  manifest.n_pes = pe.n_pes();
-  manifest.n_processes = pe.machine().n_processes();
-  manifest.program = Registry::fingerprint();
-  manifest.note = options.note;
-  manifest.buddy_copies = options.buddy_copies;
+  Manifest manifest = next_manifest(pe, listing, options);
   const std::string here = folder_of(folder, manifest.number);
   begun = {listing.hosts.first, manifest.number};
   AskAll<&make_here> made(FolderQuestion{here}, begun.writers);
   fail_for_first(co_await made);
-  for (const Collection* collection : saved_collections(pe))
-    main.collections.push_back({collection->id(), collection->range(),
-                                std::string(collection->kind().key()), collection->name(), false, 0,
-                                to_saved(collection->index_map())});
+  main.collections = collections_to_save(pe);
 
   AskAll<&save_here> saved(SaveQuestion{here});
-  for (SaveAnswer& answer : co_await saved) {
-    fail_for_first({answer.error});
-    manifest.files.push_back(std::move(answer.file));
-    main.numbers.push_back(answer.numbers);
-    main.places_of_futures = std::max(main.places_of_futures, answer.places_of_futures);
-    main.sections.insert(main.sections.end(), answer.sections.begin(), answer.sections.end());
-    for (std::size_t i = 0; i < answer.collections.size(); ++i) {
-      SavedCollection& all = main.collections.at(i);
-      const HereSaved& one = answer.collections[i];
-      TESS_CHECK(all.id == one.id, "the PEs have different collections at a checkpoint");
-      all.has_sections = all.has_sections || one.has_sections;
-      all.n_elements += one.n_elements;
-    }
-  }
+  for (SaveAnswer& answer : co_await saved) add_answer(answer, manifest, main);
   if (options.buddy_copies) {
     AskAll<&read_own, &write_copy> copied(CopyQuestion{here, manifest.files, listing.hosts});
     fail_for_first(co_await copied);
@@ -309,14 +333,8 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
   fail_for_first(co_await finished);
   ours.last = manifest.number;
 
-  RemoveQuestion old{folder, {}};
-  int n_kept = 1;
-  for (const std::uint64_t number : before) {
-    const bool is_good =
-        listing.is_complete(number) && std::ranges::count(ours.refused, number) == 0;
-    if (!is_good || n_kept++ >= options.keep) old.numbers.push_back(number);
-  }
-  AskAll<&remove_here> removed(std::move(old), begun.writers);
+  AskAll<&remove_here> removed(
+      RemoveQuestion{folder, to_remove(listing, ours.refused, options.keep)}, begun.writers);
   (void)co_await removed;
 }
 

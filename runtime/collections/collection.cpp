@@ -329,13 +329,17 @@ void ElementScope::force_migration() {
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 
+void refuse_empty_proxy(std::string_view use) {
+  check_failed("the proxy names a collection", __FILE__, __LINE__,
+               text(use, " an empty proxy: assign what create() returned to it first"));
+}
+
 void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else) {
+  if (id == CollectionId{}) refuse_empty_proxy("a use of");
   const Pe& pe = current_pe();
-  const std::string why = id == CollectionId{}
-                              ? "an empty proxy is used: assign what create() returned to it first"
-                          : pe.ended(id) ? text(what, " was destroyed on ", pe.id())
-                                         : text(what, " is not known yet on ", pe.id(),
-                                                ": create it inside an awaited epoch", or_else);
+  const std::string why = pe.ended(id) ? text(what, " was destroyed on ", pe.id())
+                                       : text(what, " is not known yet on ", pe.id(),
+                                              ": create it inside an awaited epoch", or_else);
   check_failed("the proxy's elements are known here", __FILE__, __LINE__, why);
 }
 

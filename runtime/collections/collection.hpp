@@ -335,6 +335,8 @@ class ElementScope {
 [[nodiscard]] inline Collection* find_collection(Pe& pe, CollectionId id) {
   return static_cast<Collection*>(pe.find(id));
 }
+/// Ends the job: `use`, as "a broadcast of f to", has an empty proxy.
+[[noreturn]] void refuse_empty_proxy(std::string_view use);
 /// Ends the job with the reason why find_collection() is null: the proxy is empty, or `what` has
 /// ended, or it is not known here yet, for which `or_else` is another remedy.
 [[noreturn]] void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else);

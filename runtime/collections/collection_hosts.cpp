@@ -33,8 +33,8 @@ void begin_arrives(Collection& collection, ReductionBegin&& m) {
 }  // namespace
 
 void start_broadcast(CollectionId collection, SharedCall call) {
-  TESS_CHECK(collection != CollectionId{}, "a broadcast of ", plain_name(call->action().name()),
-             " to an empty proxy: assign what create() returned to it first");
+  if (collection == CollectionId{}) [[unlikely]]
+    refuse_empty_proxy(text("a broadcast of ", plain_name(call->action().name()), " to"));
   Pe& pe = current_pe();
   const EpochId epoch = pe.context().epoch;
   pe.completion().sent(epoch);

@@ -41,8 +41,7 @@ void freeing_arrives(Pe& pe, Free&& m) {
 }  // namespace
 
 void end_collection(CollectionId id) {
-  TESS_CHECK(id != CollectionId{},
-             "an empty proxy is destroyed: assign what create() returned to it first");
+  if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
   Pe& pe = current_pe();
   const End end{pe.context().epoch};
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) {

@@ -34,14 +34,11 @@
 #include "runtime/core/serialize_kinds.hpp"
 #include "runtime/core/uninitialised.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -141,6 +138,10 @@ class Writer {
 
   template <class T>
   void put(const T& value);
+  template <class T>
+  void put_items(const T& container);
+  template <class Each>
+  void put_numbers(std::span<const Each> values, bool attach);
   [[nodiscard]] bool fits(std::size_t n_bytes) const {
     return n_bytes != 0 && n_bytes >= attached_->least_bytes &&
            attached_->parts.size() < detail::Attached::most_parts;
@@ -225,6 +226,8 @@ class Reader {
  private:
   template <class T>
   void get(T& value);
+  template <class T>
+  void get_items(T& container);
   /// The length of data that may be attached, in items of `bytes_each` bytes, and whether it is
   /// attached.
   [[nodiscard]] std::pair<std::size_t, bool> length_or_attached(std::size_t bytes_each) {
@@ -261,15 +264,19 @@ class Reader {
 
 template <class Each>
 void Writer::numbers(std::span<const Each> values, std::shared_ptr<const void> keeper) {
+  const bool attach = keeper != nullptr && attached_ != nullptr && fits(values.size_bytes());
+  put_numbers(values, attach);
+  if (attach) attached_->keepers.push_back(std::move(keeper));
+}
+
+template <class Each>
+void Writer::put_numbers(std::span<const Each> values, bool attach) {
   const auto memory = std::as_bytes(values);
-  if (keeper != nullptr && attached_ != nullptr && fits(memory.size())) {
-    put(std::uint64_t{values.size() | Reader::attached_bit});
+  put(std::uint64_t{attach ? values.size() | Reader::attached_bit : values.size()});
+  if (attach)
     add_part(memory);
-    attached_->keepers.push_back(std::move(keeper));
-  } else {
-    put(std::uint64_t{values.size()});
+  else
     bytes(memory.data(), memory.size());
-  }
 }
 
 template <class T>
@@ -299,37 +306,16 @@ void Writer::put(const T& value) {
     put(static_cast<std::uint8_t>(value ? 1 : 0));
     if (!value) return;
     if constexpr (IsUnique<T>::value && std::is_polymorphic_v<std::decay_t<decltype(*value)>>)
-      serialization::check_whole(typeid(*value), typeid(typename T::element_type));
+      check_whole(typeid(*value), typeid(typename T::element_type));
     put(*value);
   } else if constexpr (IsVariant<T>::value) {
     put(static_cast<std::uint64_t>(value.index()));
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       using std::get;
       ((value.index() == I ? put(get<I>(value)) : void()), ...);
-    }(std::make_index_sequence<serialization::IsVariant<T>::n_alternatives>());
-  } else if constexpr (Resizable<T>) {
-    using Each = typename T::value_type;
-    const std::uint64_t n = value.size();
-    if constexpr (Bitwise<Each>) {
-      // A string is copied: it may hold its bytes inside itself, and the string moves.
-      if constexpr (IsVector<T>::value || std::is_same_v<T, detail::Buffer>) {
-        if (may_attach_ && fits(n * sizeof(Each))) {
-          put(n | Reader::attached_bit);
-          add_part(std::as_bytes(std::span(value.data(), n)));
-          return;
-        }
-      }
-      put(n);
-      bytes(value.data(), n * sizeof(Each));
-    } else {
-      put(n);
-      for (const auto& item : value) put(item);
-    }
-  } else if constexpr (Growable<T>) {
-    // The reader moves each element into the container, so nothing may be placed by address.
-    const CopiesAll scope(*this);
-    put(static_cast<std::uint64_t>(value.size()));
-    for (const auto& item : value) put(item);
+    }(std::make_index_sequence<IsVariant<T>::n_alternatives>());
+  } else if constexpr (Resizable<T> || Growable<T>) {
+    put_items(value);
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (const auto& item : value) put(item);
   } else if constexpr (TupleLike<T>) {
@@ -341,6 +327,24 @@ void Writer::put(const T& value) {
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
     detail::for_each_field(value, [this](const auto& field) { this->put(field); });
+  }
+}
+
+template <class T>
+void Writer::put_items(const T& container) {
+  using namespace serialization;
+  using Each = typename T::value_type;
+  if constexpr (Resizable<T> && Bitwise<Each>) {
+    put_numbers(std::span(container.data(), container.size()),
+                StaysInPlace<T> && may_attach_ && fits(container.size() * sizeof(Each)));
+  } else if constexpr (Resizable<T>) {
+    put(std::uint64_t{container.size()});
+    for (const auto& item : container) put(item);
+  } else {
+    // The reader moves each element into the container, so nothing may be placed by address.
+    const CopiesAll scope(*this);
+    put(std::uint64_t{container.size()});
+    for (const auto& item : container) put(item);
   }
 }
 
@@ -370,39 +374,13 @@ void Reader::get(T& value) {
     }
   } else if constexpr (IsVariant<T>::value) {
     const auto which = take<std::uint64_t>();
-    constexpr std::size_t n_alternatives = serialization::IsVariant<T>::n_alternatives;
+    constexpr std::size_t n_alternatives = IsVariant<T>::n_alternatives;
     if (which >= n_alternatives) refuse_alternative(which, n_alternatives);
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       ((which == I ? get(value.template emplace<I>()) : void()), ...);
     }(std::make_index_sequence<n_alternatives>());
-  } else if constexpr (Resizable<T>) {
-    using Each = typename T::value_type;
-    if constexpr (Bitwise<Each> && (IsVector<T>::value || std::is_same_v<T, detail::Buffer>)) {
-      numbers<Each>([&value](std::size_t n) {
-        if constexpr (IsVector<T>::value)
-          resize_uninitialised(value, n);
-        else
-          value.resize(n);
-        return value.data();
-      });
-    } else if constexpr (Bitwise<Each>) {
-      value.resize(length(sizeof(Each)));
-      bytes(value.data(), value.size() * sizeof(Each));
-    } else {
-      value.resize(length(std::is_empty_v<Each> ? 0 : 1));
-      for (auto& item : value) get(item);
-    }
-  } else if constexpr (Growable<T>) {
-    value.clear();
-    for (std::size_t n = length(1); n > 0; --n) {
-      if constexpr (requires { typename T::mapped_type; }) {
-        auto key = take<typename T::key_type>();
-        auto mapped = take<typename T::mapped_type>();
-        value.insert(value.end(), typename T::value_type(std::move(key), std::move(mapped)));
-      } else {
-        value.insert(value.end(), take<typename T::value_type>());
-      }
-    }
+  } else if constexpr (Resizable<T> || Growable<T>) {
+    get_items(value);
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (auto& item : value) get(item);
   } else if constexpr (TupleLike<T>) {
@@ -414,6 +392,38 @@ void Reader::get(T& value) {
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
     detail::for_each_field(value, [this](auto& field) { this->get(field); });
+  }
+}
+
+template <class T>
+void Reader::get_items(T& container) {
+  using namespace serialization;
+  using Each = typename T::value_type;
+  if constexpr (Resizable<T> && Bitwise<Each> && StaysInPlace<T>) {
+    numbers<Each>([&container](std::size_t n) {
+      if constexpr (IsVector<T>::value)
+        resize_uninitialised(container, n);
+      else
+        container.resize(n);
+      return container.data();
+    });
+  } else if constexpr (Resizable<T> && Bitwise<Each>) {
+    container.resize(length(sizeof(Each)));
+    bytes(container.data(), container.size() * sizeof(Each));
+  } else if constexpr (Resizable<T>) {
+    container.resize(length(std::is_empty_v<Each> ? 0 : 1));
+    for (auto& item : container) get(item);
+  } else {
+    container.clear();
+    for (std::size_t n = length(1); n > 0; --n) {
+      if constexpr (requires { typename T::mapped_type; }) {
+        auto key = take<typename T::key_type>();
+        auto mapped = take<typename T::mapped_type>();
+        container.insert(container.end(), Each(std::move(key), std::move(mapped)));
+      } else {
+        container.insert(container.end(), take<Each>());
+      }
+    }
   }
 }
 

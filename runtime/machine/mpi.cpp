@@ -1,5 +1,6 @@
 #include "runtime/machine/mpi.hpp"
 
+#include "runtime/core/error.hpp"
 #include "runtime/machine/mpi_transport.hpp"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <malloc.h>
 #endif
 #include <mutex>
-#include <string_view>
 #include <thread>
 
 namespace tess::detail {

@@ -2,8 +2,6 @@
 // that processes exchange before the first message. One thread calls it, before and after the run.
 #pragma once
 
-#include "runtime/core/error.hpp"
-
 #include <mpi.h>
 
 #include <atomic>

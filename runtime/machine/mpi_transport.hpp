@@ -87,7 +87,6 @@ class Transport {
   void hand_in(std::unique_ptr<Outgoing> out);
   void post(Slot& slot);
   void read_announcement(std::span<const std::byte> bytes, int source, Mail& mail);
-  void receive_bytes(Incoming* in);
   void receive_parts(Incoming* in);
   void receive(std::span<std::byte> memory, Incoming* in);
 

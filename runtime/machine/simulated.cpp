@@ -1,8 +1,8 @@
 #include "runtime/machine/simulated.hpp"
 
 #include "runtime/base/mpsc_queue.hpp"
-#include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/text.hpp"
 #include "runtime/machine/adversary.hpp"
 #include "runtime/machine/work_clock.hpp"
 

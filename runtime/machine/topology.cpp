@@ -4,7 +4,6 @@
 
 #include <hwloc.h>
 
-#include <array>
 #include <vector>
 
 namespace tess::detail {

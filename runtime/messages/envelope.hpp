@@ -15,8 +15,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <new>
-#include <utility>
 
 namespace tess::detail {
 

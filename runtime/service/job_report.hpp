@@ -11,7 +11,6 @@
 #include "runtime/report/waiting.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "runtime/testing/decisions.hpp"
 
 #include "runtime/collections/elements/element.hpp"
+#include "runtime/core/hash.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/queues/outbox.hpp"

@@ -4,7 +4,6 @@
 // others are left out and the run takes another course, which lets a failure be shrunk.
 #pragma once
 
-#include "runtime/core/hash.hpp"
 #include "runtime/machine/adversary.hpp"
 #include "runtime/scheduler/interfaces/element_mover.hpp"
 #include "runtime/testing/shrink.hpp"

@@ -3,7 +3,6 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
-#include <cstdlib>
 #include <fcntl.h>
 #include <poll.h>
 #include <thread>

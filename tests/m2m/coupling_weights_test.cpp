@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 using namespace tess;
 using namespace tess::m2m;

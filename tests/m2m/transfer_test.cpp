@@ -1,7 +1,6 @@
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"

@@ -7,7 +7,6 @@
 //     test_large produce         a producer that waits for room keeps little of its output
 #include "runtime/runtime.hpp"
 
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <map>

@@ -1,5 +1,4 @@
 // Priorities and attributes of entry methods, and single chares, as programs use them.
-#include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"

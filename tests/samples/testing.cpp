@@ -4,8 +4,6 @@
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
-#include <string>
-
 namespace {
 
 struct Versioned {

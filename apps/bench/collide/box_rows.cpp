@@ -76,17 +76,10 @@ class BoxCase {
   void measure() {
     std::vector<Run> runs = wanted_runs();
     for (Run& run : runs) check(run);
-    for (int i = 0; i < output_.options().repeat; ++i)
-      for (std::size_t k = 0; k < runs.size(); ++k)
-        sample(runs[(k + static_cast<std::size_t>(i)) % runs.size()]);
-    double limit = 0;  // the fastest peer
-    for (const Run& run : runs)
-      if (run.kind->whose == Whose::peer && (limit == 0 || run.nanoseconds.median() < limit))
-        limit = run.nanoseconds.median();
-    for (const Run& run : runs)
-      if (is_listed(*run.kind, case_))
-        output_.row(case_.name, name(run.kind->name), run.nanoseconds, "ns",
-                    run.kind->whose == Whose::ours ? limit : 0);
+    if (std::any_of(runs.begin(), runs.end(), [&](const Run& run) {
+          return output_.wants(case_.name, name(run.kind->name));
+        }))
+      time(runs);
     output_.row(case_.name, name("pairs"), static_cast<double>(expected_.size()), "pairs");
     for (const auto& [what, n] : differences_)
       output_.row(case_.name, name(what), static_cast<double>(n), "pairs");
@@ -98,6 +91,20 @@ class BoxCase {
   }
 
  private:
+  void time(std::vector<Run>& runs) {
+    for (int i = 0; i < output_.options().repeat; ++i)
+      for (std::size_t k = 0; k < runs.size(); ++k)
+        sample(runs[(k + static_cast<std::size_t>(i)) % runs.size()]);
+    double limit = 0;  // the fastest peer
+    for (const Run& run : runs)
+      if (run.kind->whose == Whose::peer && (limit == 0 || run.nanoseconds.median() < limit))
+        limit = run.nanoseconds.median();
+    for (const Run& run : runs)
+      if (is_listed(*run.kind, case_))
+        output_.row(case_.name, name(run.kind->name), run.nanoseconds, "ns",
+                    run.kind->whose == Whose::ours ? limit : 0);
+  }
+
   [[nodiscard]] std::string name(std::string_view row) const {
     return fmt::format("{}_{}", case_.name, row);
   }

@@ -152,25 +152,30 @@ void measure(Output& output, const Case& of, const std::vector<Setting>& chosen)
   const auto n = static_cast<double>(problem.boxes.size());
   const auto serial = our_doubles(problem);
   const std::uint64_t expected = serial->count();
+  std::vector<Setting> timed;
+  for (const Setting& setting : chosen)
+    if (output.wants(of.name, name_of(setting))) timed.push_back(setting);
   Samples on_serial;
-  std::vector<Samples> samples(chosen.size());
-  for (int i = 0; i < output.options().repeat; ++i) {
+  std::vector<Samples> samples(timed.size());
+  for (int i = 0; i < output.options().repeat && !timed.empty(); ++i) {
     const ProcessWatch watch;
     static_cast<void>(serial->count());
     on_serial.add(watch.nanoseconds() / n);
-    for (std::size_t k = 0; k < chosen.size(); ++k)
-      samples[k].add(nanoseconds_of(problem, chosen[k], expected) / n);
+    for (std::size_t k = 0; k < timed.size(); ++k)
+      samples[k].add(nanoseconds_of(problem, timed[k], expected) / n);
   }
   std::array<double, 2> on_one_pe{};  // by division
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    double& on_one = on_one_pe[static_cast<std::size_t>(chosen[k].division)];
-    if (chosen[k].n_pes == 1) on_one = samples[k].median();
-    output.row(of.name, name_of(chosen[k]), samples[k], "ns",
-               chosen[k].n_pes == 1 ? on_serial.median() : on_one / chosen[k].n_pes,
-               Origin{chosen[k].n_pes == 1 ? "threads: 1 PE" : "threads: 2 PEs", chosen[k].n_pes});
-    const std::string bytes = name_of(chosen[k]) + "_bytes";
-    if (chosen[k].n_pes == 1 && output.wants(of.name, bytes))
-      output.row(of.name, bytes, bytes_of(problem, chosen[k], expected) / n, "bytes");
+  for (std::size_t k = 0; k < timed.size(); ++k) {
+    double& on_one = on_one_pe[static_cast<std::size_t>(timed[k].division)];
+    if (timed[k].n_pes == 1) on_one = samples[k].median();
+    output.row(of.name, name_of(timed[k]), samples[k], "ns",
+               timed[k].n_pes == 1 ? on_serial.median() : on_one / timed[k].n_pes,
+               Origin{timed[k].n_pes == 1 ? "threads: 1 PE" : "threads: 2 PEs", timed[k].n_pes});
+  }
+  for (const Setting& setting : chosen) {
+    const std::string bytes = name_of(setting) + "_bytes";
+    if (setting.n_pes == 1 && output.wants(of.name, bytes))
+      output.row(of.name, bytes, bytes_of(problem, setting, expected) / n, "bytes");
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include "collide/box.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>

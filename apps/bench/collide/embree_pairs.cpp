@@ -4,7 +4,6 @@
 #if defined(TESS_WITH_EMBREE)
 #include <cmath>
 #include <embree3/rtcore.h>
-#include <limits>
 #endif
 
 namespace bench {

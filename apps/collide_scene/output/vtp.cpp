@@ -1,7 +1,6 @@
 #include "apps/collide_scene/output/vtp.hpp"
 
 #include <bit>
-#include <cstring>
 #include <fmt/format.h>
 
 namespace collide_scene {

@@ -7,7 +7,6 @@
 #include "apps/plot/chart.hpp"
 #include "apps/plot/timeline.hpp"
 
-#include <map>
 #include <string>
 
 namespace lb_lab {

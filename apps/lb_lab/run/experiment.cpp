@@ -5,7 +5,6 @@
 #include "runtime/balance/strategy.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace lb_lab {
 namespace {

@@ -7,7 +7,6 @@
 #include "runtime/balance_options.hpp"
 #include "runtime/task.hpp"
 
-#include <chrono>
 #include <cstdint>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include "apps/lb_lab/workload/workload.hpp"
 #include "runtime/balance_options.hpp"
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>

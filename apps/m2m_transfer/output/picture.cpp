@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <limits>
-#include <utility>
 
 namespace m2m_transfer {
 namespace {

@@ -187,38 +187,94 @@ std::string paths(const Frame2D& frame, const std::vector<Snapshot>& snapshots,
   return out;
 }
 
+/// A layer of voxels across an axis.
+class Layer {
+ public:
+  Layer(const Field& field, int axis, double at)
+      : field_(field),
+        axis_(axis),
+        index_(std::round((at - component(field.grid.origin, axis)) / field.grid.cell)) {}
+
+  [[nodiscard]] const Field& field() const { return field_; }
+  [[nodiscard]] int n_across() const { return count(across()); }
+  [[nodiscard]] int n_up() const { return count(up()); }
+  [[nodiscard]] Vec3 centre(int i, int j) const {
+    const auto [x, y, z] = voxel(i, j);
+    return field_.grid.centre(x, y, z);
+  }
+  [[nodiscard]] double distance(int i, int j) const {
+    const auto [x, y, z] = voxel(i, j);
+    return static_cast<double>(voxel_distance(field_, x, y, z));
+  }
+  /// The coordinate of the layer along its axis.
+  [[nodiscard]] double place() const {
+    return component(field_.grid.origin, axis_) + index_ * field_.grid.cell;
+  }
+
+ private:
+  [[nodiscard]] int across() const { return axis_ == 0 ? 1 : 0; }
+  [[nodiscard]] int up() const { return axis_ == 2 ? 1 : 2; }
+  [[nodiscard]] int count(int of) const { return field_.grid.n[static_cast<std::size_t>(of)]; }
+  [[nodiscard]] std::array<int, 3> voxel(int i, int j) const {
+    std::array<int, 3> of{};
+    of[static_cast<std::size_t>(axis_)] = static_cast<int>(index_);
+    of[static_cast<std::size_t>(across())] = i;
+    of[static_cast<std::size_t>(up())] = j;
+    return of;
+  }
+
+  const Field& field_;
+  int axis_;
+  double index_;
+};
+
+/// The outlines of where the distance is below a level.
+std::vector<std::vector<Point>> below(const Layer& layer, const Frame2D& frame, double level) {
+  auto lines = plot::contours(
+      layer.n_across(), layer.n_up(), [&](int i, int j) { return layer.distance(i, j); }, level);
+  const Grid& grid = layer.field().grid;
+  const Point origin = frame.seen(grid.origin);
+  for (auto& line : lines)
+    for (Point& p : line) p = {origin.x + grid.cell * p.x, origin.y + grid.cell * p.y};
+  return lines;
+}
+
+/// A path of arrows along the normals.
+std::string normals(const Layer& layer, const Frame2D& frame) {
+  constexpr int arrows = 20;
+  const int stride = std::max(1, layer.n_across() / arrows);
+  std::vector<float> x, y, z;
+  for (int j = stride / 2; j < layer.n_up(); j += stride)
+    for (int i = stride / 2; i < layer.n_across(); i += stride) {
+      const Vec3 p = layer.centre(i, j);
+      x.push_back(static_cast<float>(p.x));
+      y.push_back(static_cast<float>(p.y));
+      z.push_back(static_cast<float>(p.z));
+    }
+  std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
+  look_up(layer.field(), LookUp::nearest, {x, y, z}, {distance, nx, ny, nz});
+  std::string path;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 from{x[i], y[i], z[i]}, normal{nx[i], ny[i], nz[i]};
+    if (normal == Vec3{}) continue;
+    const double length = 0.8 * stride * layer.field().grid.cell;
+    const Point foot = frame.seen(from), along = frame.seen(length * normal);
+    const Point tip{foot.x + along.x, foot.y + along.y};
+    const auto barb = [&](char command, double side) {
+      return frame.to(command, {tip.x - 0.3 * along.x - side * along.y,
+                                tip.y - 0.3 * along.y + side * along.x});
+    };
+    path += frame.to('M', foot) + frame.to('L', tip) + barb('M', 0.15) + frame.to('L', tip) +
+            barb('L', -0.15);
+  }
+  return path;
+}
+
 }  // namespace
 
 std::string slice_svg(const Field& field, int axis, double at) {
-  const Grid& grid = field.grid;
-  const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
-  const auto count = [&](int of) { return grid.n[static_cast<std::size_t>(of)]; };
-  const double layer = std::round((at - component(grid.origin, axis)) / grid.cell);
-  const auto voxel = [&](int i, int j) {
-    std::array<int, 3> of{};
-    of[static_cast<std::size_t>(axis)] = static_cast<int>(layer);
-    of[static_cast<std::size_t>(across)] = i;
-    of[static_cast<std::size_t>(up)] = j;
-    return of;
-  };
-  const auto centre = [&](int i, int j) {
-    const auto [x, y, z] = voxel(i, j);
-    return grid.centre(x, y, z);
-  };
-  const Frame2D frame(axis, grid.box());
-  const auto below = [&](double level) {
-    auto lines = plot::contours(
-        count(across), count(up),
-        [&](int i, int j) {
-          const auto [x, y, z] = voxel(i, j);
-          return static_cast<double>(voxel_distance(field, x, y, z));
-        },
-        level);
-    const Point origin = frame.seen(grid.origin);
-    for (auto& line : lines)
-      for (Point& p : line) p = {origin.x + grid.cell * p.x, origin.y + grid.cell * p.y};
-    return lines;
-  };
+  const Layer layer(field, axis, at);
+  const Frame2D frame(axis, field.grid.box());
   // From the outside in, each over the last: blue outside of the surface, grey inside.
   std::string drawn;
   for (int step = 6; step >= -6; --step) {
@@ -227,46 +283,18 @@ std::string slice_svg(const Field& field, int axis, double at) {
                                       : fmt::format("#{0:02x}{0:02x}{0:02x}", grey);
     const std::string look = fmt::format("fill=\"{}\"{}", fill,
                                          step == 0 ? " stroke=\"#000\" stroke-width=\"1.5\"" : "");
-    drawn += frame.closed(below(step * field.thickness / 6), look.c_str());
+    drawn += frame.closed(below(layer, frame, step * field.thickness / 6), look.c_str());
   }
-  if (field.content() == Content::distance_and_normal) {
-    constexpr int arrows = 20;
-    const int stride = std::max(1, count(across) / arrows);
-    std::vector<float> x, y, z;
-    for (int j = stride / 2; j < count(up); j += stride)
-      for (int i = stride / 2; i < count(across); i += stride) {
-        const Vec3 p = centre(i, j);
-        x.push_back(static_cast<float>(p.x));
-        y.push_back(static_cast<float>(p.y));
-        z.push_back(static_cast<float>(p.z));
-      }
-    std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
-    look_up(field, LookUp::nearest, {x, y, z}, {distance, nx, ny, nz});
-    std::string path;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const Vec3 from{x[i], y[i], z[i]}, normal{nx[i], ny[i], nz[i]};
-      if (normal == Vec3{}) continue;
-      const double length = 0.8 * stride * grid.cell;
-      const Point foot = frame.seen(from), along = frame.seen(length * normal);
-      const Point tip{foot.x + along.x, foot.y + along.y};
-      const auto barb = [&](char command, double side) {
-        return frame.to(command, {tip.x - 0.3 * along.x - side * along.y,
-                                  tip.y - 0.3 * along.y + side * along.x});
-      };
-      path += frame.to('M', foot) + frame.to('L', tip) + barb('M', 0.15) + frame.to('L', tip) +
-              barb('L', -0.15);
-    }
+  if (field.content() == Content::distance_and_normal)
     drawn += fmt::format(
         "<path clip-path=\"url(#c{})\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.8\" "
         "d=\"{}\"/>\n",
-        axis, path);
-  }
+        axis, normals(layer, frame));
   return svg(
       frame.width(), frame.height(),
       text(left, fmt::format("distance and normals at {} = {:.6g}; a shade is {:.4g} wide, black "
                              "is the surface",
-                             "xyz"[axis], component(grid.origin, axis) + layer * grid.cell,
-                             field.thickness / 6)),
+                             "xyz"[axis], layer.place(), field.thickness / 6)),
       frame.placed(0, drawn));
 }
 

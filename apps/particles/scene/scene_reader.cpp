@@ -1,5 +1,4 @@
 #include "apps/particles/scene/readers.hpp"
-#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -39,6 +39,39 @@ double block_edge(const Scene& scene) {
   return longest > 0 ? longest / std::clamp(an_axis, 1.0, most_an_axis) : 1;
 }
 
+/// The display of the run's progress, if there is one.
+struct Shown {
+  apps::Progress* progress = nullptr;
+  void phase(const char* name) const {
+    if (progress != nullptr) progress->phase(name);
+  }
+  void part(int part, int n_parts) const {
+    if (progress != nullptr) progress->part(part, n_parts);
+  }
+};
+
+tess::Task build_fields(const Stage& stage, tess::GroupProxy<Station> stations, Shown shown) {
+  shown.phase("building fields");
+  co_await tess::epoch([&] { stations.broadcast<&Station::begin_fields>(); });
+  int n_stages = 0;  // the same in all processes
+  for (const FieldInTheMaking& field : stage.fields)
+    n_stages = std::max(n_stages, field.n_stages());
+  for (std::int32_t filled = 0; filled < n_stages; ++filled) {
+    shown.part(filled + 1, n_stages);
+    co_await tess::epoch([&] { stations.broadcast<&Station::fill_fields>(filled); });
+  }
+  shown.part(0, 0);
+  co_await tess::epoch([&] { stations.broadcast<&Station::finish_fields>(); });
+}
+
+void add_sizes(const Stage& stage, RunResult& result) {
+  for (const FieldInTheMaking& field : stage.fields) {
+    result.fields.cells += field.field().grid.size();
+    result.fields.bytes += field.flat_bytes();
+    if (field.field().planes != nullptr) result.fields.bytes_used += field.field().bytes();
+  }
+}
+
 }  // namespace
 
 void check_memory(const Scene& scene, int n_processes) {
@@ -60,35 +93,20 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const StageHandle handle{stage};
   const auto stations = tess::create_group<Station>();
   const auto blocks = tess::create<Block>(tess::sparse);
-  const auto now_at = [&](const char* phase) {
-    if (options.progress != nullptr) options.progress->phase(phase);
-  };
-  const auto now_at_part = [&](int part, int n_parts) {
-    if (options.progress != nullptr) options.progress->part(part, n_parts);
-  };
+  const Shown shown{options.progress};
   const auto hand_out = [&] {
     const std::int32_t each = tess::machine().pes_per_process();
     for (std::int32_t first = 0; first < tess::n_pes(); first += each)
       stations[tess::PeId{first}].send<&Station::take>(handle);
   };
   co_await tess::epoch(hand_out);
-  now_at("building fields");
-  co_await tess::epoch([&] { stations.broadcast<&Station::begin_fields>(); });
-  int n_stages = 0;  // the same in all processes
-  for (const FieldInTheMaking& field : stage->fields)
-    n_stages = std::max(n_stages, field.n_stages());
-  for (std::int32_t filled = 0; filled < n_stages; ++filled) {
-    now_at_part(filled + 1, n_stages);
-    co_await tess::epoch([&] { stations.broadcast<&Station::fill_fields>(filled); });
-  }
-  now_at_part(0, 0);
-  co_await tess::epoch([&] { stations.broadcast<&Station::finish_fields>(); });
+  co_await build_fields(*stage, stations, shown);
   result.block = block_edge(scene);
   constexpr int usual_exchange = 8;
   result.exchange = scene.exchange > 0 ? scene.exchange : usual_exchange;
   result.audited = stage->n_audited;
   co_await tess::epoch([&] { stations.broadcast<&Station::prepare>(result.block); });
-  now_at("placing particles");
+  shown.phase("placing particles");
   co_await tess::epoch([&] { stations.broadcast<&Station::emit>(blocks); });
 
   tess::BalancerProxy balancer;
@@ -102,9 +120,9 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   Stretch stretch;
   const auto move = [&] { blocks.broadcast<&Block::move>(stretch); };
   std::int32_t step = 0;
-  now_at("steps");
+  shown.phase("steps");
   while (true) {
-    now_at_part(step, scene.steps);
+    shown.part(step, scene.steps);
     stretch.first = step;
     stretch.n_steps = 0;
     stretch.ask = asked(scene, step);
@@ -141,11 +159,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     result.loop_seconds += of_pe.rules, result.audit_seconds += of_pe.audit;
     result.fields.build_seconds = std::max(result.fields.build_seconds, of_pe.build);
   }
-  for (const FieldInTheMaking& field : stage->fields) {
-    result.fields.cells += field.field().grid.size();
-    result.fields.bytes += field.flat_bytes();
-    if (field.field().planes != nullptr) result.fields.bytes_used += field.field().bytes();
-  }
+  add_sizes(*stage, result);
 }
 
 }  // namespace particles

@@ -6,7 +6,6 @@
 #include "apps/particles/scene/scene.hpp"
 #include "apps/progress.hpp"
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>

@@ -60,107 +60,26 @@ class Replier : public Chare<Replier, Index1> {
     for (int n = 0; n < desk->n_asks; ++n) {
       switch (random.below(8)) {
         case 0:
-        case 1: {
-          const std::uint64_t question = note(random());
-          const int to = draw(random);
-          std::uint64_t answer = 0;
-          std::string refusal;
-          try {
-            answer = co_await array()[{to}].ask<&Replier::value>(question);
-          } catch (const Error& error) {
-            refusal = error.what();
-          }
-          check(question, to, answer, refusal);
+        case 1:
+          co_await ask_value(random);
           break;
-        }
-        case 2: {
-          const std::uint64_t question = note(random());
-          const int depth = static_cast<int>(random.below(3));
-          std::uint64_t last = question;
-          for (int i = 0; i < depth; ++i) last = mix(last);
-          bool refused = false;
-          try {
-            co_await array()[{draw(random)}].ask<&Replier::passes_on>(question, depth);
-          } catch (const Error& error) {
-            refused = error.code() == ErrorCode::bad_value;
-          }
-          desk->trial.expect(refused == refuses(last), "a coroutine's error is lost or invented");
+        case 2:
+          co_await ask_coroutine(random);
           break;
-        }
-        case 3: {  // a deadline: the value in time, or an error
-          const std::uint64_t question = note(random() / 7 * 7 + 1);
-          const int to = draw(random);
-          std::uint64_t answer = 0;
-          bool late = false;
-          try {
-            answer = co_await array()[{to}].ask<&Replier::value>(question).within(delay(random));
-          } catch (const Error& error) {
-            late = std::string(error.what()).find("did not come within") != std::string::npos;
-          }
-          desk->trial.expect(late ? answer == 0 : answer == answer_of(question, to),
-                             "a reply with a deadline is wrong");
+        case 3:
+          co_await ask_within(random);
           break;
-        }
-        case 4: {
-          const std::uint64_t first = note(random() / 7 * 7 + 1);
-          const std::uint64_t second = note(random() / 7 * 7 + 2);
-          const int to = draw(random), other = draw(random);
-          const auto [a, b] = co_await when_all(array()[{to}].ask<&Replier::value>(first),
-                                                array()[{other}].ask<&Replier::value>(second));
-          desk->trial.expect(a == answer_of(first, to) && b == answer_of(second, other),
-                             "when_all gives the values of other asks");
+        case 4:
+          co_await ask_two(random);
           break;
-        }
-        case 5: {
-          const std::uint64_t question = note(random() / 7 * 7 + 3);
-          const int to = draw(random);
-          const Time limit = delay(random);
-          const Time began = now();
-          const auto first =
-              co_await when_any(array()[{to}].ask<&Replier::value>(question), sleep(limit));
-          if (first.index() == 0) {
-            desk->trial.expect(std::get<0>(first) == answer_of(question, to),
-                               "when_any gives another value");
-          } else {
-            desk->trial.expect(now() >= began + limit, "when_any's time is over too early");
-          }
+        case 5:
+          co_await ask_or_sleep(random);
           break;
-        }
-        case 6: {
-          const auto timer = array()[{draw(random)}].send_after<&Replier::arrive>(
-              delay(random), static_cast<std::uint64_t>(n));
-          ++desk->n_delayed;
-          if (random.chance(0.3)) {  // before it can have run, since this code has not waited
-            timer.cancel();
-            ++desk->n_cancelled;
-          }
-          if (random.chance(0.3)) {
-            (void)array()[{draw(random)}].ask<&Replier::value>(note(random()));  // given up at once
-          }
+        case 6:
+          send_later(random, n);
           break;
-        }
-        default: {
-          const std::uint64_t question = random();
-          const int to =
-              static_cast<int>(random.below(static_cast<std::uint64_t>(desk->n_mortals)));
-          std::uint64_t answer = 0;
-          bool is_dead = false;
-          try {
-            if (random.chance(0.2)) co_await mortals[{to}].ask<&Mortal::end>();
-          } catch (const Error&) {
-            is_dead = true;  // another one has ended it
-          }
-          const bool was_dead = is_dead;
-          is_dead = false;
-          try {
-            answer = co_await mortals[{to}].ask<&Mortal::age>(question);
-          } catch (const Error& error) {
-            is_dead = std::string(error.what()).find("was destroyed") != std::string::npos;
-          }
-          desk->trial.expect(
-              is_dead != (answer == answer_of(question, to)) && (is_dead || !was_dead),
-              "an element is neither asked nor dead, or lives again");
-        }
+        default:
+          co_await ask_mortal(random, mortals);
       }
       if (random.chance(desk->move_chance)) migrate_to(any_pe(random));
     }
@@ -171,6 +90,98 @@ class Replier : public Chare<Replier, Index1> {
   void serialize(Ar& /*ar*/) {}
 
  private:
+  Task ask_value(Random& random) {
+    const std::uint64_t question = note(random());
+    const int to = draw(random);
+    std::uint64_t answer = 0;
+    std::string refusal;
+    try {
+      answer = co_await array()[{to}].ask<&Replier::value>(question);
+    } catch (const Error& error) {
+      refusal = error.what();
+    }
+    check(question, to, answer, refusal);
+  }
+  Task ask_coroutine(Random& random) {
+    const std::uint64_t question = note(random());
+    const int depth = static_cast<int>(random.below(3));
+    std::uint64_t last = question;
+    for (int i = 0; i < depth; ++i) last = mix(last);
+    bool refused = false;
+    try {
+      co_await array()[{draw(random)}].ask<&Replier::passes_on>(question, depth);
+    } catch (const Error& error) {
+      refused = error.code() == ErrorCode::bad_value;
+    }
+    desk->trial.expect(refused == refuses(last), "a coroutine's error is lost or invented");
+  }
+  /// With a deadline: the value in time, or an error.
+  Task ask_within(Random& random) {
+    const std::uint64_t question = note(random() / 7 * 7 + 1);
+    const int to = draw(random);
+    std::uint64_t answer = 0;
+    bool late = false;
+    try {
+      answer = co_await array()[{to}].ask<&Replier::value>(question).within(delay(random));
+    } catch (const Error& error) {
+      late = std::string(error.what()).find("did not come within") != std::string::npos;
+    }
+    desk->trial.expect(late ? answer == 0 : answer == answer_of(question, to),
+                       "a reply with a deadline is wrong");
+  }
+  Task ask_two(Random& random) {
+    const std::uint64_t first = note(random() / 7 * 7 + 1);
+    const std::uint64_t second = note(random() / 7 * 7 + 2);
+    const int to = draw(random), other = draw(random);
+    const auto [a, b] = co_await when_all(array()[{to}].ask<&Replier::value>(first),
+                                          array()[{other}].ask<&Replier::value>(second));
+    desk->trial.expect(a == answer_of(first, to) && b == answer_of(second, other),
+                       "when_all gives the values of other asks");
+  }
+  Task ask_or_sleep(Random& random) {
+    const std::uint64_t question = note(random() / 7 * 7 + 3);
+    const int to = draw(random);
+    const Time limit = delay(random);
+    const Time began = now();
+    const auto first =
+        co_await when_any(array()[{to}].ask<&Replier::value>(question), sleep(limit));
+    if (first.index() == 0) {
+      desk->trial.expect(std::get<0>(first) == answer_of(question, to),
+                         "when_any gives another value");
+    } else {
+      desk->trial.expect(now() >= began + limit, "when_any's time is over too early");
+    }
+  }
+  void send_later(Random& random, int n) {
+    const auto timer = array()[{draw(random)}].send_after<&Replier::arrive>(
+        delay(random), static_cast<std::uint64_t>(n));
+    ++desk->n_delayed;
+    if (random.chance(0.3)) {  // before it can have run, since this code has not waited
+      timer.cancel();
+      ++desk->n_cancelled;
+    }
+    if (random.chance(0.3)) {
+      (void)array()[{draw(random)}].ask<&Replier::value>(note(random()));  // given up at once
+    }
+  }
+  Task ask_mortal(Random& random, ArrayProxy<Mortal> mortals) {
+    const std::uint64_t question = random();
+    const int to = static_cast<int>(random.below(static_cast<std::uint64_t>(desk->n_mortals)));
+    std::uint64_t answer = 0;
+    bool was_dead = false, is_dead = false;
+    try {
+      if (random.chance(0.2)) co_await mortals[{to}].ask<&Mortal::end>();
+    } catch (const Error&) {
+      was_dead = true;  // another one has ended it
+    }
+    try {
+      answer = co_await mortals[{to}].ask<&Mortal::age>(question);
+    } catch (const Error& error) {
+      is_dead = std::string(error.what()).find("was destroyed") != std::string::npos;
+    }
+    desk->trial.expect(is_dead != (answer == answer_of(question, to)) && (is_dead || !was_dead),
+                       "an element is neither asked nor dead, or lives again");
+  }
   static std::uint64_t note(std::uint64_t question) {
     ++desk->n_asked;
     desk->asked += question >> 8U;

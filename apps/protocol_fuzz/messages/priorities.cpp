@@ -8,7 +8,6 @@
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace tess::fuzz {
 namespace {

@@ -6,6 +6,8 @@
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/normal_code.hpp"
 
+#include <bit>
+
 namespace tess::dn {
 
 /// A flat field as the loops read it.

@@ -7,7 +7,6 @@
 
 #include "collide/dn_field/particles.hpp"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>

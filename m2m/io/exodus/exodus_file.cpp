@@ -4,6 +4,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdio>
 #include <fcntl.h>

@@ -2,7 +2,6 @@
 // meshes and of fields build on it. The library is not reentrant: one thread at a time.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <exodusII.h>
 #include <string>

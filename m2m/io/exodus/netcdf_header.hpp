@@ -22,7 +22,6 @@ struct NetcdfVariable {
   std::uint64_t begin = 0;         ///< byte in the file; numbers are big-endian
 };
 struct NetcdfHeader {
-  std::uint64_t n_records = 0;
   std::vector<NetcdfDimension> dimensions{};
   std::vector<NetcdfVariable> variables{};
 };

@@ -4,7 +4,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <utility>
 

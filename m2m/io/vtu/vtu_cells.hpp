@@ -3,7 +3,6 @@
 
 #include "m2m/elements/split_element.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>

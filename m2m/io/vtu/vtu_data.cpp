@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
+#include <cstdint>
 #include <zlib.h>
 
 namespace tess::m2m {

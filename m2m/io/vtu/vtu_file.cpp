@@ -59,21 +59,8 @@ std::optional<std::vector<T>> converted(const std::string& type, const std::stri
 }  // namespace
 
 VtuFile::VtuFile(const std::string& path, std::string_view bytes) : path_(path) {
-  const auto size_of = [&](const XmlTag& tag, std::string_view name,
-                           std::optional<std::size_t> otherwise) {
-    const auto text = tag.attribute(name);
-    if (!text && otherwise) return *otherwise;
-    std::size_t value = 0;
-    const char* const end = text ? text->data() + text->size() : nullptr;
-    if (!text || std::from_chars(text->data(), end, value).ptr != end || text->empty())
-      damaged(tag.name, " has no number ", name);
-    return value;
-  };
   XmlScanner xml(bytes);
-  std::vector<VtuArray>* section = nullptr;
-  std::vector<VtuArray> field_data;
-  VtuArray* open_array = nullptr;
-  const char* text_begin = nullptr;
+  Scan scan{.bytes = bytes};
   bool has_root = false, is_complete = false;
   while (const auto tag = xml.next()) {
     const bool opens = tag->kind != XmlTag::Kind::close;
@@ -83,66 +70,93 @@ VtuFile::VtuFile(const std::string& path, std::string_view bytes) : path_(path) 
         break;
       }
       has_root = true;
-      const std::string type = tag->attribute("type").value_or("");
-      if (type != "UnstructuredGrid")
-        fail(ErrorCode::bad_mesh, path_, ": holds a VTK ", printable(type),
-             "; only UnstructuredGrid (.vtu) is supported: convert it");
-      encoding_.big_endian = tag->attribute("byte_order").value_or("") == "BigEndian";
-      encoding_.header_bytes = tag->attribute("header_type").value_or("") == "UInt64" ? 8 : 4;
-      const std::string compressor = tag->attribute("compressor").value_or("");
-      encoding_.zlib = compressor == "vtkZLibDataCompressor";
-      if (!compressor.empty() && !encoding_.zlib)
-        fail(ErrorCode::bad_file, path_, ": is compressed by ", printable(compressor),
-             "; only vtkZLibDataCompressor is supported: write it with that one, or uncompressed");
+      read_root(*tag);
     } else if (!has_root) {
       break;
     } else if (tag->name == "Piece" && opens) {
       pieces_.push_back({size_of(*tag, "NumberOfPoints", {}), size_of(*tag, "NumberOfCells", {})});
-      section = nullptr;
-      open_array = nullptr;
+      scan.section = nullptr;
+      scan.array = nullptr;
     } else if (tag->name == "FieldData") {
-      section = opens ? &field_data : nullptr;
+      scan.section = opens ? &scan.field_data : nullptr;
     } else if (tag->name == "Points" || tag->name == "Cells" || tag->name == "PointData" ||
                tag->name == "CellData") {
-      if (pieces_.empty()) damaged(tag->name, " before Piece");
-      VtuPiece& piece = pieces_.back();
-      section = !opens                     ? nullptr
-                : tag->name == "Points"    ? &piece.points
-                : tag->name == "Cells"     ? &piece.cells
-                : tag->name == "PointData" ? &piece.point_data
-                                           : &piece.cell_data;
-    } else if (tag->name == "DataArray" && section != nullptr) {
-      if (opens) {
-        section->push_back({clean_name(tag->attribute("Name").value_or("")),
-                            tag->attribute("type").value_or(""),
-                            tag->attribute("format").value_or("ascii"),
-                            size_of(*tag, "NumberOfComponents", 1), size_of(*tag, "offset", 0)});
-        open_array = tag->kind == XmlTag::Kind::open ? &section->back() : nullptr;
-        text_begin = bytes.data() + tag->end;
-      } else if (open_array != nullptr) {
-        // The numbers end with the first tag behind them, such as an InformationKey.
-        const std::string_view text(text_begin, tag->text_before.data() + tag->text_before.size());
-        open_array->text = text.substr(0, text.find('<'));
-        open_array = nullptr;
-      }
+      std::vector<VtuArray>& section = section_of_piece(tag->name);
+      scan.section = opens ? &section : nullptr;
+    } else if (tag->name == "DataArray" && scan.section != nullptr) {
+      read_array(*tag, scan);
     } else if (tag->name == "AppendedData" && opens) {
-      appended_is_base64_ = tag->attribute("encoding").value_or("") == "base64";
-      const std::size_t begin = bytes.find('_', tag->end);
-      const std::size_t end = bytes.rfind("</AppendedData>");
-      if (begin == std::string_view::npos || end == std::string_view::npos || end < begin)
-        damaged("AppendedData has no end");
-      appended_ = bytes.substr(begin + 1, end - begin - 1);
-      is_complete = bytes.substr(end).find("</VTKFile>") != std::string_view::npos;
+      is_complete = read_appended(*tag, bytes);
       break;
     }
   }
   if (!is_complete) damaged("</VTKFile> is missing behind byte ", xml.at());
   if (pieces_.empty()) damaged("it has no Piece");
-  for (const VtuArray& found : field_data)
+  for (const VtuArray& found : scan.field_data)
     if (found.name == "TimeValue") {
       const std::vector<double> times = reals(found, any);
       if (!times.empty()) time_ = times[0];
     }
+}
+
+std::size_t VtuFile::size_of(const XmlTag& tag, std::string_view name,
+                             std::optional<std::size_t> otherwise) const {
+  const auto text = tag.attribute(name);
+  if (!text && otherwise) return *otherwise;
+  std::size_t value = 0;
+  const char* const end = text ? text->data() + text->size() : nullptr;
+  if (!text || std::from_chars(text->data(), end, value).ptr != end || text->empty())
+    damaged(tag.name, " has no number ", name);
+  return value;
+}
+
+void VtuFile::read_root(const XmlTag& tag) {
+  const std::string type = tag.attribute("type").value_or("");
+  if (type != "UnstructuredGrid")
+    fail(ErrorCode::bad_mesh, path_, ": holds a VTK ", printable(type),
+         "; only UnstructuredGrid (.vtu) is supported: convert it");
+  encoding_.big_endian = tag.attribute("byte_order").value_or("") == "BigEndian";
+  encoding_.header_bytes = tag.attribute("header_type").value_or("") == "UInt64" ? 8 : 4;
+  const std::string compressor = tag.attribute("compressor").value_or("");
+  encoding_.zlib = compressor == "vtkZLibDataCompressor";
+  if (!compressor.empty() && !encoding_.zlib)
+    fail(ErrorCode::bad_file, path_, ": is compressed by ", printable(compressor),
+         "; only vtkZLibDataCompressor is supported: write it with that one, or uncompressed");
+}
+
+std::vector<VtuArray>& VtuFile::section_of_piece(std::string_view name) {
+  if (pieces_.empty()) damaged(name, " before Piece");
+  VtuPiece& piece = pieces_.back();
+  return name == "Points"      ? piece.points
+         : name == "Cells"     ? piece.cells
+         : name == "PointData" ? piece.point_data
+                               : piece.cell_data;
+}
+
+void VtuFile::read_array(const XmlTag& tag, Scan& scan) const {
+  if (tag.kind != XmlTag::Kind::close) {
+    scan.section->push_back({clean_name(tag.attribute("Name").value_or("")),
+                             tag.attribute("type").value_or(""),
+                             tag.attribute("format").value_or("ascii"),
+                             size_of(tag, "NumberOfComponents", 1), size_of(tag, "offset", 0)});
+    scan.array = tag.kind == XmlTag::Kind::open ? &scan.section->back() : nullptr;
+    scan.text_begin = scan.bytes.data() + tag.end;
+  } else if (scan.array != nullptr) {
+    // The numbers end with the first tag behind them, such as an InformationKey.
+    const std::string_view text(scan.text_begin, tag.text_before.data() + tag.text_before.size());
+    scan.array->text = text.substr(0, text.find('<'));
+    scan.array = nullptr;
+  }
+}
+
+bool VtuFile::read_appended(const XmlTag& tag, std::string_view bytes) {
+  appended_is_base64_ = tag.attribute("encoding").value_or("") == "base64";
+  const std::size_t begin = bytes.find('_', tag.end);
+  const std::size_t end = bytes.rfind("</AppendedData>");
+  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin)
+    damaged("AppendedData has no end");
+  appended_ = bytes.substr(begin + 1, end - begin - 1);
+  return bytes.substr(end).find("</VTKFile>") != std::string_view::npos;
 }
 
 const VtuArray& VtuFile::array(const std::vector<VtuArray>& arrays, std::string_view name) const {

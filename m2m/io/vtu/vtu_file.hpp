@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,8 @@ struct VtuPiece {
   std::size_t n_points = 0, n_cells = 0;
   std::vector<VtuArray> points{}, cells{}, point_data{}, cell_data{};
 };
+
+struct XmlTag;
 
 class VtuFile {
  public:
@@ -52,6 +55,23 @@ class VtuFile {
   }
 
  private:
+  /// The place in the list of arrays that the constructor reads.
+  struct Scan {
+    std::string_view bytes;
+    std::vector<VtuArray> field_data{};
+    std::vector<VtuArray>* section = nullptr;  // null: DataArrays here are skipped
+    VtuArray* array = nullptr;                 // the open one
+    const char* text_begin = nullptr;          // of its numbers
+  };
+  /// An attribute that is a number. Without `otherwise` it must be there.
+  [[nodiscard]] std::size_t size_of(const XmlTag& tag, std::string_view name,
+                                    std::optional<std::size_t> otherwise) const;
+  void read_root(const XmlTag& tag);
+  [[nodiscard]] std::vector<VtuArray>& section_of_piece(std::string_view name);
+  void read_array(const XmlTag& tag, Scan& scan) const;
+  /// True if the file is complete behind the data.
+  [[nodiscard]] bool read_appended(const XmlTag& tag, std::string_view bytes);
+
   template <class T>
   [[nodiscard]] std::vector<T> numbers(const VtuArray& array, std::size_t n) const;
   template <class T>

@@ -460,8 +460,7 @@ void Balancer::alarm() {
 }
 
 GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, Strategy users) {
-  TESS_CHECK(array != CollectionId{},
-             "start_balancing() of an empty proxy: assign what create() returned to it first");
+  if (array == CollectionId{}) detail::refuse_empty_proxy("start_balancing() of");
   Pe& pe = current_pe();
   TESS_CHECK(!pe.ended(array), "start_balancing() of an array that was destroyed on ", pe.id());
   validate(options, pe.n_pes(), users ? StrategyOf::user : StrategyOf::runtime);

@@ -31,7 +31,6 @@ class Measured {
   [[nodiscard]] PeReport report(std::uint64_t round, Others others);
   /// The element at this position of the last report; null if it has left or ended.
   [[nodiscard]] Element* reported(std::size_t position) const { return reported_[position]; }
-  [[nodiscard]] std::size_t n_reported() const { return reported_.size(); }
 
   /// The sums of this PE in the phase so far, at a speed.
   [[nodiscard]] PhaseSums sums(double speed, Others others) const;

@@ -7,8 +7,6 @@
 #include "runtime/scheduler/meter.hpp"
 
 #include <cstdint>
-#include <utility>
-#include <vector>
 
 namespace tess::detail {
 

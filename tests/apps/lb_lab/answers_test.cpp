@@ -2,7 +2,6 @@
 #include "apps/lb_lab/cells/cells.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
 #include "apps/lb_lab/workload/patch.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
 

@@ -3,7 +3,6 @@
 #include "apps/lb_lab/collision/clusters.hpp"
 #include "apps/lb_lab/particles/region.hpp"
 #include "apps/lb_lab/particles/swarm.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
 

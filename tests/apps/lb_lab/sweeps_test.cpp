@@ -4,7 +4,6 @@
 #include "apps/lb_lab/output/report.hpp"
 #include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/strategy.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
 

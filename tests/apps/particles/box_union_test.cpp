@@ -1,7 +1,7 @@
 #include "apps/particles/scene/box_union.hpp"
 
 #include "apps/particles/scene/scene.hpp"
-#include "runtime/core/error.hpp"
+#include "runtime/core/text.hpp"
 #include "tests/support/catch.hpp"
 
 #include <map>

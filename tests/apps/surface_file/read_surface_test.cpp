@@ -4,7 +4,6 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
-#include <bit>
 #include <cstring>
 
 using apps::read_surface;

@@ -2,7 +2,6 @@
 #include "apps/task_bench/graph.hpp"
 #include "apps/task_bench/inputs.hpp"
 #include "apps/task_bench/metg.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

@@ -7,8 +7,6 @@
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
-#include <cstring>
-
 namespace {
 
 using namespace tess::dn;

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <random>
+#include <vector>
 
 using namespace tess::collide;
 using namespace tess::collide::testing;

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 
 #include <bit>
+#include <random>
 
 using namespace tess::collide;
 using namespace tess::collide::shapes;

@@ -5,9 +5,6 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
-#include <random>
-#include <vector>
-
 namespace tess::collide::testing {
 
 using Rational = boost::multiprecision::cpp_rational;

@@ -2,7 +2,6 @@
 #include "collide/pairs.hpp"
 #include "collide/swept.hpp"
 #include "collide/tetrahedron.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/collide/shapes/oracle.hpp"
 #include "tests/support/catch.hpp"
 

@@ -14,7 +14,6 @@
 #include <exodusII.h>
 #include <fmt/core.h>
 #include <memory>
-#include <optional>
 
 using namespace tess::m2m;
 using tess::test::as_gmsh;

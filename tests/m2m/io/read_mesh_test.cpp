@@ -1,7 +1,6 @@
 #include "m2m/read_mesh.hpp"
 
 #include "m2m/kuhn.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
@@ -10,8 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 

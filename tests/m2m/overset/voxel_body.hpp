@@ -5,7 +5,6 @@
 #include "m2m/overset.hpp"
 
 #include <array>
-#include <cstdint>
 #include <random>
 #include <vector>
 

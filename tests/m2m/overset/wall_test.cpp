@@ -1,7 +1,6 @@
 #include "m2m/overset/wall.hpp"
 
 #include "apps/overset/body.hpp"
-#include "runtime/core/error.hpp"
 #include "runtime/core/serialize.hpp"
 #include "tests/m2m/overset/voxel_body.hpp"
 #include "tests/support/catch.hpp"

@@ -6,7 +6,6 @@
 #include "runtime/runtime.hpp"
 
 #include <array>
-#include <cstdio>
 
 namespace {
 

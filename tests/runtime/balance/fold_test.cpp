@@ -3,7 +3,6 @@
 
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/balance/metrics.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace tess;

@@ -1,7 +1,6 @@
 #include "runtime/balance/prediction.hpp"
 
 #include "apps/bench/balance_scenes.hpp"
-#include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace tess;

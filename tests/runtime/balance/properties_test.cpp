@@ -2,7 +2,6 @@
 #include "apps/bench/balance_scenes.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategy.hpp"
-#include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <string>
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -9,7 +9,6 @@
 #include <atomic>
 #include <cstring>
 #include <deque>
-#include <memory>
 #include <vector>
 
 namespace tess::test {

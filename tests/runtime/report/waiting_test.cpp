@@ -7,6 +7,7 @@
 #include "tests/support/catch.hpp"
 
 #include <atomic>
+#include <memory>
 #include <thread>
 
 namespace {

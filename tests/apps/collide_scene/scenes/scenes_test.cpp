@@ -1,14 +1,13 @@
 // The scenes of collisions: what their comments promise, on small ones.
 #include "apps/collide_scene/scenes/elementary.hpp"
 #include "apps/collide_scene/scenes/scene.hpp"
-#include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/text.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 using namespace collide_scene;
 using tess::collide::Aabb;
