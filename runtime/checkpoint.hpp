@@ -83,7 +83,11 @@ class [[nodiscard]] Restart {
   void await_suspend(Task::Handle parent) { task_.await_suspend(parent); }
   State await_resume() {
     task_.await_resume();
-    return from_bytes<State>(*bytes_);
+    try {
+      return from_bytes<State>(*bytes_);
+    } catch (const Error& error) {
+      detail::refuse_state(name_of_type<State>, error);
+    }
   }
 
  private:

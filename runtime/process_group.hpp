@@ -71,6 +71,7 @@ struct Guarded {
 template <class G>
 class ProcessPart : public Group<ProcessPart<G>> {
  public:
+  static constexpr bool shared_in_process = true;
   using Shared = Guarded<G>;
   explicit ProcessPart(SameProcess<Shared> shared) : shared_(std::move(shared.object)) {}
 
@@ -146,6 +147,7 @@ class ProcessPart : public Group<ProcessPart<G>> {
 template <class T>
 class ReadOnlyPart : public Group<ReadOnlyPart<T>> {
  public:
+  static constexpr bool shared_in_process = true;
   struct Shared {
     const T object;
     template <class... Args>

@@ -336,4 +336,9 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   pe.runtime().own_checkpoints(canonical(folder)) = std::move(own);
 }
 
+void refuse_state(std::string_view state_type, const Error& error) {
+  fail(error.code(), "the checkpoint does not fit this program: its state ", state_type,
+       " has other members (", error.what(), "); restart with the program that wrote it");
+}
+
 }  // namespace tess::detail

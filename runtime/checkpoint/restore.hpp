@@ -9,10 +9,12 @@
 //     finish    ids continue after those that were given; ended collections have ended
 #pragma once
 
+#include "runtime/core/error.hpp"
 #include "runtime/task.hpp"
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tess::detail {
@@ -23,5 +25,8 @@ namespace tess::detail {
 /// Writes the bytes of the main coroutine's state to `state`, which outlives the task.
 [[nodiscard]] Task read_checkpoint(std::string folder, std::string state_type,
                                    std::vector<std::byte>& state);
+
+/// Throws the error of a state object that was read, with the remedy.
+[[noreturn]] void refuse_state(std::string_view state_type, const Error& error);
 
 }  // namespace tess::detail

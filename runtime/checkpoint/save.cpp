@@ -60,10 +60,15 @@ std::vector<std::string> take_census(Pe& pe, const CensusQuestion& question) {
   for (WaitLine& line : waits.lines) lines.push_back(std::move(line.text));
   for (const Collection* collection : saved_collections(pe)) {
     collection->describe_unsaved(lines);
-    if (collection->kind().saving == Saving::impossible && pe.id() == question.main)
+    if (pe.id() != question.main) continue;
+    if (collection->kind().saving == Saving::impossible)
       lines.push_back(text(collection->name(),
                            " cannot be saved: give it a default constructor and serialize(), or "
                            "destroy() it before the checkpoint"));
+    if (collection->kind().saving == Saving::shared)
+      lines.push_back(text(collection->name(),
+                           " cannot be saved, since the PEs of a process share it: destroy() it "
+                           "before the checkpoint, and create it again after a restart"));
   }
   return lines;
 }
@@ -281,6 +286,23 @@ std::vector<std::uint64_t> to_remove(const Listing& before,
   return numbers;
 }
 
+/// A checkpoint waits until no message is under way, so two would wait for each other.
+class OnlyOne {
+ public:
+  explicit OnlyOne(Runtime& runtime) : runs_(runtime.checkpoint_runs()) {
+    if (runs_)
+      fail(ErrorCode::bad_value,
+           "no checkpoint can be made here: another checkpoint() is under way; await it first");
+    runs_ = true;
+  }
+  OnlyOne(const OnlyOne&) = delete;
+  OnlyOne& operator=(const OnlyOne&) = delete;
+  ~OnlyOne() { runs_ = false; }
+
+ private:
+  bool& runs_;
+};
+
 /// A checkpoint that is being written.
 struct Begun {
   std::vector<PeId> writers;  // the first PE of each host; none before the first file
@@ -361,6 +383,7 @@ void require_main(const std::string& what) {
 Task write_checkpoint(std::string folder, std::string state_type, std::vector<std::byte> state,
                       CheckpointOptions options) {
   require_main("checkpoint()");
+  const OnlyOne only_one(current_pe().runtime());
   TESS_CHECK(options.keep >= 1, "keep: ", options.keep, " checkpoints");
   MainPart main;
   main.state_type = std::move(state_type);

@@ -229,6 +229,8 @@ class Collection : public HostedCollection {
   [[noreturn]] void refuse_place(const std::string& index, PeId at) const;
   /// Reads the user's members from the rest of the bytes; misuse if they read more or less.
   void read_all_members(Element& element, Reader& ar) const;
+  /// The same for an element of a checkpoint, which another program may have written: throws Error.
+  void read_saved_members(Element& element, Reader& ar) const;
   /// Reads the user's members.
   virtual void read_members(Element& element, Reader& ar) const = 0;
   /// Writes the index and the user's members.

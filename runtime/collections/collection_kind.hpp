@@ -21,6 +21,7 @@ enum class Saving : std::uint8_t {
   elements,    ///< saves their elements
   skipped,     ///< leaves them out: they belong to a library that makes them anew
   impossible,  ///< refuses to save: the class has no default constructor or no serialize()
+  shared,      ///< refuses to save: the PEs of a process share an object
 };
 
 class CollectionKind {

@@ -1,7 +1,11 @@
 // Elements as bytes, for migrations and checkpoints. The class gives only the function that writes an
 // element, and the one that reads the members.
 #include "runtime/collections/collection.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/messages/read_all.hpp"
+
+#include <exception>
+#include <string>
 
 namespace tess::detail {
 
@@ -26,6 +30,20 @@ void Collection::read_all_members(Element& element, Reader& ar) const {
         read_members(element, rest);
         return true;
       });
+}
+
+void Collection::read_saved_members(Element& element, Reader& ar) const {
+  std::string wrong;
+  try {
+    read_members(element, ar);
+    if (ar.remaining() != 0) wrong = text(ar.remaining(), " bytes are left");
+  } catch (const std::exception& error) {
+    wrong = error.what();
+  }
+  if (wrong.empty()) return;
+  fail(ErrorCode::bad_file, "the checkpoint does not fit this program: ", name(),
+       index_text_of(element), " has other members (", wrong,
+       "); restart with the program that wrote it");
 }
 
 }  // namespace tess::detail

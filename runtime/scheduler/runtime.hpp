@@ -105,6 +105,8 @@ class Runtime final : public Program {
     std::uint64_t last = 0;                ///< the last one that this run wrote or restarted from
     std::vector<std::uint64_t> refused{};  ///< damaged ones that a restart found
   };
+  /// PE 0 only: a checkpoint() is under way.
+  [[nodiscard]] bool& checkpoint_runs() { return checkpoint_runs_; }
   [[nodiscard]] OwnCheckpoints& own_checkpoints(const std::string& folder) {
     return own_checkpoints_[folder];
   }
@@ -186,6 +188,7 @@ class Runtime final : public Program {
   Census census_;
   std::map<CollectionId, std::int32_t> empty_on_;          // number of PEs per collection
   std::map<std::string, OwnCheckpoints> own_checkpoints_;  // by folder
+  bool checkpoint_runs_ = false;
   // On each PE: the greatest exit code requested here.
   std::vector<int> asked_;
 };

@@ -41,6 +41,10 @@ concept OnePerPe = requires { C::one_per_pe; };
 template <class C>
 concept NotSaved = requires { requires !C::in_checkpoints; };
 
+/// A member of a process group: it has what the PEs of its process share.
+template <class C>
+concept SharedInProcess = requires { C::shared_in_process; };
+
 /// After a restart on another number of PEs a member of a group takes over the state of another one.
 template <class C>
 concept Absorbs = requires(C& member, C& other) { member.absorb(std::move(other)); };
@@ -150,7 +154,7 @@ class Array final : public ArrayOf<typename C::Index> {
     if constexpr (Migratable<C>) {
       if constexpr (OnePerPe<C>) index = Index{this->pe_.id().value};
       std::unique_ptr<Indexed> element(this->construct_again(index));
-      this->read_all_members(*element, ar);
+      this->read_saved_members(*element, ar);
       if (!OnePerPe<C> || this->n_local() == 0)
         return this->add_restored(*element.release(), incarnation);
       element->collection_ = this;
@@ -223,9 +227,10 @@ class Array final : public ArrayOf<typename C::Index> {
     return std::make_unique<Array>(pe, id, range);
   }
   static inline const CollectionKind kind_{naming::name_of<C>(),
-                                           NotSaved<C>     ? Saving::skipped
-                                           : Migratable<C> ? Saving::elements
-                                                           : Saving::impossible,
+                                           NotSaved<C>          ? Saving::skipped
+                                           : SharedInProcess<C> ? Saving::shared
+                                           : Migratable<C>      ? Saving::elements
+                                                                : Saving::impossible,
                                            !OnePerPe<C> ? CollectionKind::Members::of_array
                                            : Absorbs<C> ? CollectionKind::Members::absorbed
                                                         : CollectionKind::Members::fixed,

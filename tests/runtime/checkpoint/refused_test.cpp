@@ -152,7 +152,104 @@ TEST_CASE("a checkpoint names the class that cannot be saved", "[runtime][checkp
       [](const State& /*state*/) { (void)tess::create_read_only(std::vector<int>(4)); });
   INFO(data);
   CHECK(has(data, "ReadOnlyPart"));
-  CHECK(has(data, "destroy() it before the checkpoint"));
+  CHECK(has(data, "the PEs of a process share it: destroy() it before the checkpoint"));
+  CHECK(!has(data, "serialize"));
+}
+
+namespace {
+
+tess::Task save_twice_at_once(std::string folder, std::string& error) {
+  const int state = 1;
+  const tess::Task first = tess::checkpoint(folder, state);
+  try {
+    co_await tess::checkpoint(folder, state);
+  } catch (const tess::Error& wrong) {
+    error = wrong.what();
+  }
+}
+
+/// Classes that a later version of the program has given another member.
+bool is_later_version = false;
+struct Growing {
+  int first = 1;
+  int later = 2;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(first);
+    if (is_later_version) ar(later);
+  }
+};
+class Grown : public tess::Chare<Grown> {
+ public:
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(members_);
+  }
+
+ private:
+  Growing members_;
+};
+
+struct Versions {
+  static tess::Task save_state(std::string folder) { co_await tess::checkpoint(folder, Growing()); }
+  static tess::Task restart_state(std::string folder) {
+    (void)co_await tess::restart<Growing>(folder);
+  }
+  static tess::Task save_elements(std::string folder) {
+    (void)tess::create<Grown>(tess::range(5));
+    co_await tess::checkpoint(folder, 1);
+  }
+  static tess::Task restart_elements(std::string folder) {
+    (void)co_await tess::restart<int>(folder);
+  }
+};
+
+/// What the restart reports when the classes have lost or got a member since the checkpoint.
+std::string other_members(tess::Task (*save)(std::string), tess::Task (*restart)(std::string),
+                          bool later_saves) {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  is_later_version = later_saves;
+  auto before = tess::test::adversarial(3, 1);
+  CHECK(tess::run(before, [&] { return save(folder); }) == 0);
+  is_later_version = !later_saves;
+  std::string report;
+  auto after = tess::test::adversarial(2, 1);
+  after.options.report = [&report](const std::string& line) { report = line; };
+  CHECK(tess::run(after, [&] { return restart(folder); }) == 2);
+  is_later_version = false;
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint is refused while another is under way, which goes on",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  std::string error;
+  auto setup = tess::test::adversarial(3, 1);
+  CHECK(tess::run(setup, [&] { return save_twice_at_once(folder, error); }) == 0);
+  CHECK(has(error, "another checkpoint() is under way; await it first"));
+  CHECK(!tess::latest_checkpoint(folder).empty());
+}
+
+TEST_CASE("a restart names the class or the state that has other members than it was saved with",
+          "[runtime][checkpoint]") {
+  for (const bool later_saves : {false, true}) {
+    INFO((later_saves ? "fewer" : "more"));
+    const std::string state =
+        other_members(&Versions::save_state, &Versions::restart_state, later_saves);
+    INFO(state);
+    CHECK(has(state, "the checkpoint does not fit this program: its state "));
+    CHECK(has(state, "Growing has other members"));
+    CHECK(has(state, "restart with the program that wrote it"));
+    const std::string element =
+        other_members(&Versions::save_elements, &Versions::restart_elements, later_saves);
+    INFO(element);
+    CHECK(has(element, "the checkpoint does not fit this program: Grown["));
+    CHECK(has(element, "restart with the program that wrote it"));
+  }
 }
 
 namespace {
