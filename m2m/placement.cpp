@@ -1,11 +1,17 @@
 #include "m2m/placement.hpp"
 
+#include "m2m/checks/mesh_extent.hpp"
 #include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/workers/placer.hpp"
 #include "runtime/core/error.hpp"
 
+#include <array>
+#include <cmath>
+#include <exception>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace tess::m2m {
 namespace {
@@ -27,11 +33,12 @@ Aabb checked_bounds(const PlacerReport& report, const PlacerSetup& setup) {
   return report.findings.bounds;
 }
 
-// A step whose messages the PEs count begins before they have arrived; so every PE goes on as soon
-// as it can.
-Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
+/// Reads and checks the mesh. `corners` gets the task of its messages about corners, some of which may
+/// be under way.
+Task read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census,
+                      std::vector<Task>& corners, Measured* measured_all) {
   Future<PlacerReport> read;
-  Task corners = step<&Placer::read>(placers, read.callback());
+  corners.push_back(step<&Placer::read>(placers, read.callback()));
   const PlacerReport report = co_await read;
   std::exception_ptr refused;
   try {
@@ -40,16 +47,25 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
     refused = std::current_exception();
   }
   if (refused) {
-    co_await corners;
+    for (Task& task : corners) co_await task;
     std::rethrow_exception(refused);
   }
 
   Future<Measured> measured;
   placers.broadcast<&Placer::measure>(census->bounds, measured.callback());
-  const Measured all = co_await measured;
+  *measured_all = co_await measured;
+  const Measured& all = *measured_all;
   all.report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
   census->n_flat = all.report.findings.n_flat;
   census->n_inverted = all.report.findings.n_inverted;
+}
+
+// A step whose messages the PEs count begins before they have arrived; so every PE goes on as soon
+// as it can.
+Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
+  std::vector<Task> corners;
+  Measured all;
+  co_await read_and_measure(placers, setup, census, corners, &all);
   CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
   if (!cut.is_done()) cut.refine(all.counts);
   while (!cut.is_done()) {
@@ -60,7 +76,7 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
   }
 
   co_await step<&Placer::send_tets>(placers, cut);
-  co_await corners;
+  for (Task& task : corners) co_await task;
   Future<PlacerReport> finished;
   co_await step<&Placer::answer_points>(placers, finished.callback());
   if (setup.halo_layers > 0) {
@@ -76,24 +92,54 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
   census->n_unused = built.n_unused;
 }
 
+/// Sends the ranges of a mesh; of null none.
+Task send_ranges(GroupProxy<Placer> placers, const TetMesh* whole) {
+  if (whole == nullptr) co_return;
+  co_await epoch([&] {
+    const std::int64_t n_pes = tess::n_pes();
+    const auto cut = [&](const auto& list, std::int32_t pe) {
+      const auto n = static_cast<std::int64_t>(list.size());
+      return std::vector(list.begin() + n * pe / n_pes, list.begin() + n * (pe + 1) / n_pes);
+    };
+    for (std::int32_t pe = 0; pe < n_pes; ++pe)
+      placers[PeId{pe}].send<&Placer::receive_range>(
+          RangeLoad{cut(whole->points, pe), cut(whole->tets, pe)});
+  });
+}
+
+/// `whole`: the mesh if its ranges are sent, otherwise null.
+Task survey_ranges(PlacerSetup setup, const TetMesh* whole, MeshSurvey* out) {
+  const GroupProxy<Placer> placers = create_group<Placer>(setup);
+  std::exception_ptr error;
+  try {
+    co_await send_ranges(placers, whole);
+    std::vector<Task> corners;
+    Measured measured;
+    co_await read_and_measure(placers, setup, &out->census, corners, &measured);
+    for (Task& task : corners) co_await task;
+    Future<SurveyReport> counted;
+    placers.broadcast<&Placer::count_extent>(counted.callback());
+    const SurveyReport report = co_await counted;
+    throw_first(report.error);
+    out->census.n_unused = report.n_unused;
+    out->longest_edge = std::sqrt(report.extent.longest_squared);
+    out->volume = report.extent.volume.total();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  co_await epoch([&] { placers.destroy(); });
+  if (error) std::rethrow_exception(error);
+  out->n_points = setup.n_points;
+  out->n_tets = setup.n_tets;
+}
+
 /// `whole`: the mesh if its ranges are sent, otherwise null.
 Task place_ranges(PlacerSetup setup, const TetMesh* whole, PlacedMesh* placed) {
   setup.workers = create<Worker>(range(setup.n_parts));
   const GroupProxy<Placer> placers = create_group<Placer>(setup);
   std::exception_ptr error;
   try {
-    if (whole != nullptr) {
-      co_await epoch([&] {
-        const std::int64_t n_pes = tess::n_pes();
-        const auto cut = [&](const auto& list, std::int32_t pe) {
-          const auto n = static_cast<std::int64_t>(list.size());
-          return std::vector(list.begin() + n * pe / n_pes, list.begin() + n * (pe + 1) / n_pes);
-        };
-        for (std::int32_t pe = 0; pe < n_pes; ++pe)
-          placers[PeId{pe}].send<&Placer::receive_range>(
-              RangeLoad{cut(whole->points, pe), cut(whole->tets, pe)});
-      });
-    }
+    co_await send_ranges(placers, whole);
     co_await lead(placers, setup, &placed->census);
   } catch (...) {
     error = std::current_exception();
@@ -128,31 +174,85 @@ PlacerSetup setup_of(std::string shown_name, PlaceOptions options) {
   return setup;
 }
 
+/// Fills in the sizes of a mesh in memory.
+void take_sizes(const TetMesh& mesh, PlacerSetup& setup) {
+  refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh));
+  setup.n_points = static_cast<GlobalId>(mesh.n_points());
+  setup.n_tets = static_cast<GlobalId>(mesh.n_tets());
+}
+
+/// Fills in the name and the sizes of a file, and checks what concerns all of it. Returns null if
+/// it cannot be read in ranges.
+std::unique_ptr<MeshRanges> take_ranges(const std::string& name, PlacerSetup& setup) {
+  std::unique_ptr<MeshRanges> ranges = open_ranges(name, RangeCheck::all);
+  if (ranges == nullptr) return ranges;
+  setup.n_points = ranges->n_points;
+  setup.n_tets = ranges->n_tets;
+  refuse_bad_counts(name, static_cast<std::uint64_t>(setup.n_points),
+                    static_cast<std::uint64_t>(setup.n_tets), ranges->skipped);
+  setup.name = name;
+  return ranges;
+}
+
 }  // namespace
 
 Task place(const TetMesh* mesh, PlaceOptions options, PlacedMesh* placed) {
   PlacerSetup setup = setup_of(mesh->name, std::move(options));
-  refuse_bad_counts(mesh->name, mesh->n_points(), mesh->n_tets(), skipped_text(*mesh));
-  setup.n_points = static_cast<GlobalId>(mesh->n_points());
-  setup.n_tets = static_cast<GlobalId>(mesh->n_tets());
+  take_sizes(*mesh, setup);
   co_await place_ranges(std::move(setup), mesh, placed);
 }
 
 Task place(std::string name, PlaceOptions options, PlacedMesh* placed) {
   PlacerSetup setup = setup_of(name, options);
-  std::unique_ptr<MeshRanges> ranges = open_ranges(name, RangeCheck::all);
-  if (ranges == nullptr) {
+  if (take_ranges(name, setup) == nullptr) {
     const TetMesh mesh = read_mesh(name);
     co_await place(&mesh, std::move(options), placed);
     co_return;
   }
-  setup.n_points = ranges->n_points;
-  setup.n_tets = ranges->n_tets;
-  refuse_bad_counts(name, static_cast<std::uint64_t>(setup.n_points),
-                    static_cast<std::uint64_t>(setup.n_tets), ranges->skipped);
-  ranges.reset();
-  setup.name = std::move(name);
   co_await place_ranges(std::move(setup), nullptr, placed);
+}
+
+bool is_read_in_ranges(const std::string& name) {
+  try {
+    return open_ranges(name, RangeCheck::all) != nullptr;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+Task survey(std::string name, std::vector<FormulaField> fields, MeshSurvey* out) {
+  PlacerSetup setup = setup_of(name, {1, 0, std::move(fields)});
+  setup.is_survey = true;
+  *out = {};
+  if (auto ranges = take_ranges(name, setup)) {
+    out->skipped = ranges->skipped;
+    ranges.reset();
+    co_await survey_ranges(std::move(setup), nullptr, out);
+    co_return;
+  }
+  const TetMesh mesh = read_mesh(name);
+  take_sizes(mesh, setup);
+  out->skipped = skipped_text(mesh);
+  out->split = split_text(mesh);
+  co_await survey_ranges(std::move(setup), &mesh, out);
+}
+
+MeshSurvey survey(const TetMesh& mesh) {
+  MeshSurvey out;
+  out.census = validate(mesh);
+  out.n_points = static_cast<GlobalId>(mesh.n_points());
+  out.n_tets = static_cast<GlobalId>(mesh.n_tets());
+  MeshExtent extent;
+  for (const Tet& tet : mesh.tets) {
+    std::array<Point, 4> corners;
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.points[static_cast<std::size_t>(tet[k])];
+    extent.add(corners);
+  }
+  out.longest_edge = std::sqrt(extent.longest_squared);
+  out.volume = extent.volume.total();
+  out.skipped = skipped_text(mesh);
+  out.split = split_text(mesh);
+  return out;
 }
 
 }  // namespace tess::m2m

@@ -12,6 +12,8 @@
 //     ghosts    a part reports to the owners of its ghosts where they are, and evaluates its fields
 //     load      the parts, complete, go to their Workers
 //
+// survey() ends after the corners and the shapes of the tetrahedra, and builds nothing.
+//
 // The parts are those of split(), and depend only on the mesh, their number and the halo.
 #pragma once
 
@@ -47,5 +49,26 @@ Task place(std::string name, PlaceOptions options, PlacedMesh* placed);
 
 /// The same for a mesh in the memory of this PE, which it must outlive.
 Task place(const TetMesh* mesh, PlaceOptions options, PlacedMesh* placed);
+
+/// What survey() finds.
+struct MeshSurvey {
+  GlobalId n_points = 0, n_tets = 0;
+  MeshCensus census{};
+  double longest_edge = 0;
+  double volume = 0;               ///< of all tetrahedra, the same bits for any number of PEs
+  std::string skipped{}, split{};  ///< as skipped_text() and split_text()
+};
+
+/// True if place() and survey() read the mesh in ranges, so that no PE holds all of it. False for a
+/// file that cannot be opened: they report it.
+[[nodiscard]] bool is_read_in_ranges(const std::string& name);
+
+/// Reads and checks a mesh by all PEs together, as place() does, and keeps nothing of it. `fields` are
+/// evaluated at every point. The errors are those of read_mesh(), validate(), make_formula() and
+/// sample(). `out` must outlive the task.
+Task survey(std::string name, std::vector<FormulaField> fields, MeshSurvey* out);
+
+/// The same of a mesh in memory, without fields, by the caller alone.
+[[nodiscard]] MeshSurvey survey(const TetMesh& mesh);
 
 }  // namespace tess::m2m

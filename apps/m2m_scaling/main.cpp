@@ -28,7 +28,8 @@ int run_case(const Request& request, const tess::SimulatedOptions& machine,
   apps::Progress progress(stderr);
   tess::Setup setup{tess::make_simulated_machine(machine), {}};
   return tess::run(setup, [&]() -> tess::Task {
-    m2m_transfer::Problem problem = m2m_transfer::load(request, tess::machine());
+    m2m_transfer::Problem problem;
+    co_await m2m_transfer::load(request, &problem);
     problem.collects = true;  // the time of it is a column
     co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
     report = problem.reports.front();

@@ -25,12 +25,11 @@
 namespace m2m_transfer {
 namespace {
 
-Problem read(const Request& request, apps::Progress& progress) {
+Task read(const Request& request, apps::Progress& progress, Problem& problem) {
   progress.phase("reading");
   const Time start = now();
-  Problem problem = load(request, machine());
+  co_await load(request, &problem);
   for (TransferReport& report : problem.reports) report.seconds.read = tess::seconds(now() - start);
-  return problem;
 }
 
 /// "result.exo"; with several written meshes "result.B.exo", "result.C.exo", ….
@@ -43,7 +42,7 @@ void write_meshes(const std::string& path, const Problem& problem) {
     std::filesystem::path own(path);
     if (n_written > 1)
       own.replace_extension(std::string{'.', letter_of(m)} + own.extension().string());
-    write_result(own.string(), problem.meshes[m].mesh, problem.meshes[m].fields);
+    write_result(own.string(), *problem.meshes[m].mesh, problem.meshes[m].fields);
   }
 }
 
@@ -96,7 +95,8 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   plot::require_writable("--out", options.out);
   require_result_format(options.out);
   plot::require_picture("--picture", options.picture);
-  Problem problem = read(request, progress);
+  Problem problem;
+  co_await read(request, progress, problem);
   problem.collects = !options.out.empty() || !options.picture.empty();
   if (options.explain) {
     progress.clear();
@@ -105,6 +105,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   const auto gauge = create_group<Gauge>();
   co_await measure(problem, gauge, progress);
   progress.phase("writing");
+  if (problem.collects) bring_targets(problem);
   if (!options.json.empty()) plot::write_file(options.json, json(problem.reports));
   if (!options.picture.empty()) plot::write_file(options.picture, picture(problem));
   if (!options.out.empty()) write_meshes(options.out, problem);
@@ -120,7 +121,8 @@ Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) 
   const std::vector<TransferKind> kinds = kinds_of(options);
   plot::require_writable("--json", options.json);
   request.kind = name_of(kinds.front());
-  const Problem read_once = read(request, progress);
+  Problem read_once;
+  co_await read(request, progress, read_once);
   const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (const TransferKind kind : kinds) {
@@ -155,7 +157,8 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   for (Request& request : requests) {
     progress.part(reports.size() + 1, requests.size());
     request.repeat = options.repeat.value_or(3);
-    Problem problem = read(request, progress);
+    Problem problem;
+    co_await read(request, progress, problem);
     if (options.explain) {
       progress.clear();
       print(explain(problem, Output::report));
@@ -184,7 +187,8 @@ Task run_steps_study(const DriverOptions& options, apps::Progress& progress, boo
   plot::make_folder("--plot", folder);
   std::vector<StepsRow> rows;
   for (const Request& one : requests) {
-    Problem problem = read(one, progress);
+    Problem problem;
+    co_await read(one, progress, problem);
     co_await measure_steps(problem, options.repeat.value_or(3), progress, rows);
   }
   progress.clear();

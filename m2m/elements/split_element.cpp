@@ -135,12 +135,12 @@ void ElementSplitter::append_side(GlobalId element, std::int64_t side,
       number + 1 < run->first_tets.size()
           ? run->first_tets[number + 1]
           : (next == nullptr ? static_cast<GlobalId>(mesh_.n_tets()) : next->first_tet);
-  const std::vector<Face>& faces_of_tet = shape_of(ElementType::tet4).sides;
+  const std::vector<Face>& sides_of_tet = shape_of(ElementType::tet4).sides;
   for (GlobalId t = run->first_tets[number]; t < end; ++t) {
     const Tet& tet = mesh_.tets[static_cast<std::size_t>(t)];
     for (std::size_t s = 0; s < 4; ++s) {
       const bool on_side = std::all_of(
-          faces_of_tet[s].begin(), faces_of_tet[s].begin() + 3, [&](std::int8_t corner) {
+          sides_of_tet[s].begin(), sides_of_tet[s].begin() + 3, [&](std::int8_t corner) {
             return std::find(face.begin(), face.end(), tet[static_cast<std::size_t>(corner)]) !=
                    face.end();
           });

@@ -58,6 +58,8 @@ void Placer::read(Callback<PlacerReport> target) {
 }
 
 void Placer::ask_corners() {
+  if (setup_.is_survey)
+    for (const Tet& tet : tets_) mark_used(tet);
   const auto begin = static_cast<VertexId>(first_point_);
   const auto end = static_cast<VertexId>(first_point_ + static_cast<GlobalId>(points_.size()));
   VertexId least = end, greatest = begin - 1;
@@ -87,6 +89,7 @@ void Placer::answer_corners(CornerQuery query) {
     return;
   }
   if (reading_ == Reading::refused) return;
+  if (setup_.is_survey) mark_used(query.ids);
   CornerAnswer answer{query.ids.front(), {}};
   answer.points.reserve(query.ids.size());
   for (const VertexId v : query.ids)
@@ -127,6 +130,7 @@ void Placer::measure_if_complete() {
   for (std::size_t t = 0; t < tets_.size(); ++t) {
     const std::array<Point, 4> corners = corners_of(tets_[t]);
     measured.report.findings.add_shape(first_tet_ + static_cast<GlobalId>(t), corners);
+    if (setup_.is_survey) extent_.add(corners);
     cells_[t] = cube.cell(mean_of_corners(corners));
   }
   far_.reset();

@@ -2,6 +2,7 @@
 // points and of the tetrahedra, and builds the parts whose Workers are at home on its PE.
 #pragma once
 
+#include "m2m/checks/mesh_extent.hpp"
 #include "m2m/checks/mesh_findings.hpp"
 #include "m2m/field.hpp"
 #include "m2m/partition/curve_cut.hpp"
@@ -29,6 +30,7 @@ struct PlacerSetup {
   std::vector<FormulaField> fields;
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 1;
+  bool is_survey = false;  ///< ends with count_extent(), and builds no parts
 };
 
 /// The error with the least key of all PEs, if there is one.
@@ -52,6 +54,21 @@ struct JoinReports {
     a.findings.join(b.findings);
     a.error.keep_first(b.error);
     a.n_unused += b.n_unused;
+    return a;
+  }
+};
+
+/// Contributed at the end of a survey.
+struct SurveyReport {
+  MeshExtent extent{};
+  std::uint64_t n_unused = 0;
+  FirstError error{};
+};
+struct JoinSurveys {
+  SurveyReport operator()(SurveyReport a, const SurveyReport& b) const {
+    a.extent.join(b.extent);
+    a.n_unused += b.n_unused;
+    a.error.keep_first(b.error);
     return a;
   }
 };
@@ -156,6 +173,8 @@ class Placer : public Group<Placer> {
   /// them for the first round of a CurveCut. Begins when the corners are here.
   void measure(const Aabb& bounds, Callback<Measured> target);
   void count(const CurveCut& cut, Callback<CellCounts> target);
+  /// The end of a survey, when all corners have been asked for: evaluates the fields at the points.
+  void count_extent(Callback<SurveyReport> target);
   /// Sends the tetrahedra to their parts, and asks for the points of the parts here when all of
   /// their tetrahedra have arrived: the cut says how many these are.
   void send_tets(const CurveCut& cut);
@@ -243,6 +262,8 @@ class Placer : public Group<Placer> {
     List().swap(list);
   }
   [[nodiscard]] bool has_halo() const { return setup_.halo_layers > 0; }
+  /// In a survey: tetrahedra use these vertices, kept here or elsewhere.
+  void mark_used(std::span<const VertexId> vertices);
   void ask_corners();
   void measure_if_complete();
   void ask_points_if_complete();
@@ -278,6 +299,8 @@ class Placer : public Group<Placer> {
   std::size_t n_unused_due_ = 0;                      // messages
   std::optional<Aabb> measures_;                      // from measure() on, until it begins
   Callback<Measured> measured_;
+  MeshExtent extent_;                        // of the range, in a survey
+  std::vector<std::uint8_t> used_;           // per point kept here, in a survey
   std::vector<std::uint64_t> cells_;         // per tetrahedron of the range
   std::uint64_t n_tets_here_ = 0;            // in batches_
   std::optional<std::uint64_t> n_tets_due_;  // from send_tets() on, until all are here

@@ -9,6 +9,7 @@
 #include "m2m/partition/partition.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
+#include "m2m/write_vtu.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/non_conforming.hpp"
@@ -371,4 +372,69 @@ TEST_CASE("ranges of the real ExodusII and gmsh files are those of the whole mes
   check_ranges_of_file(test::shared_data("nalu/3d_tet4_taylor_green_0p4.exo"), 2);
   check_ranges_of_file(test::shared_data("nalu/3d_tet4_pipe.exo"), 1);
   check_ranges_of_file(test::shared_data("mfem/simple-cube-tet4.e"), 2);
+}
+
+namespace {
+
+MeshSurvey survey_on(int n_pes, const std::string& name,
+                     const std::vector<FormulaField>& fields = {}) {
+  Setup setup{make_threads_machine(n_pes), {}};
+  MeshSurvey out;
+  REQUIRE(run(setup, [&]() -> Task { return survey(name, fields, &out); }) == 0);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a survey by all PEs finds what one PE finds", "[m2m][placement]") {
+  const test::Scratch scratch;
+  write_exodus(scratch.path("odd.exo"), odd_mesh(), {});
+  write_vtu(scratch.path("odd.vtu"), odd_mesh(), {});
+  CHECK(is_read_in_ranges("kuhn:5@0.2"));
+  CHECK(is_read_in_ranges(scratch.path("odd.exo")));
+  CHECK_FALSE(is_read_in_ranges(scratch.path("odd.vtu")));
+  CHECK_FALSE(is_read_in_ranges(scratch.path("missing.exo")));
+  for (const std::string& name :
+       {std::string("kuhn:5@0.2"), scratch.path("odd.exo"), scratch.path("odd.vtu")}) {
+    const MeshSurvey want = survey(read_mesh(name));
+    for (const int n_pes : {1, 3}) {
+      INFO(name << ", " << n_pes << " PEs");
+      const MeshSurvey got = survey_on(n_pes, name);
+      CHECK(got.n_points == want.n_points);
+      CHECK(got.n_tets == want.n_tets);
+      CHECK(got.census.n_flat == want.census.n_flat);
+      CHECK(got.census.n_inverted == want.census.n_inverted);
+      CHECK(got.census.n_unused == want.census.n_unused);
+      CHECK(got.census.bounds == want.census.bounds);
+      CHECK(got.longest_edge == want.longest_edge);
+      CHECK(got.volume == want.volume);
+    }
+  }
+  CHECK(survey(odd_mesh()).census.n_unused == 2);
+  CHECK(survey(kuhn_mesh({4})).volume == Approx(1));
+}
+
+TEST_CASE("a survey refuses what a reader, validate() and sample() refuse", "[m2m][placement]") {
+  const TetMesh mesh = kuhn_mesh({4});
+  const std::string formula = "1/(x + y - 1.25)";
+  const Aabb box = bounds(mesh);
+  const std::string want =
+      test::message_of([&] { (void)sample(mesh, formula, make_formula(formula, box)); });
+  REQUIRE_FALSE(want.empty());
+  const auto refusal_of = [](const std::string& name, const std::vector<FormulaField>& fields) {
+    std::string message;
+    Setup setup{make_threads_machine(3), {}};
+    const auto survey_it = [&]() -> Task {
+      MeshSurvey out;
+      try {
+        co_await survey(name, fields, &out);
+      } catch (const Error& error) {
+        message = error.what();
+      }
+    };
+    REQUIRE(run(setup, survey_it) == 0);
+    return message;
+  };
+  CHECK(refusal_of("kuhn:4", {{"x", box}, {formula, box}}) == want);
+  CHECK(refusal_of("missing.msh", {}) == test::message_of([] { (void)read_mesh("missing.msh"); }));
 }

@@ -20,22 +20,8 @@ std::optional<double> largest_second_derivative(const std::string& field, const 
   return std::nullopt;
 }
 
-double longest_edge(const TetMesh& mesh) {
-  double longest = 0;
-  for (const Tet& tet : mesh.tets)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) {
-        const Point& p = mesh.points[static_cast<std::size_t>(tet[i])];
-        const Point& q = mesh.points[static_cast<std::size_t>(tet[j])];
-        longest = std::max(longest, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
-      }
-  return longest;
-}
-
-double typical_edge(const TetMesh& mesh) {
-  double volume = 0;
-  for (std::size_t t = 0; t < mesh.n_tets(); ++t) volume += std::abs(signed_volume(mesh, t));
-  return std::cbrt(6 * volume / static_cast<double>(mesh.n_tets()));
+double typical_edge(const MeshSurvey& mesh) {
+  return std::cbrt(6 * mesh.volume / static_cast<double>(mesh.n_tets));
 }
 
 }  // namespace m2m_transfer

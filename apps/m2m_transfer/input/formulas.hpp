@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/m2m_transfer/names.hpp"
-#include "m2m/mesh.hpp"
+#include "m2m/placement.hpp"
 
 #include <optional>
 #include <string>
@@ -14,10 +14,8 @@ namespace m2m_transfer {
 [[nodiscard]] std::optional<double> largest_second_derivative(const std::string& field,
                                                               const Aabb& domain);
 
-[[nodiscard]] double longest_edge(const TetMesh& mesh);
-
 /// The edge of a cube with the volume of six average tetrahedra: 1/N for kuhn:N.
-[[nodiscard]] double typical_edge(const TetMesh& mesh);
+[[nodiscard]] double typical_edge(const MeshSurvey& mesh);
 
 /// A bound of the error of linear interpolation in tetrahedra whose edges are at most `longest`:
 /// (3/16) h² max |D²f|. The error is at most R²/2 max |D²f|, where R is the radius of the smallest

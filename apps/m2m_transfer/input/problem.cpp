@@ -16,8 +16,8 @@ void check_voxel(double voxel, const Problem& problem) {
   double farthest = 0;
   for (const RunMesh& mesh : problem.meshes)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      farthest = std::max(
-          {farthest, std::abs(mesh.census.bounds.lo[axis]), std::abs(mesh.census.bounds.hi[axis])});
+      farthest = std::max({farthest, std::abs(mesh.survey.census.bounds.lo[axis]),
+                           std::abs(mesh.survey.census.bounds.hi[axis])});
   const double least = farthest * 0x1p-30;
   if (voxel < least)
     fail(ErrorCode::bad_argument, "--voxel ", voxel, " is too small for coordinates up to ",
@@ -31,7 +31,7 @@ void read_motions(const Request& request, const std::vector<std::string>& names,
   for (const std::string& text : request.moves) {
     StepMotion one = parse_motion(text, names, problem.pairs.front().target);
     RunMesh& mesh = problem.meshes[one.mesh];
-    const auto& [low, high] = mesh.census.bounds;
+    const auto& [low, high] = mesh.survey.census.bounds;
     if (one.about_middle)
       for (std::size_t axis = 0; axis < 3; ++axis)
         one.motion.centre[axis] = low[axis] + 0.5 * (high[axis] - low[axis]);
@@ -39,38 +39,72 @@ void read_motions(const Request& request, const std::vector<std::string>& names,
   }
 }
 
-/// Also meshes that need no values are sampled, so that a formula that is not finite there is found
-/// before the run.
+/// Samples a mesh that PE 0 holds: also one that needs no values, so that a formula that is not
+/// finite there is found before the run.
 void sample_fields(Problem& problem, std::size_t m) {
   RunMesh& mesh = problem.meshes[m];
   for (std::size_t f = 0; f < problem.formulas.size(); ++f) {
-    Field field = sample(mesh.mesh, problem.field_names[f], problem.formulas[f]);
+    Field field = sample(*mesh.mesh, problem.field_names[f], problem.formulas[f]);
+    if (problem.partition == PartitionMethod::curve) continue;
     if (!needs_values(m, problem.pairs)) std::ranges::fill(field.values, 0.0);
     mesh.fields.push_back(std::move(field));
   }
 }
 
-TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request,
-                         const Machine& machine) {
+/// Surveys a mesh; fields only if the domain of the formulas is known.
+Task read_one(Problem& problem, std::size_t m) {
+  RunMesh& mesh = problem.meshes[m];
+  if (problem.partition == PartitionMethod::curve && is_read_in_ranges(mesh.name)) {
+    std::vector<FormulaField> fields;
+    for (std::size_t f = 0; f < problem.formulas.size(); ++f)
+      fields.push_back({problem.field_names[f], problem.domain});
+    co_await survey(mesh.name, std::move(fields), &mesh.survey);
+    co_return;
+  }
+  mesh.mesh = read_mesh(mesh.name);
+  mesh.survey = survey(*mesh.mesh);
+  sample_fields(problem, m);
+}
+
+/// The first source is surveyed before the others: the formulas depend on its bounds. It is sampled
+/// when it is placed.
+Task read_meshes(const Request& request, Problem& problem) {
+  const std::size_t first = problem.pairs.front().source;
+  co_await read_one(problem, first);
+  RunMesh& source = problem.meshes[first];
+  problem.domain = source.survey.census.bounds;
+  for (const std::string& option : request.fields)
+    for (const std::string& name : split_at_commas(option)) {
+      problem.field_names.push_back(name);
+      problem.formulas.push_back(make_formula(name, problem.domain));
+    }
+  if (source.mesh) sample_fields(problem, first);
+  std::vector<Task> tasks;
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m)
+    if (m != first) tasks.push_back(read_one(problem, m));
+  for (Task& task : tasks) co_await task;
+}
+
+TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request) {
   TransferReport report;
   const RunMesh& source = problem.source_of(pair);
   const RunMesh& target = problem.target_of(pair);
   report.source = source.name;
   report.target = target.name;
-  report.source_skipped = skipped_text(source.mesh);
-  report.target_skipped = skipped_text(target.mesh);
-  report.source_split = split_text(source.mesh);
-  report.target_split = split_text(target.mesh);
+  report.source_skipped = source.survey.skipped;
+  report.target_skipped = target.survey.skipped;
+  report.source_split = source.survey.split;
+  report.target_split = target.survey.split;
   report.policy = request.policy;
   report.kind = request.kind;
-  report.machine = machine.describe();
-  report.pes = machine.n_pes();
-  report.processes = machine.n_processes();
-  report.chares = request.n_chares != 0 ? request.n_chares : request.per_pe * machine.n_pes();
+  report.machine = machine().describe();
+  report.pes = machine().n_pes();
+  report.processes = machine().n_processes();
+  report.chares = request.n_chares != 0 ? request.n_chares : request.per_pe * machine().n_pes();
   report.voxel = problem.voxel[0];
-  report.source_tets = source.mesh.n_tets();
-  report.source_edge = typical_edge(source.mesh);
-  report.targets = target.mesh.n_points();
+  report.source_tets = static_cast<std::size_t>(source.survey.n_tets);
+  report.source_edge = typical_edge(source.survey);
+  report.targets = static_cast<std::size_t>(target.survey.n_points);
   return report;
 }
 
@@ -89,8 +123,8 @@ void check_kind(TransferKind kind, const Request& request) {
     refuse("--policy nearest", "give keep or value:V, or another --kind");
 }
 
-Problem load(const Request& request, const Machine& machine) {
-  Problem problem;
+Task load(Request request, Problem* out) {
+  Problem& problem = *out;
   problem.policy = parse_policy(request.policy);
   problem.partition = parse_partition_method(request.partition);
   problem.kind = parse_transfer_kind(request.kind);
@@ -105,24 +139,25 @@ Problem load(const Request& request, const Machine& machine) {
   if (names.size() > 2 && request.pairs.empty())
     fail(ErrorCode::bad_argument, names.size(),
          " meshes are given, but no --pairs; give for example --pairs A:B,B:C");
-  for (std::size_t m = 0; m < names.size(); ++m) {
-    RunMesh mesh{names[m], read_mesh(names[m]), {}, {}, {}};
-    mesh.census = validate(mesh.mesh);
-    problem.meshes.push_back(std::move(mesh));
-  }
-  problem.domain = problem.source_of(problem.pairs.front()).census.bounds;
-  for (const std::string& option : request.fields)
-    for (const std::string& name : split_at_commas(option)) {
-      problem.field_names.push_back(name);
-      problem.formulas.push_back(make_formula(name, problem.domain));
-    }
-  for (std::size_t m = 0; m < names.size(); ++m) sample_fields(problem, m);
+  for (const std::string& name : names) problem.meshes.push_back({.name = name});
+  co_await read_meshes(request, problem);
   read_motions(request, names, problem);
   if (request.voxel > 0) check_voxel(request.voxel, problem);
   problem.voxel = {request.voxel, request.voxel, request.voxel};
   for (const Pair& pair : problem.pairs)
-    problem.reports.push_back(report_of(problem, pair, request, machine));
-  return problem;
+    problem.reports.push_back(report_of(problem, pair, request));
+}
+
+void bring_targets(Problem& problem) {
+  for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
+    if (!is_written(m, problem.pairs)) continue;
+    RunMesh& mesh = problem.meshes[m];
+    if (!mesh.mesh) mesh.mesh = read_mesh(mesh.name);
+    if (mesh.mesh->n_points() != static_cast<std::size_t>(mesh.survey.n_points))
+      fail(ErrorCode::bad_file, mesh.name, ": has ", mesh.mesh->n_points(), " vertices, and had ",
+           mesh.survey.n_points, " when the run began; do not write it during a run");
+    for (const RigidMotion& motion : mesh.made) move_points(mesh.mesh->points, motion);
+  }
 }
 
 std::int32_t halo_for(TransferKind kind, std::size_t mesh, const std::vector<Pair>& pairs) {

@@ -1,5 +1,5 @@
 // The input of a run, read and checked: meshes, the pairs that transfer, manufactured fields, the
-// policy, the number of chares and the voxel size. Only PE 0 reads files and holds a Problem.
+// policy, the number of chares and the voxel size. Only PE 0 holds a Problem.
 #pragma once
 
 #include "apps/m2m_transfer/input/graph.hpp"
@@ -8,11 +8,13 @@
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
 #include "m2m/partition_method.hpp"
+#include "m2m/placement.hpp"
 #include "m2m/policy.hpp"
 #include "m2m/transfer_kind.hpp"
-#include "runtime/machine/machine.hpp"
+#include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,16 +39,19 @@ struct Request {
   std::vector<std::string> moves{};
 };
 
-/// A mesh of a run. `fields`: what the mesh starts with. After a run that collects its results
-/// (Problem::collects) a mesh that a pair writes has these instead, with an additional field "status".
+/// A mesh of a run. PE 0 holds it only if it has to: if Zoltan cuts it, or the file cannot be read in
+/// ranges; and, after a run whose result is written or drawn, if a pair wrote it (bring_targets()).
 struct RunMesh {
   std::string name{};
-  TetMesh mesh{};
-  MeshCensus census{};
+  MeshSurvey survey{};
+  std::optional<TetMesh> mesh{};  ///< with the points where they were at the start
+  /// What the mesh starts with, if Zoltan cuts it. After a run that collects its results
+  /// (Problem::collects) a mesh that a pair writes has these, and a field "status".
   std::vector<Field> fields{};
   std::vector<StepMotion> motions{};
-  /// After a run that collects its results: of the points, to where the formulas hold.
-  std::vector<RigidMotion> back{};
+  /// After a run that collects its results: of the points from where they were at the start, and from
+  /// there to where the formulas hold.
+  std::vector<RigidMotion> made{}, back{};
 };
 
 struct Problem {
@@ -77,8 +82,13 @@ struct Problem {
 /// (bad_argument) with the option.
 void check_kind(TransferKind kind, const Request& request);
 
-/// Reads the meshes and samples the fields. Throws Error with the option or file that is wrong.
-[[nodiscard]] Problem load(const Request& request, const Machine& machine);
+/// Reads and checks the meshes by all PEs together where they can be read in ranges, and evaluates
+/// the fields. Throws Error with the option or file that is wrong. `problem` must outlive the task.
+Task load(Request request, Problem* problem);
+
+/// After a run that collects its results: reads the meshes that pairs write, unless they are here,
+/// and moves them as the run did.
+void bring_targets(Problem& problem);
 
 /// The layers of tetrahedra that a mesh needs around its parts, as source and as target of pairs.
 [[nodiscard]] std::int32_t halo_for(TransferKind kind, std::size_t mesh,

@@ -6,9 +6,10 @@
 namespace m2m_transfer {
 namespace {
 
-std::string mesh_line(const char* side, const TetMesh& mesh, const MeshCensus& census) {
+std::string mesh_line(const char* side, const MeshSurvey& mesh) {
+  const MeshCensus& census = mesh.census;
   std::string line =
-      fmt::format("  {}: {} vertices, {} tetrahedra", side, mesh.n_points(), mesh.n_tets());
+      fmt::format("  {}: {} vertices, {} tetrahedra", side, mesh.n_points, mesh.n_tets);
   if (census.n_flat != 0) line += fmt::format(", {} of them flat", census.n_flat);
   if (census.n_inverted != 0) line += fmt::format(", {} inverted", census.n_inverted);
   if (census.n_unused != 0) line += fmt::format(", {} vertices unused", census.n_unused);
@@ -46,10 +47,7 @@ std::string explain(const Problem& problem, Output output) {
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
     const RunMesh& mesh = problem.meshes[m];
     const std::string letter(1, letter_of(m));
-    out += mesh_line(is_graph ? letter.c_str()
-                     : m == 0 ? "source"
-                              : "target",
-                     mesh.mesh, mesh.census);
+    out += mesh_line(is_graph ? letter.c_str() : m == 0 ? "source" : "target", mesh.survey);
   }
   if (problem.pairs.size() > 1)
     out += fmt::format("  {} pairs; those of one level at once: {}\n", problem.pairs.size(),
@@ -91,8 +89,8 @@ std::string explain(const Problem& problem, Output output) {
   if (!gradients) out += "  recovered gradients and their halos (--kind second-order)\n";
   if (output == Output::report) out += "  writing a mesh (--out)\n";
   for (const Pair& pair : problem.pairs)
-    if (!overlap(problem.source_of(pair).census.bounds, problem.target_of(pair).census.bounds,
-                 tess::collide::Touching::counts))
+    if (!overlap(problem.source_of(pair).survey.census.bounds,
+                 problem.target_of(pair).survey.census.bounds, tess::collide::Touching::counts))
       out += fmt::format("the bounding boxes of {} do not overlap: every vertex will be outside\n",
                          is_graph ? pair_text(pair) : "the meshes");
   return out;

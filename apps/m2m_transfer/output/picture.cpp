@@ -143,7 +143,7 @@ void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
 std::string picture(const Problem& problem) {
   const RunMesh& target = problem.target_of(problem.pairs.back());
   const Field& field = target.fields.front();
-  TetMesh there = target.mesh;
+  TetMesh there = *target.mesh;
   for (const RigidMotion& motion : target.back) move_points(there.points, motion);
   const Field truth = sample(there, field.name, problem.formulas.front());
   std::vector<double> error(field.values.size());
@@ -155,8 +155,8 @@ std::string picture(const Problem& problem) {
       "fill=\"white\"/>\n",
       2 * panel + 3 * margin, panel + 2 * margin + 20);
   out += "<g stroke-linejoin=\"round\">\n";
-  draw(out, target.mesh, field.values, field.name, margin);
-  draw(out, target.mesh, error, "|error| of " + field.name, 2 * margin + panel);
+  draw(out, *target.mesh, field.values, field.name, margin);
+  draw(out, *target.mesh, error, "|error| of " + field.name, 2 * margin + panel);
   out += "</g>\n</svg>\n";
   return out;
 }

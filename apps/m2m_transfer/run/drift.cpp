@@ -31,7 +31,7 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Pr
   GraphRun graph(problem, meshes, progress);
   co_await graph.search();
   const RunMesh& start = problem.meshes.front();
-  const auto n_points = static_cast<GlobalId>(start.mesh.n_points());
+  const auto n_points = start.survey.n_points;
   NormsRequest request{start.name, {}, {}};
   for (const std::string& name : problem.field_names)
     request.truth.push_back({name, problem.domain});
@@ -78,7 +78,8 @@ Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
                    const std::vector<std::int32_t>& trips, apps::Progress& progress, Drift& drift) {
   request.pairs = "A:B,B:A";
   progress.phase("reading");
-  Problem problem = load(request, machine());
+  Problem problem;
+  co_await load(request, &problem);
   drift.source = request.source;
   drift.target = request.target;
   drift.machine = machine().describe();

@@ -28,7 +28,7 @@ void report_audit(Problem& problem, std::size_t p, const PairAudit& audit) {
     error.target_integral = audit.target[f].integral;
     if (problem.kind == TransferKind::linear && needs_values(pair.source, problem.pairs))
       if (const auto second = largest_second_derivative(name, problem.domain))
-        error.bound = linear_bound(longest_edge(problem.source_of(pair).mesh), *second);
+        error.bound = linear_bound(problem.source_of(pair).survey.longest_edge, *second);
     report.fields.push_back(std::move(error));
   }
   report.result_hash = audit.result_hash;
@@ -42,7 +42,7 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
     RunMesh& mesh = problem.meshes[m];
     const Time begin = now();
     Gathered result;
-    co_await gather(meshes[m], mesh.mesh.n_points(), result);
+    co_await gather(meshes[m], static_cast<std::size_t>(mesh.survey.n_points), result);
     const double took = seconds_since(begin);
     for (std::size_t p = 0; p < problem.pairs.size(); ++p)
       if (problem.pairs[p].target == m) problem.reports[p].seconds.gather = took;
@@ -50,6 +50,7 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
     for (std::size_t f = 0; f < problem.field_names.size(); ++f)
       mesh.fields.push_back({problem.field_names[f], 1, std::move(result.values[f])});
     mesh.fields.push_back(status_field(result.status));
+    mesh.made = graph.made(m);
     mesh.back = graph.back(m);
   }
 }

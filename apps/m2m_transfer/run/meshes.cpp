@@ -18,7 +18,9 @@ Task place_together(const Problem& problem, TransferKind kind, std::int32_t n_pa
     PlaceOptions options{n_parts, halo_for(kind, m, problem.pairs), {}};
     for (const std::string& name : problem.field_names)
       options.fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});
-    tasks.push_back(tess::m2m::place(problem.meshes[m].name, options, &placed[m]));
+    const RunMesh& mesh = problem.meshes[m];
+    tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options, &placed[m])
+                              : tess::m2m::place(mesh.name, options, &placed[m]));
   }
   for (Task& task : tasks) co_await task;
   for (const PlacedMesh& mesh : placed) meshes.push_back(mesh.mesh);
@@ -34,7 +36,7 @@ Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
   }
   co_await epoch([&] {
     for (std::size_t m = 0; m < problem.meshes.size(); ++m)
-      meshes.push_back(scatter(problem.meshes[m].mesh, problem.meshes[m].fields, n_parts,
+      meshes.push_back(scatter(*problem.meshes[m].mesh, problem.meshes[m].fields, n_parts,
                                problem.partition, halo_for(kind, m, problem.pairs)));
   });
 }

@@ -64,7 +64,6 @@ Task GraphRun::move_meshes() {
   for (std::size_t m = 0; m < meshes_.size(); ++m)
     for (StepMotion& step : problem_.meshes[m].motions) {
       const RigidMotion motion = step.motion;
-      move_points(problem_.meshes[m].mesh.points, motion);
       // One after the other: broadcasts of one epoch may overtake each other.
       co_await epoch([&] { meshes_[m].workers.broadcast<&Worker::move>(motion); });
       motions_[m].push_back(motion);
@@ -134,7 +133,7 @@ Task GraphRun::audit_target(std::size_t pair) {
   for (const std::string& name : problem_.field_names)
     request.truth.push_back({name, problem_.domain});
   co_await measure_norms(meshes_[target], std::move(request), &audits_[pair].target);
-  co_await hash_values(meshes_[target], static_cast<GlobalId>(mesh.mesh.n_points()),
+  co_await hash_values(meshes_[target], mesh.survey.n_points,
                        scalar_columns(problem_.field_names.size()), &audits_[pair].result_hash);
 }
 

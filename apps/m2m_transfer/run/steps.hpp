@@ -18,7 +18,7 @@ struct PairAudit {
 
 class GraphRun {
  public:
-  /// `problem` and `meshes` outlive the run. Its meshes move with the steps.
+  /// `problem` and `meshes` outlive the run, and the meshes move with the steps.
   GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps::Progress& progress);
 
   /// Searches all pairs at once.
@@ -33,6 +33,10 @@ class GraphRun {
   /// The motions that lead the points of a mesh to where the formulas hold that its values follow.
   [[nodiscard]] std::vector<RigidMotion> back(std::size_t mesh) const {
     return opposite(motions_[origin_[mesh]]);
+  }
+  /// The motions of a mesh so far.
+  [[nodiscard]] const std::vector<RigidMotion>& made(std::size_t mesh) const {
+    return motions_[mesh];
   }
   /// Per pair, after steps_with_audits().
   [[nodiscard]] const std::vector<PairAudit>& audits() const { return audits_; }

@@ -29,7 +29,7 @@ Task run_steps(Problem& problem, std::vector<DistributedMesh>& meshes, std::int3
 
 Task hash_of(const Problem& problem, const std::vector<DistributedMesh>& meshes,
              std::uint64_t& hash) {
-  co_await hash_values(meshes[1], static_cast<GlobalId>(problem.meshes[1].mesh.n_points()),
+  co_await hash_values(meshes[1], problem.meshes[1].survey.n_points,
                        scalar_columns(problem.field_names.size()), &hash);
 }
 

@@ -2,6 +2,9 @@
 #include "apps/m2m_transfer/run/steps.hpp"
 
 #include "apps/m2m_transfer/driver.hpp"
+#include "m2m/kuhn.hpp"
+#include "m2m/read_mesh.hpp"
+#include "m2m/write_vtu.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/support/catch.hpp"
@@ -154,4 +157,45 @@ TEST_CASE("meshes that move together transfer as if they stood still", "[apps][m
   const nlohmann::json alone = pairs_of(threads(2), options);
   CHECK(alone[0]["outside"].get<int>() > 0);
   CHECK(alone[0]["found"]["linf"].get<double>() < 1e-12);
+}
+
+TEST_CASE("PE 0 holds a mesh only if it cannot be read in ranges, or Zoltan cuts it",
+          "[apps][memory]") {
+  const Scratch scratch;
+  write_vtu(scratch.path("whole.vtu"), kuhn_mesh({3}), {});
+  const auto held = [](const std::string& source, const std::string& partition) {
+    Request request;
+    request.source = source;
+    request.target = "kuhn:4";
+    request.partition = partition;
+    Setup setup = threads(2);
+    std::vector<bool> out;
+    const auto load_it = [&]() -> Task {
+      Problem problem;
+      co_await load(request, &problem);
+      for (const RunMesh& mesh : problem.meshes) out.push_back(mesh.mesh.has_value());
+    };
+    REQUIRE(tess::run(setup, load_it) == 0);
+    return out;
+  };
+  CHECK(held("kuhn:3", "curve") == std::vector{false, false});
+  CHECK(held(scratch.path("whole.vtu"), "curve") == std::vector{true, false});
+  CHECK(held("kuhn:3", "rcb") == std::vector{true, true});
+}
+
+TEST_CASE("a result has the points of the mesh as it moved, whether PE 0 held it or not",
+          "[apps][memory]") {
+  const Scratch scratch;
+  auto options = options_of({"kuhn:4@0.2", "kuhn:5@0.1"}, "");
+  options.request.steps = 3;
+  options.request.moves = {"B:rotate(0,0,1,5deg)", "B:translate(0.01,0,0)"};
+  for (const char* partition : {"curve", "rcb"}) {
+    options.request.partition = partition;
+    options.out = scratch.path(std::string(partition) + ".vtu");
+    (void)pairs_of(threads(2), options);
+  }
+  CHECK(slurp(scratch.path("curve.vtu")) == slurp(scratch.path("rcb.vtu")));
+  const TetMesh moved = read_mesh(scratch.path("curve.vtu")), start = kuhn_mesh({5, 0.1});
+  REQUIRE(moved.n_points() == start.n_points());
+  CHECK(moved.points.front() != start.points.front());
 }

@@ -58,7 +58,7 @@ TEST_CASE("the largest second derivatives of the fields are those by differences
 }
 
 TEST_CASE("the longest edge of a cube's tetrahedra is its diagonal", "[apps][study]") {
-  CHECK(longest_edge(kuhn_mesh({4})) == Approx(std::sqrt(3) / 4));
+  CHECK(survey(kuhn_mesh({4})).longest_edge == Approx(std::sqrt(3) / 4));
 }
 
 TEST_CASE("a study of kinds has the order of each, and the linear bound holds", "[apps][study]") {

@@ -1,0 +1,24 @@
+// The sizes of the tetrahedra of a mesh, over ranges of it that are joined in any order.
+#pragma once
+
+#include "m2m/mesh.hpp"
+#include "runtime/core/exact_sum.hpp"
+
+#include <array>
+
+namespace tess::m2m {
+
+struct MeshExtent {
+  double longest_squared = 0;  ///< of all edges
+  ExactSum volume;             ///< without signs
+
+  void add(const std::array<Point, 4>& corners);
+  void join(const MeshExtent& other);
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(longest_squared, volume);
+  }
+};
+
+}  // namespace tess::m2m
