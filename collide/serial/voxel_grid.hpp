@@ -4,7 +4,7 @@
 //
 //     x <= y  =>  cell(x) <= cell(y)
 //
-// The proof in territory.hpp needs only this, so rounding cannot lose a pair. Public libraries that
+// The proof in search/entry.hpp needs only this, so rounding cannot lose a pair. Public libraries that
 // lose 15 % of the pairs use a second formula, k * size + origin, which rounds differently.
 #pragma once
 
