@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 namespace collide_scaling {
 namespace {
@@ -138,7 +139,7 @@ Row run_case(const Case& given) {
   tess::Setup setup{tess::make_simulated_machine(options), {}};
   const auto begin = std::chrono::steady_clock::now();
   const int code = tess::run(setup, [&] { return run_steps(given, row); });
-  if (code != 0) tess::exit(code);
+  if (code != 0) std::exit(code);
   row.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return row;

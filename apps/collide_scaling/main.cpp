@@ -4,6 +4,9 @@
 //     collide_scaling --study strong       a crowd of moving bodies, with the balancer on and off
 #include "apps/collide_scaling/report.hpp"
 #include "apps/command_line.hpp"
+#include "apps/plot/write_file.hpp"
+#include "runtime/balance.hpp"
+#include "runtime/core/error.hpp"
 
 #include <cstdio>
 #include <fmt/core.h>
@@ -11,8 +14,8 @@
 namespace collide_scaling {
 namespace {
 
-/// Sets what a pair costs, so that the model takes as long on one PE as was measured there, with its
-/// messages; and the voxel size that one PE chooses.
+/// Sets the voxel size that one PE chooses; and unless it is given what a pair costs, so that the
+/// model takes as long on one PE as was measured there, with its messages.
 void calibrate(Case& given) {
   Case one = given;
   one.n_pes = one.thinned = 1;
@@ -20,12 +23,13 @@ void calibrate(Case& given) {
   one.work = Work::measured;
   const Row measured = run_case(one);
   if (!given.is_strong) one.voxel_size = given.voxel_size = measured.voxel_size;
-  one.work = Work::model;
-  one.ns_per_pair = 0;
-  one.steps = 3;
-  const Row messages = run_case(one);
-  given.ns_per_pair = 1e9 * (measured.step.seconds - messages.step.seconds) /
-                      static_cast<double>(measured.step.n_pairs);
+  if (given.ns_per_pair == 0) {
+    one.work = Work::model;
+    one.steps = 3;
+    const Row messages = run_case(one);
+    given.ns_per_pair = 1e9 * (measured.step.seconds - messages.step.seconds) /
+                        static_cast<double>(measured.step.n_pairs);
+  }
   fmt::print(
       "One PE, measured: {:.2f} ms per step, {} voxels of size {:.3g}. Model: {} ns per message, "
       "{:.1f} ns per pair, latency {} ns, {:.1f} GB/s.\n\n",
@@ -39,7 +43,7 @@ int study(int argc, char** argv) {
   std::vector<std::string> balances;
   Case given;
   std::uint64_t n_triangles = 0;
-  std::int32_t thinned = 0;
+  std::int32_t thinned = 0, steps = 0;
   apps::CommandLine line("Steps of a collision on simulated machines of many PEs",
                          "collide_scaling");
   line.option("--study", kind,
@@ -48,7 +52,7 @@ int study(int argc, char** argv) {
   line.option("--pes", pes, "PEs of the machines (1,4,16,64,256,1024,1500; strong 1,4,16,64,256)")
       .separated_by(',');
   line.option("--triangles", n_triangles, "per PE (65536), or of the crowd (262144)");
-  line.option("--steps", given.steps, "steps, of which the first does not count")
+  line.option("--steps", steps, "steps, of which the first does not count (4; strong 60)")
       .between(2, 100000);
   line.option("--thinned", thinned,
               "weak: one of so many triangles is there, at so many times the cost: 1, 4, 16 "
@@ -60,6 +64,9 @@ int study(int argc, char** argv) {
               "model: a fixed time per message and per pair; measured: processor time of all")
       .one_of({"measured", "model"});
   line.option("--message-ns", given.message_ns, "of a PE per message, in the model");
+  line.option("--pair-ns", given.ns_per_pair,
+              "of a PE per pair, in the model (default: measured now, on one PE)")
+      .positive();
   line.option("--latency-ns", given.latency_ns, "of a message");
   line.option("--bandwidth", given.bandwidth, "bytes per second").positive();
   line.option("--per-process", given.per_process, "PEs per process").between(1, 4096);
@@ -67,11 +74,25 @@ int study(int argc, char** argv) {
   if (!line.parse(argc, argv, "")) return 0;
   given.is_strong = kind == "strong";
   given.work = work == "model" ? Work::model : Work::measured;
+  given.steps = steps != 0 ? steps : given.is_strong ? 60 : 4;
   given.n_triangles = n_triangles != 0 ? n_triangles : given.is_strong ? 262144 : 65536;
   if (pes.empty() && given.is_strong) pes = {1, 4, 16, 64, 256};
   if (pes.empty()) pes = {1, 4, 16, 64, 256, 1024, 1500};
   if (balances.empty() && given.is_strong) balances = {"none", "greedy_refine"};
   if (balances.empty()) balances = {"none"};
+  for (const std::string& balance : balances) {
+    if (balance == "none") continue;
+    static_cast<void>(tess::balance::make_strategy(balance, 0));  // throws
+    if (given.steps <= given.period)
+      tess::fail(tess::ErrorCode::bad_value, "--steps ", given.steps, ": ", balance,
+                 " balances after every ", given.period,
+                 " steps, so none of these is balanced; give ", given.period + 1, " or more");
+  }
+  if (given.work == Work::measured && given.ns_per_pair != 0)
+    tess::fail(tess::ErrorCode::bad_value, "--pair-ns ", given.ns_per_pair,
+               ": --work measured has no cost per pair; leave one of them out");
+  if (!out.empty())
+    for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
   if (given.work == Work::model) calibrate(given);
   fmt::print("{}", head(given.is_strong));
   std::vector<Row> rows;

@@ -124,6 +124,12 @@ refuses "--time: nan is not a number above 0" "$bin/coupled" --time nan
 refuses "--substeps 3 .* --reaction" "$bin/coupled" --substeps 3
 refuses "--balance-every 3 .* --balance" "$bin/coupled" --balance-every 3
 
+crowd=("$bin/collide_scaling" --study strong --pes 1 --triangles 2048)
+refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
+refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5
+refuses "--pair-ns 3: --work measured has no cost per pair" "${crowd[@]}" --work measured --pair-ns 3
+refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
+
 scaling=("$bin/m2m_scaling" --pes 1)
 refuses "missing.exo: cannot be opened" "${scaling[@]}" "$scratch/missing.exo" kuhn:2
 refuses "nan.msh: vertex" "${scaling[@]}" kuhn:2 "$scratch/nan.msh"

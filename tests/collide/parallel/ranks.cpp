@@ -1,7 +1,9 @@
-// Collisions over real processes, compared with all pairs: run by ctest under mpirun. Two clients per
-// PE have boxes at random places, which move from round to round; a third of the boxes are equal, so
-// that a voxel has more pairs than one message.
+// Collisions over real processes and on threads, compared with all pairs: run by ctest. Two clients
+// per PE have boxes at random places, which move from round to round; a third of the boxes are equal,
+// so that a voxel has more pairs than one message. Clients and voxels migrate between rounds, and
+// clients while their pairs are found. In every other round one owner receives a pair, otherwise both.
 #include "collide/collider.hpp"
+#include "runtime/balance.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
 
@@ -15,7 +17,7 @@ using namespace tess::collide;
 
 namespace {
 
-constexpr std::int32_t n_rounds = 3;
+constexpr std::int32_t n_rounds = 6;
 
 std::vector<Aabb> boxes_of(std::int32_t client, std::int32_t n_clients, std::int32_t round) {
   std::mt19937_64 random(static_cast<std::uint64_t>(100 * round + client));
@@ -37,7 +39,12 @@ ModelId model_of(std::int32_t client) {
 struct Answer {
   std::uint64_t n = 0, hash = 0;
 
-  void add(OwnerId owner, OwnerId other, LocalPair pair) {
+  /// With one owner, who of the two is not known.
+  void add(OwnerId owner, OwnerId other, LocalPair pair, Receivers receivers) {
+    if (receivers == Receivers::one_owner && other < owner) {
+      std::swap(owner, other);
+      std::swap(pair.mine, pair.theirs);
+    }
     ++n;
     hash += mix(
         mix(static_cast<std::uint64_t>(owner) << 32 | static_cast<std::uint64_t>(other)) ^
@@ -47,7 +54,12 @@ struct Answer {
   friend bool operator==(const Answer&, const Answer&) = default;
 };
 
+Receivers receivers_in(std::int32_t round) {
+  return round % 2 == 0 ? Receivers::one_owner : Receivers::both_owners;
+}
+
 Answer oracle(std::int32_t n_clients, std::int32_t round) {
+  const Receivers receivers = receivers_in(round);
   std::vector<Item> all;
   for (std::int32_t client = 0; client < n_clients; ++client) {
     const std::vector<Aabb> boxes = boxes_of(client, n_clients, round);
@@ -57,8 +69,9 @@ Answer oracle(std::int32_t n_clients, std::int32_t round) {
   Answer answer;
   for (const auto& [box, a] : all)
     for (const auto& [other, b] : all)
-      if (a.model != b.model && overlap(box, other, Touching::counts))
-        answer.add(a.owner, b.owner, {a.local, b.local});
+      if (a.model != b.model && overlap(box, other, Touching::counts) &&
+          (receivers == Receivers::both_owners || a.owner < b.owner))
+        answer.add(a.owner, b.owner, {a.local, b.local}, receivers);
   return answer;
 }
 
@@ -66,17 +79,29 @@ class Client : public Chare<Client> {
  public:
   void submit(const Collider& collider, std::int32_t round) {
     answer_ = {};
+    n_messages_ = 0;
+    receivers_ = receivers_in(round);
     const std::int32_t me = index().x;
     const std::vector<Aabb> boxes = boxes_of(me, static_cast<std::int32_t>(array().size()), round);
     collider.submit(Objects{owner_of(index()), model_of(me), boxes});
   }
+  /// Moves on after every third message.
   void receive(const Hits& hits) {
-    for (const LocalPair& pair : hits.pairs) answer_.add(hits.owner, hits.other, pair);
+    for (const LocalPair& pair : hits.pairs) answer_.add(hits.owner, hits.other, pair, receivers_);
+    if (++n_messages_ % 3 == 0) move();
   }
   void gather(const Callback<Answer>& target) { contribute(sum, answer_, target); }
+  void move() { migrate_to(PeId{(my_pe().value + 1) % n_pes()}); }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(answer_, n_messages_, receivers_);
+  }
 
  private:
   Answer answer_;
+  std::int32_t n_messages_ = 0;
+  Receivers receivers_ = Receivers::both_owners;
 };
 
 Task collide_rounds() {
@@ -87,8 +112,9 @@ Task collide_rounds() {
     collider = make_collider({});
     clients = create<Client>(range(n_clients));
   });
-  const Report report{report_to<&Client::receive>(clients), {}};
+  const BalancerProxy voxels = start_balancing(collider.voxels, {.strategy = "rotate"});
   for (std::int32_t round = 0; round < n_rounds; ++round) {
+    const Report report{report_to<&Client::receive>(clients), {}, receivers_in(round)};
     co_await epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
     co_await run_collision(collider, report);
     Future<Answer> done;
@@ -96,7 +122,10 @@ Task collide_rounds() {
     const Answer answer = co_await done, expected = oracle(n_clients, round);
     TESS_CHECK(answer == expected, "round ", round, ": ", answer.n, " hits were reported, ",
                expected.n, " are right, or others than those");
+    co_await epoch([&] { clients.broadcast<&Client::move>(); });
+    co_await voxels.round();
   }
+  TESS_CHECK(n_pes() == 1 || voxels.history().front().n_moved > 0, "no voxel was moved");
   print("each of the hits of ", n_rounds, " rounds was reported once\n");
   co_await epoch([&] {
     collider.destroy();
