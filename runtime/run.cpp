@@ -1,6 +1,7 @@
 #include "runtime/run.hpp"
 
 #include "runtime/collections/elements/element.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
@@ -237,6 +238,8 @@ Setup take_options(int& argc, char** argv) {
 }
 
 int run_on(Setup& setup, std::function<void()> main) {
+  TESS_CHECK(detail::current_pe_or_null() == nullptr,
+             "run() is called inside a run: a program has one run at a time");
   setup.started = true;
   detail::Runtime runtime(*setup.machine, setup.options,
                           {&detail::element_text, &detail::element_key, &detail::element_state},

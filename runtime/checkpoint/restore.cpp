@@ -252,7 +252,8 @@ void check_plan(const Chosen& chosen, const std::string& state_type, std::int32_
            ", which this program has not: restart with the program that wrote it");
     if (kind->saving != Saving::elements)
       fail(ErrorCode::bad_file, chosen.folder, " has elements of the class ", saved.name,
-           ", which cannot be restored any more: it needs a default constructor and serialize()");
+           ", which cannot be restored any more: it needs a default constructor and a "
+           "public serialize()");
     if (kind->members == CollectionKind::Members::of_array || n_pes == n_saved) continue;
     if (kind->members == CollectionKind::Members::fixed)
       fail(ErrorCode::bad_file, "the group ", saved.name, " of ", chosen.folder, " has ", n_saved,

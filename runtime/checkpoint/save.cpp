@@ -62,9 +62,10 @@ std::vector<std::string> take_census(Pe& pe, const CensusQuestion& question) {
     collection->describe_unsaved(lines);
     if (pe.id() != question.main) continue;
     if (collection->kind().saving == Saving::impossible)
-      lines.push_back(text(collection->name(),
-                           " cannot be saved: give it a default constructor and serialize(), or "
-                           "destroy() it before the checkpoint"));
+      lines.push_back(
+          text(collection->name(),
+               " cannot be saved: give it a default constructor and a public serialize(), or "
+               "destroy() it before the checkpoint"));
     if (collection->kind().saving == Saving::shared)
       lines.push_back(text(collection->name(),
                            " cannot be saved, since the PEs of a process share it: destroy() it "

@@ -387,7 +387,7 @@ void Reader::get(T& value) {
     std::apply([this](auto&... item) { (this->get(item), ...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to read.
-  } else {
+  } else if constexpr (!std::is_pointer_v<T>) {  // pointers are refused where they are written
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");

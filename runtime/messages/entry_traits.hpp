@@ -106,6 +106,9 @@ consteval bool check_call() {
         "this entry method belongs to another class than the elements of this collection");
     static_assert(Traits::by_value_or_const,
                   "an entry method takes its arguments by value or const reference");
+    static_assert(std::is_default_constructible_v<typename Traits::Arguments>,
+                  "the arguments of an entry method need default constructors: where they arrive "
+                  "they are made empty and then read");
     static_assert(!std::is_same_v<typename Traits::Result, Task> || Traits::by_value,
                   "a coroutine takes its arguments by value: the message is gone once it waits");
     if constexpr (sizeof...(Args) == Traits::n_arguments) {

@@ -38,7 +38,9 @@ Waits Pe::census(std::span<void* const> except) const {
                                          " was destroyed, but coroutines of its elements wait"));
   for (const auto& [id, n] : collection_table_->n_early())
     waits.add(WaitRank::message,
-              text(n, " messages on ", id_, " wait for ", id, ", which was never created"));
+              text(n, n == 1 ? " message" : " messages", " on ", id_, n == 1 ? " waits" : " wait",
+                   " for the array or group ", id.value,
+                   ", which is not known there: is the proxy of an earlier run?"));
   lines.clear();
   completion_.describe_open(lines);
   for (std::string& line : lines) waits.add(WaitRank::epoch, std::move(line));

@@ -238,6 +238,18 @@ tess::Task balance_after_end() {
   (void)tess::start_balancing(blocks);
 }
 
+void run_again() {
+  std::string name = "inner", pes = "--pes=1";
+  std::vector<char*> arguments{name.data(), pes.data(), nullptr};
+  (void)tess::run(2, arguments.data(), [] {});
+}
+
+/// A proxy of an earlier run.
+void send_to_the_past() {
+  tess::ArrayProxy<Block>(tess::CollectionId{std::uint64_t{77} << 24U})[{0}]
+      .send<&Block::nothing>();
+}
+
 auto blocks() {
   return tess::create<Block>(tess::range(3));
 }
@@ -307,6 +319,8 @@ const std::map<std::string, std::function<void()>> misuses{
        early.local().nothing();
      }},
     {"array_after_end", [] { const tess::Task task = use_after_end(); }},
+    {"proxy_of_the_past", &send_to_the_past},
+    {"run_in_a_run", &run_again},
     {"balance_after_end", [] { const tess::Task task = balance_after_end(); }},
     {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
 };

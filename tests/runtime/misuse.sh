@@ -73,6 +73,8 @@ here negative_argument "an argument is -1, but the entry method takes 0 to 18446
 here array_not_known "the array of this proxy is not known yet on PE 0: create it inside an awaited epoch"
 here group_not_known "this group is not known yet on PE 0: create it inside an awaited epoch"
 here array_after_end "the array of this proxy was destroyed on PE 0"
+here run_in_a_run "run() is called inside a run: a program has one run at a time"
+everywhere proxy_of_the_past "1 message on PE . waits for the array or group [0-9]*, which is not known there: is the proxy of an earlier run?"
 here balance_after_end "start_balancing() of an array that was destroyed on PE 0"
 here group_after_end "this group was destroyed on PE 0"
 everywhere sum_of_none "waits for a future of int" "Block has no elements: its reductions have no result"

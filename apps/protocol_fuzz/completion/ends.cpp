@@ -118,7 +118,7 @@ void deadlocks(Trial& trial) {
         const ArrayProxy<Patient> nowhere(CollectionId{0x5000000});
         nowhere[{i}].send<&Patient::nothing>();
       });
-      expect_end(trial, ending, 1, {"deadlock", "never created"});
+      expect_end(trial, ending, 1, {"deadlock", "is not known there"});
     }
   }
 }

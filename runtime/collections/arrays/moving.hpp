@@ -33,7 +33,7 @@ template <class Index>
 void ArrayOf<Index>::ship(Indexed& element, PeId to, Memberships&& memberships) {
   const ArrivalAction* action = arrival_action();
   TESS_CHECK(action != nullptr, name(),
-             " cannot migrate: it needs a default constructor and serialize()");
+             " cannot migrate: it needs a default constructor and a public serialize()");
   auto* arrival = pe_.stamp(new Arrival<Index>());
   arrival->action = action;
   arrival->collection = id();

@@ -147,7 +147,7 @@ TEST_CASE("a checkpoint names the class that cannot be saved", "[runtime][checkp
   const std::string rock =
       error_after([](const State& /*state*/) { (void)tess::create<Rock>(tess::range(3), 5); });
   INFO(rock);
-  CHECK(has(rock, "Rock cannot be saved: give it a default constructor and serialize()"));
+  CHECK(has(rock, "Rock cannot be saved: give it a default constructor and a public serialize()"));
   const std::string data = error_after(
       [](const State& /*state*/) { (void)tess::create_read_only(std::vector<int>(4)); });
   INFO(data);
