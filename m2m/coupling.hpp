@@ -139,8 +139,12 @@ class Coupling {
   Task apply();
 
   /// Frees what the pieces and PEs hold of this coupling; a search makes it again. The enclosing
-  /// epoch includes this. Arrays of pieces are destroyed in a later epoch.
+  /// epoch includes this. No search and no application of it is under way. Arrays of pieces are
+  /// destroyed in a later epoch.
   void destroy() {
+    TESS_CHECK(under_way_.n_searches == 0 && under_way_.n_applications == 0,
+               "a coupling is destroyed while a search or an application of it is under way: "
+               "co_await that first");
     if (setup_.id == CouplingId{}) return;
     source_.template broadcast<&Piece<S>::m2m_release>(setup_.id);
     target_.template broadcast<&Piece<T>::m2m_release>(setup_.id);
@@ -186,6 +190,7 @@ Task Coupling<S, T>::search(SearchSummary* summary) {
   TESS_CHECK(under_way_.n_searches == 0 && under_way_.n_applications == 0,
              "a coupling searches while a search or an application of it is under way: co_await "
              "that first");
+  detail::require_usable(setup_, source_.id(), target_.id(), "searched");
   const detail::Counted counted(under_way_.n_searches);
   enter("broad");
   const Time start = now();
@@ -327,6 +332,7 @@ Task Coupling<S, T>::apply() {
              "co_await search() first");
   TESS_CHECK(under_way_.n_searches == 0,
              "a coupling is applied while a search of it is under way: co_await that first");
+  detail::require_usable(setup_, source_.id(), target_.id(), "applied");
   const detail::Counted counted(under_way_.n_applications);
   const CouplingId id = setup_.id;
   co_await epoch([&] {

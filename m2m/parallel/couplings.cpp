@@ -14,7 +14,25 @@ auto& side_of(Sides& sides, CouplingId id, const char* side) {
   return at->second;
 }
 
+/// Of an array or group of any class.
+bool has_ended(CollectionId id) {
+  return ArrayProxy<Ledger>(id).ended();
+}
+
 }  // namespace
+
+void detail::require_usable(const CouplingSetup& setup, CollectionId source, CollectionId target,
+                            const char* use) {
+  TESS_CHECK(source != CollectionId{} && target != CollectionId{}, "a coupling without arrays is ",
+             use, ": give its constructor the arrays that create() returned");
+  TESS_CHECK(
+      !has_ended(source) && !has_ended(target), "a coupling is ", use,
+      " after an array of its pieces was destroyed: make a new Coupling of arrays that exist");
+  TESS_CHECK(
+      setup.id == CouplingId{} || !has_ended(setup.ledger.id()), "a coupling is ", use,
+      " that another copy of the handle has destroyed: use the copy that called destroy(), or "
+      "make a new Coupling");
+}
 
 SourceSide& Couplings::source(CouplingId id) {
   return side_of(sources, id, "source");

@@ -68,6 +68,11 @@ std::uint64_t channel_of() {
   return hash_bytes(key.data(), key.size());
 }
 
+/// Ends the job if a handle cannot be used: it has no arrays, an array has ended, or a copy of the
+/// handle has destroyed the coupling. `use`: "searched" or "applied".
+void require_usable(const CouplingSetup& setup, CollectionId source, CollectionId target,
+                    const char* use);
+
 }  // namespace detail
 
 /// The couplings of a piece. It migrates with the piece.

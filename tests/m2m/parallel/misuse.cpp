@@ -81,6 +81,25 @@ Task misuse(std::string name, TransferKind kind) {
     const Task first = coupling.search();
     co_await coupling.apply<&Patch::give, &Patch::take>();
   }
+  if (name == "destroy_in_search" || name == "destroy_in_apply") {
+    const Task first = name == "destroy_in_search" ? coupling.search()
+                                                   : coupling.apply<&Patch::give, &Patch::take>();
+    co_await epoch([&] { coupling.destroy(); });
+  }
+  if (name == "no_arrays") {
+    Coupling<Patch, Patch> none;
+    co_await none.search();
+  }
+  if (name == "source_ended") co_await epoch([&] { source.destroy(); });
+  if (name == "target_ended") {
+    co_await epoch([&] { target.destroy(); });
+    co_await coupling.search();
+  }
+  if (name == "copy_destroyed" || name == "copy_searched") {
+    Coupling copy = coupling;
+    co_await epoch([&] { copy.destroy(); });
+    if (name == "copy_searched") co_await coupling.search();
+  }
   if (name == "shrunk") co_await epoch([&] { source.broadcast<&Patch::shrink>(); });
   if (name == "vanished") co_await epoch([&] { source.broadcast<&Patch::vanish>(); });
   if (name == "source_moved" || name == "target_moved") {
