@@ -8,7 +8,8 @@
 //     at_sync     each element calls at_sync() once per phase; when all have called it, a round
 //                 runs, and then every element's resume_from_sync() is called
 //     automatic   the same barrier, but a round runs only if it pays off
-//     periodic    no barrier: a round runs whenever `period` has passed, beside the elements' work
+//     periodic    no barrier: a round runs whenever `period` has passed, beside the elements' work;
+//                 at_sync() continues immediately
 //
 // The barrier waits for elements that exist when balancing starts from the first round on, and for
 // later elements from their first at_sync() on. It does not wait for destroyed elements. The

@@ -184,6 +184,7 @@ replays=("$bin/lb_lab" --sim pes=4)
 refuses moving_hot_spot "${lab[@]}" --workload nonsense
 refuses greedy_refine "${lab[@]}" --strategy nonsense
 refuses --per-pe "${lab[@]}" --per-pe 1,0
+refuses "linear_trend; choose another" "${lab[@]}" --strategy gossip --prediction linear_trend
 refuses "11 blocks" "$bin/lb_lab" --sim pes=1 --json "$scratch/result.json" --workload stencil --per-pe 12,11
 refuses --grain "${lab[@]}" --grain 1
 refuses --period "${lab[@]}" --period 6 --iterations 5

@@ -245,6 +245,9 @@ Task Balancer::place_again() {
 
 Task Balancer::phase_ends(Others others) {
   TESS_CHECK(coordinator_ != nullptr, "rounds are requested on ", plan_.coordinator, " only");
+  TESS_CHECK(plan_.when != BalanceWhen::periodic,
+             "round() of a balancer with when = periodic, whose rounds begin by themselves: choose "
+             "at_sync or automatic");
   TESS_CHECK(!array_ended_, "a round of an array that was destroyed");
   TESS_CHECK(!running_, "a round while another runs: await that one first");
   running_ = true;
@@ -258,6 +261,7 @@ Task Balancer::phase_ends(Others others) {
   }
   if (worth) {
     co_await round(others);
+    measured_.round_ends();
   } else {
     co_await forget_all();
   }
@@ -410,6 +414,7 @@ void Balancer::move(const std::vector<Move>& moves) {
 }
 
 void Balancer::resume(std::uint32_t round) {
+  measured_.round_ends();
   barrier_.resume(round);
 }
 
@@ -464,7 +469,9 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
   Pe& pe = current_pe();
   TESS_CHECK(!pe.ended(array), "start_balancing() of an array that was destroyed on ", pe.id());
   validate(options, pe.n_pes(), users ? StrategyOf::user : StrategyOf::runtime);
-  const bool passes = options.when == BalanceWhen::at_sync && options.strategy == "none" && !users;
+  const bool passes =
+      options.when == BalanceWhen::periodic ||
+      (options.when == BalanceWhen::at_sync && options.strategy == "none" && !users);
   const DistributedStrategy distributed =
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);
   GroupProxy<Exchange> exchange;

@@ -43,7 +43,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
     EpochId epoch{};  ///< the epoch in which balancing starts
     BalanceWhen when = BalanceWhen::at_sync;
     std::int64_t period_ns = 0;
-    bool passes = false;         ///< strategy none: at_sync() continues immediately
+    bool passes = false;         ///< strategy none, or periodic: at_sync() continues immediately
     std::vector<double> speeds;  ///< speed of each PE, or empty
     std::vector<std::uint64_t> memory_limit_bytes;
     DistributedStrategy distributed = DistributedStrategy::none;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace tess::balance {
 namespace {
@@ -49,20 +50,14 @@ bool Coordinator::worth(const PhaseSums& phase) {
   if (phase.n_measured == 0) return false;
   if (judges_) return true;
   const double average = phase.average_time();
-  if (judges_distributed_ && average > 0) {
-    judges_distributed_ = false;
-    Round& last = history_.back();
-    last.measured = phase.slowest / average;
-    learn(last.before - last.predicted, last.before - last.measured,
-          phase.slowest - last.before * average);
-  }
+  if (std::exchange(measures_distributed_, false) && average > 0)
+    history_.back().measured = phase.slowest / average;
   const double above_floor = std::max(0.0, phase.slowest - (floor_ + noise) * average);
   const double in_vain = std::max(0.0, phase.slowest - (1 + noise) * average) - above_floor;
   lost_ += above_floor + counts_in_vain * in_vain;
   return lost_ > patience_ * (cost_ + harm_);
 }
 
-/// Gains in any unit; harm in seconds.
 void Coordinator::learn(double promised, double gain, double harm) {
   const bool persistent = gain >= persists * promised;
   patience_ = persistent ? 1 : std::min(2 * patience_, most_patience);
@@ -165,7 +160,7 @@ void Coordinator::record_distributed(Round round) {
   floor_ = round.predicted;
   lost_ = 0;
   searched_ = true;
-  judges_distributed_ = options_.when == BalanceWhen::automatic && round.n_moved != 0;
+  measures_distributed_ = options_.when == BalanceWhen::automatic && round.n_moved != 0;
   history_.push_back(std::move(round));
 }
 

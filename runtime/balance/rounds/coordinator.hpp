@@ -11,8 +11,8 @@
 // That holds while loads persist. If a round gained less than half of what it predicted, they do
 // not: the next round waits until twice as much is lost, counted from its cost plus the seconds that
 // its moves cost the phase after it. So loads that change at random cause ever fewer rounds. A
-// round that gains what it predicted ends this. The gain of a distributed round is the difference
-// of max/average before and after it, and its moves are not undone.
+// round that gains what it predicted ends this. The gain of a distributed round is not known, since
+// no PE has the loads of all elements: it is neither undone nor judged.
 #pragma once
 
 #include "runtime/balance/prediction.hpp"
@@ -77,7 +77,7 @@ class Coordinator {
   double lost_ = 0;        // seconds lost to imbalance since the last round
   double floor_ = 1;       // max/average after the last round
   bool judges_ = false;  // automatic: the last round moved elements, and its gain is not known yet
-  bool judges_distributed_ = false;  // the same after a distributed round
+  bool measures_distributed_ = false;  // the phase after a distributed round ends next
 };
 
 }  // namespace tess::balance

@@ -39,7 +39,7 @@ ModelId model_of(std::int32_t client) {
 struct Answer {
   std::uint64_t n = 0, hash = 0;
 
-  /// With one owner, who of the two is not known.
+  /// With one owner, it is not known which of the two.
   void add(OwnerId owner, OwnerId other, LocalPair pair, Receivers receivers) {
     if (receivers == Receivers::one_owner && other < owner) {
       std::swap(owner, other);

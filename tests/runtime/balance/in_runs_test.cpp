@@ -1,5 +1,6 @@
 // Rounds of whole runs on the simulated machine: several balanced arrays at once, and seeds.
 #include "runtime/balance.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
@@ -39,12 +40,14 @@ class Graded : public Chare<Graded> {
 using History = std::vector<balance::Round>;
 
 /// The rounds of arrays of 32 elements that are balanced at the same time.
-Task balance_arrays(std::size_t n_arrays, BalanceOptions options, std::vector<History>& histories) {
+Task balance_arrays(std::size_t n_arrays, BalanceOptions options, balance::Strategy users,
+                    std::vector<History>& histories) {
   std::vector<BalancerProxy> balancers;
   std::vector<Future<int>> done(n_arrays);
   for (const Future<int>& one : done) {
     const auto array = create<Graded>(range(32));
-    balancers.push_back(start_balancing(array, options));
+    balancers.push_back(users ? start_balancing(array, options, users)
+                              : start_balancing(array, options));
     array.broadcast<&Graded::begin>(one.callback());
   }
   for (Future<int>& one : done) {
@@ -54,11 +57,13 @@ Task balance_arrays(std::size_t n_arrays, BalanceOptions options, std::vector<Hi
   for (const BalancerProxy& one : balancers) histories.push_back(one.history());
 }
 
-std::vector<History> rounds_of(std::size_t n_arrays, const BalanceOptions& options) {
+std::vector<History> rounds_of(std::size_t n_arrays, const BalanceOptions& options,
+                               const balance::Strategy& users = {}) {
   std::vector<History> histories;
   const test::Machine machine{
       .pes = 4, .per_process = 4, .seed = 0, .reordering = 0, .migration = 0};
-  machine.run([&] { return balance_arrays(n_arrays, options, histories); }).require_success();
+  machine.run([&] { return balance_arrays(n_arrays, options, users, histories); })
+      .require_success();
   return histories;
 }
 
@@ -78,6 +83,29 @@ TEST_CASE("arrays that are balanced at the same time do not correct one imbalanc
         CHECK(rounds[k].n_moved <= 2);
       }
     }
+  }
+}
+
+TEST_CASE("with periodic rounds at_sync() is no barrier", "[balance]") {
+  const std::vector<History> histories =
+      rounds_of(2, {.when = BalanceWhen::periodic, .period = std::chrono::milliseconds(40)});
+  for (const History& rounds : histories) {
+    REQUIRE(!rounds.empty());
+    CHECK(rounds.front().n_moved > 0);
+  }
+}
+
+TEST_CASE("the time of a strategy is no load of the next phase", "[balance]") {
+  // The strategy takes longer than a phase, while all elements wait.
+  const History rounds = rounds_of(1, {}, [](const balance::Snapshot& s) {
+                           charge(std::chrono::seconds(1));
+                           return balance::make_strategy("greedy_refine", 1)(s);
+                         }).front();
+  REQUIRE(rounds.size() == n_phases);
+  for (std::size_t k = 1; k < rounds.size(); ++k) {
+    INFO("round " << k);
+    CHECK(rounds[k].before < 1.1);
+    CHECK(rounds[k].n_moved == 0);
   }
 }
 
