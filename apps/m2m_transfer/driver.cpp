@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 namespace m2m_transfer {
 namespace {
@@ -32,18 +31,11 @@ Task read(const Request& request, apps::Progress& progress, Problem& problem) {
   for (TransferReport& report : problem.reports) report.seconds.read = tess::seconds(now() - start);
 }
 
-/// "result.exo"; with several written meshes "result.B.exo", "result.C.exo", ….
 void write_meshes(const std::string& path, const Problem& problem) {
-  std::size_t n_written = 0;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m)
-    n_written += is_written(m, problem.pairs) ? 1U : 0U;
-  for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
-    if (!is_written(m, problem.pairs)) continue;
-    std::filesystem::path own(path);
-    if (n_written > 1)
-      own.replace_extension(std::string{'.', letter_of(m)} + own.extension().string());
-    write_result(own.string(), *problem.meshes[m].mesh, problem.meshes[m].fields);
-  }
+    if (is_written(m, problem.pairs))
+      write_result(path_of_result(path, m, problem.meshes.size(), problem.pairs),
+                   *problem.meshes[m].mesh, problem.meshes[m].fields);
 }
 
 /// The request of a run without a study.
@@ -97,7 +89,10 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   plot::require_picture("--picture", options.picture);
   Problem problem;
   co_await read(request, progress, problem);
-  problem.collects = !options.out.empty() || !options.picture.empty();
+  const bool in_parts = is_pvtu(options.out);
+  if (in_parts) problem.parts_path = options.out;
+  const bool writes_whole = !options.out.empty() && !in_parts;
+  problem.collects = writes_whole || !options.picture.empty();
   if (options.explain) {
     progress.clear();
     print(explain(problem, options.out.empty() ? Output::report : Output::mesh));
@@ -108,7 +103,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   if (problem.collects) bring_targets(problem);
   if (!options.json.empty()) plot::write_file(options.json, json(problem.reports));
   if (!options.picture.empty()) plot::write_file(options.picture, picture(problem));
-  if (!options.out.empty()) write_meshes(options.out, problem);
+  if (writes_whole) write_meshes(options.out, problem);
   progress.clear();
   std::string text;
   for (const TransferReport& report : problem.reports) text += table(report);

@@ -290,6 +290,9 @@ void check_options(const FileFieldsRequest& request) {
   plot::require_writable("--weights", request.weights);
   plot::require_writable("--out", request.out);
   require_result_format(request.out);
+  if (is_pvtu(request.out))
+    fail(ErrorCode::bad_argument, "--out ", request.out,
+         ": fields of files are gathered on one process; give a file that ends in .exo or .vtu");
 }
 
 /// The next steps, as many as are moved together; `next` is a position in fields.steps().

@@ -73,8 +73,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option(
       "--out", options.out,
       "write the target mesh with the fields and the status to this file: ExodusII if it ends in "
-      ".exo, .e, .ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu; with several targets to "
-      "FILE.B.exo, FILE.C.exo");
+      ".exo, .e, .ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a "
+      "file per chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
   line.option("--step", options.step,
               "step of the fields that the source file has: a number from 0 on, or all (default: "
               "the last); --out then holds all steps");

@@ -20,17 +20,23 @@ namespace m2m_transfer {
   return path.ends_with(".vtu");
 }
 
+/// Each part writes a file of its own.
+[[nodiscard]] inline bool is_pvtu(const std::string& path) {
+  return path.ends_with(".pvtu");
+}
+
 /// The path of a result, or empty. Throws Error (bad_argument) if its ending names no format that is
 /// written.
 inline void require_result_format(const std::string& path) {
-  constexpr std::array<std::string_view, 8> endings{".vtu", ".exo",  ".e",   ".ex2",
+  constexpr std::array<std::string_view, 9> endings{".vtu", ".pvtu", ".exo", ".e",   ".ex2",
                                                     ".g",   ".exii", ".gen", ".ncdf"};
   const bool is_known = std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) {
     return path.ends_with(ending);
   });
   if (!path.empty() && !is_known)
     fail(ErrorCode::bad_argument, "--out ", path,
-         ": the ending chooses the format; give .exo (ExodusII) or .vtu (VTK)");
+         ": the ending chooses the format; give .exo (ExodusII), .vtu or, one file per chare, "
+         ".pvtu (VTK)");
 }
 
 /// Throws Error (bad_file) with the path if it cannot be written.

@@ -1,5 +1,7 @@
 #include "m2m/workers/worker.hpp"
 
+#include "m2m/io/vtu/vtu_writer.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -117,6 +119,22 @@ void Worker::measure(const NormsRequest& request, Callback<NormSums> target) {
   std::vector<Status> status = status_;
   status.insert(status.end(), ghost_status_.begin(), ghost_status_.end());
   contribute(JoinNorms{}, norm_sums(mesh_view(), values_, status, request), std::move(target));
+}
+
+void Worker::write_part(const std::string& stem, const std::vector<std::string>& names) {
+  TetMesh mesh;
+  mesh.points = part_.points;
+  const std::span<const Tet> own = mesh_view().own_tets();
+  mesh.tets.assign(own.begin(), own.end());
+  std::vector<Field> fields;
+  for (const std::string& name : names) fields.push_back({name, 1, {}});
+  const auto n = static_cast<std::size_t>(n_components_);
+  for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+    for (std::size_t c = 0; c < n; ++c) fields[c].values.push_back(values_[v * n + c]);
+    const Status status = v < status_.size() ? status_[v] : ghost_status_[v - status_.size()];
+    fields[n].values.push_back(static_cast<double>(status));
+  }
+  write_vtu_file(stem + "." + std::to_string(index().x) + ".vtu", mesh, fields);
 }
 
 void Worker::send_values(GroupProxy<ValueKeeper> keepers, GlobalId n_vertices) {

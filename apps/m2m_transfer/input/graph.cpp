@@ -4,6 +4,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 namespace m2m_transfer {
@@ -85,6 +86,16 @@ std::vector<Pair> parse_pairs(const std::string& text, const std::vector<std::st
 
 bool is_written(std::size_t mesh, const std::vector<Pair>& pairs) {
   return std::ranges::any_of(pairs, [mesh](const Pair& p) { return p.target == mesh; });
+}
+
+std::string path_of_result(const std::string& path, std::size_t mesh, std::size_t n_meshes,
+                           const std::vector<Pair>& pairs) {
+  std::size_t n_written = 0;
+  for (std::size_t m = 0; m < n_meshes; ++m) n_written += is_written(m, pairs) ? 1U : 0U;
+  std::filesystem::path own(path);
+  if (n_written > 1)
+    own.replace_extension(std::string{'.', letter_of(mesh)} + own.extension().string());
+  return own.string();
 }
 
 bool needs_values(std::size_t mesh, const std::vector<Pair>& pairs) {

@@ -36,6 +36,10 @@ struct Pair {
 
 /// True if a pair writes the mesh.
 [[nodiscard]] bool is_written(std::size_t mesh, const std::vector<Pair>& pairs);
+/// Where the result of a mesh goes: "result.exo"; if pairs write several meshes "result.B.exo",
+/// "result.C.exo", ….
+[[nodiscard]] std::string path_of_result(const std::string& path, std::size_t mesh,
+                                         std::size_t n_meshes, const std::vector<Pair>& pairs);
 /// True if the first pair that uses the mesh reads it: it needs values before the first step.
 [[nodiscard]] bool needs_values(std::size_t mesh, const std::vector<Pair>& pairs);
 

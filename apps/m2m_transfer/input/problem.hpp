@@ -66,7 +66,8 @@ struct Problem {
   Point voxel{};
   double tolerance = 0;
   bool clamp = false;
-  bool collects = false;  ///< bring all results to PE 0, to write or draw them
+  bool collects = false;     ///< bring all results to PE 0, to write or draw them
+  std::string parts_path{};  ///< every part writes its result beside this .pvtu file; may be empty
   std::int32_t repeat = 1, steps = 1;
   std::vector<TransferReport>
       reports{};  ///< per pair; load() fills in what is known before the run

@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/input/formulas.hpp"
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
+#include "m2m/write_pvtu.hpp"
 
 #include <optional>
 
@@ -87,6 +88,13 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   }
   for (std::size_t p = 0; p < problem.pairs.size(); ++p)
     report_audit(problem, p, graph->audits()[p]);
+  if (!problem.parts_path.empty()) {
+    progress.phase("writing");
+    for (std::size_t m = 0; m < meshes.size(); ++m)
+      if (is_written(m, problem.pairs))
+        co_await write_pvtu(path_of_result(problem.parts_path, m, meshes.size(), problem.pairs),
+                            meshes[m], problem.field_names);
+  }
   if (problem.collects) {
     progress.phase("gather");
     co_await collect(problem, meshes, *graph);

@@ -2,6 +2,7 @@
 #include "apps/m2m_transfer/run/steps.hpp"
 
 #include "apps/m2m_transfer/driver.hpp"
+#include "m2m/field_file.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_vtu.hpp"
@@ -10,6 +11,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -198,4 +201,46 @@ TEST_CASE("a result has the points of the mesh as it moved, whether PE 0 held it
   const TetMesh moved = read_mesh(scratch.path("curve.vtu")), start = kuhn_mesh({5, 0.1});
   REQUIRE(moved.n_points() == start.n_points());
   CHECK(moved.points.front() != start.points.front());
+}
+
+TEST_CASE("all parts of a .pvtu together have the result that one file has", "[apps][memory]") {
+  const Scratch scratch;
+  auto options = options_of({"kuhn:4@0.2", "kuhn:5@0.1"}, "");
+  options.request.fields = {"sin", "x - 2*y"};
+  options.request.steps = 2;
+  options.request.moves = {"B:translate(0.1,0,0)"};
+  options.request.n_chares = 5;
+  options.request.kind = "second-order";
+  for (const char* name : {"whole.vtu", "parts.pvtu"}) {
+    options.out = scratch.path(name);
+    (void)pairs_of(threads(2), options);
+  }
+  using Rows = std::map<Point, std::vector<double>>;
+  const auto add = [](const std::string& path, Rows& rows) {
+    const TetMesh mesh = read_mesh(path);
+    const FieldFile file(path);
+    std::vector<std::vector<double>> values;
+    for (const char* name : {"sin", "x - 2*y", "status"})
+      values.push_back(file.vertex_field(mesh, name, 0).values);
+    for (std::size_t v = 0; v < mesh.n_points(); ++v) {
+      std::vector<double> row;
+      for (const auto& field : values) row.push_back(field[v]);
+      const auto [at, is_new] = rows.try_emplace(mesh.points[v], row);
+      CHECK(at->second == row);  // every part that has the point has the same
+    }
+    return mesh.n_tets();
+  };
+  Rows whole, parts;
+  const std::size_t n_tets = add(scratch.path("whole.vtu"), whole);
+  std::size_t n_of_parts = 0;
+  const std::string index = slurp(scratch.path("parts.pvtu"));
+  for (int k = 0; k < 5; ++k) {
+    const std::string name = "parts." + std::to_string(k) + ".vtu";
+    CHECK(index.find("Source=\"" + name + "\"") != std::string::npos);
+    n_of_parts += add(scratch.path(name), parts);
+  }
+  CHECK(index.find("parts.5.vtu") == std::string::npos);
+  CHECK(n_of_parts == n_tets);
+  CHECK(parts == whole);
+  CHECK(std::ranges::any_of(whole, [](const auto& row) { return row.second[2] == 3; }));
 }

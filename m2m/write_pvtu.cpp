@@ -1,0 +1,48 @@
+#include "m2m/write_pvtu.hpp"
+
+#include "m2m/io/new_file.hpp"
+#include "m2m/io/vtu/vtu_writer.hpp"
+#include "runtime/core/error.hpp"
+
+#include <fmt/core.h>
+
+namespace tess::m2m {
+namespace {
+
+/// `stem`: "folder/r".
+std::string index_of_parts(const std::string& stem, std::int32_t n_parts,
+                           const std::vector<std::string>& names) {
+  std::string out =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PUnstructuredGrid "
+      "GhostLevel=\"0\">\n    <PPointData>\n";
+  for (const std::string& name : names)
+    out += fmt::format("      <PDataArray type=\"Float64\" Name=\"{}\"/>\n", vtu_attribute(name));
+  out +=
+      "    </PPointData>\n    <PPoints>\n      <PDataArray type=\"Float64\" Name=\"Points\" "
+      "NumberOfComponents=\"3\"/>\n    </PPoints>\n";
+  const std::string file = stem.substr(stem.rfind('/') + 1);
+  for (std::int32_t k = 0; k < n_parts; ++k)
+    out += fmt::format("    <Piece Source=\"{}.{}.vtu\"/>\n", vtu_attribute(file), k);
+  return out + "  </PUnstructuredGrid>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+Task write_pvtu(std::string path, DistributedMesh mesh, std::vector<std::string> names) {
+  if (names.size() != mesh.n_components)
+    fail(ErrorCode::bad_argument, path, ": ", names.size(), " names are given for ",
+         mesh.n_components, " components; give one per component");
+  const std::string ending = ".pvtu";
+  if (!path.ends_with(ending))
+    fail(ErrorCode::bad_argument, path, ": a file that names parts ends in .pvtu; rename it");
+  const std::string stem = path.substr(0, path.size() - ending.size());
+  names.emplace_back("status");
+  NewFile file(path);  // refuses a folder that cannot be written, before a part does
+  file.write(index_of_parts(stem, mesh.n_parts, names));
+  co_await epoch([&] { mesh.workers.broadcast<&Worker::share_status>(); });
+  co_await epoch([&] { mesh.workers.broadcast<&Worker::write_part>(stem, names); });
+  file.finish();
+}
+
+}  // namespace tess::m2m
