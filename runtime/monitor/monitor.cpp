@@ -95,6 +95,7 @@ class Monitor::Loop {
   Loop(Runtime& runtime, const MonitorOptions& options)
       : runtime_(runtime),
         machine_(runtime.machine()),
+        period_(std::chrono::milliseconds(options.period_ms)),
         began_(Clock::now()),
         of_pes_(static_cast<std::size_t>(machine_.n_pes_here())) {
     if (machine_.process().value == 0) serve(options);
@@ -286,7 +287,7 @@ class Monitor::Loop {
 
   Runtime& runtime_;
   Machine& machine_;
-  static constexpr Clock::duration period_ = std::chrono::milliseconds(500);  // of the samples
+  const Clock::duration period_;
   const Clock::time_point began_;
   const std::shared_ptr<Reported> reported_ = std::make_shared<Reported>();
   std::mutex mutex_;  // guards what follows, but not what only a PE uses

@@ -26,6 +26,7 @@ struct MonitorOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free one
   std::string token;       ///< every request must bring it; empty only on a loopback address
+  std::int64_t period_ms = 500;
 };
 
 /// For tests of the audit: something that goes wrong with one message that a PE sends to another.
