@@ -1,5 +1,7 @@
 #include "collide/collider.hpp"
 
+#include "runtime/core/error.hpp"
+
 #include <exception>
 #include <utility>
 
@@ -20,6 +22,10 @@ void Collider::submit_early(Submission objects) const {
 }
 
 Task run_collision(Collider collider, Report report, Callback<void> taken) {
+  if (!report.call)
+    fail(ErrorCode::bad_argument,
+         "run_collision() with a report that nothing receives: its hits would be lost; give it "
+         "report_to<&Client::receive>(clients)");
   const ColliderOptions& o = collider.options;
   const std::uint64_t step = collider.managers.local().new_step();
   Future<Summary> known;

@@ -75,8 +75,9 @@ struct Collider {
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all
-/// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws Error (out_of_range) if a coordinate exceeds the range of cells; then the objects are
-/// dropped.
+/// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws
+/// Error: bad_argument for a report without a call; out_of_range if a coordinate exceeds the range of
+/// cells, and then the objects are dropped.
 Task run_collision(Collider collider, Report report, Callback<void> taken = {});
 
 /// What the last collision did, for example

@@ -3,6 +3,7 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/serialize.hpp"
+#include "runtime/scheduler/pe.hpp"
 
 #include <algorithm>
 #include <array>
@@ -69,6 +70,7 @@ void leave_child_on_crash(int signal) {
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
   set_check_abort(&leave_child_on_check);
+  tess::detail::the_current_pe = nullptr;  // a check that failed inside a run may have led here
   for (const int signal : crashes) std::signal(signal, &leave_child_on_crash);
   leave_child(run_here(program, seed, trial));
 }

@@ -1,5 +1,6 @@
 // Which owners receive a pair.
 #include "collide/collider.hpp"
+#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
@@ -90,4 +91,19 @@ TEST_CASE("with two owners on one PE, one of them receives a pair on request",
     const std::vector<std::int64_t> counts = received("--pes=1", receivers, {3, 3});
     CHECK(counts[0] + counts[1] == (receivers == Receivers::one_owner ? 9 : 18) * n_places);
   }
+}
+
+TEST_CASE("a report that nothing receives is refused", "[collide][parallel]") {
+  std::string error;
+  tess::Setup setup{make_threads_machine(1), {}};
+  const int code = run(setup, [&]() -> Task {
+    const Collider collider = make_collider({});
+    try {
+      co_await run_collision(collider, {});
+    } catch (const Error& e) {
+      error = e.what();
+    }
+  });
+  CHECK(code == 0);
+  CHECK(error.find("give it report_to<&Client::receive>(clients)") != std::string::npos);
 }
