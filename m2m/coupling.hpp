@@ -55,6 +55,7 @@
 namespace tess::m2m {
 
 struct CouplingOptions {
+  Point voxel_origin{0, 0, 0};
   Point voxel_size{0, 0, 0};      ///< zero: chosen
   OutsidePolicy policy = Keep{};  ///< for target points outside the source; Nearest if `kind` is
   TransferKind kind = TransferKind::linear;
@@ -259,7 +260,7 @@ void Coupling<S, T>::set_up() {
   setup_.clamp = options_.clamp;
   setup_.source_values = options_.source_values;
   setup_.target_values = options_.target_values;
-  setup_.collider = collide::make_collider({.size = options_.voxel_size});
+  setup_.collider = collide::make_collider({options_.voxel_origin, options_.voxel_size, {}});
   setup_.ledger = create_group<Ledger>();
   if (has_directory()) setup_.directory = create_group<PointDirectory>();
   // Each coupling has its own collider.
