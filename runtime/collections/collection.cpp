@@ -109,6 +109,8 @@ void Collection::unlist(Element& element) {
     --n_new_;
   if (watcher_ != nullptr) [[unlikely]]
     watcher_->left(element);
+  if (element.balance_) [[unlikely]]  // it may go on to another PE of this process
+    pe_.forget(element.balance_->load);
   if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat an element
     elements_[element.slot_] = nullptr;
     return;

@@ -75,7 +75,7 @@ class Meter {
   [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
   /// The running element sends a payload to another element.
   void sent(const ElementKey& to, std::uint64_t bytes);
-  /// The record ends. A record may outlive its balancer, and after a restart it may have none.
+  /// The record ends or leaves this PE, with a balancer or without: after a restart it may have none.
   void forget(const LoadRecord* record) {
     if (scope_.record == record) scope_.record = nullptr;
     if (longest_.record == record) longest_ = {};

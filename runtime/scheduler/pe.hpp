@@ -99,7 +99,7 @@ class Pe {
   /// The same until stop_brief_meter(), unless start_meter() is called meanwhile.
   Meter& start_brief_meter();
   void stop_brief_meter();
-  /// The record ends: no meter writes to it any more.
+  /// The record ends or leaves this PE: its meters write to it no more.
   void forget(const LoadRecord& record);
 
   /// What this PE runs, for a watching thread; null if nothing watches. With it the PE has a meter.

@@ -93,9 +93,10 @@ Task attempt_cells(const CellCase& c, std::string* message) {
   }
 }
 
-/// Options are looked at before anything is sent, so the arrays may be empty.
+/// Options are looked at before anything is sent, so the arrays may have no elements.
 Task refused(CouplingOptions options, std::string* message) {
-  Coupling<CellWorker, CellWorker> coupling({}, {}, options);
+  const auto none = create<CellWorker>(sparse);
+  Coupling<CellWorker, CellWorker> coupling(none, none, options);
   try {
     co_await coupling.search();
   } catch (const Error& error) {
