@@ -27,9 +27,10 @@ with tempfile.TemporaryDirectory() as scratch:
     # It compares the pairs of all methods with each other before it prints a row.
     rows = list(csv.DictReader(run(program, "--quick", "--json", str(file)).splitlines()))
     names = [row["name"] for row in rows]
-    assert names == listed, set(names) ^ set(listed)
+    # The rows in bytes of a case come after those in nanoseconds.
+    assert sorted(names) == sorted(listed), set(names) ^ set(listed)
     kept = json.loads(file.read_text())["rows"]
-    assert [row["name"] for row in kept] == listed
+    assert [row["name"] for row in kept] == names
     of = {row["name"]: row for row in rows}
     assert float(of["few_pairs"]["median"]) == 14534, of["few_pairs"]
     assert float(of["conversion_pairs_wrong_faces"]["median"]) == 0
