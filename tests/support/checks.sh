@@ -37,7 +37,7 @@ exits() {
     pass
   else
     fail "(exit $code, wanted $want_code and \"$want\"): $*"
-    tail -3 "$scratch/out" "$scratch/err"
+    tail -n 3 "$scratch/out" "$scratch/err"
   fi
 }
 finish() {
