@@ -156,7 +156,6 @@ Task place_ranges(PlacerSetup setup, const TetMesh* whole, PlacedMesh* placed) {
   placed->mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers};
   placed->n_points = setup.n_points;
   placed->n_tets = setup.n_tets;
-  placed->read_in_ranges = whole == nullptr;
 }
 
 PlacerSetup setup_of(std::string shown_name, PlaceOptions options) {

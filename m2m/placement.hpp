@@ -39,7 +39,6 @@ struct PlacedMesh {
   DistributedMesh mesh{};
   GlobalId n_points = 0, n_tets = 0;
   MeshCensus census{};
-  bool read_in_ranges = false;  ///< false: one PE read the file, and sent the ranges
 };
 
 /// Reads `name` (as read_mesh() does), cuts it by PartitionMethod::curve, and creates the Workers.
