@@ -12,12 +12,14 @@
 namespace apps {
 
 void Checkpoints::add_options(CommandLine& line) {
-  line.option("--checkpoint", folder_, "write checkpoints into this folder; the last two are kept");
-  line.option("--checkpoint-every", every_, "steps (20) or seconds (30s) between checkpoints");
+  line.option("--checkpoint DIR", folder_,
+              "write checkpoints into this folder; the last two are kept");
+  line.option("--checkpoint-every STEPS|TIME", every_,
+              "steps (20) or seconds (30s) between checkpoints");
   line.flag(
       "--checkpoint-buddy", buddy_copies_,
       "that folder is local to each host (/dev/shm/NAME): another host has copies of its files");
-  line.option("--restart", restart_, "continue from the last good checkpoint in this folder");
+  line.option("--restart DIR", restart_, "continue from the last good checkpoint in this folder");
 }
 
 void Checkpoints::check(const CommandLine& line, const std::vector<std::string>& of_problem) {

@@ -1,14 +1,38 @@
 #include "apps/command_line.hpp"
 
+#include "apps/help_text.hpp"
 #include "runtime/machine/mpi.hpp"
 
-#include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
+#include <type_traits>
 
 namespace apps {
+namespace {
+
+/// A range that ends above this is no news to a reader of the help.
+constexpr std::int64_t most_to_mention = 100'000;
+
+/// What an option takes where its name does not say it.
+template <class T>
+constexpr const char* placeholder() {
+  if constexpr (std::is_integral_v<T>) {
+    return "N";
+  } else if constexpr (std::is_floating_point_v<T>) {
+    return "X";
+  } else if constexpr (requires { typename T::value_type; } && !std::is_same_v<T, std::string>) {
+    return placeholder<typename T::value_type>();  // a vector or an optional
+  } else {
+    return "TEXT";
+  }
+}
+
+}  // namespace
 
 Option& Option::between(std::int64_t least, std::int64_t most) {
-  option_->check(CLI::Range(least, most));
+  std::string range;
+  if (most <= most_to_mention) range = ' ' + std::to_string(least) + " to " + std::to_string(most);
+  option_->check(CLI::Range(least, most).description(range));
   return *this;
 }
 
@@ -23,7 +47,8 @@ Option& Option::positive() {
 }
 
 Option& Option::one_of(const std::vector<std::string>& values) {
-  option_->check(CLI::IsMember(values));
+  option_->check(CLI::IsMember(values).description(""));
+  option_->type_name(CLI::detail::join(values, "|"));
   return *this;
 }
 
@@ -41,34 +66,48 @@ bool Option::is_given() const {
   return option_->count() != 0;
 }
 
-CommandLine::CommandLine(const std::string& description, const std::string& program)
-    : app_(std::make_unique<CLI::App>(description, program)) {}
+CommandLine::CommandLine(const std::string& description)
+    : app_(std::make_unique<CLI::App>(description)) {
+  app_->formatter(std::make_shared<HelpText>());
+  app_->set_help_flag("-h,--help", "print this text");
+}
 
 CommandLine::~CommandLine() = default;
 
 template <class T>
 Option CommandLine::option(const std::string& name, T& value, const std::string& meaning) {
-  CLI::Option* const option = app_->add_option(name, value, meaning);
+  const std::size_t space = name.find(' ');
+  CLI::Option* const option = app_->add_option(name.substr(0, space), value, meaning);
+  option->type_name(space == std::string::npos ? placeholder<T>() : name.substr(space + 1));
+  option->group(group_);
+  option->capture_default_str();
   // What follows "--fields sin" is the first of the arguments without a name, not a second field.
   if (name.starts_with("-")) option->allow_extra_args(false);
   return Option(option);
 }
 
 Option CommandLine::flag(const std::string& name, bool& value, const std::string& meaning) {
-  return Option(app_->add_flag(name, value, meaning));
+  CLI::Option* const option = app_->add_flag(name, value, meaning);
+  option->group(group_);
+  return Option(option);
 }
 
 bool CommandLine::parse(int argc, char** argv, const std::string& footer) {
   app_->footer(footer);
+  app_->name(std::filesystem::path(argv[0]).filename().string());
   try {
     app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    if (tess::speaks_for_job()) tess::print(app_->help());
+    if (tess::speaks_for_job()) tess::print(help());
     return false;
   } catch (const CLI::ParseError& error) {
     tess::fail(tess::ErrorCode::bad_argument, error.what(), " (--help lists the options)");
   }
   return true;
+}
+
+std::string CommandLine::help() const {
+  return app_->help();
 }
 
 bool CommandLine::is_given(const std::string& name) const {
@@ -80,9 +119,7 @@ std::string CommandLine::value(const std::string& name) const {
   CLI::Option* const option = app_->get_option(name);
   if (option->get_items_expected_max() == 0) return is_given(name) ? "yes" : "no";  // a flag
   option->capture_default_str();  // reads the variable
-  std::string text = option->get_default_str();
-  std::erase_if(text, [](char c) { return c == '[' || c == ']'; });  // around several values
-  return text;
+  return default_of(*option);
 }
 
 void refuse_together(std::string_view option, std::string_view other) {

@@ -39,14 +39,20 @@ class Option {
 
 class CommandLine {
  public:
-  explicit CommandLine(const std::string& description, const std::string& program = {});
+  explicit CommandLine(const std::string& description);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// "--name", or "NAME" by its place; `value` is the default and takes what is given. T: integers
-  /// of 32 and 64 bits, double, std::string, and vectors or optionals of some of them. A vector
-  /// takes one value each time that its "--name" is given; see also separated_by().
+  /// The options that follow stand below this heading in the help; before the first call below
+  /// "Options".
+  void group(const std::string& heading) { group_ = heading; }
+
+  /// "--name", "--name FILE" if the help should call what it takes so, or "NAME" by its place;
+  /// `value` is the default and takes what is given. T: integers of 32 and 64 bits, double,
+  /// std::string, and vectors or optionals of some of them. A vector takes one value each time that
+  /// its "--name" is given; see also separated_by(). The help adds the default unless `meaning` has
+  /// the word.
   template <class T>
   Option option(const std::string& name, T& value, const std::string& meaning);
   Option flag(const std::string& name, bool& value, const std::string& meaning);
@@ -55,6 +61,9 @@ class CommandLine {
   /// bad options.
   [[nodiscard]] bool parse(int argc, char** argv, const std::string& footer = tess::options_help());
 
+  /// The text of --help; with the footer once the line is parsed.
+  [[nodiscard]] std::string help() const;
+
   /// Known once the line is parsed. False for a name that is no option.
   [[nodiscard]] bool is_given(const std::string& name) const;
   /// The value of an option as text, whether it is given or the default: equal for equal values.
@@ -62,6 +71,7 @@ class CommandLine {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::string group_ = "Options";
 };
 
 /// Throws tess::Error (bad_argument): two options are given of which each works only without the other.

@@ -7,8 +7,8 @@
 namespace apps {
 
 void RowFiles::add_options(CommandLine& line) {
-  line.option("--json", json_, "write the rows to this file");
-  line.option("--plot", picture_, "with --study: draw them to this SVG file");
+  line.option("--json FILE", json_, "write the rows to this file");
+  line.option("--plot FILE", picture_, "with --study: draw them to this SVG file");
 }
 
 void RowFiles::check(bool is_study) const {

@@ -86,7 +86,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   std::vector<double> centre(problem.centre.begin(), problem.centre.end());
   std::string balance;
   apps::CommandLine line(
-      "Advection of a Gaussian on an oct-tree of blocks, each a chare, that follows it.", "amr");
+      "Advection of a Gaussian on an oct-tree of blocks, each a chare, that follows it.");
   line.option("--max-level", problem.most_level, "finest blocks: edge 2^-N").between(0, 8);
   line.option("--least-level", problem.least_level, "coarsest blocks").between(0, 5);
   line.option("--cells", problem.n_cells, "cells of a block along each axis, even").between(4, 64);
@@ -95,14 +95,14 @@ int start(tess::Setup& setup, int argc, char** argv) {
   line.option("--time", problem.end, "time at the end").positive();
   line.option("--steps", problem.n_steps, "instead of --time").between(1, 100'000'000);
   line.option("--width", problem.width, "standard deviation of the Gaussian").positive();
-  line.option("--velocity", velocity, "VX,VY,VZ").separated_by(',').takes(3, 3);
-  line.option("--centre", centre, "X,Y,Z of the Gaussian at time 0").separated_by(',').takes(3, 3);
+  line.option("--velocity VX,VY,VZ", velocity, "of the flow").separated_by(',').takes(3, 3);
+  line.option("--centre X,Y,Z", centre, "of the Gaussian at time 0").separated_by(',').takes(3, 3);
   line.option("--refine", problem.refine,
               "difference of two cells that refines a block; below a quarter of it blocks merge")
       .positive();
   line.option("--change-every", settings.change_every, "steps between changes of the tree")
       .between(1, 1'000'000);
-  line.option("--balance", balance,
+  line.option("--balance STRATEGY", balance,
               "balance after each change: a strategy, as greedy_refine[,prediction=…][,report]");
   line.flag("--uncorrected", options.uncorrected,
             "coarse cells keep their own flows beside finer ones: the mass changes, exit code 1");

@@ -62,14 +62,14 @@ int main(int argc, char** argv) {
     std::string json;
     bool lists = false;
     apps::CommandLine line("The pairs of boxes in one thread, beside other libraries.");
-    line.option("names", options.names, "cases or rows (all by default)");
+    line.option("NAME", options.names, "cases or rows (all by default)");
     const apps::Option repeat =
         line.option("--repeat", options.repeat, "samples of each figure, after one that warms up")
             .between(1, 1000);
     line.flag("--growth", options.growth, "also the growth from 2^10 to 2^22 objects");
     line.flag("--list", lists, "names and meanings of what can be measured by this build");
     line.flag("--quick", options.quick, "small sizes: to try out, not to measure");
-    line.option("--json", json, "a file for the rows as JSON");
+    line.option("--json FILE", json, "a file for the rows as JSON");
     if (!line.parse(argc, argv, {})) return 0;
     if (lists) {
       bench::list();

@@ -86,14 +86,14 @@ int main(int argc, char** argv) {
     bool lists = false;
     std::string calibrated;
     apps::CommandLine line("What the runtime costs, beside what the machine allows.");
-    line.option("names", options.names, "shapes or rows (all by default)");
+    line.option("NAME", options.names, "shapes or rows (all by default)");
     const apps::Option repeat =
         line.option("--repeat", options.repeat, "samples of each figure, after one that warms up")
             .between(1, 1000);
     line.flag("--list", lists, "names and meanings of what can be measured on this machine");
     line.flag("--quick", options.quick, "small sizes: to try out, not to measure");
-    line.option("--json", options.json, "a file for the rows as JSON");
-    line.option("--calibrate", calibrated,
+    line.option("--json FILE", options.json, "a file for the rows as JSON");
+    line.option("--calibrate FILE", calibrated,
                 "measure what a simulated machine needs, and write it to a file for --sim");
     if (!line.parse(argc, argv)) return 0;
     if (options.quick && !repeat.is_given()) options.repeat = 1;

@@ -59,7 +59,7 @@ struct Tally {
 int fuzz(int argc, char** argv) {
   std::string given_seeds = "0:99", only;
   apps::CommandLine line("Random collision scenes against brute force");
-  line.option("--seeds", given_seeds, "FROM:TO, both included");
+  line.option("--seeds FROM:TO", given_seeds, "of the runs, both included");
   line.option("--only", only, "serial, or chares (default: both)").one_of({"serial", "chares"});
   if (!line.parse(argc, argv, "")) return 0;
   const apps::Seeds seeds = apps::parse_seeds(given_seeds);

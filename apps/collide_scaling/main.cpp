@@ -44,8 +44,7 @@ int study(int argc, char** argv) {
   Case given;
   std::uint64_t n_triangles = 0;
   std::int32_t thinned = 0, steps = 0;
-  apps::CommandLine line("Steps of a collision on simulated machines of many PEs",
-                         "collide_scaling");
+  apps::CommandLine line("Steps of a collision on simulated machines of many PEs");
   line.option("--study", kind,
               "weak: as many triangles on each PE; strong: one crowd on more and more PEs")
       .one_of({"weak", "strong"});
@@ -58,7 +57,7 @@ int study(int argc, char** argv) {
               "weak: one of so many triangles is there, at so many times the cost: 1, 4, 16 "
               "(default: 4 for more than 128 million triangles)")
       .between(1, 64);
-  line.option("--balance", balances, "strategies, or none (strong: none,greedy_refine)")
+  line.option("--balance STRATEGY", balances, "strategies, or none (strong: none,greedy_refine)")
       .separated_by(',');
   line.option("--work", work,
               "model: a fixed time per message and per pair; measured: processor time of all")
@@ -70,7 +69,7 @@ int study(int argc, char** argv) {
   line.option("--latency-ns", given.latency_ns, "of a message");
   line.option("--bandwidth", given.bandwidth, "bytes per second").positive();
   line.option("--per-process", given.per_process, "PEs per process").between(1, 4096);
-  line.option("--out", out, "write PREFIX.svg and PREFIX.csv");
+  line.option("--out PREFIX", out, "write PREFIX.svg and PREFIX.csv");
   if (!line.parse(argc, argv, "")) return 0;
   given.is_strong = kind == "strong";
   given.work = work == "model" ? Work::model : Work::measured;

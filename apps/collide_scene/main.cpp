@@ -24,13 +24,11 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   collide_scene::Options options;
   apps::CommandLine line(
       "Finds the objects of a scene that collide. In one thread; with --pes, --sim or under mpirun "
-      "on chares.",
-      "collide_scene");
+      "on chares.");
   line.option("INPUT", options.inputs,
               "files of triangles (.obj, .ply, .stl), each a model, or scenes NAME:N (below)");
-  line.option("--steps", options.steps, "steps of a scene that moves (1)")
-      .between(1, 1'000'000'000);
-  line.option("--move", options.move,
+  line.option("--steps", options.steps, "steps of a scene that moves").between(1, 1'000'000'000);
+  line.option("--move HOW", options.move,
               "how models move: own (as the scene does by itself), still, drift[:SIZES per step], "
               "turn[:DEGREES per step]");
   line.flag("--self", options.rules.within_model, "find pairs within a model, too");
@@ -44,8 +42,8 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
       .between(1, 1'000'000);
   line.option("--seed", options.seed, "of scenes with random places");
   line.flag("--serial", options.serial, "one thread, without the runtime (the default)");
-  line.option("--json", options.json, "write the result as JSON");
-  line.option("--out", options.out,
+  line.option("--json FILE", options.json, "write the result as JSON");
+  line.option("--out PREFIX", options.out,
               "write PREFIX.svg (a picture), PREFIX_hits.vtp and PREFIX_pairs.vtp (ParaView), and "
               "the study's table and charts");
   line.flag("--explain", options.explain, "print what this run uses and what it leaves out");

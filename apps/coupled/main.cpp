@@ -141,12 +141,12 @@ int main(int argc, char** argv) {
                 "burn where the field is warm: factor of Arrhenius's law (default: 0)")
         .between(0, 1e6);
     const apps::Option substeps =
-        line.option("--substeps", options.reaction.n_substeps, "of the reaction (default: 20)")
+        line.option("--substeps", options.reaction.n_substeps, "of the reaction")
             .between(1, 10'000);
-    line.option("--balance", balance,
+    line.option("--balance STRATEGY", balance,
                 "slabs migrate between steps: a strategy, as greedy_refine[,when=automatic]");
     const apps::Option balance_every =
-        line.option("--balance-every", options.balance_every, "steps between rounds (default: 5)")
+        line.option("--balance-every", options.balance_every, "steps between rounds")
             .between(1, 1'000'000);
     if (!line.parse(argc, argv)) return 0;
     if (substeps.is_given() && options.reaction.factor == 0)

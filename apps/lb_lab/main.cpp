@@ -28,17 +28,19 @@ tess::Task measure(Settings settings, double steps_a_second) {
 }
 
 void add_options(apps::CommandLine& line, Settings& s) {
-  line.option("--workload", s.workloads, "names, or all (--list)").separated_by(',');
+  line.option("--workload NAMES", s.workloads, "names, or all (--list)").separated_by(',');
   line.option("--per-pe", s.per_pe, "chares per PE: cuts of the same work").separated_by(',');
-  line.option("--strategy", s.strategies, "names, or all (--list); the strategy none is always run")
+  line.option("--strategy NAMES", s.strategies,
+              "names, or all (--list); the strategy none is always run")
       .separated_by(',');
   line.option("--period", s.period, "iterations between rounds");
   line.option("--iterations", s.n_iterations, "iterations of a run").between(1, 100'000'000);
-  line.option("--grain", s.grain, "mean work of a chare per iteration at the finest cut, as 250us");
-  line.option("--when", s.when, "at_sync, periodic (no barrier), automatic");
-  line.option("--prediction", s.prediction, "last, moving_average, linear_trend");
-  line.option("--speed", s.speeds, "speed of each PE, as 1,1,0.5").separated_by(',');
-  line.option("--memory-limit", s.memory_limits,
+  line.option("--grain TIME", s.grain,
+              "mean work of a chare per iteration at the finest cut, as 250us");
+  line.option("--when NAME", s.when, "at_sync, periodic (no barrier), automatic");
+  line.option("--prediction NAME", s.prediction, "last, moving_average, linear_trend");
+  line.option("--speed X,X,…", s.speeds, "speed of each PE, as 1,1,0.5").separated_by(',');
+  line.option("--memory-limit BYTES", s.memory_limits,
               "bytes that a PE's chares may need: one number, or one per PE; 0: any")
       .separated_by(',');
   line.option("--seed", s.seed, "of random workloads and strategies");
@@ -47,20 +49,21 @@ void add_options(apps::CommandLine& line, Settings& s) {
   line.option("--message-bytes", s.message_bytes, "bytes to each neighbour per iteration")
       .between(0, 1 << 30);
   line.option("--repeat", s.repeat, "runs of each; the fastest counts").between(1, 1000);
-  line.option("--json", s.json, "write the rows as JSON");
-  line.option("--plot", s.plot, "write SVG plots into a directory");
-  line.option("--save-snapshot", s.snapshots,
+  line.option("--json FILE", s.json, "write the rows as JSON");
+  line.option("--plot DIR", s.plot, "write SVG plots into a directory");
+  line.option("--save-snapshot DIR", s.snapshots,
               "write the snapshots given to strategies into a directory");
   line.option("--snapshot-format", s.snapshot_format,
               "json.br: compressed with brotli, as vt does by default; or json")
       .one_of({"json.br", "json"});
-  line.option("--replay", s.replay,
+  line.option("--replay PATH", s.replay,
               "run the strategies on saved snapshots instead: vt's LBDatafile, .json or .json.br, "
               "its files or their folder")
       .takes(1, 1 << 20);
   line.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
-  line.option("--fold", s.fold, "how elements are placed on another number of PEs: block, modulo");
+  line.option("--fold NAME", s.fold,
+              "how elements are placed on another number of PEs: block, modulo");
   line.flag("--explain", s.explain, "print what this run uses and what it leaves out");
 }
 
@@ -87,7 +90,7 @@ void require_one_purpose(const apps::CommandLine& line, bool replays) {
 int start(tess::Setup& setup, int argc, char** argv) {
   Settings settings;
   bool list = false;
-  apps::CommandLine line("Experiments with overdecomposition and load balancing.", "lb_lab");
+  apps::CommandLine line("Experiments with overdecomposition and load balancing.");
   add_options(line, settings);
   line.flag("--list", list, "list workloads and strategies");
   if (!line.parse(argc, argv)) return 0;

@@ -98,8 +98,8 @@ void check(Settings& s) {
 int run(tess::Setup& setup, int argc, char** argv) {
   Settings s;
   Problem& p = s.options.problem;
-  apps::CommandLine line("Molecular dynamics: Lennard-Jones atoms in a periodic box.", "leanmd");
-  line.option("--cells", s.cells, "cells of the box on each axis: as 4,4,4")
+  apps::CommandLine line("Molecular dynamics: Lennard-Jones atoms in a periodic box.");
+  line.option("--cells N,N,N", s.cells, "cells of the box on each axis: as 4,4,4")
       .separated_by(',')
       .takes(3, 3);
   line.option("--atoms", s.state.n_atoms, "number of atoms").between(1, 1 << 20);
@@ -116,14 +116,14 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.option("--every", p.every, "steps between two looks at the result, and balance barriers")
       .between(1, 1'000'000);
   line.option(
-      "--balance", s.balance,
+      "--balance STRATEGY", s.balance,
       "computes migrate: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]");
   line.flag("--check", s.options.check, "compare the first and the last forces with all pairs");
   line.flag("--reverse", s.options.reverse,
             "afterwards run back with reversed velocities: must return to the start");
-  line.option("--json", s.json, "write the result as JSON");
+  line.option("--json FILE", s.json, "write the result as JSON");
   line.flag("--study", s.study, "energy drift against time step: five of them");
-  line.option("--plot", s.plot, "draw the study: FILE.svg");
+  line.option("--plot FILE", s.plot, "draw the study: FILE.svg");
   line.flag("--stability", s.stability, "stiff and extreme cases; exit code 1 if one fails");
   line.flag("--explain", s.explain, "print what this run does");
   s.options.checkpoints.add_options(line);

@@ -41,18 +41,17 @@ int study(int argc, char** argv) {
   std::vector<std::int32_t> pes{1, 4, 16, 64, 256};
   std::string sim = "latency=2us,bandwidth=10GB/s", out;
   std::int32_t repeat = 1;
-  apps::CommandLine line("A transfer between two meshes on simulated machines of many PEs",
-                         "m2m_scaling");
+  apps::CommandLine line("A transfer between two meshes on simulated machines of many PEs");
   line.option("SOURCE", request.source, "mesh, as for m2m_transfer");
   line.option("TARGET", request.target, "mesh, as for m2m_transfer");
   line.option("--pes", pes, "PEs of the machines").separated_by(',').between(1, 1 << 20);
   line.option("--sim", sim, "the machine's other parameters, as for m2m_transfer");
   request.per_pe = 4;
   line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
-  line.option("--kind", request.kind, "how values follow from the source");
+  line.option("--kind KIND", request.kind, "how values follow from the source");
   line.option("--repeat", repeat, "runs per machine, of which the fastest counts")
       .between(1, 1000000);
-  line.option("--out", out, "write PREFIX.svg and PREFIX.csv");
+  line.option("--out PREFIX", out, "write PREFIX.svg and PREFIX.csv");
   if (!line.parse(argc, argv, "")) return 0;
   if (request.source.empty() || request.target.empty())
     tess::fail(tess::ErrorCode::bad_argument,

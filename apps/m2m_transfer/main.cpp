@@ -5,6 +5,7 @@
 #include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
 
+namespace m2m_transfer {
 namespace {
 
 /// "linear, second-order, …"
@@ -15,114 +16,136 @@ std::string kind_names() {
   return out;
 }
 
-int run(tess::Setup& setup, int argc, char** argv) {
-  m2m_transfer::DriverOptions options;
-  m2m_transfer::Request& request = options.request;
-  apps::CommandLine line(
-      "Moves fields between two tetrahedral meshes, and prints the error and the time.",
-      "m2m_transfer");
+/// Options of which the driver needs to know whether they were given.
+struct Given {
+  apps::Option fields, kind, chares, per_pe, partition, study;
+};
+
+Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& study) {
+  Request& request = options.request;
   line.option("SOURCE", request.source,
               "mesh: an ExodusII, gmsh (2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
               "tetrahedra");
   line.option("TARGET", request.target, "mesh of the same kinds");
   line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
-  line.option("--pairs", request.pairs,
-              "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file: "
-              "--pairs A:B,B:C. Pairs run in the order given where they share a mesh that is "
-              "written, otherwise at once");
+
+  line.group("Transfer");
   const apps::Option fields = line.option(
-      "--field,--fields", request.fields,
+      "--field,--fields NAMES", request.fields,
       "gaussian, linear, sin, an expression in x, y, z, or a field of the source file at vertices "
       "or in elements (moved to the target's elements); several as --fields sin,x*y");
+  const apps::Option kind = line.option(
+      "--kind KIND", request.kind,
+      "how values follow from the source: " + kind_names() + "; all: a table with a row per kind");
+  line.option("--pairs A:B,B:C", request.pairs,
+              "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file. "
+              "Pairs run in the order given where they share a mesh that is written, otherwise at "
+              "once");
+  line.option("--policy POLICY", options.policies,
+              "value of vertices outside the source: keep, value:V or nearest");
+  line.option("--tolerance LENGTH", request.tolerance,
+              "vertices outside the source but nearer than this snap to it");
+  line.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
+  line.option("--steps", request.steps,
+              "applications of all pairs, with the donors of one search; the time of the fastest "
+              "counts")
+      .between(1, 1000000);
+  line.option("--move MOTION", request.moves,
+              "move a mesh before every step but the first, and search again: "
+              "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
+              "point, or 'B:translate(0.1,0,0)'; repeat for several");
+  line.option("--step N|all", options.step,
+              "step of the fields that the source file has, from 0 on, or all (default: the last); "
+              "--out then holds all steps");
+  line.option("--from-weights FILE", options.from_weights,
+              "transfer with the weights of this file, without a search");
+
+  line.group("Chares");
   const apps::Option chares =
       line.option("--chares", request.n_chares,
                   "chares per mesh (default: --per-pe times the number of PEs)")
           .between(1, 1 << 20);
   const apps::Option per_pe =
       line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
-  line.option("--policy", options.policies,
-              "value of vertices outside the source: keep, value:V or nearest");
-  const apps::Option kind = line.option(
-      "--kind", request.kind,
-      "how values follow from the source: " + kind_names() + "; all: a table with a row per kind");
-  line.option("--round-trips", options.round_trips,
-              "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
-              "trips: --round-trips 1,2,5,10,20,50,100; for all kinds, or the --kind given");
-  line.option("--plot", options.plot,
-              "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
-  const apps::Option partition = line.option(
-      "--partition", request.partition,
-      "method that cuts the meshes into chares: curve (by all PEs together), rcb or hsfc");
-  line.option("--tolerance", request.tolerance,
-              "vertices outside the source but nearer than this length snap to it");
-  line.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
-  line.option("--voxel", request.voxel, "edge of a voxel (default: chosen from the meshes)")
+  const apps::Option partition =
+      line.option("--partition METHOD", request.partition,
+                  "how the meshes are cut into chares: curve (by all PEs together), rcb or hsfc");
+  line.option("--voxel LENGTH", request.voxel, "edge of a voxel (default: chosen from the meshes)")
       .positive();
+
+  line.group("Output");
+  line.option(
+      "--out FILE", options.out,
+      "write the target mesh with the fields and the status: ExodusII if it ends in .exo, .e, "
+      ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a file per "
+      "chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
+  line.option("--weights FILE", options.weights,
+              "write the weights of the transfer (NetCDF, ESMF's layout)");
+  line.option("--picture FILE", options.picture,
+              "draw the first field and its error in a cut through the target, as SVG");
+  line.option("--json FILE", options.json, "write the report as JSON");
+  line.flag("--explain", options.explain, "print what this transfer uses and what it leaves out");
+
+  line.group("Studies");
   line.option(
           "--repeat", options.repeat,
           "number of transfers; the times are those of the fastest (default: 1, with --study 3)")
       .between(1, 1000000);
-  line.option("--steps", request.steps,
-              "applications of all pairs, with the donors of one search; the time of the fastest "
-              "counts")
-      .between(1, 1000000);
-  line.option("--move", request.moves,
-              "move a mesh before every step but the first, and search again: --move "
-              "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
-              "point, or 'B:translate(0.1,0,0)'; repeat for several");
-  line.option(
-      "--out", options.out,
-      "write the target mesh with the fields and the status to this file: ExodusII if it ends in "
-      ".exo, .e, .ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a "
-      "file per chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
-  line.option("--step", options.step,
-              "step of the fields that the source file has: a number from 0 on, or all (default: "
-              "the last); --out then holds all steps");
-  line.option("--weights", options.weights,
-              "write the weights of the transfer to this file (NetCDF, ESMF's layout)");
-  line.option("--from-weights", options.from_weights,
-              "transfer with the weights of this file, without a search");
-  line.option("--picture", options.picture,
-              "draw the first field and its error in a cut through the target, as SVG");
-  line.option("--json", options.json, "write the report to this JSON file");
-  line.flag("--explain", options.explain, "print what this transfer uses and what it leaves out");
-  line.flag(
-      "--stability", options.stability,
-      "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
-      "points lost, error, bits; exit code 1 if a row fails; --policy and --partition (default: "
-      "rcb) hold for every case: m2m_transfer --stability part.exo");
-  std::string study;
   const apps::Option studies =
       line.option(
-              "--study", study,
+              "--study WHAT", study,
               "h: error against run time over several meshes (default); kind: the same for every "
               "kind; steps: the time that kept donors save. SOURCE and TARGET can be ladders such "
               "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot) "
               "or a ladder without TARGET can stand in place of h")
           .takes(0, 1);
+  line.option("--round-trips N,N,…", options.round_trips,
+              "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
+              "trips; for all kinds, or the --kind given");
+  line.option("--plot DIR", options.plot,
+              "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
+  line.flag("--stability", options.stability,
+            "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
+            "points lost, error, bits; exit code 1 if a row fails; --policy and --partition "
+            "(default: rcb) hold for every case");
+  return {fields, kind, chares, per_pe, partition, studies};
+}
+
+/// What follows `--study`: the name of a study, a ladder of meshes or the folder of `--plot`.
+void read_study(const std::string& study, DriverOptions& options) {
+  const bool is_named = study == "h" || study == "kind" || study == "steps";
+  const bool is_ladder = study.starts_with("kuhn:") && options.request.source.empty();
+  if (is_ladder) options.request.source = study;
+  if (!is_named && !is_ladder && options.plot.empty()) options.plot = study;
+  options.study = is_named ? study : "h";
+}
+
+int run(tess::Setup& setup, int argc, char** argv) {
+  DriverOptions options;
+  std::string study;
+  apps::CommandLine line(
+      "Moves fields between two tetrahedral meshes, and prints the error and the time.");
+  const Given given = add_options(line, options, study);
   if (!line.parse(argc, argv)) return 0;
-  options.kind_is_given = kind.is_given();
-  options.fields_are_given = fields.is_given();
-  options.partition_is_given = partition.is_given();
-  options.chares_are_given = chares.is_given() || per_pe.is_given();
-  if (chares.is_given() && per_pe.is_given())
-    tess::fail(tess::ErrorCode::bad_argument, "--chares ", request.n_chares, " and --per-pe ",
-               request.per_pe, " both say how many chares there are; give one");
-  if (studies.is_given()) {
-    const bool named = study == "h" || study == "kind" || study == "steps";
-    const bool ladder = study.starts_with("kuhn:") && request.source.empty();
-    if (ladder) request.source = study;
-    if (!named && !ladder && options.plot.empty()) options.plot = study;
-    options.study = named ? study : "h";
-  }
-  if (request.source.empty() && !options.stability)
+  options.kind_is_given = given.kind.is_given();
+  options.fields_are_given = given.fields.is_given();
+  options.partition_is_given = given.partition.is_given();
+  options.chares_are_given = given.chares.is_given() || given.per_pe.is_given();
+  if (given.chares.is_given() && given.per_pe.is_given())
+    tess::fail(tess::ErrorCode::bad_argument, "--chares ", options.request.n_chares,
+               " and --per-pe ", options.request.per_pe,
+               " both say how many chares there are; give one");
+  if (given.study.is_given()) read_study(study, options);
+  if (options.request.source.empty() && !options.stability)
     tess::fail(tess::ErrorCode::bad_argument,
                "SOURCE is missing; give a source and a target mesh (--help lists the arguments)");
-  return m2m_transfer::drive(setup, options);
+  return drive(setup, options);
 }
 
 }  // namespace
+}  // namespace m2m_transfer
 
 int main(int argc, char** argv) {
-  return tess::guarded(argc, argv, [&](tess::Setup& setup) { return run(setup, argc, argv); });
+  return tess::guarded(argc, argv,
+                       [&](tess::Setup& setup) { return m2m_transfer::run(setup, argc, argv); });
 }

@@ -74,8 +74,7 @@ tess::Task measure(Options options) {
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
   Problem& problem = options.problem;
-  apps::CommandLine line("Counts the solutions of the n queens problem by a search in messages.",
-                         "nqueens");
+  apps::CommandLine line("Counts the solutions of the n queens problem by a search in messages.");
   line.option("N", problem.n, "queens").between(1, most_queens);
   line.option("--grain", options.grain,
               "boards with at most so many rows left are searched serially (default: N - 4)")

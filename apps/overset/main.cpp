@@ -148,18 +148,17 @@ int run(tess::Setup& setup, int argc, char** argv) {
   options.problem.n_parts = 0;
   apps::CommandLine line(
       "Cuts the hole of a body into a background mesh and couples it with the mesh around the "
-      "body.",
-      "overset");
+      "body.");
   line.option("BACKGROUND", options.request.background,
               "mesh: an ExodusII or gmsh file, or kuhn:N, the unit cube of 6 N^3 tetrahedra; with "
               "--study h a ladder such as kuhn:16,24,32");
   line.option("OVERSET", options.request.overset,
               "mesh around a body: a file, or ball:N, box:N, star:N, torus:N; with --study ball, "
               "box, star or torus");
-  line.option("--wall", options.request.wall,
+  line.option("--wall WALL", options.request.wall,
               "the wall: a side set of OVERSET, or an OBJ, PLY or STL file (default: the cavities "
               "of OVERSET)");
-  line.option("--field", options.problem.field,
+  line.option("--field FORMULA", options.problem.field,
               "gaussian, linear, sin, or an expression in x, y, z");
   line.option("--layers", options.problem.options.fringe_layers, "layers of fringe points")
       .between(1, 8);
@@ -167,8 +166,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "donors below it are refused: 0 to 1, 1 for donors of computed values only");
   line.option("--chares", options.problem.n_parts, "pieces per mesh (default: two per PE)")
       .between(1, 1 << 16);
-  line.option("--json", options.json, "write the report and the orphans to this file");
-  line.option("--plot", options.plot,
+  line.option("--json FILE", options.json, "write the report and the orphans to this file");
+  line.option("--plot DIR", options.plot,
               "write pictures before and after, and ExodusII files, to this folder");
   line.flag("--explain", options.explain, "print what this run does, step by step");
   line.option("--study", options.study,

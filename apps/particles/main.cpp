@@ -83,17 +83,16 @@ int drive(tess::Setup& setup, const Options& options) {
 
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
-  apps::CommandLine line("Particles against objects of any shape, by distance/normal fields.",
-                         "particles");
+  apps::CommandLine line("Particles against objects of any shape, by distance/normal fields.");
   line.option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");
   line.option("--steps", options.steps, "steps instead of the scene's").between(0, 1'000'000'000);
-  line.option("--json", options.json, "write the result as JSON");
-  line.option("--out", options.out,
+  line.option("--json FILE", options.json, "write the result as JSON");
+  line.option("--out DIR", options.out,
               "folder for trajectories, pictures, files of fields and the study");
   line.flag("--explain", options.explain, "print what this scene uses and what it leaves out");
   line.flag("--study", options.study,
             "error against run time of every choice, on the first object");
-  line.option("--resolutions", options.resolutions,
+  line.option("--resolutions N,N,…", options.resolutions,
               "voxels per axis of the study's fields, 4 ... 1024: as 16,32,64,128,256 (default: "
               "16,32,64)")
       .separated_by(',')
@@ -101,7 +100,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   line.flag("--compressed", options.compressed,
             "use compressed fields (as the scene's key compression)");
   std::string balance;
-  line.option("--balance", balance,
+  line.option("--balance STRATEGY", balance,
               "migrate blocks: STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]; "
               "strategies: " +
                   fmt::format("{}", fmt::join(tess::balance::strategy_names(), ", ")));

@@ -73,8 +73,8 @@ int fuzz(int argc, char** argv) {
   std::string name = "all", given_seeds = "0:99";
   std::int32_t n_pes = 0;
   apps::CommandLine line("Protocol scenarios on the simulated machine in adversarial order");
-  line.option("--scenario", name, "a scenario, or all");
-  line.option("--seeds", given_seeds, "FROM:TO, both included");
+  line.option("--scenario NAME", name, "a scenario, or all");
+  line.option("--seeds FROM:TO", given_seeds, "of the runs, both included");
   line.option("--pes", n_pes,
               "PEs (default: 1, 2, 3, 4, 7 or 8 by the seed; of each process: 1, 2 or 3)")
       .between(1, 4096);

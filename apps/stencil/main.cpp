@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
     line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
     line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
-    line.option("--json", options.json, "write the result as JSON");
+    line.option("--json FILE", options.json, "write the result as JSON");
     options.checkpoints.add_options(line);
     if (!line.parse(argc, argv)) return 0;
     options.checkpoints.check(line, {"--blocks", "--size"});

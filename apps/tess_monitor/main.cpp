@@ -185,9 +185,10 @@ int main(int argc, char** argv) {
     Options options;
     apps::CommandLine line(
         "Shows a run that was started with --monitor PORT, as a table in a terminal.");
-    line.option("--connect", options.connect, "HOST:PORT of the run");
-    line.option("--token", options.token, "its --monitor-token");
-    line.option("--heat", options.heat, "sums up the heat map of the array with this in its name");
+    line.option("--connect HOST:PORT", options.connect, "HOST:PORT of the run");
+    line.option("--token T", options.token, "its --monitor-token");
+    line.option("--heat ARRAY", options.heat,
+                "sums up the heat map of the array with this in its name");
     line.option("--by", options.by, "what the heat map shows: load, or the PE that holds most")
         .one_of({"load", "pe"});
     line.option("--frames", options.n_frames, "ends after so many frames; 0: when the run ends")

@@ -1,0 +1,72 @@
+#include "apps/command_line.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace {
+
+/// Whether a line of the text is exactly this.
+bool has_line(const std::string& text, const std::string& line) {
+  return ("\n" + text).find("\n" + line + "\n") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the help has each option with what it takes, its range and its default",
+          "[apps][command_line]") {
+  std::int32_t n_blocks = 4;
+  std::int32_t n_steps = 50;
+  double edge = 0;
+  std::string seeds = "1:100";
+  std::string when = "never";
+  std::vector<std::int32_t> levels{1, 2, 4};
+  std::vector<std::string> files;
+  apps::CommandLine line("A program.");
+  line.option("FILE", files, "what it reads");
+  line.option("--blocks", n_blocks, "blocks on each axis").between(1, 64);
+  line.option("--steps", n_steps, "steps").between(1, 1'000'000'000);
+  line.option("--seeds FROM:TO", seeds, "both included");
+  line.group("Output");
+  line.option("--edge LENGTH", edge, "of a voxel (default: chosen)").positive();
+  line.option("--when", when, "when it writes").one_of({"never", "always"});
+  line.option("--levels", levels, "which").separated_by(',');
+  const std::string help = line.help();
+  CAPTURE(help);
+  CHECK(has_line(help, "Arguments:\n  FILE...     what it reads"));
+  CHECK(has_line(help, "Options:\n  -h,--help   print this text"));
+  CHECK(has_line(help, "  --blocks N  blocks on each axis (1 to 64; default 4)"));
+  CHECK(has_line(help, "  --steps N   steps (default 50)"));
+  CHECK(has_line(help, "  --seeds FROM:TO\n              both included (default 1:100)"));
+  CHECK(has_line(help, "Output:\n  --edge LENGTH\n              of a voxel (default: chosen)"));
+  CHECK(has_line(help, "  --when never|always\n              when it writes (default never)"));
+  CHECK(has_line(help, "  --levels N  which (default 1,2,4)"));
+}
+
+TEST_CASE("the help is at most 100 columns wide", "[apps][command_line]") {
+  bool audits = false;
+  std::string text;
+  for (int i = 0; i < 40; ++i)
+    text += "word" + std::string(static_cast<std::size_t>(i % 7), 's') + ' ';
+  apps::CommandLine line("A program.");
+  line.flag("--audit", audits, text);
+  std::istringstream help(line.help());
+  std::size_t n_lines = 0;
+  std::size_t widest = 0;
+  for (std::string one; std::getline(help, one); ++n_lines) widest = std::max(widest, one.size());
+  CHECK(n_lines >= 6);
+  CHECK(widest <= 100);
+  CHECK(widest > 80);
+}
+
+TEST_CASE("a value outside of the range is refused with the range", "[apps][command_line]") {
+  std::int32_t n_blocks = 4;
+  apps::CommandLine line("A program.");
+  line.option("--blocks", n_blocks, "blocks on each axis").between(1, 64);
+  char program[] = "program";
+  char name[] = "--blocks";
+  char value[] = "65";
+  char* argv[] = {program, name, value};
+  CHECK_THROWS_WITH(line.parse(3, argv), Catch::Contains("65") && Catch::Contains("1 to 64"));
+}
