@@ -29,7 +29,7 @@ void Quiet::ask() {
 }
 
 void Quiet::asked(Pe& pe, Asked&& m) {
-  (void)pe.timers().freeze();
+  pe.timers().freeze();
   // A report that is due belongs to no message.
   const bool reports = pe.completion().report_epochs();
   send_uncounted<&Quiet::answered>(

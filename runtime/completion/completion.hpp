@@ -157,8 +157,6 @@ class Completion {
   [[nodiscard]] std::uint64_t run_processed() const { return run_.own.processed; }
   /// On PE 0: the messages of epoch 0 that all PEs had sent when it was found to be done.
   [[nodiscard]] std::uint64_t run_sent_by_all() const;
-  /// On PE 0: epoch 0 was found to be done, but messages were sent since.
-  void check_run_again() { check_later(EpochId{}); }
 
   /// The number of epochs that this PE keeps counters of.
   [[nodiscard]] std::size_t n_epochs() const;

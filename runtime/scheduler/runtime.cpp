@@ -272,6 +272,7 @@ void Runtime::quiescent(Pe& pe) {
   // A census that is under way sees that messages were sent since, and has epoch 0 checked again.
   if (stopping_ || takes_census_) return;
   takes_census_ = true;
+  n_sent_by_all_ = pe.completion().run_sent_by_all();
   n_answers_ = pe.n_pes();
   census_ = Census{};
   empty_on_.clear();
@@ -279,6 +280,7 @@ void Runtime::quiescent(Pe& pe) {
 }
 
 void Runtime::on_census_asked(Pe& pe) {
+  pe.timers().freeze();
   std::vector<EmptyArray> empty;
   for (HostedCollection* collection : pe.collections()) {
     const auto [array, section] = collection->has_nothing_to_reduce();
@@ -288,7 +290,7 @@ void Runtime::on_census_asked(Pe& pe) {
   send_uncounted<&census_arrives>(
       pe, PeId{0},
       Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
-             pe.timers().freeze(), pe.completion().run_sent(), pe.audit_rows()});
+             pe.completion().run_sent(), pe.audit_rows()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
@@ -300,14 +302,15 @@ void Runtime::on_census(Pe& pe, Census&& census) {
     if (array.id == CollectionId{} || ++empty_on_[array.id] == pe.n_pes())
       census_.empty.push_back(std::move(array));
   census_.exits = census_.exits || census.exits;
-  census_.n_periodic += census.n_periodic;
   census_.n_sent += census.n_sent;
   if (--n_answers_ != 0) return;
   takes_census_ = false;
   if (census_.exits) return;
-  if (census_.n_periodic != 0 && census_.n_sent != pe.completion().run_sent_by_all()) {
-    send_to_all<&thaw_arrives>(pe, Nothing{});
-    pe.completion().check_run_again();
+  // A periodic timer, which may have ended since, sent messages after epoch 0 was found to be done.
+  // Epoch 0 counts these messages: it is checked again after the last timer has thawed.
+  if (census_.n_sent != n_sent_by_all_) {
+    for (std::int32_t to = 0; to < pe.n_pes(); ++to)
+      send_system<&thaw_arrives>(pe, PeId{to}, Nothing{});
     return;
   }
   end_with_census(pe);

@@ -139,8 +139,7 @@ class Runtime final : public Program {
     std::uint64_t dead_letters = 0;
     std::vector<EmptyArray> empty;  // what has nothing to reduce on this PE
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
-    std::uint64_t n_periodic = 0;  // periodic timers on this PE, which are frozen now
-    std::uint64_t n_sent = 0;      // messages of epoch 0 that this PE has sent
+    std::uint64_t n_sent = 0;  // messages of epoch 0 that this PE has sent; its timers are frozen
     std::vector<AuditRow> audit;
   };
   void run_main(Pe& pe);
@@ -185,6 +184,7 @@ class Runtime final : public Program {
   bool stopping_ = false;
   bool takes_census_ = false;
   std::int32_t n_answers_ = 0;
+  std::uint64_t n_sent_by_all_ = 0;  // messages of epoch 0, when it was found to be done
   Census census_;
   std::map<CollectionId, std::int32_t> empty_on_;          // number of PEs per collection
   std::map<std::string, OwnCheckpoints> own_checkpoints_;  // by folder

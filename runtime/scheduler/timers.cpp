@@ -183,9 +183,8 @@ void Timers::on_tick(std::uint64_t timer) {
   set_tick(timer, of.due);
 }
 
-std::size_t Timers::freeze() {
+void Timers::freeze() {
   tables_->frozen = true;
-  return tables_->periodic.size();
 }
 
 void Timers::thaw() {

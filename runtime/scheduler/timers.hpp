@@ -46,8 +46,8 @@ class Timers {
   /// `call` is not called again. No effect on a timer that has run or was cancelled.
   void cancel(std::uint64_t timer);
 
-  /// No tick runs until thaw(). Returns the number of periodic timers.
-  std::size_t freeze();
+  /// No tick runs until thaw().
+  void freeze();
   void thaw();
 
   /// The number of timers that run once and have not run yet.

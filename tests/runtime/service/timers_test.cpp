@@ -55,6 +55,28 @@ class Sink : public tess::Chare<Sink, tess::Index1> {
   void take(tess::Callback<std::int64_t> to) { to(tess::current_pe().now().count()); }
 };
 
+/// Has a periodic timer that ends with its first call, which sends a message around the PEs.
+class LastTick : public tess::Group<LastTick> {
+ public:
+  static inline int n_sent = 0, n_arrived = 0;
+
+  void begin(std::int64_t period_ns) {
+    const auto timer = std::make_shared<tess::Timer>();
+    *timer = tess::every(std::chrono::nanoseconds(period_ns), [group = group(), timer] {
+      group.local().send(8);
+      timer->cancel();
+    });
+  }
+  void send(int n_more) const {
+    ++n_sent;
+    group()[tess::PeId{(pe().value + 1) % tess::n_pes()}].send<&LastTick::arrive>(n_more);
+  }
+  void arrive(int n_more) {
+    ++n_arrived;
+    if (n_more > 0) send(n_more - 1);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a timer on the simulated machine runs at its virtual time", "[runtime][timers]") {
@@ -125,6 +147,23 @@ TEST_CASE("a run ends, or reports its deadlock, beside a periodic timer",
     CHECK(ending.report.find("the main program on PE 0: ") != std::string::npos);
     CHECK(ending.report.find(" waits for a future of int") != std::string::npos);
   }
+}
+
+TEST_CASE("the run does not end before what the last call of a periodic timer sends",
+          "[runtime][timers]") {
+  LastTick::n_sent = LastTick::n_arrived = 0;
+  int n_ticked = 0, n_runs = 0;
+  // Some of the calls come after PE 0 has found that nothing is under way, and before it ends the run.
+  for (std::int64_t period_ns = 1000; period_ns < 60'000; period_ns += 100, ++n_runs) {
+    const Ending ending = simulate(
+        [&] { tess::create_group<LastTick>()[tess::PeId{3}].send<&LastTick::begin>(period_ns); });
+    CHECK(ending.exit_code == 0);
+    INFO("a period of " << period_ns << " ns");
+    REQUIRE(LastTick::n_arrived == LastTick::n_sent);
+    n_ticked = LastTick::n_sent;
+  }
+  CHECK(n_ticked > 0);
+  CHECK(n_ticked < n_runs);  // the longer periods end after the run
 }
 
 TEST_CASE("an epoch ends although a periodic timer was made in it", "[runtime][timers]") {
