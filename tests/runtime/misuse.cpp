@@ -276,7 +276,8 @@ tess::Task insert_between_rounds() {
   for (int i = 0; i < 2; ++i) {
     co_await tess::epoch([&] { all[{i}].insert_on(PeId{0}); });
     all.broadcast<&Overlap::begin>(Overlap::Round{i});
-    while (co_await all[{i}].ask<&Overlap::n_begun>() == 0) {}
+    while (co_await all[{i}].ask<&Overlap::n_begun>() == 0) {
+    }
   }
   for (int i = 0; i < 2; ++i) all[{0}].send<&Overlap::open>(Overlap::Round{i});
 }

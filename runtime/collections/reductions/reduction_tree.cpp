@@ -179,10 +179,9 @@ void ReductionTree::advance() {
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != here_) {
-    host_.send(parent_,
-               ReductionReport{number, gathered.n, gathered.change, false, 0, gathered.cause,
-                               std::move(gathered.newcomer), std::move(gathered.value),
-                               std::move(gathered.shares)});
+    host_.send(parent_, ReductionReport{number, gathered.n, gathered.change, false, 0,
+                                        gathered.cause, std::move(gathered.newcomer),
+                                        std::move(gathered.value), std::move(gathered.shares)});
     return;
   }
   Whole& whole = whole_[number];
