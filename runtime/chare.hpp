@@ -83,7 +83,7 @@ class Chare : public detail::TessContributor<IndexType> {
   /// broadcast. A broadcast leads to the contributions of its entry method, and of the coroutines
   /// and messages between elements of the array that follow from it. If rounds overlap (a broadcast
   /// is started before the result of the last one is known), insert elements while no round is
-  /// under way.
+  /// under way: a new element that contributes to a round before its first is refused by name.
   using detail::TessContributor<IndexType>::contribute;
 };
 

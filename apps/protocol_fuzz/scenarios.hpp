@@ -22,6 +22,8 @@ void refinement(Trial& trial);           // elements/newborns.cpp
 void sections(Trial& trial);             // collectives/sections.cpp
 void sections_end(Trial& trial);         // collectives/sections_end.cpp
 void scans(Trial& trial);                // collectives/scans.cpp
+void maps(Trial& trial);                 // elements/maps.cpp
+void interfaces(Trial& trial);           // elements/interfaces.cpp
 void tour(Trial& trial);                 // elements/tour.cpp
 void epochs(Trial& trial);               // completion/epochs.cpp
 void pauses(Trial& trial);               // completion/pauses.cpp

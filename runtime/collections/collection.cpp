@@ -183,9 +183,12 @@ void Collection::apply(const NumberedCall& call) {
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
   if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
+  Newcomer newcomer;
+  if (element.state_.created_after != 0)
+    newcomer = {element.state_.created_after, element_text(element)};
   settle_join(element);
   reductions_.contribute(element.state_.next_reduction++, pe_.context().epoch, std::move(value),
-                         cause_of(element));
+                         cause_of(element), std::move(newcomer));
 }
 
 std::string Collection::elements_before(std::uint32_t number) const {

@@ -89,7 +89,7 @@ class Collection : public HostedCollection {
   /// The partial result to which the element can add its value directly; null if there is none.
   /// After adding, the caller calls contributed().
   [[nodiscard]] Partial* open_sum(Element& element, const PartialKind& kind) {
-    settle_join(element);
+    if (element.state_.created_after != 0) return nullptr;  // contribute() says that it is new
     return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
   }
   void contributed(Element& element) {

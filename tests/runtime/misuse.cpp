@@ -250,6 +250,38 @@ void send_to_the_past() {
       .send<&Block::nothing>();
 }
 
+/// Rounds of which the next begins before the result is known. Element 0 contributes after a further
+/// message; element 1 is created meanwhile and contributes at once.
+class Overlap : public tess::Chare<Overlap> {
+ public:
+  struct Round {
+    int number = 0;
+  };
+  tess::Task begin(Round round) {
+    ++n_begun_;
+    if (index().x == 0) (void)co_await gates_.take(round.number);
+    contribute(tess::max, round.number, array()[{0}].target<&Overlap::hear>());
+  }
+  void open(Round round) { gates_.put(round); }
+  void hear(int round) { tess::print("the result is that of round ", round, "\n"); }
+  [[nodiscard]] int n_begun() const { return n_begun_; }
+
+ private:
+  tess::Mailbox<&Round::number> gates_;
+  int n_begun_ = 0;
+};
+
+tess::Task insert_between_rounds() {
+  const auto all = tess::create<Overlap>(tess::sparse);
+  for (int i = 0; i < 2; ++i) {
+    co_await tess::epoch([&] { all[{i}].insert_on(PeId{0}); });
+    all.broadcast<&Overlap::begin>(Overlap::Round{i});
+    while (co_await all[{i}].ask<&Overlap::n_begun>() == 0) {
+    }
+  }
+  for (int i = 0; i < 2; ++i) all[{0}].send<&Overlap::open>(Overlap::Round{i});
+}
+
 auto blocks() {
   return tess::create<Block>(tess::range(3));
 }
@@ -264,6 +296,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_callback", [] { blocks()[{2}].send<&Block::answer>(tess::Callback<int>()); }},
     {"empty_target", [] { blocks().broadcast<&Block::give>(tess::Callback<int>()); }},
     {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
+    {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
     {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},

@@ -55,6 +55,7 @@ everywhere throw_inserted "the mould is broken" "Block\[7\], in the constructor 
 here throw_initial "the mould is broken" "Block\[0\], in the constructor Block(int)"
 here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructor"
 everywhere different_targets "contributions to one reduction have different targets: " "Block::take of Block\\[0\\]" "Block::take of Block\\[1\\]"
+everywhere insert_between_rounds "Overlap\[1\] was created after broadcast 1 and contributes to Overlap: reduction 0, to which broadcast 1 led: rounds overlap; insert elements while no round is under way"
 here different_operations "operations .*Scaled of different state"
 here empty_proxy "a message to an empty ElementProxy<.*Block>: assign array\\[index\\] to it first"
 here index_of_64_bits "an index is 4294967296, but a coordinate has 32 bits"

@@ -16,6 +16,7 @@ struct Flood {
   int greatest_code = -1;
   std::vector<char> exited{};  // by PE
   std::atomic<int> n_alive{0};
+  std::atomic<bool> ripples{false};  // until the result is known: elements are created meanwhile
 
   /// The program runs on a PE.
   void runs(PeId pe) {
@@ -67,7 +68,7 @@ class Wave : public Chare<Wave, Index1> {
         static_cast<int>(random.below(static_cast<std::uint64_t>(2 * flood->n_elements)))};
     switch (random.below(12)) {
       case 0:
-        array().broadcast<&Wave::ripple>(next);
+        if (!flood->ripples.exchange(true)) array().broadcast<&Wave::ripple>(next);
         break;
       case 1:
         array()[index()].send<&Wave::wait>(next);
@@ -92,7 +93,10 @@ class Wave : public Chare<Wave, Index1> {
     flood->runs(tess::my_pe());
     contribute(concatenate, std::vector<Drop>{drop}, array()[{0}].target<&Wave::gathered>());
   }
-  void gathered(std::vector<Drop> /*drops*/) { flood->runs(tess::my_pe()); }
+  void gathered(std::vector<Drop> /*drops*/) {
+    flood->runs(tess::my_pe());
+    flood->ripples = false;
+  }
   Task wait(Drop drop) {
     const Parcel parcel = co_await parcels_.take(static_cast<int>(drop.seed % 3));
     flood->runs(tess::my_pe());

@@ -21,6 +21,7 @@ struct Remains {
   std::map<CollectionId, int> alive{};   // elements by array
   std::map<CollectionId, int> n_made{};  // inserted elements by array
   std::map<CollectionId, bool> over{};   // nothing more may be delivered
+  std::set<CollectionId> meets{};        // the result of a meeting is not known yet
   std::set<CollectionId> periodic{};     // balanced so: its elements must not call at_sync()
   std::map<PeId, std::size_t> n_collections{};
 
@@ -114,7 +115,10 @@ class Clerk : public Group<Clerk> {
     const PeId next{(pe().value * 3 + 1) % tess::n_pes()};
     if (n_hops != 0) group()[next].send<&Clerk::pass>(n_hops - 1);
   }
-  void add(int /*sum*/) {}
+  void met(std::uint64_t array) {
+    const std::lock_guard lock(remains->mutex);
+    remains->meets.erase(CollectionId{array});
+  }
   void check_end(ArrayProxy<Mayfly> flies) {
     remains->trial.expect(flies.ended(), "the epoch of the end is done, but ", pe(),
                           " still has the array");
@@ -154,9 +158,11 @@ void send_errand(const ArrayProxy<Mayfly>& flies, Errand errand, Random& random)
   }
 }
 
+/// One at a time: elements are created meanwhile.
 void start_meeting(const ArrayProxy<Mayfly>& flies, GroupProxy<Clerk> clerks) {
   {
     const std::lock_guard lock(remains->mutex);
+    if (!remains->meets.insert(flies.id()).second) return;
     ++remains->n_broadcasts;
   }
   flies.broadcast<&Mayfly::meet>(clerks);
@@ -182,7 +188,7 @@ Task Mayfly::wait(Errand errand) {
   const PeId other{(errand.token * 7 + 1) % tess::n_pes()};
   co_await epoch([&] { errand.clerks[other].send<&Clerk::pass>(errand.token % 5); });
   remains->trial.expect(canary_ == 4711, "a coroutine goes on in an element that was destroyed");
-  if (errand.token % 3 == 0) meet(errand.clerks);
+  if (errand.token % 3 == 0 && array().ended()) meet(errand.clerks);  // nothing waits for a result
   if (errand.token % 4 == 0) sync();
   if (errand.token % 5 == 0) start_meeting(array(), errand.clerks);
   if (errand.n_hops == 0) co_return;
@@ -192,7 +198,7 @@ Task Mayfly::wait(Errand errand) {
 }
 
 void Mayfly::meet(GroupProxy<Clerk> clerks) {
-  contribute(sum, 1, clerks[PeId{0}].target<&Clerk::add>());
+  contribute(max, array().id().value, clerks[PeId{0}].target<&Clerk::met>());
 }
 
 void Clerk::flood(ArrayProxy<Mayfly> flies, Errand errand) {

@@ -30,6 +30,18 @@ void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
   for (const PeId child : children_) host_.send(child, ReductionBegin{number, cause});
 }
 
+namespace {
+
+/// True if an earlier broadcast led to it than was known.
+bool merge(Cause& into, const Cause& cause) {
+  into.met = std::max(into.met, cause.met);
+  if (cause.led_by - 1 >= into.led_by - 1) return false;  // 0 means none and is ordered last
+  into.led_by = cause.led_by;
+  return true;
+}
+
+}  // namespace
+
 bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
   if (led_by == 0 || !led_to_.learn(led_by, number)) return false;
   host_.postpone_new_elements();
@@ -37,9 +49,7 @@ bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
 }
 
 void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cause) {
-  into.cause.met = std::max(into.cause.met, cause.met);
-  if (cause.led_by - 1 >= into.cause.led_by - 1) return;  // 0 means none and is ordered last
-  into.cause.led_by = cause.led_by;
+  if (!merge(into.cause, cause)) return;
   (void)learn(number, cause.led_by);
   // A PE below that was asked or has reported may hold an element that waits for this number.
   if (into.asked || into.children > 0) ask_children(number, into.cause);
@@ -107,7 +117,7 @@ void ReductionTree::added(std::uint32_t number, const Cause& cause) {
 }
 
 void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
-                               const Cause& cause) {
+                               const Cause& cause, Newcomer newcomer) {
   completion_.sent(epoch);
   leave(number);
   enter(number + 1);
@@ -117,6 +127,7 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
     late.n = 1;
     late.late = true;
     late.cause = cause;
+    late.newcomer = std::move(newcomer);
     late.value.held = std::move(value);
     late.shares = {{epoch, 1}};
     host_.send(root_, std::move(late));
@@ -127,6 +138,7 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
   ++gathering.n;
   gathering.merge_value(std::move(value));
   gathering.merge_shares({{epoch, 1}});
+  gathering.note(std::move(newcomer));
   current_ = &gathering;
   current_number_ = number;
   take(number, gathering, cause);
@@ -167,13 +179,15 @@ void ReductionTree::advance() {
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != here_) {
-    host_.send(parent_,
-               ReductionReport{number, gathered.n, gathered.change, false, 0, gathered.cause,
-                               std::move(gathered.value), std::move(gathered.shares)});
+    host_.send(parent_, ReductionReport{number, gathered.n, gathered.change, false, 0,
+                                        gathered.cause, std::move(gathered.newcomer),
+                                        std::move(gathered.value), std::move(gathered.shares)});
     return;
   }
   Whole& whole = whole_[number];
   whole.all_reported = true;
+  merge(whole.sum.cause, gathered.cause);
+  whole.sum.note(std::move(gathered.newcomer));
   whole.sum.n += gathered.n;
   whole.sum.change += gathered.change;
   whole.sum.merge_value(std::move(gathered.value.held));
@@ -187,6 +201,8 @@ void ReductionTree::on_report(ReductionReport&& report) {
     TESS_CHECK(report.number >= next_complete_, words_.name, " ", report.number,
                " is complete, but a report of one of its members arrives");
     Whole& whole = whole_[report.number];
+    merge(whole.sum.cause, report.cause);
+    whole.sum.note(std::move(report.newcomer));
     whole.sum.n += report.n;
     whole.sum.change += report.change;
     whole.sum.merge_value(std::move(report.value.held));
@@ -203,6 +219,7 @@ void ReductionTree::on_report(ReductionReport&& report) {
   gathering.change += report.change;
   gathering.merge_value(std::move(report.value.held));
   gathering.merge_shares(report.shares);
+  gathering.note(std::move(report.newcomer));
   take(report.number, gathering, report.cause);
   ++gathering.children;
   // The same holds for a PE that reported without this knowledge.
@@ -216,6 +233,16 @@ void ReductionTree::on_begin(const ReductionBegin& begin) {
   advance();
 }
 
+void ReductionTree::check_newcomer(const Gathering& sum) const {
+  const Newcomer& newcomer = sum.newcomer;
+  TESS_CHECK(newcomer.created_after == 0 || sum.cause.led_by - 1 >= newcomer.created_after,
+             newcomer.element, " was created after broadcast ", newcomer.created_after,
+             " and contributes to ", words_.name, " ", next_complete_, ", to which broadcast ",
+             sum.cause.led_by,
+             " led: rounds overlap; insert elements while no round is under way, or await the "
+             "result of a round before the next broadcast");
+}
+
 void ReductionTree::complete_if_whole() {
   for (;;) {
     const auto at = whole_.find(next_complete_);
@@ -223,6 +250,7 @@ void ReductionTree::complete_if_whole() {
     Gathering& sum = at->second.sum;
     if (static_cast<std::int64_t>(sum.n) != members_ + sum.change) return;
     members_ += sum.change;
+    check_newcomer(sum);
     Gathering done = std::move(sum);
     whole_.erase(at);
     ++next_complete_;

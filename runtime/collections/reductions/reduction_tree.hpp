@@ -29,6 +29,10 @@
 //              of a contribution to r that a broadcast up to b led to, the element joins after r. So
 //              r is complete without it, and the broadcast that was started when r was known finds
 //              it at the number that this broadcast leads to.
+//
+// If that broadcast is started before r is known, the element may contribute to r before its PE
+// learns what led to r. So first contributions carry the broadcast after which their element was
+// created, and the root refuses a number to which that broadcast, or an earlier one, led.
 #pragma once
 
 #include "runtime/collections/reductions/gathered.hpp"
@@ -55,6 +59,12 @@ struct Cause {
   std::uint32_t led_by = 0;
 };
 
+/// An element that contributes for the first time, and the last broadcast before its creation.
+struct Newcomer {
+  std::uint32_t created_after = 0;  // 0: there is none
+  std::string element;
+};
+
 /// A PE's report to its parent, or a late contribution or change of membership to the root.
 struct ReductionReport {
   std::uint32_t number = 0;
@@ -64,12 +74,13 @@ struct ReductionReport {
   // In a late report: the element that leaves the membership of `number` joins there; 0: none.
   std::uint32_t joins = 0;
   Cause cause;
+  Newcomer newcomer;  // of those in this report the one that was created after the last broadcast
   PartialBox value;
   std::vector<EpochShare> shares;
   bool expedites = false;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, n, change, late, expedites, joins, cause, value, shares);
+    ar(number, n, change, late, expedites, joins, cause, newcomer, value, shares);
   }
   [[nodiscard]] std::int64_t priority() const;
   std::uint64_t drop(Pe& pe) const;  // the collection has ended
@@ -138,7 +149,7 @@ class ReductionTree {
   /// An element on this PE contributes to `number`; it was entered with `number` and is now entered
   /// with the next. The epoch waits for the delivery of the result.
   void contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
-                  const Cause& cause = {});
+                  const Cause& cause = {}, Newcomer newcomer = {});
 
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
   /// place; otherwise null, then call contribute(). After adding, the caller calls added().
@@ -177,11 +188,16 @@ class ReductionTree {
     bool known = false;  // an element contributed, or a PE reported or asked
     bool asked = false;  // the children were asked to begin
     Cause cause;
+    Newcomer newcomer;
+    void note(Newcomer&& other) {
+      if (other.created_after > newcomer.created_after) newcomer = std::move(other);
+    }
   };
 
   [[nodiscard]] bool ready(std::uint32_t number) const;
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();
+  void check_newcomer(const Gathering& sum) const;
 
   void send_late_change(std::uint32_t number, std::uint32_t joins);
   void ask_children(std::uint32_t number, const Cause& cause);
