@@ -103,8 +103,15 @@ class ElementProxy {
 
   [[nodiscard]] ArrayProxy<C> array() const { return ArrayProxy<C>(collection_); }
   [[nodiscard]] const Index& index() const { return index_; }
-  /// The PE to which a message for the element is sent from this PE.
-  [[nodiscard]] PeId next_pe() const { return branch(current_pe()).next_pe(index_); }
+  /// The PE to which a message for the element is sent from this PE: this one while the array is not
+  /// known here, since messages wait for it.
+  [[nodiscard]] PeId next_pe() const {
+    Pe& pe = current_pe();
+    detail::Collection* collection = detail::find_collection(pe, collection_);
+    if (collection != nullptr) return static_cast<detail::Array<C>*>(collection)->next_pe(index_);
+    check_not_empty();
+    return pe.id();
+  }
 
   /// A target for results: entry method F of this element.
   template <auto F>
@@ -127,11 +134,9 @@ class ElementProxy {
   }
 
  private:
-  [[nodiscard]] detail::Array<C>& branch(Pe& pe) const {
-    detail::Collection* collection = detail::find_collection(pe, collection_);
-    TESS_CHECK(collection != nullptr, "the array of this proxy is not known on ", pe.id(),
-               ": it was created by a message that has not arrived");
-    return *static_cast<detail::Array<C>*>(collection);
+  void check_not_empty() const {
+    TESS_CHECK(collection_ != CollectionId{}, "a message to an empty ElementProxy<",
+               name_of_type<C>, ">: assign array[index] to it first");
   }
 
   friend class PrioritisedElement<C, Index>;
@@ -228,8 +233,7 @@ class ElementProxy {
         collection != nullptr) [[likely]] {
       static_cast<detail::Array<C>*>(collection)->post(message);
     } else {
-      TESS_CHECK(collection_ != CollectionId{}, "a message to an empty ElementProxy<",
-                 name_of_type<C>, ">: assign array[index] to it first");
+      check_not_empty();
       pe.send_here(message);  // it waits until the array is known here
     }
   }

@@ -56,6 +56,18 @@ tess::Task collect_values(std::vector<int>& gathered, int n) {
   gathered = co_await result;
 }
 
+class Pusher : public tess::Chare<Pusher, tess::Index1> {
+ public:
+  tess::Task push(tess::ArrayProxy<Taker> takers) {
+    for (int number = 0; number < 3; ++number) {
+      const auto to = takers[index().x];
+      co_await tess::room(to);
+      to.send<&Taker::put>(number);
+      to.send<&Taker::read>(index().x);
+    }
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a message goes to the coroutine that has waited longest", "[runtime][mailbox]") {
@@ -78,5 +90,19 @@ TEST_CASE("in_order combines in the order of indices, wherever the elements are"
     std::vector<int> expected(50);
     std::iota(expected.begin(), expected.end(), 0);
     CHECK(gathered == expected);
+  }
+}
+
+TEST_CASE("there is room for messages to an array that this PE does not know yet",
+          "[runtime][order]") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    served.clear();
+    CHECK(simulate(4, seed, [] {
+            const auto takers = tess::create<Taker>(tess::range(8));
+            const auto pushers = tess::create<Pusher>(tess::range(8));
+            pushers.broadcast<&Pusher::push>(takers);
+          }) == 0);
+    CHECK(served.size() == 24);
   }
 }
