@@ -31,6 +31,13 @@ std::vector<Given> graph_options(const Request& r) {
           r.steps == 1 ? Given() : text("--steps ", r.steps)};
 }
 
+/// The options that say how values follow from the source.
+std::vector<Given> search_options(const DriverOptions& o) {
+  const Request& r = o.request;
+  return {o.kind_is_given ? "--kind " + r.kind : "",
+          r.tolerance != 0 ? text("--tolerance ", r.tolerance) : Given(), r.clamp ? "--clamp" : ""};
+}
+
 std::vector<Given> result_files(const DriverOptions& o) {
   return {given("--out", o.out), given("--picture", o.picture)};
 }
@@ -50,11 +57,9 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
                                     given("--from-weights", o.from_weights)};
   switch (mode) {
     case Mode::stability:
-      refuse("--stability",
-             {o.study ? "--study" : "", given("--round-trips", o.round_trips),
-              given("--plot", o.plot), o.kind_is_given ? "--kind " + r.kind : "", explain, repeat,
-              r.tolerance != 0 ? text("--tolerance ", r.tolerance) : Given(),
-              r.clamp ? "--clamp" : ""});
+      refuse("--stability", joined({o.study ? "--study" : "", given("--round-trips", o.round_trips),
+                                    given("--plot", o.plot), explain, repeat},
+                                   search_options(o)));
       refuse("--stability", joined(joined(graph_options(r), result_files(o)), of_files));
       refuse("--stability, whose cases have fields, parts and voxels of their own",
              {o.fields_are_given ? "--fields " + r.fields.front() : "",
@@ -76,6 +81,11 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
           "fields and weights of files, which go from SOURCE to TARGET once (--step chooses the "
           "steps of a file)",
           graph_options(r));
+      if (!o.from_weights.empty())
+        refuse("--from-weights, which applies a matrix without a search",
+               joined(search_options(o), {o.partition_is_given ? "--partition " + r.partition : "",
+                                          o.chares_are_given ? "--chares or --per-pe" : "",
+                                          r.voxel > 0 ? text("--voxel ", r.voxel) : Given()}));
       return;
     case Mode::study:
       refuse("--study", joined(graph_options(r), result_files(o)));

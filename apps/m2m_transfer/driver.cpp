@@ -68,9 +68,10 @@ std::vector<TransferKind> kinds_of(const DriverOptions& options) {
 }
 
 Task drift_table(const DriverOptions& options, apps::Progress& progress) {
-  const Request request = single_request(options);
+  Request request = single_request(options);
   const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
   const std::vector<TransferKind> kinds = kinds_of(options);
+  request.kind = name_of(kinds.front());
   plot::require_writable("--json", options.json);
   plot::make_folder("--plot", options.plot);
   Drift drift;

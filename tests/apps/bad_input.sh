@@ -59,9 +59,15 @@ refuses SOURCE "${transfer[@]}"
 refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
 refuses "'A:D' is no pair" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3 --pairs A:B,A:D
 refuses "--steps 2 does not work with fields and weights of files" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
+"$bin/m2m_transfer" kuhn:2 kuhn:2 --weights "$scratch/w.nc" >"$scratch/out" || fail "no weights are written"
+for unused in "--kind nearest" "--tolerance 0.1" --clamp "--partition rcb" "--voxel 2"; do
+  refuses "$unused does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" $unused
+done
+refuses "--chares or --per-pe does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" --chares 2
 refuses "'sideways(1)' is no motion" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --move 'sideways(1)'
 refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --steps 2 --move 'translate(1,0,0)'
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
+"$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --kind all >"$scratch/out" || fail "--round-trips refuses --kind all"
 refuses "--move .* --round-trips" "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
 # Options that do not work together, or would overwrite an input.
 alone=("$bin/m2m_transfer" kuhn:2 kuhn:3)

@@ -31,12 +31,13 @@ StepMotion parse_motion(const std::string& text, const std::vector<std::string>&
   std::vector<double> numbers;
   const auto words = split_at_commas(text.substr(open + 1, text.size() - open - 2));
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool degrees = verb == "rotate" && i == 3 && words[i].ends_with("deg");
+    const bool is_angle = verb == "rotate" && i == 3;
+    if (is_angle && !words[i].ends_with("deg")) refuse(text);
     double number = 0;
-    if (!read_number(degrees ? words[i].substr(0, words[i].size() - 3) : words[i], number) ||
+    if (!read_number(is_angle ? words[i].substr(0, words[i].size() - 3) : words[i], number) ||
         !std::isfinite(number) || std::abs(number) > 1e100)
       refuse(text);
-    numbers.push_back(degrees ? number * std::numbers::pi / 180 : number);
+    numbers.push_back(is_angle ? number * std::numbers::pi / 180 : number);
   }
   RigidMotion& motion = out.motion;
   if (verb == "translate" && numbers.size() == 3) {

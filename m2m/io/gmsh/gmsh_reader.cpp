@@ -48,6 +48,10 @@ class GmshReader {
         file_.set_binary(false);
         file_.close("$EndElements");
         have_elements = true;
+      } else if (section == "$ParametricNodes") {
+        file_.refuse(
+            "has $ParametricNodes; only $Nodes are supported: save it with "
+            "-setnumber Mesh.SaveParametric 0");
       } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
         file_.skip_to("$End" + section.substr(1));
       } else {

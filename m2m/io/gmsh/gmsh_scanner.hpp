@@ -3,9 +3,9 @@
 // line of error with the byte position.
 #pragma once
 
+#include "m2m/io/text_number.hpp"
 #include "runtime/core/error.hpp"
 
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -65,10 +65,9 @@ class GmshScanner {
   T number_as_text() {
     const std::string_view text = word();
     T value{};
-    const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || last != text.data() + text.size()) {
+    const char* const end = text.data() + text.size();
+    if (text.empty() || read_text_number(text.data(), end, value) != end)
       damaged("expected a number, found '", printable(text), "'");
-    }
     return value;
   }
 

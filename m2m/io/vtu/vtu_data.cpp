@@ -57,14 +57,15 @@ std::optional<std::string> inflated(std::string_view bytes, bool is_base64,
     if (n > bytes.size() - packed_bytes) return std::nullopt;
     packed_bytes += n;
   }
-  // zlib packs at most 1 032 bytes into one.
+  // zlib packs at most 1 032 bytes into one. The last block may be partial: its bytes count then, not
+  // those of a block.
   const std::uint64_t most = 1100 * packed_bytes + 1024;
-  if (block_bytes > most / n_blocks + most % n_blocks || last_bytes > block_bytes)
-    return std::nullopt;
+  const std::uint64_t n_full = last_bytes == 0 ? n_blocks : n_blocks - 1;
+  if (last_bytes > block_bytes || last_bytes > most) return std::nullopt;
+  if (n_full > 0 && block_bytes > most / n_full) return std::nullopt;
   const std::string packed = first_bytes(bytes, is_base64, data_begin + packed_bytes);
   if (packed.size() < data_begin + packed_bytes) return std::nullopt;
-  const std::uint64_t n_bytes =
-      last_bytes == 0 ? n_blocks * block_bytes : (n_blocks - 1) * block_bytes + last_bytes;
+  const std::uint64_t n_bytes = n_full * block_bytes + last_bytes;
   std::string out(n_bytes, '\0');
   std::size_t from = data_begin, to = 0;
   for (std::size_t block = 0; block < n_blocks; ++block) {

@@ -1,12 +1,12 @@
 #include "m2m/io/vtu/vtu_file.hpp"
 
 #include "m2m/io/field_reader.hpp"
+#include "m2m/io/text_number.hpp"
 #include "m2m/io/vtu/xml_scanner.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -174,14 +174,8 @@ std::vector<T> VtuFile::numbers_of_text(const VtuArray& array) const {
     while (at != end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
     if (at == end) return out;
     T value{};
-    const auto [last, error] = std::from_chars(at, end, value);
-    if constexpr (std::is_floating_point_v<T>) {
-      if (error == std::errc::result_out_of_range)  // zero or infinite
-        value = std::strtod(std::string(at, last).c_str(), nullptr);
-    }
-    if (error != std::errc() &&
-        (error != std::errc::result_out_of_range || !std::is_floating_point_v<T>))
-      damaged("array '", printable(array.name), "' has text that is no number");
+    const char* const last = read_text_number(at, end, value);
+    if (last == at) damaged("array '", printable(array.name), "' has text that is no number");
     out.push_back(value);
     at = last;
   }

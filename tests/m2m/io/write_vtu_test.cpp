@@ -46,6 +46,7 @@ struct Style {
   bool zlib = false;
   bool wide = false;
   bool big_endian = false;
+  std::size_t block_bytes = 100;  // of zlib
 };
 
 /// Collects arrays and writes a file in a style.
@@ -95,18 +96,19 @@ class Vtu {
   std::string header(std::uint64_t n) const {
     return style_.wide ? swapped(n) : swapped(static_cast<std::uint32_t>(n));
   }
-  /// Blocks of 100 bytes, if compressed.
+  /// In blocks, if compressed.
   std::string packed(const std::string& bytes) const {
     const auto text = [&](const std::string& some) {
       return style_.is_base64 ? base64(some) : some;
     };
     if (!style_.zlib) return text(header(bytes.size()) + bytes);
     std::string head, data;
-    const std::size_t n_blocks = (bytes.size() + 99) / 100;
-    head = header(n_blocks) + header(100) + header(bytes.size() % 100);
-    for (std::size_t at = 0; at < bytes.size(); at += 100) {
-      const std::string block = bytes.substr(at, 100);
-      std::string out(400, '\0');
+    const std::size_t each = style_.block_bytes;
+    const std::size_t n_blocks = (bytes.size() + each - 1) / each;
+    head = header(n_blocks) + header(each) + header(bytes.size() % each);
+    for (std::size_t at = 0; at < bytes.size(); at += each) {
+      const std::string block = bytes.substr(at, each);
+      std::string out(compressBound(block.size()), '\0');
       uLongf n = out.size();
       REQUIRE(compress(reinterpret_cast<Bytef*>(out.data()), &n,
                        reinterpret_cast<const Bytef*>(block.data()), block.size()) == Z_OK);
@@ -164,17 +166,19 @@ Cells cells_of(const TetMesh& mesh) {
   return out;
 }
 
-constexpr std::array styles{Style{"ascii"},
-                            Style{"binary", "binary"},
-                            Style{"binary, wide", "binary", true, false, true},
-                            Style{"binary, zlib", "binary", true, true},
-                            Style{"binary, zlib, wide", "binary", true, true, true},
-                            Style{"raw", "appended", false},
-                            Style{"raw, zlib", "appended", false, true, true},
-                            Style{"appended base64", "appended"},
-                            Style{"appended base64, zlib", "appended", true, true},
-                            Style{"raw, big-endian", "appended", false, false, true, true},
-                            Style{"zlib, big-endian", "binary", true, true, false, true}};
+constexpr std::array styles{
+    Style{"ascii"},
+    Style{"binary", "binary"},
+    Style{"binary, wide", "binary", true, false, true},
+    Style{"binary, zlib", "binary", true, true},
+    Style{"binary, zlib, wide", "binary", true, true, true},
+    Style{"raw", "appended", false},
+    Style{"raw, zlib", "appended", false, true, true},
+    Style{"appended base64", "appended"},
+    Style{"appended base64, zlib", "appended", true, true},
+    Style{"raw, big-endian", "appended", false, false, true, true},
+    Style{"zlib, big-endian", "binary", true, true, false, true},
+    Style{"zlib, part of a block", "binary", true, true, false, false, 32768}};
 
 }  // namespace
 

@@ -17,9 +17,9 @@ TEST_CASE("a motion names its mesh, or moves the default", "[apps][motion]") {
   CHECK(turn.mesh == 0);
   CHECK(turn.motion.angle == Approx(std::numbers::pi / 2));
   CHECK(turn.about_middle);
-  const StepMotion about = parse_motion("rotate(1,0,0,-0.5,1,2,3)", two_meshes, 1);
+  const StepMotion about = parse_motion("rotate(1,0,0,-30deg,1,2,3)", two_meshes, 1);
   CHECK(about.mesh == 1);
-  CHECK(about.motion.angle == -0.5);
+  CHECK(about.motion.angle == Approx(-std::numbers::pi / 6));
   CHECK_FALSE(about.about_middle);
   CHECK(about.motion.centre == Point{1, 2, 3});
   CHECK(parse_motion("A:translate(1,-2,3e-1)", two_meshes, 1).motion.translation ==
@@ -27,9 +27,9 @@ TEST_CASE("a motion names its mesh, or moves the default", "[apps][motion]") {
 }
 
 TEST_CASE("a motion with a mistake is refused with the grammar", "[apps][motion]") {
-  for (const char* text :
-       {"", "B", "B:turn(1,2,3)", "B:rotate(0,0,1)", "B:rotate(0,0,1,5rad)", "B:translate(1,2)",
-        "B:translate(1,2,nan)", "B:translate(1,2,x)", "B:translate(1,2,3", "B:translate(1,2,3deg)"})
+  for (const char* text : {"", "B", "B:turn(1,2,3)", "B:rotate(0,0,1)", "B:rotate(0,0,1,5rad)",
+                           "B:rotate(0,0,1,5)", "B:translate(1,2)", "B:translate(1,2,nan)",
+                           "B:translate(1,2,x)", "B:translate(1,2,3", "B:translate(1,2,3deg)"})
     CHECK_THAT(message_of([&] { (void)parse_motion(text, two_meshes, 1); }),
                Catch::Contains("MESH:rotate("));
   CHECK_THAT(message_of([] { (void)parse_motion("B:rotate(0,0,0,5deg)", two_meshes, 1); }),
