@@ -1,5 +1,6 @@
 #include "collide/collider.hpp"
 
+#include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
 #include <exception>
@@ -19,6 +20,23 @@ void Collider::submit_early(Submission objects) const {
     manager->receive(objects);
   else
     managers[my_pe()].send<&Manager::receive>(std::move(objects));
+}
+
+namespace {
+
+void check_not_destroyed_early(bool is_right) {
+  TESS_CHECK(
+      is_right,
+      "a collider is destroyed while a collision of it runs: co_await run_collision() first");
+}
+
+}  // namespace
+
+void Collider::destroy() const {
+  const Manager* const manager = managers.local_or_null();
+  check_not_destroyed_early(manager == nullptr || !manager->is_colliding());
+  voxels.destroy();
+  managers.destroy();
 }
 
 Task run_collision(Collider collider, Report report, Callback<void> taken) {
@@ -42,6 +60,9 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
   }
   const auto body = [&] { collider.managers.broadcast<&Manager::begin>(step, plan, report); };
   co_await epoch(body);
+  Manager* const manager = collider.managers.local_or_null();
+  check_not_destroyed_early(manager != nullptr);
+  manager->end_step();
   if (refused) std::rethrow_exception(refused);
 }
 

@@ -62,12 +62,10 @@ struct Collider {
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;
 
-  /// Frees the voxels, their balancer and the Managers on all PEs. No collision may be running. The
-  /// enclosing epoch includes this.
-  void destroy() const {
-    voxels.destroy();
-    managers.destroy();
-  }
+  /// Frees the voxels, their balancer and the Managers on all PEs. The enclosing epoch includes this.
+  /// It is an error while a collision runs, whose hits would be lost: it ends the job with a message,
+  /// at once if this PE started the collision or has not sent its objects yet.
+  void destroy() const;
 };
 
 /// Creates the Managers and an empty array of voxels. Throws Error for a voxel size that is not

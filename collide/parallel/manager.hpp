@@ -63,10 +63,14 @@ class Manager : public Group<Manager> {
   /// Entry method: the same for objects that were submitted before the Manager was known.
   void receive(const Submission& late) { submit({late.owner, late.model, late.boxes}); }
 
-  /// A number for a collision that starts on this PE.
+  /// A number for a collision that starts on this PE, and calls end_step() at its end.
   [[nodiscard]] std::uint64_t new_step() {
+    ++n_running_;
     return static_cast<std::uint64_t>(pe().value) << 40 | ++n_steps_;
   }
+  void end_step() { --n_running_; }
+  /// True while a collision runs that started on this PE, or has objects on it to send.
+  [[nodiscard]] bool is_colliding() const { return n_running_ != 0 || !rounds_.empty(); }
 
   /// The summary has so many boxes of this PE.
   void prepare(std::uint64_t step, std::size_t n_sampled, const Callback<Summary>& target);
@@ -123,6 +127,7 @@ class Manager : public Group<Manager> {
   bool is_searching_ = false;              // in portions
   std::deque<Callback<void>> turns_;       // of the voxels that wait for it
   std::uint64_t n_steps_ = 0;
+  std::uint64_t n_running_ = 0;  // of them
   CollisionStatistics last_;
 };
 
