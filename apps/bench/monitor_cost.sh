@@ -1,100 +1,87 @@
 #!/usr/bin/env bash
-# What the live view costs: `bench message` and a stencil without --monitor, with it, watched by one client, and watched by
-# one that also shows the heat map of the array by load. The four take turns in one run, on one PE.
+# What the live view costs: the processor time of a stencil's step on one PE, of the whole process, with and without it.
 #
-#     apps/bench/monitor_cost.sh [--built BIN] [--rounds N] [--steps N] [--times FILE]
+#     apps/bench/monitor_cost.sh [--built BIN] [--seconds N] [--heat]
 #
-# Prints for each the least and the median processor time, user and system, and the ratios to the run without --monitor:
-# of the least processor times, and the medians over the rounds for processor time and wall time. The aim is a ratio of at
-# most 1.01. `off_again` is the same as `off`: its ratios show how much of the others is noise. Every second round goes
-# backwards, so a drift of the clock rate cancels. A round takes about 20 s. With --times FILE the times are appended to
-# FILE and the table is that of all rounds in FILE, so that short runs at quiet moments add up.
+# watched   One run with --monitor. A client connects for 1.3 s and leaves for 1.3 s, in turns; each watched time is compared
+#           with the mean of the unwatched ones before and after it, so a drift of the clock rate cancels. With --heat the
+#           client also shows the heat map by load.
+# on        Short runs without --monitor and with it, in turns, compared likewise.
+# again     The same, both without --monitor: it shows the noise.
+#
+# Prints for each the number of comparisons, the mean difference in percent, and its standard error. N seconds (60) are
+# spent on each. The client runs on another core, which should be idle.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
-built=$root/build/release/bin rounds=15 steps=400 times=
+built=$root/build/release/bin budget=60 heat=()
 while (($# > 0)); do
   case $1 in
     --built) built=${2:?--built takes a folder}; shift 2 ;;
-    --rounds) rounds=${2:?--rounds takes a number}; shift 2 ;;
-    --steps) steps=${2:?--steps takes a number}; shift 2 ;;
-    --times) times=${2:?--times takes a file}; shift 2 ;;
-    --help | -h) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --seconds) budget=${2:?--seconds takes a number}; shift 2 ;;
+    --heat) heat=(--heat Block); shift ;;
+    --help | -h) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "monitor_cost: error: unknown option $1 (--help lists them)" >&2; exit 2 ;;
   esac
 done
 scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$scratch"' EXIT
+stencil=("$built/stencil" --pes 1 --size 1024 --blocks 64 --log-steps)
 
-# A client that follows the run from its beginning to its end: client HEAT…
-client() {
-  local at=
-  while [[ -z $at && -e $scratch/runs ]]; do
-    at=$(grep -o '127.0.0.1:[0-9]*' "$scratch/lines" || true)
-    sleep 0.02
-  done
-  if [[ -n $at ]]; then "$built/tess_monitor" --connect "$at" "$@" >"$scratch/seen" 2>&1 || true; fi
-}
-# seconds VARIANT ARRAY COMMAND…: the processor time and the wall time of the command in this variant.
-seconds() {
-  local variant=$1 array=$2 watcher=
-  shift 2
-  local command=("$@")
-  if [[ $variant != off* ]]; then command+=(--monitor 0); fi
-  : >"$scratch/lines"
-  touch "$scratch/runs"
-  case $variant in
-    watched) client & watcher=$! ;;
-    heat) client --heat "$array" & watcher=$! ;;
-  esac
-  TIMEFORMAT='%U %S %R'
-  { time "${command[@]}" >"$scratch/out" 2>"$scratch/lines"; } 2>"$scratch/time" || {
-    echo "monitor_cost: error: it failed: ${command[*]}" >&2
-    cat "$scratch/lines" >&2
-    exit 1
-  }
-  rm "$scratch/runs"
-  if [[ -n $watcher ]]; then wait "$watcher"; fi
-  if [[ $variant == heat ]] && ! grep -q ' by load: hottest' "$scratch/seen"; then
-    echo "monitor_cost: error: the client saw no heat map; give more --steps" >&2
-    exit 1
-  fi
-  awk '{ print $1 + $2, $3 }' "$scratch/time"
+# table NAME: of the means on standard input, each odd one against its two neighbours.
+table() {
+  awk -v name="$1" '{ v[NR] = $1 }
+    END {
+      for (i = 2; i < NR; i += 2) { d = 100 * (2 * v[i] / (v[i - 1] + v[i + 1]) - 1); ++n; sum += d; square += d * d }
+      if (n < 2) { print "monitor_cost: error: too short to compare; give more --seconds" > "/dev/stderr"; exit 1 }
+      mean = sum / n
+      printf "%-8s %12d %+12.2f %% %12.2f %%\n", name, n, mean, sqrt((square / n - mean * mean) / (n - 1))
+    }'
 }
 
-variants=(off off_again on watched heat)
-stencil=("$built/stencil" --pes 1 --size 1024 --blocks 64 --steps "$steps")
-messages=("$built/bench" --pes 1 --repeat 1 message)
-times=${times:-$scratch/all}
-touch "$times"
-past=$(grep -c '^stencil off ' "$times" || true)  # rounds of earlier runs
-for ((round = past; round < past + rounds; ++round)); do
-  turns=("${variants[@]}")
-  if ((round % 2)); then turns=(heat watched on off_again off); fi
-  for variant in "${turns[@]}"; do
-    time=$(seconds "$variant" Block "${stencil[@]}")
-    echo "stencil $variant $round $time" >>"$times"
-    if [[ $variant == heat ]]; then continue; fi  # the arrays of bench end too soon
-    time=$(seconds "$variant" - "${messages[@]}")
-    echo "message $variant $round $time" >>"$times"
+# The run that is watched in turns; `turns` has the times at which each begins and ends.
+watched() {
+  local at= end
+  "${stencil[@]}" --steps 1000000 --monitor 0 >"$scratch/steps" 2>"$scratch/lines" &
+  local run=$!
+  until at=$(grep -o '127.0.0.1:[0-9]*' "$scratch/lines"); do sleep 0.02; done
+  sleep 1
+  end=$((SECONDS + budget))
+  while ((SECONDS < end)); do
+    echo "$(date +%s.%N) $(sleep 1.3; date +%s.%N)" >>"$scratch/turns"
+    { date +%s.%N | tr '\n' ' '; timeout 1.3 "$built/tess_monitor" --connect "$at" "${heat[@]}" >"$scratch/seen" 2>&1 || true; date +%s.%N; } >>"$scratch/turns"
+    if ((${#heat[@]} > 0)) && ! grep -q ' by load: hottest' "$scratch/seen"; then
+      echo "monitor_cost: error: the client saw no heat map" >&2
+      exit 1
+    fi
+    sleep 0.2 # until the run knows that the client has left
   done
-done
-
-# The median of the numbers on standard input.
-median() { sort -g | awk '{ v[NR] = $1 } END { print NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2 }'; }
-# ratio PROGRAM VARIANT COLUMN: the median over the rounds of the ratio to the run without --monitor.
-ratio() {
-  awk -v p="$1" -v v="$2" -v c="$3" '$1 == p && $2 == "off" { off[$3] = $c }
-    $1 == p && $2 == v { of[$3] = $c } END { for (round in of) if (round in off) print of[round] / off[round] }' "$times" | median
+  echo "$(date +%s.%N) $(sleep 1.3; date +%s.%N)" >>"$scratch/turns"
+  kill "$run"
+  wait "$run" 2>/dev/null || true
+  # The mean processor time of the steps that lie within each turn, but for its first fifth of a second.
+  awk 'FILENAME ~ /turns$/ { from[++n] = $1 + 0.2; to[n] = $2; next }
+    $1 == "step" {
+      for (t += !t; t < n && $3 > to[t];) ++t
+      if (last >= from[t] && $3 <= to[t]) { sum[t] += $4 - cpu; ++steps[t] }
+      last = $3; cpu = $4
+    }
+    END { for (t = 1; t <= n && steps[t]; ++t) print sum[t] / steps[t] }' "$scratch/turns" "$scratch/steps" |
+    table watched
 }
-# column PROGRAM VARIANT: its processor times.
-column() { awk -v p="$1" -v v="$2" '$1 == p && $2 == v { print $4 }' "$times" | sort -g; }
-printf '%-8s %-10s %8s %8s %10s %10s %10s\n' program variant least_s median_s least median wall
-for program in stencil message; do
-  for variant in "${variants[@]}"; do
-    least=$(column "$program" "$variant" | head -1)
-    if [[ -z $least ]]; then continue; fi
-    printf '%-8s %-10s %8.3f %8.3f %10.4f %10.4f %10.4f\n' "$program" "$variant" "$least" "$(column "$program" "$variant" | median)" \
-      "$(awk -v a="$least" -v b="$(column "$program" off | head -1)" 'BEGIN { print a / b }')" \
-      "$(ratio "$program" "$variant" 4)" "$(ratio "$program" "$variant" 5)"
-  done
-done
+# runs NAME OPTION…: short runs without and with the options, in turns.
+runs() {
+  local name=$1 end=$((SECONDS + budget)) which=0
+  shift
+  while ((SECONDS < end || which % 2 == 0)); do
+    local options=()
+    if ((which % 2)); then options=("$@"); fi
+    which=$((which + 1))
+    "${stencil[@]}" --steps 80 "${options[@]}" 2>"$scratch/lines" |
+      awk '$1 == "step" { if (++n == 5) first = $4; last = $4 } END { print (last - first) / (n - 5) }'
+  done | table "$name"
+}
+
+printf '%-8s %12s %14s %14s\n' what comparisons difference error
+watched
+runs on --monitor 0
+runs again

@@ -13,6 +13,7 @@ struct Grid {
   Problem problem;
   std::int32_t n_blocks = 1;  ///< on each axis
   std::int32_t n_steps = 0;
+  bool logs_steps = false;
 
   /// The first point of a block on one axis; sizes differ by at most one.
   [[nodiscard]] std::int32_t first(std::int32_t block) const {

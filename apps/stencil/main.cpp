@@ -11,6 +11,8 @@
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <ctime>
 #include <fmt/core.h>
 
 namespace stencil {
@@ -48,6 +50,7 @@ class Block : public tess::Chare<Block, tess::Index2> {
   void receive(Edge edge) { edges_.put(std::move(edge)); }
 
   void decide(double change) {
+    if (grid_.logs_steps && index() == tess::Index2{0, 0}) log_step();
     if (++step_ < until_) {
       array()[index()].send<&Block::step>(step_);
     } else {
@@ -64,6 +67,12 @@ class Block : public tess::Chare<Block, tess::Index2> {
   }
 
  private:
+  /// The time of day and the processor time of this process, in seconds.
+  void log_step() const {
+    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+    tess::print(fmt::format("step {} {:.6f} {:.6f}\n", step_, now.count(),
+                            static_cast<double>(std::clock()) / CLOCKS_PER_SEC));
+  }
   /// The block's part of the picture on the page of --monitor.
   void show() const {
     const std::int32_t stride = (grid_.problem.size + 255) / 256;
@@ -147,6 +156,8 @@ int main(int argc, char** argv) {
     line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
     line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
+    line.flag("--log-steps", grid.logs_steps,
+              "print the time of day and the processor time of a process at each step");
     line.option("--json FILE", options.json, "write the result as JSON");
     options.checkpoints.add_options(line);
     if (!line.parse(argc, argv)) return 0;

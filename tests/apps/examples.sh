@@ -46,6 +46,7 @@ same() {
   timeout 60 "$@" >"$scratch/out" 2>&1 && [[ -n $want && $(hash_of) == "$want" ]]
   check "$* has not the $want" $?
 }
+answers '^step 399 [0-9]+\.[0-9]{6} [0-9]+\.[0-9]{6}$' "${stencil[@]}" --pes 1 --log-steps
 same "${stencil[@]}" --pes 2 --blocks 5
 same "${stencil[@]}" --pes 4 --blocks 7
 same "${mpirun[@]}" -n 2 "${stencil[@]}" --pes 1 --blocks 4
