@@ -67,8 +67,8 @@ void add_options(apps::CommandLine& line, Settings& s) {
   line.flag("--explain", s.explain, "print what this run uses and what it leaves out");
 }
 
-/// A replay reads snapshots and prints a table; it runs nothing, so it has no use for the options
-/// of runs, nor a run for those of replays.
+/// A replay reads snapshots and runs nothing, so it has no use for the options of runs, nor a run for
+/// those of replays.
 void require_one_purpose(const apps::CommandLine& line, bool replays) {
   if (!replays) {
     for (const char* const name : {"--pes-of-replay", "--fold"})
@@ -79,12 +79,11 @@ void require_one_purpose(const apps::CommandLine& line, bool replays) {
   }
   for (const char* const name :
        {"--workload", "--per-pe", "--period", "--iterations", "--grain", "--when", "--prediction",
-        "--cell-bytes", "--message-bytes", "--repeat", "--json", "--plot", "--save-snapshot",
+        "--cell-bytes", "--message-bytes", "--repeat", "--plot", "--save-snapshot",
         "--snapshot-format", "--explain"})
     if (line.is_given(name))
       tess::fail(tess::ErrorCode::bad_argument, name,
-                 ": is an option of runs, and --replay prints a table of saved snapshots only; "
-                 "leave one of them out");
+                 ": is an option of runs, and --replay runs nothing; leave one of them out");
 }
 
 int start(tess::Setup& setup, int argc, char** argv) {
@@ -101,8 +100,11 @@ int start(tess::Setup& setup, int argc, char** argv) {
   }
   require_one_purpose(line, !settings.replay.empty());
   if (!settings.replay.empty()) {
-    const std::string report = replay(settings);
-    if (prints) tess::print_text(report);
+    plot::require_writable("--json", settings.json);
+    const Replayed replayed = replay(settings);
+    if (!prints) return 0;
+    tess::print_text(replayed.table);
+    if (!settings.json.empty()) plot::write_file(settings.json, replayed.json);
     return 0;
   }
   const std::int32_t n_pes = setup.machine->n_pes();

@@ -134,5 +134,8 @@ check "lb_lab saves no snapshots" $?
 files=("$scratch"/snapshots/linear-4-greedy/data.*.json.br)
 answers '^ +0 +4 +16 greedy +1\.[0-9]+ +1\.0' "${lab[@]}" --replay "${files[@]}" --pes 1
 answers '^ +0 +4 +16 greedy ' "${lab[@]}" --replay "${files[0]}" --replay "${files[1]}" --replay "${files[@]:2}" --pes 1
+answers '^ +0 +4 +16 greedy ' "${lab[@]}" --replay "${files[@]}" --pes 1 --json "$scratch/replayed.json"
+grep -q '"strategy": "greedy"' "$scratch/replayed.json"
+check "lb_lab --replay --json writes no rows" $?
 
 finish

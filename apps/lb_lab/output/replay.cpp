@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace lb_lab {
 namespace {
@@ -56,12 +57,13 @@ std::vector<std::string> files_of(const std::vector<std::string>& given) {
   return files;
 }
 
-std::string row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
-                std::uint64_t seed) {
+/// What a strategy makes of a phase.
+nlohmann::ordered_json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
+                           std::uint64_t seed) {
   const tess::balance::Strategy strategy = tess::balance::make_strategy(name, seed);
   const auto began = std::chrono::steady_clock::now();
   const tess::balance::Assignment wanted = strategy(snapshot);
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   const tess::balance::Metrics before = measure(snapshot, snapshot.elements.pe);
   const tess::balance::Metrics after = measure(snapshot, wanted);
   const std::vector<std::uint64_t> memory = tess::balance::memory_of(snapshot, wanted);
@@ -70,23 +72,44 @@ std::string row(std::uint64_t phase, const Snapshot& snapshot, const std::string
     if (const std::uint64_t limit = snapshot.pes.memory_limit_bytes[p];
         limit != 0 && memory[p] > limit)
       ++n_over;
+  return {{"phase", phase},
+          {"pes", snapshot.pes.size()},
+          {"elements", snapshot.elements.size()},
+          {"strategy", name},
+          {"imbalance_before", before.max_over_average},
+          {"imbalance_predicted", after.max_over_average},
+          {"moves", after.n_moves},
+          {"bytes_moved", after.moved_bytes},
+          {"external_bytes", after.external_bytes},
+          {"strategy_seconds", took.count()},
+          {"fullest_pe_bytes", std::ranges::max(memory)},
+          {"pes_over_limit", n_over}};
+}
+
+std::string line_of(const nlohmann::ordered_json& row) {
+  const auto count = [&](const char* key) { return row.at(key).get<std::uint64_t>(); };
+  const auto number = [&](const char* key) { return row.at(key).get<double>(); };
   return fmt::format(
       "{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f} {:>14} {:>10}\n",
-      phase, snapshot.pes.size(), snapshot.elements.size(), name, before.max_over_average,
-      after.max_over_average, after.n_moves, after.moved_bytes, after.external_bytes, took.count(),
-      std::ranges::max(memory), n_over);
+      count("phase"), count("pes"), count("elements"), row.at("strategy").get<std::string>(),
+      number("imbalance_before"), number("imbalance_predicted"), count("moves"),
+      count("bytes_moved"), count("external_bytes"), 1e3 * number("strategy_seconds"),
+      count("fullest_pe_bytes"), count("pes_over_limit"));
 }
 
 }  // namespace
 
-std::string replay(const Settings& s) {
+Replayed replay(const Settings& s) {
   (void)tess::balance::parse_fold(s.fold);  // before files are read
   const bool all = std::ranges::count(s.strategies, "all") > 0;
   const std::vector<std::string>& names = all ? tess::balance::strategy_names() : s.strategies;
-  std::string out =
+  Replayed out;
+  out.table =
       fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12} {:>14} {:>10}\n",
                   "phase", "PEs", "elements", "strategy", "before", "predicted", "moves", "bytes",
                   "external bytes", "strategy ms", "fullest PE", "over limit");
+  nlohmann::ordered_json root = {{"rows", nlohmann::ordered_json::array()},
+                                 {"left_out", nlohmann::ordered_json::array()}};
   std::vector<tess::balance::Phase> phases = tess::balance::read_lb_datafiles(files_of(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
   for (tess::balance::Phase& phase : phases) {
@@ -94,7 +117,8 @@ std::string replay(const Settings& s) {
     for (const std::string& name : names) {
       const std::string why = tess::balance::obstacle(name, snapshot);
       if (why.empty()) {
-        out += row(phase.id, snapshot, name, s.seed);
+        root["rows"].push_back(row(phase.id, snapshot, name, s.seed));
+        out.table += line_of(root["rows"].back());
       } else if (all) {
         ++left_out[{name, why}];
       } else {
@@ -104,9 +128,13 @@ std::string replay(const Settings& s) {
       }
     }
   }
-  for (const auto& [what, n_phases] : left_out)
-    out += fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), what.first,
-                       what.second);
+  for (const auto& [what, n_phases] : left_out) {
+    const auto& [name, why] = what;
+    out.table +=
+        fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), name, why);
+    root["left_out"].push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
+  }
+  out.json = root.dump(1) + "\n";
   return out;
 }
 

@@ -7,10 +7,15 @@
 
 namespace lb_lab {
 
-/// Reads the files of one run and gives each phase to each strategy: a table of predicted
-/// imbalance, moves, bytes, time and memory. `all` leaves out, and says so at the end, the strategies
+/// The rows of a replay, and the strategies that were left out.
+struct Replayed {
+  std::string table, json;
+};
+
+/// Reads the files of one run and gives each phase to each strategy: predicted imbalance, moves,
+/// bytes, time and memory. `all` leaves out, and says so at the end, the strategies
 /// that cannot serve a phase. Throws tess::Error for files and options that cannot be used, and for
 /// a strategy given by its name that cannot serve a phase.
-[[nodiscard]] std::string replay(const Settings& settings);
+[[nodiscard]] Replayed replay(const Settings& settings);
 
 }  // namespace lb_lab

@@ -181,8 +181,11 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
     s.replay.push_back(
         (scratch.path / "linear-16-greedy" / ("data." + std::to_string(pe) + ".json.br")).string());
   s.strategies = {"none", "greedy"};
-  const std::string table = replay(s);
-  std::istringstream lines(table);
+  const Replayed replayed = replay(s);
+  const auto rows = nlohmann::json::parse(replayed.json).at("rows");
+  CHECK(rows.size() == 2);
+  std::size_t at = 0;
+  std::istringstream lines(replayed.table);
   std::string line;
   std::getline(lines, line);
   for (const char* strategy : {"none", "greedy"}) {
@@ -196,11 +199,15 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
     CHECK(name == strategy);
     CHECK(before == Approx(1.738).epsilon(2e-3));
     CHECK((name == "none" ? predicted == before : predicted <= 1.05));
+    const auto& row = rows.at(at++);
+    CHECK(row.at("strategy") == strategy);
+    CHECK(row.at("imbalance_predicted").get<double>() == Approx(predicted).margin(6e-4));
+    CHECK(row.at("moves") == moves);
     std::getline(lines, line);
   }
   s.replay_pes = 7;
   s.strategies = {"graph"};
-  CHECK(replay(s).find("      7        64 graph") != std::string::npos);
+  CHECK(replay(s).table.find("      7        64 graph") != std::string::npos);
   s.speeds = {1, 2};
   CHECK_THROWS_WITH(replay(s), Catch::Contains("2 speeds for a replay on 7 PEs"));
 }
@@ -221,7 +228,7 @@ TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
                          format);
     Settings all = s;
     all.strategies = {"all"};
-    table[format] = without_times(replay(all));
+    table[format] = without_times(replay(all).table);
   }
   CHECK(table["json"] == table["json.br"]);
   CHECK(table["json"].find("hilbert") != std::string::npos);
@@ -230,7 +237,7 @@ TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
   Settings folder = s;
   folder.strategies = {"all"};
   folder.replay = {s.snapshots + "/linear-4-greedy"};
-  CHECK(without_times(replay(folder)) == table["json"]);
+  CHECK(without_times(replay(folder).table) == table["json"]);
   folder.replay = {scratch.path.string()};
   CHECK_THROWS_WITH(replay(folder), Catch::Contains("has no file named *.json"));
 }
@@ -267,7 +274,7 @@ TEST_CASE("all leaves out what a snapshot without positions cannot serve, and sa
   Settings s;
   s.replay = {save_without_positions(scratch, "data.0.json.br")};
   s.strategies = {"all"};
-  const std::string table = replay(s);
+  const std::string table = replay(s).table;
   for (const std::string& name : tess::balance::strategy_names()) {
     INFO(name);
     const bool is_row = table.find("         8 " + name + ' ') != std::string::npos;
@@ -288,7 +295,7 @@ TEST_CASE("memory limits of a replay count a shared block once per PE", "[lb_lab
   s.strategies = {"greedy"};
   const auto moves = [&](std::vector<std::uint64_t> limits) {
     s.memory_limits = std::move(limits);
-    std::istringstream lines(replay(s));
+    std::istringstream lines(replay(s).table);
     std::string line, name;
     std::getline(lines, line);
     std::size_t phase = 0, n_pes = 0, n_elements = 0, n_moves = 0, fullest = 0, n_over = 9;
