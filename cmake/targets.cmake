@@ -14,6 +14,10 @@ target_link_libraries(tess_options INTERFACE tess_interface)
 target_compile_options(tess_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ collects its garbage only from a gigabyte on, which saves a tenth of its time.
+  target_compile_options(tess_options INTERFACE --param=ggc-min-heapsize=1000000)
+endif()
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # A source that another includes looks like a header to this warning.
   target_compile_options(tess_options INTERFACE -Wno-subobject-linkage)

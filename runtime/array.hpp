@@ -37,10 +37,8 @@ struct CreateArray {
 template <class C, class... Args>
 void make_array(Pe& pe, const CreateArray<C, Args...>& m,
                 std::shared_ptr<const IndexMap> map = nullptr) {
-  auto made = std::make_unique<Array<C>>(pe, m.id, m.range);
-  Array<C>& array = *made;
-  array.set_index_map(std::move(map));
-  pe.add(std::move(made));
+  auto& array = static_cast<Array<C>&>(
+      add_collection(pe, Array<C>::its_kind(), m.id, m.range, std::move(map)));
   std::apply([&array](const Args&... args) { array.make_initial(args...); }, m.args);
   pe.completion().processed(m.epoch);
 }

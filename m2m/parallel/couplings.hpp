@@ -64,7 +64,7 @@ auto piece_of(CollectionId array, collide::OwnerId piece) {
 /// The channel of values for Take.
 template <auto Take>
 std::uint64_t channel_of() {
-  const std::string_view key = naming::name_of<Take>().key;
+  const std::string_view key = naming::name_of<Take>().key();
   return hash_bytes(key.data(), key.size());
 }
 

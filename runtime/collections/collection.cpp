@@ -334,6 +334,15 @@ void ElementScope::force_migration() {
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 
+Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, const Range& range,
+                           std::shared_ptr<const IndexMap> map) {
+  auto made = kind.make(pe, id, range);
+  Collection& collection = *made;
+  collection.set_index_map(std::move(map));
+  pe.add(std::move(made));
+  return collection;
+}
+
 void refuse_empty_proxy(std::string_view use) {
   check_failed("the proxy names a collection", __FILE__, __LINE__,
                text(use, " an empty proxy: assign what create() returned to it first"));

@@ -66,7 +66,7 @@ struct CollectionAction {
     }
   }
   static inline const Action action{
-      naming::name_of<Handler>(), &run, &Held::destroy, &Held::pack, &Held::unpack, Kind,
+      naming::name_of<Handler>(), &run, destroy_of<Held>(), &Held::pack, &Held::unpack, Kind,
       priority_function()};
 };
 

@@ -39,7 +39,7 @@ class CollectionKind {
   [[nodiscard]] static const CollectionKind* find(std::string_view key);
 
   /// The linker's name of the class: no other class has it.
-  [[nodiscard]] std::string_view key() const { return name_.key; }
+  [[nodiscard]] std::string_view key() const { return name_.key(); }
 
   const Saving saving;
   const Members members;

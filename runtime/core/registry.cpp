@@ -18,10 +18,11 @@ std::vector<Registered*>& Registry::all() {
 
 void Registry::seal() {
   auto& things = all();
-  std::sort(things.begin(), things.end(),
-            [](const Registered* a, const Registered* b) { return a->name_.key < b->name_.key; });
+  std::sort(things.begin(), things.end(), [](const Registered* a, const Registered* b) {
+    return a->name_.key() < b->name_.key();
+  });
   for (std::size_t i = 0; i < things.size(); ++i) {
-    TESS_CHECK(i == 0 || things[i - 1]->name_.key != things[i]->name_.key,
+    TESS_CHECK(i == 0 || things[i - 1]->name_.key() != things[i]->name_.key(),
                "two classes or functions that messages name are both called ", things[i]->name(),
                ": rename one, or put it into a named namespace of its own");
     things[i]->id_ = static_cast<std::uint32_t>(i);
@@ -30,8 +31,10 @@ void Registry::seal() {
 
 std::uint64_t Registry::fingerprint() {
   std::uint64_t hash = all().size();
-  for (const Registered* thing : all())
-    hash = mix(hash ^ hash_bytes(thing->name_.key.data(), thing->name_.key.size()));
+  for (const Registered* thing : all()) {
+    const std::string_view key = thing->name_.key();
+    hash = mix(hash ^ hash_bytes(key.data(), key.size()));
+  }
   return hash;
 }
 

@@ -41,21 +41,32 @@ void append_characters(std::string& out, auto value, Format... format) {
 
 }  // namespace
 
-void append_number(std::string& out, std::int64_t value) {
-  append_characters(out, value);
-}
-void append_number(std::string& out, std::uint64_t value) {
-  append_characters(out, value);
-}
-void append_number(std::string& out, double value) {
-  append_characters(out, value, std::chars_format::general, 6);
+void TextPart::append_to(std::string& out) const {
+  switch (kind_) {
+    case Kind::characters:
+      out += characters_;
+      break;
+    case Kind::signed_number:
+      append_characters(out, signed_);
+      break;
+    case Kind::unsigned_number:
+      append_characters(out, unsigned_);
+      break;
+    case Kind::real_number:
+      append_characters(out, real_, std::chars_format::general, 6);
+      break;
+    case Kind::streamed: {
+      std::ostringstream stream;
+      streamed_.write(stream, streamed_.value);
+      out += std::move(stream).str();
+    }
+  }
 }
 
-void append_streamed(std::string& out, const void* value,
-                     void (*write)(std::ostream& out, const void* value)) {
-  std::ostringstream stream;
-  write(stream, value);
-  out += std::move(stream).str();
+std::string joined(std::initializer_list<TextPart> parts) {
+  std::string out;
+  for (const TextPart& part : parts) part.append_to(out);
+  return out;
 }
 
 }  // namespace detail

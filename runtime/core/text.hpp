@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <initializer_list>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -12,32 +13,60 @@ namespace tess {
 
 namespace detail {
 
-void append_number(std::string& out, std::int64_t value);
-void append_number(std::string& out, std::uint64_t value);
-void append_number(std::string& out, double value);  // six digits
-
-/// Appends what `write` prints into a stream.
-void append_streamed(std::string& out, const void* value,
-                     void (*write)(std::ostream& out, const void* value));
-
-template <class Part>
-void append(std::string& out, const Part& part) {
-  if constexpr (std::same_as<Part, char>) {
-    out += part;
-  } else if constexpr (std::unsigned_integral<Part>) {
-    append_number(out, std::uint64_t{part});
-  } else if constexpr (std::integral<Part>) {
-    append_number(out, std::int64_t{part});
-  } else if constexpr (std::floating_point<Part>) {
-    append_number(out, static_cast<double>(part));
-  } else if constexpr (std::convertible_to<const Part&, std::string_view>) {
-    out += std::string_view(part);
-  } else {
-    append_streamed(out, &part, [](std::ostream& to, const void* value) {
-      to << *static_cast<const Part*>(value);
-    });
+/// A part of a text without its type, so that the code that appends parts is compiled only once. It
+/// refers to the value.
+class TextPart {
+ public:
+  template <class Value>
+  explicit TextPart(const Value& value) {
+    if constexpr (std::same_as<Value, char>) {
+      kind_ = Kind::characters;
+      characters_ = {&value, 1};
+    } else if constexpr (std::unsigned_integral<Value>) {
+      kind_ = Kind::unsigned_number;
+      unsigned_ = value;
+    } else if constexpr (std::integral<Value>) {
+      kind_ = Kind::signed_number;
+      signed_ = value;
+    } else if constexpr (std::floating_point<Value>) {
+      kind_ = Kind::real_number;
+      real_ = static_cast<double>(value);
+    } else if constexpr (std::convertible_to<const Value&, std::string_view>) {
+      kind_ = Kind::characters;
+      characters_ = std::string_view(value);
+    } else {
+      kind_ = Kind::streamed;
+      streamed_ = {
+          &value, [](std::ostream& out, const void* of) { out << *static_cast<const Value*>(of); }};
+    }
   }
-}
+  void append_to(std::string& out) const;
+
+ private:
+  enum class Kind : std::uint8_t {
+    characters,
+    signed_number,
+    unsigned_number,
+    real_number,  ///< six digits
+    streamed,
+  };
+  struct Streamed {
+    const void* value;
+    void (*write)(std::ostream& out, const void* value);
+  };
+
+  Kind kind_;
+  union {
+    std::string_view characters_;
+    std::int64_t signed_;
+    std::uint64_t unsigned_;
+    double real_;
+    Streamed streamed_;
+  };
+};
+
+/// The parts as text, one after the other.
+[[nodiscard]] std::string joined(std::initializer_list<TextPart> parts);
 
 }  // namespace detail
 
@@ -51,15 +80,13 @@ concept Writable = std::integral<Part> || std::floating_point<Part> ||
 /// operator<<.
 template <Writable... Parts>
 [[nodiscard]] std::string text(const Parts&... parts) {
-  std::string out;
-  (detail::append(out, parts), ...);
-  return out;
+  return detail::joined({detail::TextPart(parts)...});
 }
 
 /// The same for failures: it is kept out of the code that runs, and is not optimised.
 template <Writable... Parts>
 [[nodiscard, gnu::cold, gnu::noinline]] std::string failure_text(const Parts&... parts) {
-  return text(parts...);
+  return detail::joined({detail::TextPart(parts)...});
 }
 
 /// The text in one line: control characters become escapes (\n, \x1b). It is used for messages that

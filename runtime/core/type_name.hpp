@@ -28,19 +28,20 @@ template <auto Value>
 /// linker's name, since compilers print overloads alike, and clang instances of a template.
 struct Name {
   std::string_view text;
-  std::string_view key;
+  const std::type_info* tag;
+  [[nodiscard]] std::string_view key() const { return tag->name(); }
 };
 template <class T>
 struct TypeTag {};
 template <auto Value>
 struct ValueTag {};
 template <class T>
-[[nodiscard]] Name name_of() {
-  return {type<T>(), typeid(TypeTag<T>).name()};
+[[nodiscard]] consteval Name name_of() {
+  return {type<T>(), &typeid(TypeTag<T>)};
 }
 template <auto Value>
-[[nodiscard]] Name name_of() {
-  return {value<Value>(), typeid(ValueTag<Value>).name()};
+[[nodiscard]] consteval Name name_of() {
+  return {value<Value>(), &typeid(ValueTag<Value>)};
 }
 }  // namespace naming
 

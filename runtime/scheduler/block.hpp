@@ -10,9 +10,24 @@ namespace tess::detail {
 [[nodiscard]] inline void* allocate_block(Pe& pe, std::size_t n_bytes) {
   return pe.pool().allocate(n_bytes);
 }
+/// The same for a message from another process: not inline, since its transfer takes far longer.
+[[nodiscard]] void* allocate_received(Pe& pe, std::size_t n_bytes);
 inline void release_block(void* block, std::size_t /*n_bytes*/) {
   Pe* const pe = current_pe_or_null();
   Pool::release(block, pe != nullptr ? &pe->pool() : nullptr);
+}
+
+/// Ends a message whose arguments need no destructor.
+void release_message(Envelope* message);
+/// The function that ends messages of this type: its own, or the common one if it needs no
+/// destructor.
+template <class Message>
+[[nodiscard]] constexpr Action::Destroy destroy_of() {
+  if constexpr (std::is_trivially_destructible_v<Message>) {
+    return &release_message;
+  } else {
+    return &Message::destroy;
+  }
 }
 
 /// An allocator for nodes of containers in chares: takes memory from the pool of the running PE.

@@ -25,7 +25,7 @@ struct Message final : Envelope {
   static void pack(Envelope& envelope, Writer& ar) { ar(static_cast<Message&>(envelope).payload); }
   static Envelope* unpack(Pe& pe, Reader& ar) {
     // Constructed in place: the bytes of a large vector arrive later, at its present address.
-    auto* message = new (allocate_block(pe, sizeof(Message))) Message(Payload{});
+    auto* message = new (allocate_received(pe, sizeof(Message))) Message(Payload{});
     ar(message->payload);
     return message;
   }

@@ -286,8 +286,12 @@ void Pe::note_place() {
   if (place_.empty()) place_ = runtime_.describe(*this);
 }
 
-void Pe::note_constructor(const std::string& name) {
-  if (place_.empty()) place_ = runtime_.describe(*this) + " " + name;
+void Pe::note_constructor(std::string_view of, std::initializer_list<std::string_view> types) {
+  if (!place_.empty()) return;
+  place_ = runtime_.describe(*this) + " " + plain_name(of) + "(";
+  for (const std::string_view& type : types)
+    place_ += (&type == types.begin() ? "" : ", ") + plain_name(type);
+  place_ += ")";
 }
 
 void Pe::exception(const char* what, int exit_code) {

@@ -20,9 +20,11 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -244,8 +246,9 @@ class Pe {
   void keep_exception(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();
-  /// An exception leaves a constructor: records the constructor's name for the report.
-  void note_constructor(const std::string& name);
+  /// An exception leaves a constructor of a class: records it, with the types of its arguments, for
+  /// the report.
+  void note_constructor(std::string_view of, std::initializer_list<std::string_view> types);
 
   /// The index (and array) of the element under construction; null if there is none.
   [[nodiscard]] const void* constructed_index() const { return constructed_index_; }

@@ -28,7 +28,7 @@ struct PeAction {
   }
   static inline const Action action{naming::name_of<Handler>(),
                                     &run,
-                                    &Held::destroy,
+                                    destroy_of<Held>(),
                                     &Held::pack,
                                     &Held::unpack,
                                     Traffic::control};

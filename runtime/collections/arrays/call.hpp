@@ -74,7 +74,7 @@ struct TypedMessage : ElementMessage<typename C::Index> {
     ar(message.arguments);
   }
   static Envelope* unpack(Pe& pe, Reader& ar) {
-    auto* message = new (allocate_block(pe, sizeof(Derived))) Derived();
+    auto* message = new (allocate_received(pe, sizeof(Derived))) Derived();
     message->serialize_head(ar);
     ar(message->arguments);
     return message;

@@ -147,6 +147,7 @@ class Array final : public ArrayOf<typename C::Index> {
   }
   [[nodiscard]] bool migratable() const override { return Migratable<C> && !OnePerPe<C>; }
   [[nodiscard]] const CollectionKind& kind() const override { return kind_; }
+  [[nodiscard]] static const CollectionKind& its_kind() { return kind_; }
 
   void take_saved(std::uint32_t incarnation, bool alive, Reader& ar) override {
     auto index = ar.template take<Index>();

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "runtime/collections/elements/element.hpp"
+#include "runtime/core/index.hpp"
 #include "runtime/messages/envelope.hpp"
+#include "runtime/scheduler/block.hpp"
 
 namespace tess::detail {
 
@@ -32,10 +34,22 @@ struct ElementMessage : Envelope {
   std::uint32_t n_departures = 0;
 
   template <class Ar>
-  void serialize_head(Ar& ar) {
-    ar(collection, index, tried, asker, demand, ask, hops, led_by);
-  }
+  void serialize_head(Ar& ar);
 };
+
+template <class Index>
+template <class Ar>
+void ElementMessage<Index>::serialize_head(Ar& ar) {
+  ar(collection, index, tried, asker, demand, ask, hops, led_by);
+}
+
+// The usual types of indices are compiled once, in array_of.cpp.
+extern template void ElementMessage<Index1>::serialize_head(Writer&);
+extern template void ElementMessage<Index1>::serialize_head(Reader&);
+extern template void ElementMessage<Index2>::serialize_head(Writer&);
+extern template void ElementMessage<Index2>::serialize_head(Reader&);
+extern template void ElementMessage<Index3>::serialize_head(Writer&);
+extern template void ElementMessage<Index3>::serialize_head(Reader&);
 
 /// Messages of this type may be prioritised.
 template <class Message>
@@ -58,7 +72,7 @@ struct ElementAction : Action {
   template <class Message>
   explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
                          Traffic t = Traffic::user, Undelivered u = nullptr)
-      : Action(naming::name_of<Message>(), Message::run, &Message::destroy, &Message::pack,
+      : Action(naming::name_of<Message>(), Message::run, destroy_of<Message>(), &Message::pack,
                &Message::unpack, t, priority_function<Message>()),
         invoke(i),
         construct(c),

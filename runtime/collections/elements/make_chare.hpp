@@ -1,10 +1,9 @@
 // Construction of chares and group members, so that an exception there can be reported.
 #pragma once
 
-#include "runtime/core/registry.hpp"
+#include "runtime/core/type_name.hpp"
 #include "runtime/scheduler/pe.hpp"
 
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -16,9 +15,7 @@ template <class C, class... Args>
   try {
     return new C(std::forward<Args>(args)...);
   } catch (...) {
-    std::string types;
-    ((types += (types.empty() ? "" : ", ") + plain_name(name_of_type<std::decay_t<Args>>)), ...);
-    current_pe().note_constructor(text(plain_name(name_of_type<C>), "(", types, ")"));
+    current_pe().note_constructor(name_of_type<C>, {name_of_type<std::decay_t<Args>>...});
     throw;
   }
 }
