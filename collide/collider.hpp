@@ -10,7 +10,8 @@
 //
 // Sample: tests/samples/collider.cpp
 //
-//     const auto collider = tess::collide::make_collider({});
+//     tess::collide::Collider collider;
+//     co_await tess::epoch([&] { collider = tess::collide::make_collider({}); });
 //     const auto clients = tess::create<Client>(tess::range(8));
 //     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
 //     const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
@@ -18,7 +19,8 @@
 //
 // The report has a name before the co_await: g++ 12 destroys an aggregate twice that is written in one.
 //
-// submit() is a call to the local Manager. Before a collision, the main coroutine awaits an epoch
+// submit() is a call to the local Manager, so the epoch that makes the collider is awaited first
+// (submit_early() does without). Before a collision, the main coroutine awaits an epoch
 // in which the clients submit. run_collision() collides what was submitted: it chooses the voxels
 // from all objects, and is done when the owners have handled all hits. A voxel starts as soon as
 // its objects are there. Collisions of several colliders may overlap. Those of one may, too, if its

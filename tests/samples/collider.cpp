@@ -3,6 +3,7 @@
 
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {
@@ -31,7 +32,8 @@ class Client : public tess::Chare<Client, tess::Index1> {
 };
 
 tess::Task find_pairs(std::uint64_t& n_pairs) {
-  const auto collider = tess::collide::make_collider({});
+  tess::collide::Collider collider;
+  co_await tess::epoch([&] { collider = tess::collide::make_collider({}); });
   const auto clients = tess::create<Client>(tess::range(8));
   co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
@@ -49,4 +51,13 @@ TEST_CASE("the sample of collide/collider.hpp reports each of 7 pairs to both ow
   tess::Setup setup{tess::make_threads_machine(2), {}};
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return find_pairs(n_pairs); }) == 0);
   CHECK(n_pairs == 2 * 7);
+}
+
+TEST_CASE("the sample of collide/collider.hpp stands any order of messages", "[collide][sample]") {
+  tess::test::for_seeds(1, 41, [](std::uint64_t seed) {
+    const tess::test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
+    std::uint64_t n_pairs = 0;
+    machine.run([&]() -> tess::Task { return find_pairs(n_pairs); }).require_success();
+    REQUIRE(n_pairs == 2 * 7);
+  });
 }
