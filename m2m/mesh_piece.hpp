@@ -49,8 +49,7 @@ class MeshPiece : public Piece<C> {
     static_cast<C&>(*this).loaded();
   }
 
- private:
-  friend C;
+ protected:
   MeshPiece() = default;
 };
 

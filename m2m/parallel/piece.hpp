@@ -23,9 +23,6 @@
 
 namespace tess::m2m {
 
-template <class C>
-class MeshPiece;
-
 /// A second base class of a chare that holds a piece of a mesh. The chare has a member function
 /// `MeshView mesh_view() const`; if it migrates, it serialises `couplings`. If it has a member
 /// function `received(CouplingId)`, that is called after new values were written.
@@ -190,11 +187,10 @@ class Piece : public OverlapPiece<C> {
 
   void m2m_release(CouplingId id) { couplings.release(id); }
 
- private:
-  friend C;
-  friend MeshPiece<C>;
+ protected:
   Piece() = default;
 
+ private:
   using OverlapPiece<C>::chare;
   using OverlapPiece<C>::me;
   using OverlapPiece<C>::notify;

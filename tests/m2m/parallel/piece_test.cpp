@@ -5,12 +5,22 @@
 #include "runtime/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
 
+#include <type_traits>
 #include <vector>
 
 using namespace tess;
 using namespace tess::m2m;
 
 namespace {
+
+/// What several codes of an application may have in common stands between the chare and the library.
+template <class Code>
+class Common : public Chare<Code, Index1>, public Piece<Code> {
+ public:
+  [[nodiscard]] MeshView mesh_view() const { return {}; }
+};
+class Own : public Common<Own> {};
+static_assert(std::is_default_constructible_v<Own>);
 
 /// Takes values, and then counts itself by a message to itself.
 class Counted : public Chare<Counted, Index1>, public Piece<Counted> {
