@@ -28,8 +28,7 @@ class Contributors final : public Partial {
  public:
   explicit Contributors(int id) : ids{id} {}
   static const PartialKind& its_kind() {
-    static const PartialKind kind({"tess::test::Contributors", "tess::test::Contributors"},
-                                  nullptr);
+    static const PartialKind kind(naming::name_of<Contributors>(), nullptr);
     return kind;
   }
   [[nodiscard]] const PartialKind& kind() const override { return its_kind(); }

@@ -25,7 +25,7 @@ class Givers final : public Partial {
  public:
   explicit Givers(int id) : ids{id} {}
   static const PartialKind& its_kind() {
-    static const PartialKind kind({"tess::test::Givers", "tess::test::Givers"}, nullptr);
+    static const PartialKind kind(naming::name_of<Givers>(), nullptr);
     return kind;
   }
   [[nodiscard]] const PartialKind& kind() const override { return its_kind(); }
