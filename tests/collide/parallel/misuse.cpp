@@ -25,7 +25,8 @@ class Client : public Group<Client> {
 };
 
 Task misuse(const std::string& where) {
-  const Collider collider = make_collider({});
+  Collider collider;
+  co_await epoch([&] { collider = make_collider({}); });
   const auto clients = create_group<Client>();
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const Report report{report_to<&Client::receive>(clients), {}};
