@@ -15,6 +15,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <typeinfo>
 
 namespace {
 
@@ -28,7 +29,7 @@ class Contributors final : public Partial {
  public:
   explicit Contributors(int id) : ids{id} {}
   static const PartialKind& its_kind() {
-    static const PartialKind kind(naming::name_of<Contributors>(), nullptr);
+    static const PartialKind kind({"tess::test::Contributors", &typeid(Contributors)}, nullptr);
     return kind;
   }
   [[nodiscard]] const PartialKind& kind() const override { return its_kind(); }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <typeinfo>
 
 namespace {
 
@@ -25,7 +26,7 @@ class Givers final : public Partial {
  public:
   explicit Givers(int id) : ids{id} {}
   static const PartialKind& its_kind() {
-    static const PartialKind kind(naming::name_of<Givers>(), nullptr);
+    static const PartialKind kind({"tess::test::Givers", &typeid(Givers)}, nullptr);
     return kind;
   }
   [[nodiscard]] const PartialKind& kind() const override { return its_kind(); }
