@@ -28,8 +28,8 @@ ninja -C "$build" -t deps 2>/dev/null | awk -v root="$PWD/" '
   }
   END { if (line != "") print line }' >"$stamps/reads"
 
-# The precompiled headers are g++'s; sources include what they need.
-sed -E 's/-Winvalid-pch -include [^ ]+//' "$build/compile_commands.json" >"$stamps/compile_commands.json"
+# The precompiled headers and the parameters are g++'s; sources include what they need.
+sed -E 's/-Winvalid-pch -include [^ ]+//; s/--param=[^ ]+//' "$build/compile_commands.json" >"$stamps/compile_commands.json"
 
 stale=()
 for source in "${sources[@]}"; do
