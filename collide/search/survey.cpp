@@ -21,10 +21,11 @@ template <class Real, std::size_t D>
        " is not valid; give finite numbers with lo <= hi");
 }
 
-/// The upper end of a box beside each lower end.
+/// Puts the upper end of a box in place of each lower end. It changes its argument: how a function
+/// returns a vector depends on the instruction set, of which g++ warns.
 template <std::size_t D, class Eight, std::size_t... k>
-Eight upper_ends(const Eight& x, std::index_sequence<k...> /*lanes*/) {
-  return __builtin_shufflevector(x, x, (k < D ? k + D : k)...);
+void take_upper_ends(Eight& x, std::index_sequence<k...> /*lanes*/) {
+  x = __builtin_shufflevector(x, x, (k < D ? k + D : k)...);
 }
 
 }  // namespace
@@ -47,7 +48,9 @@ Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set
       std::memcpy(&x, boxes[i + s * length].lo.data(), sizeof x);
       least = x < least ? x : least;
       greatest = x > greatest ? x : greatest;
-      bad |= ~(x <= upper_ends<D>(x, std::make_index_sequence<8>()));  // also for NaN
+      Eight upper = x;
+      take_upper_ends<D>(upper, std::make_index_sequence<8>());
+      bad |= ~(x <= upper);  // also for NaN
     }
   bool good = true;
   for (std::size_t k = 0; k < D; ++k) {
