@@ -13,13 +13,20 @@
 //     Box<Real, D> box_of(const Object&);                          contains the object
 //     bool intersect(const Object&, const Object&, Touching);      decides a pair whose boxes overlap
 //
+// A type in three dimensions may have a third one. If the objects of a search are long and thin, so
+// that their boxes are mostly empty, it spares most of the exact tests. Objects whose capsules have
+// no common point must not intersect:
+//
+//     Capsule capsule_of(const Object&);                           contains the object
+//
 // Every pair is reported once, in no particular order. The voxels that the objects are sorted into
 // have no influence on the answer (Lawlor and Kalé 2002).
 #pragma once
 
-#include "collide/box.hpp"
+#include "collide/capsule.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,14 +50,15 @@ enum class PairMethod { automatic, all_pairs, sweep, bisection };
 
 /// What a search did.
 struct PairStatistics {
-  double voxel_size = 0;           ///< the longest edge; of the level with the smallest voxels
-  std::uint64_t n_levels = 0;      ///< grids for objects of different sizes
-  std::uint64_t n_voxels = 0;      ///< that were searched
-  std::uint64_t n_entries = 0;     ///< objects in voxels: an object counts in each that it touches
-  std::uint64_t n_left_out = 0;    ///< of them, in voxels that only one model touches
-  std::uint64_t n_candidates = 0;  ///< pairs whose boxes overlap
-  std::uint64_t n_pairs = 0;       ///< pairs that intersect
-  std::size_t bytes = 0;           ///< memory beside the objects
+  double voxel_size = 0;         ///< the longest edge; of the level with the smallest voxels
+  std::uint64_t n_levels = 0;    ///< grids for objects of different sizes
+  std::uint64_t n_voxels = 0;    ///< that were searched
+  std::uint64_t n_entries = 0;   ///< objects in voxels: an object counts in each that it touches
+  std::uint64_t n_left_out = 0;  ///< of them, in voxels that only one model touches
+  /// Pairs whose boxes overlap. If long thin objects are searched in pieces, these are pairs of pieces.
+  std::uint64_t n_candidates = 0;
+  std::uint64_t n_pairs = 0;  ///< pairs that intersect
+  std::size_t bytes = 0;      ///< memory beside the objects
 };
 
 struct PairOptions {
@@ -80,6 +88,24 @@ template <class Real, std::size_t D>
 void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
                   const PairOptions& options, PairSink sink);
 
+/// The capsules of the objects of a set.
+struct Capsules {
+  const void* objects;
+  Capsule (*of)(const void* objects, std::size_t i);
+
+  [[nodiscard]] Capsule operator[](std::size_t i) const { return of(objects, i); }
+};
+
+/// The same for objects that have capsules. A pair of long thin objects is passed on only if their
+/// capsules may have a common point, and never twice.
+template <class Real>
+void search_pairs(std::span<const Box<Real, 3>> boxes, const Capsules& capsules,
+                  const PairOptions& options, PairSink sink);
+template <class Real>
+void search_pairs(std::span<const Box<Real, 3>> a, const Capsules& capsules_a,
+                  std::span<const Box<Real, 3>> b, const Capsules& capsules_b,
+                  const PairOptions& options, PairSink sink);
+
 template <class T>
 inline constexpr bool is_box = false;
 template <class Real, std::size_t D>
@@ -99,6 +125,18 @@ auto boxes_of(std::span<const Object> objects) {
     for (const Object& object : objects) boxes.push_back(box_of(object));
     return boxes;
   }
+}
+
+template <class Object>
+concept HasCapsule = requires(const Object& object) {
+  { capsule_of(object) } -> std::same_as<Capsule>;
+} && std::tuple_size_v<decltype(BoxOf<Object>::lo)> == 3;
+
+template <HasCapsule Object>
+Capsules capsules_of(std::span<const Object> objects) {
+  return {objects.data(), [](const void* of, std::size_t i) {
+            return capsule_of(static_cast<const Object*>(of)[i]);
+          }};
 }
 
 /// A sink that calls found(i, j) per pair for which test(i, j) holds; i is of the first set.
@@ -140,7 +178,7 @@ struct EveryPair {
 
 /// Calls found(i, j) once per pair of objects that intersect, with i < j. With a filter, only pairs
 /// count for which wanted(i, j) is true; it is asked before the exact test, once per pair of boxes
-/// that overlap. Throws Error (bad_value) before the first call, with the position of an object
+/// that overlap (of objects with capsules at most once: not if the capsules are apart). Throws Error (bad_value) before the first call, with the position of an object
 /// whose box is not valid, or if the voxel size is no size or too small for the memory.
 template <class Object, class Found, class Wanted = EveryPair>
 void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found,
@@ -157,7 +195,11 @@ void for_each_pair(std::span<const Object> objects, const PairOptions& options, 
     }
   };
   detail::for_each_tested(options, test, ordered, [&](detail::PairSink sink) {
-    detail::search_pairs(std::span<const detail::BoxOf<Object>>(boxes), options, sink);
+    const std::span<const detail::BoxOf<Object>> all(boxes);
+    if constexpr (detail::HasCapsule<Object>)
+      detail::search_pairs(all, detail::capsules_of(objects), options, sink);
+    else
+      detail::search_pairs(all, options, sink);
   });
 }
 
@@ -178,8 +220,12 @@ void for_each_pair(std::span<const A> a, std::span<const B> b, const PairOptions
     }
   };
   detail::for_each_tested(options, test, found, [&](detail::PairSink sink) {
-    detail::search_pairs(std::span<const detail::BoxOf<A>>(boxes_a),
-                         std::span<const detail::BoxOf<B>>(boxes_b), options, sink);
+    const std::span<const detail::BoxOf<A>> all_a(boxes_a), all_b(boxes_b);
+    if constexpr (detail::HasCapsule<A> && detail::HasCapsule<B>)
+      detail::search_pairs(all_a, detail::capsules_of(a), all_b, detail::capsules_of(b), options,
+                           sink);
+    else
+      detail::search_pairs(all_a, all_b, options, sink);
   });
 }
 

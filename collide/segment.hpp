@@ -1,7 +1,7 @@
 // A straight segment, its box, and exact tests against other segments and boxes.
 #pragma once
 
-#include "collide/box.hpp"
+#include "collide/capsule.hpp"
 
 namespace tess::collide {
 
@@ -16,6 +16,11 @@ struct Segment {
 /// The smallest box that contains the segment.
 [[nodiscard]] inline Aabb box_of(const Segment& segment) noexcept {
   return box_around(std::array{segment.from, segment.to});
+}
+
+/// The segment itself.
+[[nodiscard]] inline Capsule capsule_of(const Segment& segment) noexcept {
+  return {segment.from, segment.to, 0};
 }
 
 /// Whether two segments have a common point: exact for all finite coordinates. If touching does not

@@ -22,6 +22,11 @@ struct Tetrahedron {
   return box_around(tetrahedron.corners);
 }
 
+/// A capsule around the longest edge.
+[[nodiscard]] inline Capsule capsule_of(const Tetrahedron& tetrahedron) noexcept {
+  return capsule_around(tetrahedron.corners);
+}
+
 [[nodiscard]] bool intersect(const Tetrahedron& a, const Tetrahedron& b,
                              Touching touching) noexcept;
 [[nodiscard]] bool intersect(const Tetrahedron& a, const Point& b, Touching touching) noexcept;

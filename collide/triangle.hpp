@@ -25,6 +25,11 @@ template <class Real>
   return box_around(triangle.corners);
 }
 
+/// A capsule around the longest edge.
+[[nodiscard]] inline Capsule capsule_of(const Triangle& triangle) noexcept {
+  return capsule_around(triangle.corners);
+}
+
 /// Whether two triangles have a common point (Devillers and Guigue 2003, on exact signs).
 ///
 /// If touching does not count, the intersection must survive every small enough translation of one
@@ -55,6 +60,9 @@ template <class Real>
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k) out.corners[i][k] = double{t.corners[i][k]};
   return out;
+}
+[[nodiscard]] inline Capsule capsule_of(const TriangleOf<float>& triangle) noexcept {
+  return capsule_of(in_double(triangle));
 }
 [[nodiscard]] inline bool intersect(const TriangleOf<float>& a, const TriangleOf<float>& b,
                                     Touching touching) noexcept {

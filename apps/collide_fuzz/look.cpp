@@ -38,7 +38,7 @@ Look look_of(std::uint64_t seed) {
   look.decades = one_of(random, std::array{0.0, 0.0, 1.0, 3.0, 6.0});
   look.no_extent = one_of(random, std::array{0.0, 0.1, 0.5, 1.0});
   look.repeated = one_of(random, std::array{0.0, 0.1, 0.4});
-  look.degenerate = one_of(random, std::array{0.0, 0.1, 0.5});
+  look.degenerate = one_of(random, std::array{0.0, 0.1, 0.5, 0.95});
   look.has_large_one = random.chance(0.1);
   look.n_models = static_cast<std::uint32_t>(1 + random.below(4));
   look.within_model = random.chance(0.4);

@@ -18,4 +18,11 @@ inline constexpr std::size_t sweep_from = 96;
 inline constexpr double per_chare = 1750;
 inline constexpr double per_grid = 3000;  ///< a grid: its choice and its memory
 
+// Objects with capsules (thin_pairs.hpp).
+inline constexpr double per_pair = 8;      ///< a pair of boxes: found, passed on
+inline constexpr double per_test = 50;     ///< an exact test of two triangles
+inline constexpr double per_capsule = 50;  ///< an object: its capsule
+inline constexpr double per_capsules = 6;  ///< a comparison of two capsules
+inline constexpr double per_piece = 100;   ///< a piece of an object: its box, sorted and compared
+
 }  // namespace tess::collide::search::costs

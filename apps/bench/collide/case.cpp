@@ -35,6 +35,12 @@ const std::vector<Case>& box_cases() {
       {"crowd", "crowd:1048576", "8 192 bodies of uneven density", Pairing::across_models},
       {"triangles", "planes:65536", "exact pairs of triangles of two near-parallel wavy planes",
        Pairing::across_models, Touching::counts, true},
+      {"short", "short_triangles:100000", "exact pairs of random triangles of one scale",
+       Pairing::all, Touching::counts, true},
+      {"needles", "needles:100000", "exact pairs of long thin triangles", Pairing::all,
+       Touching::counts, true},
+      {"long_needles", "long_needles:100000", "exact pairs of thin triangles twice as long",
+       Pairing::all, Touching::counts, true},
       {"few", "boxes:4096", "random boxes, few enough for brute force"},
   };
   return all;

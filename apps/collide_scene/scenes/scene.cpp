@@ -3,6 +3,7 @@
 #include "apps/collide_scene/scenes/adversaries.hpp"
 #include "apps/collide_scene/scenes/crowd.hpp"
 #include "apps/collide_scene/scenes/dragon.hpp"
+#include "apps/collide_scene/scenes/needles.hpp"
 #include "apps/collide_scene/scenes/random_boxes.hpp"
 #include "apps/collide_scene/scenes/waves.hpp"
 #include "runtime/core/error.hpp"
@@ -39,6 +40,11 @@ constexpr SceneKind kinds[] = {
      without_seed<nested_ls>},
     {"segments", "N crossing thin triangles, N * N / 4 pairs", 2000,
      without_seed<crossing_segments>},
+    {"needles", "N long thin triangles, 35 pairs of boxes and .02 pairs per triangle", 100'000,
+     needles},
+    {"long_needles", "N thin triangles twice as long, 250 pairs of boxes per triangle", 100'000,
+     long_needles},
+    {"short_triangles", "N random triangles of one scale", 100'000, short_triangles},
     {"crowd", "about N triangles of many closed moving models in clusters of uneven density",
      1u << 20, crowd},
 };

@@ -24,7 +24,8 @@ TEST_CASE("every method finds the pairs of brute force, each once", "[apps][benc
     const auto brute = brute_force(problem);
     REQUIRE(brute != nullptr);
     const auto expected = sorted(brute->pairs());
-    if (of.name != "one_model") CHECK(!expected.empty());
+    // Of a few hundred needles hardly two meet.
+    if (of.name != "one_model" && of.name != "needles") CHECK(!expected.empty());
     for (const MethodKind& kind : method_kinds()) {
       INFO(of.name << ' ' << kind.name);
       const auto method = kind.make(problem);

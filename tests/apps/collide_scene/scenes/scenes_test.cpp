@@ -79,11 +79,13 @@ TEST_CASE("sine, powers and roots agree with the C library", "[apps][collide_sce
 TEST_CASE("scenes have the same bits on every machine", "[apps][collide_scene]") {
   // Values of one machine. A change of a scene changes the meaning of kept results.
   const std::map<std::string, std::uint64_t> expected = {
-      {"wave", 0x89b2921a503efbd9u},       {"planes", 0x931e9706d2d828a0u},
-      {"crossing", 0x1190016f1f1698b5u},   {"dragon", 0xf9fdad07b899e4e7u},
-      {"boxes", 0x6865daf30b037d5cu},      {"disparity", 0xaa3b50b7a631ad9cu},
-      {"disparity6", 0xe7c0546df84aee8au}, {"lshapes", 0x9715e371e6f71458u},
-      {"segments", 0x1200f380fe004e8bu},   {"crowd", 0x61a02e6944da4aecu}};
+      {"wave", 0x89b2921a503efbd9u},           {"planes", 0x931e9706d2d828a0u},
+      {"crossing", 0x1190016f1f1698b5u},       {"dragon", 0xf9fdad07b899e4e7u},
+      {"boxes", 0x6865daf30b037d5cu},          {"disparity", 0xaa3b50b7a631ad9cu},
+      {"disparity6", 0xe7c0546df84aee8au},     {"lshapes", 0x9715e371e6f71458u},
+      {"segments", 0x1200f380fe004e8bu},       {"crowd", 0x61a02e6944da4aecu},
+      {"needles", 0x1619b60aad0506c0u},        {"long_needles", 0xf9232bfdd5d7681au},
+      {"short_triangles", 0x77923acf27a3bffbu}};
   for (const SceneKind& kind : scene_kinds()) {
     const std::string text = std::string(kind.name) + ":1000";
     INFO(text);
@@ -95,7 +97,8 @@ TEST_CASE("scenes have the same bits on every machine", "[apps][collide_scene]")
 }
 
 TEST_CASE("a scene has as many objects as it was asked for", "[apps][collide_scene]") {
-  for (const char* name : {"wave", "planes", "crossing", "boxes", "disparity", "segments"})
+  for (const char* name :
+       {"wave", "planes", "crossing", "boxes", "disparity", "segments", "needles"})
     for (const int n : {1, 2, 3, 8, 1000, 4096, 5001}) {
       INFO(name << ':' << n);
       const Scene scene = make_scene(tess::text(name, ':', n));

@@ -1,0 +1,24 @@
+// A capsule: all points within a radius of a segment. It bounds a long thin object far more closely
+// than a box whose axes are not those of the object. A search of pairs uses the capsules of thin
+// objects to reject pairs whose boxes overlap but whose objects are far apart, and to divide long
+// objects into pieces (pairs.hpp).
+#pragma once
+
+#include "collide/box.hpp"
+
+namespace tess::collide {
+
+struct Capsule {
+  Point from;
+  Point to;
+  double radius;  ///< not negative; infinite or NaN: nothing is known
+
+  friend bool operator==(const Capsule&, const Capsule&) = default;
+};
+
+/// A capsule that contains the convex hull of one or more points, whatever is rounded: around the segment
+/// between the two points that are farthest apart. The radius is at most sqrt(3) times the least for
+/// that segment, and some roundings.
+[[nodiscard]] Capsule capsule_around(std::span<const Point> points) noexcept;
+
+}  // namespace tess::collide

@@ -1,0 +1,30 @@
+// The pairs of objects that have capsules: whether they are so long and thin that the capsules pay,
+// and the search with them.
+//
+//     boxes of pieces, or of objects  ->  pairs of boxes  ->  capsules may meet?  ->  first of the pair?
+//
+// Two objects have a common point only if two of their pieces have, so their boxes overlap. If
+// several pairs of their pieces overlap, the first of them passes the pair on: the first in the order
+// of the pieces of the object of the first set, or of the one with the lower position.
+#pragma once
+
+#include "collide/search/thin_objects.hpp"
+
+namespace tess::collide::search {
+
+/// One set with itself, or two sets.
+template <class Real>
+using ThinSets = std::span<const ObjectsWithCapsules<Real>>;
+
+/// The longest extent of a piece, or ThinObjects::whole; nothing if the capsules do not pay. It is
+/// chosen by expected cost, from a sample.
+template <class Real>
+[[nodiscard]] std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options);
+
+/// Finds the pairs with capsules and pieces of the given length, whether they pay or not. Throws Error
+/// as for_each_pair() does.
+template <class Real>
+void search_thin(ThinSets<Real> sets, double longest, const PairOptions& options,
+                 detail::PairSink sink);
+
+}  // namespace tess::collide::search
