@@ -212,3 +212,23 @@ TEST_CASE("a truth that is not finite is refused with its first vertex", "[m2m][
              Catch::Contains("2 components, and 1 formulas"));
   CHECK_THAT(run_threads(1, {1}, second, {{"x*y", {}}, {"x*", {}}}).refusal, Catch::Contains("x*"));
 }
+
+TEST_CASE("of equal errors the first vertex is named, of bad truths the first component's",
+          "[m2m][norms]") {
+  std::vector<LargestError> errors{{1, 9}, {3, 7}, {3, 4}, {nan_value, 6}, {nan_value, 5}};
+  std::vector<NotFinite> truths{{2, 1, nan_value}, {1, 8, nan_value}, {1, 6, nan_value}, {}};
+  std::vector<std::size_t> order{0, 1, 2, 3, 4};
+  do {
+    LargestError all, numbers;
+    NotFinite refused;
+    for (const std::size_t i : order) {
+      all.add(errors[i]);
+      if (i < 3) numbers.add(errors[i]);
+      if (i < truths.size()) refused.keep_first(truths[i]);
+    }
+    CHECK(all.vertex == 5);
+    CHECK(numbers.vertex == 4);
+    CHECK(refused.component == 1);
+    CHECK(refused.vertex == 6);
+  } while (std::next_permutation(order.begin(), order.end()));
+}

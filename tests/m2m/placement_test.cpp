@@ -304,7 +304,7 @@ TEST_CASE("ranges of kuhn meshes are those of the whole mesh", "[m2m][placement]
 
 namespace {
 
-/// A binary file of version 4.1: a surface, then tetrahedra in two blocks, nodes in three.
+/// A binary file of version 4.1: two surfaces, then tetrahedra in two blocks, nodes in three.
 std::string gmsh_bytes(const TetMesh& mesh, std::uint64_t first_tag, bool swaps_tags) {
   std::string out = "$MeshFormat\n4.1 1 8\n";
   const auto put = [&](const auto&... values) {
@@ -324,13 +324,17 @@ std::string gmsh_bytes(const TetMesh& mesh, std::uint64_t first_tag, bool swaps_
   }
   out += "\n$EndNodes\n$Elements\n";
   const std::uint64_t n_tets = mesh.n_tets();
-  put(std::uint64_t{3}, n_tets + 1, std::uint64_t{1}, n_tets + 1);
-  put(2, 1, 2, std::uint64_t{1}, std::uint64_t{1}, first_tag, first_tag + 1, first_tag + 2);
+  put(std::uint64_t{4}, n_tets + 3, std::uint64_t{1}, n_tets + 3);
+  for (const std::uint64_t n_triangles : {2U, 1U}) {
+    put(2, 1, 2, n_triangles);
+    for (std::uint64_t i = 0; i < n_triangles; ++i)
+      put(n_tets + n_triangles + i, first_tag, first_tag + 1, first_tag + 2);
+  }
   for (std::uint64_t block = 0; block < 2; ++block) {
     const std::uint64_t begin = n_tets * block / 2, end = n_tets * (block + 1) / 2;
     put(3, 1, 4, end - begin);
     for (std::uint64_t t = begin; t < end; ++t) {
-      put(t + 2);
+      put(t + 1);
       for (const VertexId v : mesh.tets[t]) put(first_tag + static_cast<std::uint64_t>(v));
     }
   }
@@ -358,6 +362,57 @@ TEST_CASE("all PEs read their ranges of a binary gmsh file and of an ExodusII fi
   }
   write_exodus(scratch.path("a.exo"), mesh, {});
   check_ranges_of_file(scratch.path("a.exo"), 6);
+}
+
+TEST_CASE("a range of a file begins and ends anywhere in its blocks, and may be long",
+          "[m2m][placement]") {
+  const test::Scratch scratch;
+  TetMesh mesh = kuhn_mesh({3, 0.1});
+  mesh.blocks = {{1, "", 50}, {2, "", 1}, {3, "", mesh.n_tets() - 51}};
+  TetMesh large;  // more points and tetrahedra than are read at a time
+  for (int i = 0; i < 70'000; ++i) {
+    large.points.push_back({std::sin(i), std::sin(2.3 * i), std::sin(3.7 * i)});
+    large.tets.push_back({i, (7 * i + 1) % 70'000, (11 * i + 2) % 70'000, (13 * i + 3) % 70'000});
+  }
+  for (const TetMesh& whole : {mesh, large}) {
+    write_exodus(scratch.path("a.exo"), whole, {});
+    const std::string gmsh = scratch.write("a.msh", gmsh_bytes(whole, 1, false));
+    for (const std::string& name : {scratch.path("a.exo"), gmsh}) {
+      const auto ranges = open_ranges(name, RangeCheck::all);
+      REQUIRE(ranges != nullptr);
+      const auto n_points = static_cast<GlobalId>(whole.n_points());
+      const auto n_tets = static_cast<GlobalId>(whole.n_tets());
+      for (const GlobalId first : {0, 1, 49, 50, 51, 61})
+        for (const GlobalId last : {1, 50, 51, 52, 64, 1'000'000}) {
+          INFO(name << " of " << n_tets << " tetrahedra, from " << first << " to " << last);
+          const auto end = [&](GlobalId n) { return std::max(first, std::min(last, n)); };
+          std::vector<Point> points(static_cast<std::size_t>(end(n_points) - first));
+          ranges->points(first, points);
+          CHECK(std::equal(points.begin(), points.end(), whole.points.begin() + first));
+          std::vector<Tet> tets(static_cast<std::size_t>(end(n_tets) - first));
+          ranges->tets(first, tets);
+          CHECK(std::equal(tets.begin(), tets.end(), whole.tets.begin() + first));
+        }
+    }
+  }
+}
+
+TEST_CASE("a range with a vertex that does not exist is refused", "[m2m][placement]") {
+  const test::Scratch scratch;
+  TetMesh mesh = kuhn_mesh({2});
+  for (const VertexId bad : {27, 1'000'000}) {  // it has 27 vertices
+    mesh.tets[20][2] = bad;
+    const std::string gmsh = scratch.write("a.msh", gmsh_bytes(mesh, 1, false));
+    write_exodus(scratch.path("a.exo"), mesh, {});
+    for (const auto& [name, words] : {std::pair{gmsh, "tet4 20 names node "},
+                                      std::pair{scratch.path("a.exo"), "names vertex "}}) {
+      const auto ranges = open_ranges(name);
+      REQUIRE(ranges != nullptr);
+      std::vector<Tet> tets(20);
+      CHECK_NOTHROW(ranges->tets(0, tets));
+      CHECK_THROWS_WITH(ranges->tets(1, tets), Catch::Contains(words + std::to_string(bad + 1)));
+    }
+  }
 }
 
 TEST_CASE("a file that cannot be read in ranges is read by one PE, and sent", "[m2m][placement]") {
@@ -436,5 +491,6 @@ TEST_CASE("a survey refuses what a reader, validate() and sample() refuse", "[m2
     return message;
   };
   CHECK(refusal_of("kuhn:4", {{"x", box}, {formula, box}}) == want);
+  CHECK(refusal_of("kuhn:4", {{formula, box}, {"1/z", box}}) == want);  // whose first vertex is 0
   CHECK(refusal_of("missing.msh", {}) == test::message_of([] { (void)read_mesh("missing.msh"); }));
 }

@@ -119,6 +119,49 @@ TEST_CASE("choices end at the same levels in any order, no two above a neighbour
   }
 }
 
+TEST_CASE("a leaf merges beside finer leaves that merge, but not before its siblings are leaves",
+          "[apps][amr]") {
+  // Level 1, of which one leaf has its eight children.
+  const BlockIndex parent = BlockIndex::at(1, {1, 0, 1});
+  Tree tree;
+  for (std::int32_t octant = 0; octant < n_octants; ++octant) {
+    const BlockIndex coarse = BlockIndex{}.child(octant), fine = parent.child(octant);
+    Sides outward{}, inward{};
+    for (Face face = 0; face < n_faces; ++face) {
+      if (coarse.neighbour(face) == parent) outward[static_cast<std::size_t>(face)] = 1;
+      if (is_outer(octant, face)) inward[static_cast<std::size_t>(face)] = -1;
+    }
+    if (coarse != parent) tree.add(coarse, outward);
+    tree.add(fine, inward);
+  }
+  const auto got = tree.choose([](BlockIndex) { return 0.0; }, levels(0, 3), 1);
+  // Its children merge; the others wait until it is a leaf.
+  for (const auto& [index, level] : got) CHECK(level == 1);
+
+  // One level further down: all but its siblings merge at the same time as its children.
+  const BlockIndex deep = BlockIndex::at(2, {1, 1, 1});
+  Tree larger;
+  for (std::int32_t i = 0; i < 64; ++i) {
+    const BlockIndex leaf = BlockIndex::at(2, {i % 4, i / 4 % 4, i / 16});
+    if (leaf == deep) continue;
+    Sides sides{};
+    for (Face face = 0; face < n_faces; ++face)
+      if (leaf.neighbour(face) == deep) sides[static_cast<std::size_t>(face)] = 1;
+    larger.add(leaf, sides);
+  }
+  for (std::int32_t octant = 0; octant < n_octants; ++octant) {
+    Sides sides{};
+    for (Face face = 0; face < n_faces; ++face)
+      if (is_outer(octant, face)) sides[static_cast<std::size_t>(face)] = -1;
+    larger.add(deep.child(octant), sides);
+  }
+  for (const auto& [index, level] :
+       larger.choose([](BlockIndex) { return 0.0; }, levels(0, 4), 3)) {
+    const bool is_sibling = index.level() == 2 && index.parent() == deep.parent();
+    CHECK(level == (index.level() == 3 || is_sibling ? 2 : 1));
+  }
+}
+
 TEST_CASE("parts know what will be behind their outer faces", "[apps][amr]") {
   Tree tree = uniform(1);
   const BlockIndex steep = BlockIndex::at(1, {0, 0, 0});

@@ -202,6 +202,29 @@ TEST_CASE("a patch that is packed in the middle of a sweep goes on as it would",
   CHECK(late.compare(0.1).l1 == patch.compare(0.1).l1);
 }
 
+TEST_CASE("the norms of a field that is off by a constant are those of the constant",
+          "[apps][amr]") {
+  Problem problem;
+  problem.n_cells = 4;
+  problem.width = 0.05;
+  problem.complete();
+  const BlockIndex index = BlockIndex::at(3, {0, 0, 0});  // so far away that the field is 0
+  Patch patch(problem, index);
+  patch.fill(0);
+  CHECK(patch.compare(0).largest == 0);
+  const double off = 0.25, volume = std::pow(0.125, 3) * 0x1p60;  // of the block, in quanta
+  for (const double sign : {1.0, -1.0}) {
+    patch.take(std::vector<Quanta>(64, std::llrint(sign * off * volume / 64)));
+    const Norms norms = patch.compare(0);
+    CHECK(static_cast<double>(norms.mass) == Approx(sign * off * volume));
+    CHECK(static_cast<double>(norms.l1) == Approx(off * volume));
+    CHECK(static_cast<double>(norms.l2) == Approx(off * off * volume));
+    CHECK(norms.linf == Approx(off));
+    CHECK(norms.largest == Approx(sign > 0 ? off : 0));
+    CHECK(norms.least == Approx(sign > 0 ? 0 : -off));
+  }
+}
+
 TEST_CASE("mean() is the integral of the Gaussian, also across the border", "[apps][amr]") {
   Problem problem = usual(8);
   problem.centre = {0.95, 0.5, 0.5};

@@ -1,8 +1,10 @@
 // Forces, motion and the box, without chares: closed forms, symmetry, and any cut into cells.
+#include "apps/leanmd/atoms.hpp"
 #include "apps/leanmd/motion.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -206,4 +208,51 @@ TEST_CASE("the atoms of the start are at rest together, and denser where the gra
     CHECK(n_left / 4000 == Approx(0.5 + 0.2 * gradient).margin(0.05));
   }
   CHECK(initial_atoms({.n_atoms = 1, .edge = edge}, motion).front().velocity != Vector{});
+}
+
+TEST_CASE("of the troubles of all cells the first is kept, in any order", "[leanmd]") {
+  std::vector<Totals> parts(4);
+  parts[1].trouble = {5, Trouble::Kind::too_fast, 600, 3};
+  parts[2].trouble = {4, Trouble::Kind::too_far, 1, 8};
+  parts[3].trouble = {4, Trouble::Kind::too_close, 0.3, 9};
+  std::vector<std::size_t> order{0, 1, 2, 3};
+  do {
+    Totals all;
+    for (const std::size_t i : order) all = all + parts[i];
+    CHECK(all.trouble == parts[3].trouble);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST_CASE("between two exchanges the ways of all steps add up, and may not exceed half the skin",
+          "[leanmd]") {
+  Problem problem;
+  problem.box = {edge, {4, 4, 4}};
+  problem.skin = 0.4;
+  problem.exchange_every = 10;
+  problem.dt = 0.01;
+  const Motion motion(edge, problem.dt);
+  // The largest number of steps, of 0.01 v each, that stay within 0.2.
+  for (const auto& [v, n_steps] : {std::pair{1.9, 9}, {3.3, 6}, {9.0, 2}, {21.0, 0}}) {
+    INFO("speed " << v);
+    Atoms atoms(problem);
+    atoms.add({Atom{7, {}, {motion.velocity(v), 0, 0}}});
+    (void)atoms.finish(Forces{.step = 0, .on = {Vector{}}});
+    std::int32_t step = 1;
+    for (; step <= 9; ++step) {
+      atoms.advance(step);
+      if (atoms.totals({}).trouble) break;
+    }
+    CHECK(step - 1 == n_steps);
+    if (step > 9) {  // an exchange takes it into the next cell, and the sum begins anew
+      atoms.advance(10);
+      for (std::int32_t after = 11; after <= 19; ++after) atoms.advance(after);
+      CHECK_FALSE(atoms.totals({}).trouble);
+    } else {
+      const Trouble trouble = atoms.totals({}).trouble;
+      CHECK(trouble.kind == Trouble::Kind::too_far);
+      CHECK(trouble.step == step);
+      CHECK(trouble.atom == 7);
+      CHECK(trouble.value == Approx(0.01 * v * step));
+    }
+  }
 }

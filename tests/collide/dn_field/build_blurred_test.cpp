@@ -4,7 +4,10 @@
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
+#include <set>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -111,6 +114,76 @@ TEST_CASE("both of the paper's methods give a sphere's normals, and exact distan
       CHECK(worst < (method == Method::normals ? 6 : 22));
       CHECK(mean < (method == Method::normals ? 1.5 : 4));
     }
+}
+
+/// The mean of the values within a radius, with linear attenuation; beyond the grid they are 0.
+std::vector<double> blurred(const Grid& grid, const std::vector<double>& values, int radius) {
+  std::vector<double> result(values.size(), 0.0);
+  for (int k = 0; k < grid.n[2]; ++k)
+    for (int j = 0; j < grid.n[1]; ++j)
+      for (int i = 0; i < grid.n[0]; ++i) {
+        double sum = 0, weights = 0;
+        for (int dk = -radius; dk <= radius; ++dk)
+          for (int dj = -radius; dj <= radius; ++dj)
+            for (int di = -radius; di <= radius; ++di) {
+              const double weight = 1 - std::sqrt(di * di + dj * dj + dk * dk) / (radius + 1);
+              if (di * di + dj * dj + dk * dk > radius * radius) continue;
+              weights += weight;
+              const int x = i + di, y = j + dj, z = k + dk;
+              if (x >= 0 && x < grid.n[0] && y >= 0 && y < grid.n[1] && z >= 0 && z < grid.n[2])
+                sum += weight * values[grid.index(x, y, z)];
+            }
+        result[grid.index(i, j, k)] = sum / weights;
+      }
+  return result;
+}
+
+TEST_CASE("normals by the potential are its slope, to one side at the grid's rim", "[dn_field]") {
+  const Surface sphere = make_sphere(0.7, 24);
+  const Grid grid{{-0.95, -0.95, -0.95}, 0.1, {20, 20, 14}};  // cuts the sphere
+  const Blur blur{2, 3};
+  const Field field = build_field(
+      sphere, grid, {Sides::one, Content::distance_and_normal, 2, Method::potential, blur});
+  const auto voxels = surface_voxels(sphere, grid);
+  std::vector<double> potential(grid.size(), 0.0);
+  const auto restore = [&] {
+    for (const SurfaceVoxel& v : voxels) potential[v.at] = 1;
+  };
+  restore();
+  for (int round = 0; round < blur.rounds; ++round) {
+    potential = blurred(grid, potential, blur.radius);
+    restore();
+  }
+  potential = blurred(grid, potential, 2);
+  std::set<std::size_t> on_surface;
+  for (const SurfaceVoxel& v : voxels) on_surface.insert(v.at);
+  int n_rim = 0, n_inner = 0, wrong = 0;
+  for (int k = 0; k < grid.n[2]; ++k)
+    for (int j = 0; j < grid.n[1]; ++j)
+      for (int i = 0; i < grid.n[0]; ++i) {
+        const std::size_t at = grid.index(i, j, k);
+        if (on_surface.contains(at) || field.normal[at] == no_normal) continue;
+        const std::array<int, 3> place{i, j, k};
+        std::array<double, 3> slope{};
+        bool rim = false;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          std::array<int, 3> up = place, down = place;
+          up[axis] = std::min(place[axis] + 1, grid.n[axis] - 1);
+          down[axis] = std::max(place[axis] - 1, 0);
+          rim = rim || up[axis] - down[axis] == 1;
+          slope[axis] = (potential[grid.index(down[0], down[1], down[2])] -
+                         potential[grid.index(up[0], up[1], up[2])]) /
+                        (up[axis] - down[axis]);
+        }
+        const double sign = field.distance[at] < 0 ? -1 : 1;
+        const Vec3 want = sign * Vec3{slope[0], slope[1], slope[2]};
+        if (norm(want) < 1e-6) continue;  // floats have few digits of it
+        ++(rim ? n_rim : n_inner);
+        wrong += angle_between(decoded(field.normal[at]), direction(want)) > 0.2 * degree ? 1 : 0;
+      }
+  CHECK(n_rim > 300);
+  CHECK(n_inner > 1000);
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("a blurred field does not depend on how its layers are split", "[dn_field]") {

@@ -149,6 +149,88 @@ TEST_CASE("a scene in a moving, turned, scaled frame is the scene at rest seen f
   CHECK(off <= 6);  // rounding at a voxel's border may select the neighbour's normal
 }
 
+TEST_CASE("a particle that a stiff spring returns, returns as seen from a moving object",
+          "[dn_field][rules]") {
+  const Field room = room_field(cube_grid(1.5, 40), 1);
+  Rules rules;
+  rules.spring = Spring{1e8, 0, 0.1};
+  const Object rest{&room, {}};
+  Object moving{&room, {}};
+  moving.frame.position = {4, -2, 8};
+  moving.frame.velocity = {3, -5, 2};
+  const Particles start = some(4000);
+  Particles still = start, carried;
+  for (std::size_t p = 0; p < start.size(); ++p)
+    carried.push_back(moving.frame.position + start.position(p),
+                      moving.frame.velocity + start.velocity(p));
+  constexpr double step = 0.1;
+  make_stepper(rules, step).run(still.span(), {&rest, 1}, 0);
+  make_stepper(rules, step).run(carried.span(), {&moving, 1}, 0);
+  const Vec3 gone = moving.frame.position + step * moving.frame.velocity;
+  int n_returned = 0, n_off = 0;
+  for (std::size_t p = 0; p < start.size(); ++p) {
+    if (still.position(p) != start.position(p) || still.velocity(p) != -1 * start.velocity(p))
+      continue;
+    ++n_returned;
+    const bool same_place = norm(carried.position(p) - gone - still.position(p)) < 1e-12;
+    const bool same_velocity =
+        norm(carried.velocity(p) - moving.frame.velocity - still.velocity(p)) < 1e-12;
+    n_off += same_place && same_velocity ? 0 : 1;
+  }
+  INFO(n_returned << " returned, " << n_off << " of them elsewhere");
+  CHECK(n_returned > 50);
+  CHECK(n_off * 20 <= n_returned);  // rounding at a voxel's border may select its neighbour
+}
+
+TEST_CASE("waypoints name their particles, whether others of the block are near or far",
+          "[dn_field][rules]") {
+  const Field ball = sphere_field(cube_grid(1.5, 24), 0.6);
+  const Object object{&ball, {}};
+  Rules rules;
+  rules.impact = Impact{0.5, 0, Sweep::on};
+  const Stepper stepper = make_stepper(rules, 0.1);
+  Particles crowd;
+  for (int p = 0; p < 700; ++p) {
+    const bool is_near = p % 29 == 5;
+    const Vec3 out = direction({std::sin(p), std::sin(2.3 * p), std::sin(3.7 * p)});
+    crowd.push_back((is_near ? 1.2 : 30) * out, (is_near ? -20 : 0.1) * out);
+  }
+  Particles alone = crowd;
+  const std::vector<Waypoint> together = stepper.run_once(crowd.span(), {&object, 1}, 0);
+  std::vector<Waypoint> want;
+  for (std::size_t p = 0; p < alone.size(); ++p)
+    for (Waypoint bend : stepper.run_once(alone.span().part(p, 1), {&object, 1}, 0)) {
+      bend.particle += p;
+      want.push_back(bend);
+    }
+  REQUIRE(together.size() == want.size());
+  CHECK(want.size() >= 2 * 24);  // where the path is first bent, and at the bounce
+  for (std::size_t i = 0; i < want.size(); ++i) {
+    CHECK(together[i].particle == want[i].particle);
+    CHECK(together[i].part == want[i].part);
+    CHECK(together[i].place == want[i].place);
+  }
+}
+
+TEST_CASE(
+    "of two surfaces in one voxel a particle meets the first on its way, in any order of objects",
+    "[dn_field][rules]") {
+  const Field floor = plane_field(cube_grid(2, 9), {0, 0, 1});  // voxels of 0.5
+  Rules rules;
+  rules.impact = Impact{1, 0, Sweep::on};
+  for (const double below : {0.02, 0.1, 0.2})
+    for (const bool turned : {false, true}) {
+      std::array<Object, 2> objects{{{&floor, {}}, {&floor, {}}}};
+      objects[turned ? 0 : 1].frame.position = {0, 0, -below};
+      Particles one;
+      one.push_back({0.1, 0.2, 1.1}, {0, 0, -3});
+      make_stepper(rules, 1).run(one.span(), objects, 0);
+      INFO("the other one " << below << " below, listed " << (turned ? "first" : "last"));
+      CHECK(one.position(0).z == Approx(3 - 1.1).epsilon(1e-5));
+      CHECK(one.velocity(0).z == Approx(3).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("particles outside every field fly straight", "[dn_field][rules]") {
   const Field ball = sphere_field(cube_grid(1, 16), 0.5);
   const Object object{&ball, {}};

@@ -1,9 +1,12 @@
-// Pieces of an application's mesh are checked before a search.
+// Meshes, and pieces of an application's mesh, are checked before a search.
+#include "m2m/checks/mesh_findings.hpp"
 #include "m2m/mesh_view.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,4 +58,34 @@ TEST_CASE("a piece with bad coordinates, indices or counts is refused by name", 
   OneTet no_ids;
   no_ids.tet_ids.clear();
   CHECK(no_ids.complaint().find("0 tet_ids") != std::string::npos);
+}
+
+TEST_CASE("of several findings the first is named, in whatever order ranges are looked at",
+          "[m2m]") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Point> points(10);
+  for (const std::size_t v : {2U, 3U, 7U}) points[v][1] = nan;
+  std::vector<Tet> tets(10, Tet{0, 1, 4, 5});
+  for (const std::size_t t : {1U, 4U, 8U}) tets[t][3] = 10;
+  // Three ranges, two of which have findings of each kind.
+  const auto range = [&](std::size_t first, std::size_t n) {
+    MeshFindings found;
+    const auto id = static_cast<GlobalId>(first);
+    found.add_points(id, std::span(points).subspan(first, n));
+    found.add_corners(id, std::span(tets).subspan(first, n), 10);
+    for (std::size_t t = first + n; t-- > first;)
+      if (t != 5) found.add_shape(static_cast<GlobalId>(t), {});  // of no extent
+    return found;
+  };
+  std::vector<std::size_t> order{0, 1, 2};
+  do {
+    MeshFindings all;
+    for (const std::size_t i : order) all.join(i == 0 ? range(0, 5) : range(4 + i, i == 1 ? 1 : 4));
+    CHECK(all.bad_point.point == 2);
+    CHECK(all.bad_corner.tet == 1);
+    CHECK(all.collapsed.tet == 0);
+    CHECK(all.n_collapsed == 9);
+    CHECK_THROWS_WITH(all.refuse_bad_ids("m", 10), Catch::Contains("m: vertex 2 has y = nan"));
+    CHECK_THROWS_WITH(all.refuse_bad_shapes("m", 10), Catch::Contains("9 of 10 tetrahedra"));
+  } while (std::next_permutation(order.begin(), order.end()));
 }

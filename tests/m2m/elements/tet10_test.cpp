@@ -48,6 +48,27 @@ Point bent(const Point& p) {
   return {p[0] + 2 * bump, p[1] - 1.5 * bump, p[2] + bump};
 }
 
+Point point_at(const Tet10Points& nodes, const Weights& at) {
+  const Tet10Weights shape = tet10_shape(at);
+  Point p{};
+  for (std::size_t n = 0; n < 10; ++n)
+    for (std::size_t k = 0; k < 3; ++k) p[k] += shape[n] * nodes[n][k];
+  return p;
+}
+
+/// The determinant of the map; the central differences of a quadratic map are its derivatives.
+double determinant(const Tet10Points& nodes, const Weights& at) {
+  std::array<Point, 3> by{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Weights up = at, down = at;
+    up[k + 1] += 0.5, up[0] -= 0.5;
+    down[k + 1] -= 0.5, down[0] += 0.5;
+    const Point above = point_at(nodes, up), below = point_at(nodes, down);
+    for (std::size_t axis = 0; axis < 3; ++axis) by[k][axis] = above[axis] - below[axis];
+  }
+  return 6 * signed_volume({Point{}, by[0], by[1], by[2]});
+}
+
 double worst(const TetMesh& mesh, const std::vector<Point>& targets, std::size_t& n_linear,
              const std::function<double(const Point&)>& f) {
   const auto at = place_points(view(mesh), targets);
@@ -85,19 +106,39 @@ TEST_CASE("the inverse of curved maps is found from the straight coordinates", "
       }
       Weights want{uniform(random), uniform(random), uniform(random), uniform(random)};
       const double sum = want[0] + want[1] + want[2] + want[3];
-      Point p{};
       for (double& w : want) w /= sum;
-      const Tet10Weights shape = tet10_shape(want);
-      for (std::size_t n = 0; n < 10; ++n)
-        for (std::size_t k = 0; k < 3; ++k) p[k] += shape[n] * nodes[n][k];
-      const auto found = tet10_invert(p, nodes, {0.25, 0.25, 0.25, 0.25});
+      const auto found = tet10_invert(point_at(nodes, want), nodes, {0.25, 0.25, 0.25, 0.25});
       REQUIRE(found);
       for (std::size_t k = 0; k < 4; ++k) CHECK(std::abs((*found)[k] - want[k]) < 1e-11);
     }
   }
 }
 
-TEST_CASE("elements that fold over or have no volume have no inverse", "[m2m][elements]") {
+TEST_CASE("where an element folds over, no inverse is taken from behind the fold",
+          "[m2m][elements]") {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  constexpr Weights start{0.25, 0.25, 0.25, 0.25};
+  int n_found = 0, n_refused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Tet10Points nodes{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    constexpr std::size_t edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+    for (std::size_t e = 0; e < 6; ++e)
+      for (std::size_t k = 0; k < 3; ++k)
+        nodes[4 + e][k] =
+            0.5 * (nodes[edges[e][0]][k] + nodes[edges[e][1]][k]) + uniform(random) - 0.5;
+    Weights at{uniform(random), uniform(random), uniform(random), uniform(random)};
+    const double sum = at[0] + at[1] + at[2] + at[3];
+    for (double& w : at) w /= sum;
+    const auto found = tet10_invert(point_at(nodes, at), nodes, start);
+    ++(found ? n_found : n_refused);
+    if (found) CHECK(determinant(nodes, *found) * determinant(nodes, start) > 0);
+  }
+  CHECK(n_found > 500);
+  CHECK(n_refused > 100);
+}
+
+TEST_CASE("elements without volume have no inverse", "[m2m][elements]") {
   Tet10Points nodes{};
   CHECK_FALSE(tet10_invert({0, 0, 0}, nodes, {0.25, 0.25, 0.25, 0.25}));
   nodes[0] = {NAN, 0, 0};

@@ -115,6 +115,20 @@ TEST_CASE("a fringe point takes the donor of the best quality, whatever the orde
   SUCCEED();
 }
 
+TEST_CASE("a donor whose weights add up to 1 up to rounding is full, and no other is",
+          "[m2m][overset]") {
+  const Fixture fixture;
+  for (const auto& [weight, quality] :
+       {std::pair{1.0, 1.0}, {1 - 1e-12, 1.0}, {1 + 1e-12, 1.0}, {0.75, 0.75}, {0.0, 0.0}}) {
+    Blanking blanking = fixture.cut({1, 0});
+    fixture.offer(blanking, 2, Status::inside, 0, weight);
+    const BlankingReport report = blanking.report(fixture.view());
+    CHECK(report.n_fringe == 91);
+    CHECK(report.n_full == (quality == 1 ? 91 : 0));
+    CHECK(report.least_quality == quality);
+  }
+}
+
 TEST_CASE("a fringe point without a donor is an orphan, listed with the reason", "[m2m][overset]") {
   const Fixture fixture;
   const auto reason_of = [&](const std::vector<std::array<double, 3>>& offers) {
@@ -148,10 +162,16 @@ TEST_CASE("reports are joined in any order, and the lowest orphans are kept", "[
     b.orphans.push_back({2 * id + 1, {}, Orphan::Reason::hole});
   }
   a.n_orphans = b.n_orphans = 900;
+  a.n_field = 1, a.n_hole = 2, a.n_fringe = 3, a.n_full = 4;
+  b.n_field = 10, b.n_hole = 20, b.n_fringe = 30, b.n_full = 40;
   a.least_quality = 0.25;
   const JoinBlankingReports join;
   const BlankingReport both = join(a, b);
   CHECK(both.n_orphans == 1800);
+  CHECK(both.n_field == 11);
+  CHECK(both.n_hole == 22);
+  CHECK(both.n_fringe == 33);
+  CHECK(both.n_full == 44);
   CHECK(both.least_quality == 0.25);
   REQUIRE(both.orphans.size() == BlankingReport::most_listed);
   CHECK(both.orphans.back().point == 999);

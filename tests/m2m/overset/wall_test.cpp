@@ -1,6 +1,7 @@
 #include "m2m/overset/wall.hpp"
 
 #include "apps/overset/body.hpp"
+#include "m2m/overset/rim.hpp"
 #include "runtime/core/serialize.hpp"
 #include "tests/m2m/overset/voxel_body.hpp"
 #include "tests/support/catch.hpp"
@@ -175,6 +176,19 @@ TEST_CASE("holes and flipped triangles of a wall are capped", "[m2m][overset]") 
           if (wall.locate({0.5 * x, 0.5 * y, 0.5 * z}) != body.answer({x, y, z})) ++n_wrong;
     CHECK(n_wrong == 0);
   }
+}
+
+TEST_CASE("holes that meet at two vertices get a cap each", "[m2m][overset]") {
+  std::vector<Point> points;
+  for (int i = 0; i < 7; ++i) points.push_back({std::cos(i), std::sin(i), 0.1 * i});
+  // Without others around them: the triangle 1 3 2, and the pentagon 0 5 2 4 1 about vertex 6.
+  Triangles triangles{{1, 3, 2}, {1, 0, 6}, {0, 5, 6}, {5, 2, 6}, {2, 4, 6}, {4, 1, 6}};
+  const Rim rim = m2m::close(points, triangles);
+  CHECK(rim.n_edges == 8);
+  CHECK(rim.n_loops == 2);
+  CHECK(points.size() == 7 + 2);
+  CHECK(triangles.size() == 6 + 3 + 5);
+  CHECK(m2m::close(points, triangles).n_edges == 0);
 }
 
 TEST_CASE("a wall without a side is closed, one with half of its sides is refused",

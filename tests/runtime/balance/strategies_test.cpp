@@ -4,6 +4,7 @@
 #include "runtime/balance/strategies/diffusion.hpp"
 #include "runtime/balance/strategies/gossip.hpp"
 #include "runtime/balance/strategies/hilbert.hpp"
+#include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "tests/support/catch.hpp"
 
@@ -35,6 +36,18 @@ TEST_CASE("work i mod 7 + 1 all on one PE is balanced", "[balance]") {
   CHECK(run(s, "greedy").max_over_average <= 1.05);
   CHECK(run(s, "greedy_refine").max_over_average <= 1.05);
   CHECK(run(s, "refine").max_over_average <= 1.10);
+}
+
+TEST_CASE("refine moves nothing within its tolerance, and stops as soon as it is reached",
+          "[balance]") {
+  Snapshot s = idle_pes(2);
+  for (std::size_t i = 0; i < 200; ++i) add_element(s, i < 106 ? 0 : 1, 1);
+  for (const auto& [tolerance, n_moves] : {std::pair{1.065, 0}, {1.055, 1}, {1.025, 4}, {1.0, 6}}) {
+    INFO("tolerance " << tolerance);
+    const Metrics m = measure(s, refine(s, tolerance));
+    CHECK(m.n_moves == static_cast<std::size_t>(n_moves));
+    CHECK(m.max_over_average <= tolerance);
+  }
 }
 
 TEST_CASE("greedy_refine balances as greedy does and moves only the excess", "[balance]") {

@@ -8,7 +8,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 namespace {
 
@@ -116,4 +119,27 @@ TEST_CASE("a damaged checkpoint is not one of those that are kept", "[runtime][c
   run(next);
   CHECK(next.step == 3);
   CHECK(tess::detail::numbers_in(folder) == Numbers{4, 2});
+}
+
+TEST_CASE("a checksum knows the order of a file's blocks, and the length of the last",
+          "[runtime][checkpoint]") {
+  constexpr std::size_t block = std::size_t{1} << 20U;
+  std::vector<std::byte> bytes(3 * block + 5);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i / block);
+  const auto hash = [&] { return tess::detail::sum_of("file", bytes).hash; };
+  const std::uint64_t before = hash();
+  std::swap_ranges(bytes.begin(), bytes.begin() + block, bytes.begin() + 2 * block);
+  CHECK(hash() != before);
+  std::swap_ranges(bytes.begin(), bytes.begin() + block, bytes.begin() + 2 * block);
+  CHECK(hash() == before);
+  bytes.push_back(std::byte{0});
+  CHECK(hash() != before);
+}
+
+TEST_CASE("only folders that are named as a checkpoint count as one", "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  for (const char* name : {"checkpoint-000002", "checkpoint-000010", "checkpoint-000007.old",
+                           "checkpoint-", "checkpoint-x", "old-checkpoint-000011", "000012"})
+    fs::create_directories(scratch.path(name));
+  CHECK(tess::detail::numbers_in(scratch.path("")) == Numbers{10, 2});
 }

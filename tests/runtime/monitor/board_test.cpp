@@ -79,6 +79,15 @@ TEST_CASE("a frame shows what the PEs did since the last one", "[runtime][monito
   CHECK(frame["busy"][1] == 100);
 }
 
+TEST_CASE("an array that only some PEs have has no elements on another", "[runtime][monitor]") {
+  const auto machine = machine_of(3);
+  Board board(*machine);
+  for (const int pe : {0, 2}) board.arrived(sample(pe, 1000, 0, 0, 3));
+  board.arrived(sample(1, 1000, 0, 0));
+  CHECK(last_frame(board, 1)["collections"][0] ==
+        json({{"id", "7"}, {"name", "Block"}, {"n", 6}, {"least", 0}, {"most", 3}}));
+}
+
 TEST_CASE("a late browser sees the last minutes, and they are bounded", "[runtime][monitor]") {
   const auto machine = machine_of(1);
   Board board(*machine);

@@ -115,6 +115,36 @@ TEST_CASE("the load of a cell is the mean of lately reported parts of a PE, for 
   CHECK(json::parse(map.last_event())["values"] == "000000ff");
 }
 
+TEST_CASE("cells of fewer elements compare by the load of one", "[runtime][monitor]") {
+  const Range range = tess::range(2, 201);  // two elements in a cell, and one in those at the end
+  const HeatGrid grid(range);
+  const std::uint32_t whole = grid.cell_of(0), end = grid.cell_of(200);
+  REQUIRE(grid.n_indices(whole) == 2);
+  REQUIRE(grid.n_indices(end) == 1);
+  HeatMap map(HeatBy::load, 1);
+  map.take({{}, PeId{0}, range, {whole, end}, {0.4F, 0.4F}});
+  const std::string values = event(map)["values"];
+  CHECK(values.substr(2 * end, 2) == "ff");
+  CHECK(values.substr(2 * whole, 2) == "80");  // a half
+}
+
+TEST_CASE("a report that comes very late counts for twenty periods", "[runtime][monitor]") {
+  const auto level_after = [](int n_silent) {
+    HeatMap map(HeatBy::load, 2);
+    const Range range = tess::range(2);
+    for (int i = 0; i <= n_silent; ++i) {
+      map.take({{}, PeId{0}, range, {0}, {0.5F}});
+      if (i == n_silent) map.take({{}, PeId{1}, range, {1}, {0.1F}});
+      if (i < n_silent) (void)event(map);
+    }
+    return std::stoi(event(map)["values"].get<std::string>().substr(2, 2), nullptr, 16);
+  };
+  // PE 0 has 0.5 (1 + 0.93 + 0.93² + …) = 7.1, and PE 1 at most 20 times 0.1.
+  CHECK(level_after(0) == 51);
+  CHECK(level_after(200) == Approx(255 * 2.0 / (0.5 / 0.07)).margin(1));
+  CHECK(level_after(1000) == level_after(200));
+}
+
 TEST_CASE("a cell shows the PE that holds most of its elements", "[runtime][monitor]") {
   HeatMap map(HeatBy::pe, 3);
   const Range range = tess::range(4, 4);  // 4 x 4 cells
