@@ -311,6 +311,28 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
   }
 }
 
+TEST_CASE("an element that version 2.2 writes once per physical group is one element",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string head =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+      "5 1 1 1\n$EndNodes\n$Elements\n6\n";
+  // The entity 1 is in the groups 10, 30 and 40, the entity 2 in 20 and 30, with partitions behind.
+  const std::string path = scratch.write(
+      "groups.msh",
+      head +
+          "1 4 2 10 1 1 2 3 4\n2 4 2 30 1 1 2 3 4\n3 4 2 40 1 1 2 3 4\n"
+          "4 4 5 20 2 2 1 -2 2 3 4 5\n5 4 5 30 2 2 1 -2 2 3 4 5\n6 2 2 5 1 1 2 3\n$EndElements\n" +
+          text_of({"ElementData", "c", 0, 0, {{3, {7}}, {5, {8}}}}, false));  // as gmsh writes
+  const TetMesh mesh = read_mesh(path);
+  CHECK(mesh.tets == std::vector<tess::m2m::Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}});
+  CHECK(FieldFile(path).tet_field(mesh, "c", 0).values == std::vector<double>{7, 8});
+  const std::string twice =
+      scratch.write("twice.msh", head.substr(0, head.size() - 2) +
+                                     "2\n1 4 2 10 1 1 2 3 4\n2 4 2 10 1 1 2 3 4\n$EndElements\n");
+  CHECK(read_mesh(twice).n_tets() == 2);  // in one group: as it is
+}
+
 TEST_CASE("gmsh's partitions of a step are joined; a vertex without a value is named",
           "[m2m][io]") {
   const Scratch scratch;
