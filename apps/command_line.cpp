@@ -3,6 +3,8 @@
 #include "apps/help_text.hpp"
 #include "runtime/machine/mpi.hpp"
 
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <type_traits>
@@ -25,6 +27,25 @@ constexpr const char* placeholder() {
   } else {
     return "TEXT";
   }
+}
+
+/// What an option takes, one of it.
+template <class T>
+struct OneOf {
+  using type = T;
+};
+template <class T>
+struct OneOf<std::optional<T>> : OneOf<T> {};
+template <class T>
+struct OneOf<std::vector<T>> : OneOf<T> {};
+
+/// CLI11 takes -1 for 2^64 - 1, and so what is larger.
+std::string fits_unsigned(const std::string& value) {
+  errno = 0;
+  (void)std::strtoull(value.c_str(), nullptr, 0);
+  return value.starts_with('-') || errno == ERANGE
+             ? value + " is not a whole number from 0 to 18446744073709551615"
+             : std::string();
 }
 
 }  // namespace
@@ -81,6 +102,8 @@ Option CommandLine::option(const std::string& name, T& value, const std::string&
   option->type_name(space == std::string::npos ? placeholder<T>() : name.substr(space + 1));
   option->group(group_);
   option->capture_default_str();
+  if constexpr (std::is_same_v<typename OneOf<T>::type, std::uint64_t>)
+    option->check(fits_unsigned, "");
   // What follows "--fields sin" is the first of the arguments without a name, not a second field.
   if (name.starts_with("-")) option->allow_extra_args(false);
   return Option(option);

@@ -115,6 +115,8 @@ int start(tess::Setup& setup, int argc, char** argv) {
   settings.checkpoints.check(
       line, {"--max-level", "--least-level", "--cells", "--order", "--cfl", "--time", "--width",
              "--velocity", "--centre", "--refine", "--change-every", "--uncorrected"});
+  if (line.is_given("--steps") && line.is_given("--time"))
+    apps::refuse_together("--steps " + line.value("--steps"), "--time " + line.value("--time"));
   std::ranges::copy(velocity, problem.velocity.begin());
   std::ranges::copy(centre, problem.centre.begin());
   problem.corrected = !options.uncorrected;

@@ -18,9 +18,15 @@ void Problem::complete() {
   if (!(cfl > 0 && cfl <= 1))
     tess::fail(ErrorCode::bad_argument, "--cfl: ", cfl,
                " is not within 0 … 1: the scheme is unstable above 1");
+  const auto require_finite = [](const char* option, const std::array<double, 3>& vector) {
+    for (const double x : vector)
+      if (!std::isfinite(x)) tess::fail(ErrorCode::bad_argument, option, ": ", x, " is not finite");
+  };
+  require_finite("--velocity", velocity);
+  require_finite("--centre", centre);
   double fastest = 0;
   for (const double v : velocity) fastest = std::max(fastest, std::abs(v));
-  if (!(fastest > 0 && std::isfinite(fastest)))
+  if (fastest == 0)
     tess::fail(ErrorCode::bad_argument, "--velocity: one component must differ from 0");
   // Rounding must not add a step to a number of steps that is exact.
   if (n_steps == 0)

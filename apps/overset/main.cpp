@@ -149,9 +149,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
   apps::CommandLine line(
       "Cuts the hole of a body into a background mesh and couples it with the mesh around the "
       "body.");
-  line.option("BACKGROUND", options.request.background,
-              "mesh: an ExodusII or gmsh file, or kuhn:N, the unit cube of 6 N^3 tetrahedra; with "
-              "--study h a ladder such as kuhn:16,24,32");
+  line.option(
+      "BACKGROUND", options.request.background,
+      "mesh: an ExodusII, gmsh or VTU file, or kuhn:N, the unit cube of 6 N^3 tetrahedra; with "
+      "--study h a ladder such as kuhn:16,24,32");
   line.option("OVERSET", options.request.overset,
               "mesh around a body: a file, or ball:N, box:N, star:N, torus:N; with --study ball, "
               "box, star or torus");

@@ -197,6 +197,13 @@ class Parser {
       if (!s.all_types) validate(g);
       s.graphs.push_back(g);
     }
+    if (s.spoiled && std::ranges::none_of(s.graphs, [&](const Graph& g) {
+          const auto [step, point] = *s.spoiled;
+          return step < g.steps && point < g.width &&
+                 points_at(g, step).contains(static_cast<std::int32_t>(point));
+        }))
+      refuse(fmt::format("--spoil {},{}: no graph has this task; give a step and a point of one",
+                         s.spoiled->first, s.spoiled->second));
     if (s.balance && s.balance->when == tess::BalanceWhen::periodic) s.sync_every = 0;
     if (!s.balance) s.sync_every = 0;
   }

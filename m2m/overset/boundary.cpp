@@ -97,7 +97,9 @@ std::vector<std::array<VertexId, 3>> keys_of(const TetMesh& mesh, const std::str
   std::string known;
   for (const SideSet& set : mesh.side_sets) known += (known.empty() ? "" : ", ") + set.name;
   fail(ErrorCode::bad_argument, mesh.name, " has no side set ", name, "; it has ",
-       known.empty() ? "none" : known);
+       known.empty() ? "none, since only ExodusII files have them: leave the wall out to take the "
+                       "cavities, or give the file of a surface"
+                     : known);
 }
 
 }  // namespace

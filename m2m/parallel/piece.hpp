@@ -158,8 +158,9 @@ class Piece : public OverlapPiece<C> {
     ask_on<S>(to);
   }
   void m2m_name_source(CouplingId id) {
-    const Aabb box = collide::box_around(chare().mesh_view().owned());
-    couplings.source(id).setup.ledger.local().add(SourcePiece{me(), box});
+    const MeshView mesh = chare().mesh_view();
+    couplings.source(id).setup.ledger.local().add(SourcePiece{
+        me(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
   }
   template <class S>
   void m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources) {

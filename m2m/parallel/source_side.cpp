@@ -15,6 +15,16 @@ bool needs_gradients(TransferKind kind) {
   return kind == TransferKind::second_order || kind == TransferKind::limited;
 }
 
+std::vector<std::int32_t> points_of_nearest(const MeshView& mesh) {
+  std::vector<std::uint8_t> counts(mesh.points.size(), mesh.tets.empty() ? 1 : 0);
+  for (const Tet& tet : mesh.tets)
+    for (const VertexId v : tet) counts[static_cast<std::size_t>(v)] = 1;
+  std::vector<std::int32_t> points;
+  for (std::int32_t v = 0; v < mesh.n_owned; ++v)
+    if (counts[static_cast<std::size_t>(v)] != 0) points.push_back(v);
+  return points;
+}
+
 /// The value, or the least or greatest of a vertex of the donor if it is beyond. NaN stays NaN.
 double clamped(double value, const Donor& donor, const double* values, std::size_t stride) {
   double low = values[static_cast<std::size_t>(donor.vertices[0]) * stride], high = low;
@@ -33,6 +43,13 @@ Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
 }
 
 }  // namespace
+
+Aabb box_of_nearest(const MeshView& mesh) {
+  Aabb box = collide::no_box<double, 3>();
+  for (const std::int32_t v : points_of_nearest(mesh))
+    box = collide::merged(box, collide::box_of(mesh.points[static_cast<std::size_t>(v)]));
+  return box;
+}
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
@@ -58,7 +75,9 @@ DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
 }
 
 NearestAnswer SourceSide::answer(const MeshView& mesh, NearestQuery query) {
-  if (!nearest_) nearest_.emplace(mesh.owned(), mesh.point_ids.first(mesh.owned().size()));
+  if (!nearest_)
+    nearest_.emplace(mesh.owned(), mesh.point_ids.first(mesh.owned().size()),
+                     points_of_nearest(mesh));
   NearestAnswer answer{setup.id, {}, std::move(query.keys), {}, {}, {}};
   for (std::size_t i = 0; i < answer.keys.size(); ++i) {
     const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);

@@ -93,8 +93,12 @@ bool TargetSide::needs_sources() {
 
 void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece> sources) {
   std::vector<Aabb> boxes;
+  // Points of pieces without tetrahedra count if no piece has any.
+  const bool have_tets = std::any_of(sources.begin(), sources.end(),
+                                     [](const SourcePiece& s) { return s.has_tets != 0; });
   for (const SourcePiece& source : sources) {
-    boxes.push_back(source.box);
+    const bool counts = source.has_tets != 0 || !have_tets;
+    boxes.push_back(counts ? source.box : collide::no_box<double, 3>());
     sources_.push_back(source.owner);
   }
   Aabb around = collide::no_box<double, 3>();

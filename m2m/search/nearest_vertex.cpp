@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace tess::m2m {
 namespace {
@@ -11,6 +12,12 @@ constexpr std::int32_t points_of_leaf = 16;
 
 std::size_t at(std::int32_t index) {
   return static_cast<std::size_t>(index);
+}
+
+std::vector<std::int32_t> all(std::size_t n) {
+  std::vector<std::int32_t> indices(n);
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
 }
 
 std::size_t longest_axis(const Aabb& box) {
@@ -23,10 +30,14 @@ std::size_t longest_axis(const Aabb& box) {
 }  // namespace
 
 NearestVertex::NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids)
-    : points_(points.begin(), points.end()), vertices_(points.size()) {
-  std::iota(vertices_.begin(), vertices_.end(), 0);
-  if (!points.empty()) build(0, static_cast<std::int32_t>(points.size()));
+    : NearestVertex(points, ids, all(points.size())) {}
+
+NearestVertex::NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids,
+                             std::vector<std::int32_t> vertices)
+    : points_(points.begin(), points.end()), vertices_(std::move(vertices)) {
+  if (!vertices_.empty()) build(0, static_cast<std::int32_t>(vertices_.size()));
   for (std::size_t i = 0; i < vertices_.size(); ++i) points_[i] = points[at(vertices_[i])];
+  points_.resize(vertices_.size());
   for (const std::int32_t v : vertices_) ids_.push_back(ids.empty() ? v : ids[at(v)]);
 }
 

@@ -38,6 +38,9 @@ class NearestVertex {
   };
   /// Copies the points. `ids`: per point, or empty if the indices are the ids. O(n log n).
   explicit NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids = {});
+  /// Of these points only, by index.
+  NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids,
+                std::vector<std::int32_t> vertices);
 
   /// The vertex nearest to `p` within the reach (inclusive); vertex -1 if there is none.
   [[nodiscard]] Answer find(const Point& p,

@@ -32,6 +32,7 @@ exits 2 "--max-level" "$bin" --max-level 9
 exits 2 "--order" "$bin" --order 4
 exits 2 "--velocity" "$bin" --velocity 0,0,0
 exits 2 "--velocity" "$bin" --velocity 1,1
+exits 2 "--time 1" "$bin" --steps 5 --time 1
 exits 2 "gredy" "$bin" --balance gredy
 exits 2 "periodic" "$bin" --balance greedy,when=periodic,period=1s
 exits 2 "needs --study" "$bin" --plot "$scratch/x.svg"

@@ -108,7 +108,7 @@ refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/
 overset=("$bin/overset" --json "$scratch/result.json")
 refuses "kuhn:3 has no cavity" "${overset[@]}" kuhn:4 kuhn:3
 refuses "ball:1: give a number" "${overset[@]}" kuhn:4 ball:1
-refuses "no side set body" "${overset[@]}" kuhn:4 ball:4 --wall body
+refuses "no side set body; it has none, since only ExodusII" "${overset[@]}" kuhn:4 ball:4 --wall body
 refuses "missing.obj" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/missing.obj"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/sheet.obj"
 refuses "the wall is open" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/sheet.obj"

@@ -3,7 +3,12 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -69,4 +74,31 @@ TEST_CASE("a value outside of the range is refused with the range", "[apps][comm
   char value[] = "65";
   char* argv[] = {program, name, value};
   CHECK_THROWS_WITH(line.parse(3, argv), Catch::Contains("65") && Catch::Contains("1 to 64"));
+}
+
+TEST_CASE("an option without a sign takes no negative number, nor one beyond 64 bits",
+          "[apps][command_line]") {
+  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> bytes;
+  std::vector<std::uint64_t> limits;
+  apps::CommandLine line("A program.");
+  line.option("--seed", seed, "of the work");
+  line.option("--bytes", bytes, "of a message");
+  line.option("--limits", limits, "of PEs").separated_by(',');
+  const auto parse = [&](std::string option, std::string value) {
+    std::array<std::string, 3> words{"program", std::move(option), std::move(value)};
+    std::array<char*, 3> arguments{words[0].data(), words[1].data(), words[2].data()};
+    (void)line.parse(3, arguments.data());
+  };
+  for (const char* const option : {"--seed", "--bytes", "--limits"}) {
+    CAPTURE(option);
+    for (const char* const value : {"-1", "18446744073709551616"})
+      CHECK_THROWS_WITH(
+          parse(option, value),
+          Catch::Contains(option) && Catch::Contains(value) &&
+              Catch::Contains("is not a whole number from 0 to 18446744073709551615"));
+  }
+  CHECK_THROWS_WITH(parse("--limits", "5,-1"), Catch::Contains("-1 is not a whole number"));
+  parse("--limits", "5,18446744073709551615");
+  CHECK(limits == std::vector<std::uint64_t>{5, 18446744073709551615U});
 }

@@ -106,6 +106,19 @@ TEST_CASE("each kind gives the same bits for any number of parts and any schedul
   }
 }
 
+TEST_CASE("a vertex that no tetrahedron uses is the nearest of no point", "[m2m][kinds]") {
+  const TetMesh source = read_mesh("kuhn:1");
+  TetMesh with_unused = source, target = read_mesh("kuhn:2");
+  with_unused.points.push_back({2.4, 0.1, 0.2});
+  for (Point& p : target.points) p[0] += 2.5;
+  const auto want = linear_result(source, target, {TransferKind::nearest, 1}, 1);
+  test::for_seeds(1, 8, [&](std::uint64_t seed) {
+    // Of many parts most have no tetrahedron, and one of these has the vertex.
+    const KindCut cut{TransferKind::nearest, static_cast<std::int32_t>(seed % 2 == 0 ? seed : 40)};
+    test::expect(linear_result(with_unused, target, cut, seed) == want, "it gives its value");
+  });
+}
+
 TEST_CASE("the error falls with the order of the kind", "[m2m][kinds]") {
   const auto order = [](TransferKind kind) {
     return std::log2(result_of({kind, 6, 3}, 1).error / result_of({kind, 12, 3}, 1).error);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fmt/core.h>
 #include <optional>
 #include <utility>
 
@@ -90,6 +91,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     const std::int64_t n = count(EX_INQ_NODES, "number of nodes");
     check_n_points(mesh, n, path_);
     std::vector<double> values(static_cast<std::size_t>(n));
+    check_shape(fmt::format("vals_nod_var{}", variable), n);
     if (n > 0)
       check(ex_get_var(id_, static_cast<int>(step + 1), EX_NODAL, variable, 1, n, values.data()),
             "ex_get_var");
@@ -119,6 +121,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
       if (!is_there)
         fail(ErrorCode::bad_value, path_, ": variable '", fields_[field].name,
              "' is missing in block ", id, "; write it for all blocks, or choose another one");
+      check_shape(fmt::format("vals_elem_var{}eb{}", variable, row), block.n_elements);
       const std::size_t first = values.size();
       values.resize(first + static_cast<std::size_t>(block.n_elements));
       check(ex_get_var(id_, static_cast<int>(step + 1), EX_ELEM_BLOCK, variable, id,

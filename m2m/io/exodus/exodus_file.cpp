@@ -120,4 +120,19 @@ ExodusFile::ElementBlock ExodusFile::block_of(std::int64_t id) const {
   return {id, std::move(type), block.num_entry, block.num_nodes_per_entry};
 }
 
+void ExodusFile::check_shape(const std::string& variable, std::int64_t n) const {
+  int at = 0, n_dimensions = 0;
+  std::array<int, NC_MAX_VAR_DIMS> dimensions{};
+  std::size_t length = 0;
+  if (nc_inq_varid(id_, variable.c_str(), &at) != NC_NOERR)
+    return;  // in another layout, or missing
+  check(nc_inq_varndims(id_, at, &n_dimensions), "nc_inq_varndims");
+  check(nc_inq_vardimid(id_, at, dimensions.data()), "nc_inq_vardimid");
+  if (n_dimensions == 2) check(nc_inq_dimlen(id_, dimensions[1], &length), "nc_inq_dimlen");
+  if (n_dimensions != 2 || length != static_cast<std::size_t>(n))
+    fail(
+        ErrorCode::bad_file, path_, ": variable ", variable, " is not ", n,
+        " numbers per step, as ExodusII defines it; write each component as a variable of its own");
+}
+
 }  // namespace tess::m2m

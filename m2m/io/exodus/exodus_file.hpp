@@ -43,6 +43,9 @@ class ExodusFile {
     std::int64_t n_vertices_each = 0;
   };
   [[nodiscard]] ElementBlock block_of(std::int64_t id) const;
+  /// Refuses a variable that is not time steps × `n`, as ExodusII defines it. The library would read
+  /// other numbers in their place.
+  void check_shape(const std::string& variable, std::int64_t n) const;
 
   const std::string& path_;
   int id_ = -1;

@@ -147,14 +147,16 @@ class GmshReader {
     return *type;
   }
 
+  /// Reads the vertices of an element with the tag `label`. `entity` and `group`: the entity of the
+  /// model that it meshes, and the physical group that it is written for (version 2.2, otherwise 0).
   template <class Tag>
-  void element(const GmshElement& type, Tag label) {
+  void element(const GmshElement& type, Tag label, int entity = 0, int group = 0) {
     const auto volume = gmsh_volume(type.number);
     if (!volume) {
       ++n_skipped_[static_cast<std::size_t>(type.number)];
       return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
     }
-    std::array<VertexId, 10> ids;
+    std::array<VertexId, 10> ids{};
     const auto corners = std::span(ids).first(static_cast<std::size_t>(type.n_vertices));
     for (VertexId& vertex : corners) {
       const Tag tag = file_.number<Tag>();
@@ -165,8 +167,21 @@ class GmshReader {
       }
     }
     if (*volume == ElementType::tet10) std::swap(ids[8], ids[9]);
+    if (is_repeated(type, ids, entity, group)) {  // gmsh writes values for the last tag
+      if (tags_out_ != nullptr) volume_tags_.back() = static_cast<std::uint64_t>(label);
+      return;
+    }
     if (tags_out_ != nullptr) volume_tags_.push_back(static_cast<std::uint64_t>(label));
     elements_.add(*volume, corners);
+  }
+
+  /// Version 2.2 has one physical group per element. Of an entity in several groups gmsh writes each
+  /// element once for each group, in a row, every time with another tag.
+  bool is_repeated(const GmshElement& type, const std::array<VertexId, 10>& ids, int entity,
+                   int group) {
+    const Volume last = std::exchange(last_volume_, {&type, ids, entity, group});
+    return last.type == &type && last.entity == entity && last.group != group &&
+           std::equal(ids.begin(), ids.begin() + type.n_vertices, last.ids.begin());
   }
 
   void elements_22() {
@@ -190,8 +205,12 @@ class GmshReader {
       if (n_labels < 0) file_.damaged(n_labels, " labels");
       for (std::size_t k = 0; k < group; ++k) {
         if (binary_) tag = file_.number<int>();
-        file_.skip<int>(static_cast<std::size_t>(n_labels));
-        element<int>(type, tag);
+        std::array<int, 2> labels{};  // the physical group, the entity
+        for (std::size_t l = 0; l < static_cast<std::size_t>(n_labels); ++l) {
+          const int label = file_.number<int>();
+          if (l < labels.size()) labels[l] = label;
+        }
+        element<int>(type, tag, labels[1], labels[0]);
       }
       i += group;
     }
@@ -220,12 +239,19 @@ class GmshReader {
   static constexpr const char* supported =
       "of volumes, tet4, tet10, hex8, prism6 and pyramid5 are supported";
 
+  struct Volume {
+    const GmshElement* type = nullptr;
+    std::array<VertexId, 10> ids{};
+    int entity = 0, group = 0;
+  };
+
   GmshScanner file_;
   TetMesh mesh_;
   ElementSplitter elements_{mesh_};
   std::vector<std::uint64_t> node_tags_;
   GmshTagMap tags_;
   GmshTags* tags_out_;
+  Volume last_volume_;                          // of version 2.2
   std::vector<std::uint64_t> volume_tags_;      // if they are asked for
   std::array<std::uint64_t, 128> n_skipped_{};  // per type number
   bool have_format_ = false;

@@ -13,7 +13,8 @@ namespace tess::m2m {
 
 /// `bytes`: the content of the file at `path`. Throws Error (bad_file) if the file is damaged,
 /// (bad_mesh) if it has volume elements of another type. Node tags may have gaps of any size;
-/// vertices keep the order of the file. `tags`: if not null, gets the tags.
+/// vertices keep the order of the file. Of copies of an element, one per physical group as in version
+/// 2.2, one is read. `tags`: if not null, gets the tags, of copies the last.
 [[nodiscard]] TetMesh read_gmsh(const std::string& path, std::string_view bytes,
                                 GmshTags* tags = nullptr);
 

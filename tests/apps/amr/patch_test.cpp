@@ -256,4 +256,6 @@ TEST_CASE("problems that cannot be computed are refused", "[apps][amr]") {
   refused([](Problem& p) { p.n_cells = 2; });
   refused([](Problem& p) { p.least_level = 5; });
   refused([](Problem& p) { p.velocity = {}; });
+  refused([](Problem& p) { p.velocity[1] = std::nan(""); });
+  refused([](Problem& p) { p.centre[2] = std::nan(""); });
 }

@@ -265,6 +265,57 @@ TEST_CASE("scalars that are no vector stay apart", "[m2m][io]") {
   CHECK(file.vertex_field(mesh, "U", 0).values.size() == 3 * mesh.n_points());
 }
 
+TEST_CASE("a variable of other dimensions than ExodusII defines is refused, also in NetCDF-4",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("vector.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER | EX_NETCDF4, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 4> x{0, 1, 0, 0}, y{0, 0, 1, 0}, z{0, 0, 0, 1};
+  const std::array<int, 4> vertices{1, 2, 3, 4};
+  ex_put_init(id, "one", 3, 4, 1, 1, 0, 0);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  ex_put_block(id, EX_ELEM_BLOCK, 7, "TETRA", 1, 4, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 7, vertices.data(), nullptr, nullptr);
+  const double time = 0;
+  ex_put_time(id, 1, &time);
+  // As meshio writes a scalar p and a vector u, whose dimensions have names of its own.
+  int n_variables = 0, n_letters = 0, steps = 0, n_points = 0, n_components = 0;
+  int names = 0, scalar = 0, vector = 0;
+  const auto define = [&](const char* name, nc_type type, std::initializer_list<int> shape) {
+    int variable = 0;
+    REQUIRE(nc_def_var(id, name, type, static_cast<int>(shape.size()), std::data(shape),
+                       &variable) == NC_NOERR);
+    return variable;
+  };
+  REQUIRE(nc_redef(id) == NC_NOERR);
+  REQUIRE(nc_inq_dimid(id, "time_step", &steps) == NC_NOERR);
+  REQUIRE(nc_def_dim(id, "num_nod_var", 2, &n_variables) == NC_NOERR);
+  REQUIRE(nc_def_dim(id, "letters", 33, &n_letters) == NC_NOERR);
+  REQUIRE(nc_def_dim(id, "dim_nod_var00", 4, &n_points) == NC_NOERR);
+  REQUIRE(nc_def_dim(id, "dim_nod_var11", 3, &n_components) == NC_NOERR);
+  names = define("name_nod_var", NC_CHAR, {n_variables, n_letters});
+  scalar = define("vals_nod_var1", NC_DOUBLE, {steps, n_points});
+  vector = define("vals_nod_var2", NC_DOUBLE, {steps, n_points, n_components});
+  REQUIRE(nc_enddef(id) == NC_NOERR);
+  const std::array<std::size_t, 3> first{}, one_step{1, 4, 3};
+  std::array<char, 66> letters{};
+  letters[0] = 'p';
+  letters[33] = 'u';
+  const std::array<std::size_t, 2> both{2, 33};
+  REQUIRE(nc_put_vara_text(id, names, first.data(), both.data(), letters.data()) == NC_NOERR);
+  REQUIRE(nc_put_vara_double(id, scalar, first.data(), one_step.data(), x.data()) == NC_NOERR);
+  const std::array<double, 12> u{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  REQUIRE(nc_put_vara_double(id, vector, first.data(), one_step.data(), u.data()) == NC_NOERR);
+  ex_close(id);
+  const TetMesh mesh = read_mesh(path);
+  const FieldFile file(path);
+  CHECK(file.vertex_field(mesh, "p", 0).values == std::vector<double>(x.begin(), x.end()));
+  CHECK_THAT(message_of([&] { (void)file.vertex_field(mesh, "u", 0); }),
+             Catch::Contains(path + ": variable vals_nod_var2 is not 4 numbers per step"));
+}
+
 TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any order of tags",
           "[m2m][io]") {
   const Scratch scratch;
@@ -309,6 +360,28 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
       }
     }
   }
+}
+
+TEST_CASE("an element that version 2.2 writes once per physical group is one element",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string head =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+      "5 1 1 1\n$EndNodes\n$Elements\n6\n";
+  // The entity 1 is in the groups 10, 30 and 40, the entity 2 in 20 and 30, with partitions behind.
+  const std::string path = scratch.write(
+      "groups.msh",
+      head +
+          "1 4 2 10 1 1 2 3 4\n2 4 2 30 1 1 2 3 4\n3 4 2 40 1 1 2 3 4\n"
+          "4 4 5 20 2 2 1 -2 2 3 4 5\n5 4 5 30 2 2 1 -2 2 3 4 5\n6 2 2 5 1 1 2 3\n$EndElements\n" +
+          text_of({"ElementData", "c", 0, 0, {{3, {7}}, {5, {8}}}}, false));  // as gmsh writes
+  const TetMesh mesh = read_mesh(path);
+  CHECK(mesh.tets == std::vector<tess::m2m::Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}});
+  CHECK(FieldFile(path).tet_field(mesh, "c", 0).values == std::vector<double>{7, 8});
+  const std::string twice =
+      scratch.write("twice.msh", head.substr(0, head.size() - 2) +
+                                     "2\n1 4 2 10 1 1 2 3 4\n2 4 2 10 1 1 2 3 4\n$EndElements\n");
+  CHECK(read_mesh(twice).n_tets() == 2);  // in one group: as it is
 }
 
 TEST_CASE("gmsh's partitions of a step are joined; a vertex without a value is named",
