@@ -241,8 +241,9 @@ class Pe {
   /// Ends with an error that says why it was destroyed, or never was there.
   [[nodiscard]] void* require_future(std::uint64_t id) const;
 
-  /// Keeps an exception that a coroutine threw after it had waited; it is rethrown at the end of
-  /// the message.
+  /// Keeps an exception that no user code may catch: of a coroutine after it has waited, or of a
+  /// message that cannot be packed, whose epoch would wait for ever. It is rethrown at the end of the
+  /// message that runs.
   void keep_exception(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();

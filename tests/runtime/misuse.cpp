@@ -49,6 +49,22 @@ struct Refused {
   friend Refused operator+(Refused a, const Refused& /*b*/) { return a; }
 };
 
+/// The same, of no std::exception.
+struct Unclear {
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    if (Ar::is_reading) throw 7;
+  }
+};
+
+/// Throws where it is written.
+struct Unwritten {
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    if (!Ar::is_reading) throw std::runtime_error("the value stays here");
+  }
+};
+
 /// A base class with a serialize() of its own, which knows nothing of what derives from it.
 struct Shape {
   int n = 0;
@@ -162,6 +178,19 @@ template <class Value>
 void hear_all() {
   const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::n_pes()));
   carriers.template broadcast<&Carrier<Value>::hear>(Value{});
+}
+/// The message counts as sent in the epoch that keeps the exception.
+template <class Value>
+tess::Task hear_in_epoch() {
+  co_await tess::epoch(&hear<Value>);
+}
+template <class Value>
+void hear_and_catch() {
+  try {
+    hear<Value>();
+  } catch (const std::exception&) {
+    tess::print("caught\n");
+  }
 }
 template <class Value>
 tess::Task sum_all() {
@@ -336,6 +365,10 @@ const std::map<std::string, std::function<void()>> misuses{
     {"short_sum", [] { const tess::Task task = sum_all<Short>(); }},
     {"refused_element", &carry<Refused>},
     {"refused_argument", &hear<Refused>},
+    {"unclear_argument", &hear<Unclear>},
+    {"unwritten_argument", [] { const tess::Task task = hear_in_epoch<Unwritten>(); }},
+    {"unwritten_broadcast", &hear_all<Unwritten>},
+    {"unwritten_and_caught", &hear_and_catch<Unwritten>},
     {"refused_broadcast", &hear_all<Refused>},
     {"refused_sum", [] { const tess::Task task = sum_all<Refused>(); }},
     {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},

@@ -101,6 +101,14 @@ says simulated refused_argument "$argument"
 says simulated refused_broadcast "$thrown"
 says simulated refused_sum "$thrown"
 says processes refused_argument "$heard"
+says simulated unclear_argument "an exception that is not a std::exception"
+# What throws while it is written: the run ends also if the program keeps the exception. (With TESS_CHECKS=all it throws before it
+# counts as sent.)
+for misuse in unwritten_argument unwritten_broadcast; do
+  says simulated $misuse "uncaught exception: the value stays here" "on PE 0"
+done
+[[ $checks == all ]] || says simulated unwritten_and_caught "uncaught exception: the value stays here" "on PE 0"
+says processes unwritten_argument "uncaught exception: the value stays here" "on PE 0"
 says processes short_element "Uneven<0> \?>\[0\]\|Uneven<0>: " "serialize()"
 
 finish
