@@ -29,6 +29,7 @@ void resume(Task::Handle task) {
     pe.context().element = nullptr;
     pe.context().epoch = context.epoch;
     pe.context().led_by = context.led_by;
+    pe.context().led_in = context.led_in;
     const WatchedMain watched(pe.watch(), pe.running());
     task.resume();
     return;

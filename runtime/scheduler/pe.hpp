@@ -45,13 +45,14 @@ struct MessageFault;
 struct Waits;
 struct MessageOptions;
 
-/// The context of running code: its element, its epoch, and the broadcast of the element's
-/// collection that led to it (0: none).
+/// The context of running code: its element, its epoch, and the broadcast that led to it (0: none)
+/// with the collection of that broadcast. The collection is that of the element if there is one.
 struct Context {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
   std::uint32_t led_by = 0;
+  CollectionId led_in{};
 };
 
 /// Counters of a PE since the start; printed by --stats.
