@@ -5,6 +5,7 @@
 #include "runtime/balance.hpp"
 #include "runtime/index_map.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/when.hpp"
 
 #include <functional>
 #include <map>
@@ -99,6 +100,13 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void answer(tess::Callback<int> target) { target(7); }
   void give(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
   void give_to_some() { contribute(tess::sum, 1, array()[{index().x % 2}].target<&Block::take>()); }
+  void give_different(tess::Callback<int> target) {
+    if (index().x == 0) {
+      contribute(tess::sum, 1, target);
+    } else {
+      contribute(tess::max, 1, target);
+    }
+  }
   void give_scaled(tess::Callback<int> target) { contribute(Scaled{index().x}, 1, target); }
   void take(int /*sum*/) {}
   void count(std::uint64_t /*n*/) {}
@@ -215,10 +223,22 @@ tess::Task sum_of_empty_section() {
   (void)co_await sum;
 }
 
+tess::Task any_of_none() {
+  std::vector<tess::Future<int>> none;
+  (void)co_await tess::when_any(std::move(none));
+}
+
 tess::Task sum_scaled() {
   const auto blocks = tess::create<Block>(tess::range(3));
   tess::Future<int> sum;
   blocks.broadcast<&Block::give_scaled>(sum.callback());
+  (void)co_await sum;
+}
+
+tess::Task sum_different() {
+  const auto blocks = tess::create<Block>(tess::range(2));
+  tess::Future<int> sum;
+  blocks.broadcast<&Block::give_different>(sum.callback());
   (void)co_await sum;
 }
 
@@ -327,6 +347,8 @@ const std::map<std::string, std::function<void()>> misuses{
     {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
     {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
+    {"any_of_none", [] { const tess::Task task = any_of_none(); }},
+    {"different_values", [] { const tess::Task task = sum_different(); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
     {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},
     {"index_of_64_bits", [] { blocks()[std::int64_t{1} << 32U].send<&Block::nothing>(); }},
@@ -367,6 +389,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"refused_argument", &hear<Refused>},
     {"unclear_argument", &hear<Unclear>},
     {"unwritten_argument", [] { const tess::Task task = hear_in_epoch<Unwritten>(); }},
+    {"unwritten_element", &carry<Unwritten>},
     {"unwritten_broadcast", &hear_all<Unwritten>},
     {"unwritten_and_caught", &hear_and_catch<Unwritten>},
     {"refused_broadcast", &hear_all<Refused>},
