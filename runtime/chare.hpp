@@ -44,11 +44,21 @@ class Chare : public detail::TessContributor<IndexType> {
   /// the move, unless a waiting coroutine delays it (that coroutine may await the epoch).
   void migrate_to(PeId pe) {
     detail::check_exists(current_pe(), pe);
-    this->migrate_to_ = pe;
+    if (this->is_called_directly()) {
+      self().migrate_to(pe);
+    } else {
+      this->migrate_to_ = pe;
+    }
   }
 
   /// Destroys this element once none of its code runs or waits.
-  void destroy() { this->destroy_requested_ = true; }
+  void destroy() {
+    if (this->is_called_directly()) {
+      self().destroy();
+    } else {
+      this->destroy_requested_ = true;
+    }
+  }
 
   /// Marks the end of this element's part of the phase, at the balancer's barrier
   /// (start_balancing). Once all members have called it and the round is over, resume_from_sync()
