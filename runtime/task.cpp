@@ -46,6 +46,11 @@ void run_resumption(Pe& /*pe*/, Resumption&& resumption) {
 
 }  // namespace
 
+void TaskAccount::belongs_to(const Element& element) {
+  context.element = const_cast<Element*>(&element);
+  context.led_by = 0;
+}
+
 void TaskAccount::hold() {
   if (held) return;
   held = true;

@@ -94,8 +94,18 @@ class Summoned : public tess::Chare<Summoned> {
   void end() { destroy(); }
   void count(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
   [[nodiscard]] tess::PeId pe() { return tess::my_pe(); }
+  tess::Task rest() {
+    (void)co_await self().ask<&Summoned::pe>();
+    ++n_rests_;
+  }
+  [[nodiscard]] int n_rests() { return n_rests_; }
   template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(Ar& ar) {
+    ar(n_rests_);
+  }
+
+ private:
+  int n_rests_ = 0;
 };
 
 tess::Task call_two(bool in_any_order) {
@@ -112,6 +122,16 @@ tess::Task call_two(bool in_any_order) {
   summoned.broadcast<&Summoned::count>(n_left.callback());
   const int left = co_await n_left;
   CHECK(left == 7);
+}
+
+tess::Task call_coroutine() {
+  const auto summoned = tess::create<Summoned>(tess::range(8));
+  co_await tess::epoch([&] {
+    const tess::Task rests = summoned.local({0})->rest();
+    summoned[0].send<&Summoned::go>(tess::PeId{3});
+  });
+  const int n = co_await summoned[0].ask<&Summoned::n_rests>();
+  CHECK(n == 1);
 }
 
 class Cube : public tess::Chare<Cube, tess::Index3> {};
@@ -248,6 +268,10 @@ TEST_CASE("an element is found on its PE only", "[api]") {
 TEST_CASE("an element that other code calls as an object moves and ends", "[api]") {
   REQUIRE(run_seeded(std::nullopt, [] { return call_two(false); }) == 0);
   over_seeds([] { return call_two(true); });
+}
+
+TEST_CASE("an element stays while its coroutine waits that other code called", "[api]") {
+  over_seeds(&call_coroutine);
 }
 
 TEST_CASE("an element of one axis is named by an integer of any type, too", "[api]") {
