@@ -54,7 +54,7 @@ class ArrayProxy {
       delete;
 
   /// The element of this index if it is on this PE now, otherwise null. It may leave or be destroyed
-  /// once the current message is done.
+  /// once the current message is done, unless a coroutine of it waits.
   template <class Of = C>
   [[nodiscard]] Of* local(const typename Of::Index& index) const {
     return static_cast<Of*>(here().find(index));

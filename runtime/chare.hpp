@@ -44,11 +44,21 @@ class Chare : public detail::TessContributor<IndexType> {
   /// the move, unless a waiting coroutine delays it (that coroutine may await the epoch).
   void migrate_to(PeId pe) {
     detail::check_exists(current_pe(), pe);
-    this->migrate_to_ = pe;
+    if (this->is_called_directly()) {
+      self().migrate_to(pe);
+    } else {
+      this->migrate_to_ = pe;
+    }
   }
 
   /// Destroys this element once none of its code runs or waits.
-  void destroy() { this->destroy_requested_ = true; }
+  void destroy() {
+    if (this->is_called_directly()) {
+      self().destroy();
+    } else {
+      this->destroy_requested_ = true;
+    }
+  }
 
   /// Marks the end of this element's part of the phase, at the balancer's barrier
   /// (start_balancing). Once all members have called it and the round is over, resume_from_sync()
@@ -80,10 +90,15 @@ class Chare : public detail::TessContributor<IndexType> {
   /// the first reduction that its PE has not reported and that no earlier broadcast led to. So an
   /// element that is created after a result was awaited takes part only in later rounds, and an
   /// element that is created in the middle of a round takes part in the round if it receives its
-  /// broadcast. A broadcast leads to the contributions of its entry method, and of the coroutines
-  /// and messages between elements of the array that follow from it. If rounds overlap (a broadcast
-  /// is started before the result of the last one is known), insert elements while no round is
-  /// under way: a new element that contributes to a round before its first is refused by name.
+  /// broadcast. A broadcast leads to the contributions of its entry method, and of the coroutines,
+  /// timers and messages between elements of the array that follow from it.
+  ///
+  /// Insert elements while no round is under way, and await an epoch around it, in two cases. If
+  /// rounds overlap (a broadcast is started before the result of the last one is known): a new
+  /// element that contributes to a round before its first is refused by name. And if elements
+  /// contribute in an entry method that another array or group calls, or the main program: the round
+  /// in whose middle an element is created waits for it (a coroutine of a broadcast that awaits such
+  /// a message is no such case).
   using detail::TessContributor<IndexType>::contribute;
 };
 

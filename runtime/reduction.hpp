@@ -92,7 +92,7 @@ inline constexpr LogicalAnd logical_and{};
 inline constexpr LogicalOr logical_or{};
 inline constexpr Concatenate concatenate{};
 
-/// The list of all pairs (index, value), in the order of indices:
+/// The list of all pairs (index, value), in the order of indices, whose type has an operator<:
 /// contribute(tess::gather, x, target) with a Callback<std::vector<std::pair<Index, T>>>.
 struct Gather {};
 inline constexpr Gather gather{};

@@ -5,8 +5,9 @@
 //     contribute(row, tess::sum, value, target);      // in a member: a reduction over the members
 //
 // The members are the elements that the list finds: one that is created later joins then, one that
-// is destroyed leaves, and a later element of its index is no member. Members may migrate at any
-// time. An element may be in many sections.
+// is destroyed leaves, and a later element of its index is no member. Multicasts reach at once the
+// members that are there; a reduction, and the epoch of a multicast, wait until all indices of the
+// list have had their element. Members may migrate at any time. An element may be in many sections.
 #pragma once
 
 #include "runtime/array.hpp"

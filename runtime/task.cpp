@@ -29,6 +29,7 @@ void resume(Task::Handle task) {
     pe.context().element = nullptr;
     pe.context().epoch = context.epoch;
     pe.context().led_by = context.led_by;
+    pe.context().led_in = context.led_in;
     const WatchedMain watched(pe.watch(), pe.running());
     task.resume();
     return;
@@ -44,6 +45,11 @@ void run_resumption(Pe& /*pe*/, Resumption&& resumption) {
 }
 
 }  // namespace
+
+void TaskAccount::belongs_to(const Element& element) {
+  context.element = const_cast<Element*>(&element);
+  context.led_by = 0;
+}
 
 void TaskAccount::hold() {
   if (held) return;

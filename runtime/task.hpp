@@ -6,10 +6,12 @@
 
 #include "runtime/scheduler/block.hpp"
 
+#include <concepts>
 #include <coroutine>
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <type_traits>
 #include <utility>
 
 namespace tess {
@@ -23,6 +25,7 @@ struct TaskAccount {
   bool held = false;  // the coroutine waits, and holds the element and the epoch
   Suspended entry;
 
+  void belongs_to(const Element& element);
   void hold();
   void release();
 
@@ -49,6 +52,13 @@ class [[nodiscard]] Task {
     std::exception_ptr error;
 
     promise_type();
+    /// A member function of an element: the coroutine is that element's, also if other code calls it
+    /// as an object. (The class of a lambda is not complete yet, and g++ 12 deduces a reference.)
+    template <class Object, class... Arguments>
+      requires std::convertible_to<std::remove_reference_t<Object>*, const detail::TessElement*>
+    explicit promise_type(Object& object, Arguments&... /*unused*/) : promise_type() {
+      if (account.context.element != &object) account.belongs_to(object);
+    }
     Task get_return_object() {
       return Task(std::coroutine_handle<promise_type>::from_promise(*this));
     }

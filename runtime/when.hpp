@@ -15,6 +15,7 @@
 #pragma once
 
 #include "runtime/callback.hpp"
+#include "runtime/core/check.hpp"
 #include "runtime/epoch.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/task.hpp"
@@ -317,10 +318,11 @@ template <class... A>
   static_assert(detail::check_joined<A...>());
   return detail::WhenAny<detail::PartsOf<A...>>(detail::PartsOf<A...>(std::forward<A>(a)...));
 }
-/// The same of a vector: gives {which, value}.
+/// The same of a vector, which is not empty: gives {which, value}.
 template <class A>
 [[nodiscard]] auto when_any(std::vector<A>&& a) {
   static_assert(detail::check_joined<A>());
+  TESS_CHECK(!a.empty(), "when_any() of an empty vector has no first result: give at least one");
   return detail::WhenAny<detail::PartsOfVector<A>>(detail::PartsOfVector<A>(std::move(a)));
 }
 

@@ -108,9 +108,7 @@ class Collection : public HostedCollection {
 
   /// The broadcast of a collection that led to the running code; 0 if none did.
   [[nodiscard]] static std::uint32_t led_by(const Context& context, CollectionId collection) {
-    return context.element != nullptr && context.element->collection_->id() == collection
-               ? context.led_by
-               : 0;
+    return context.led_in == collection ? context.led_by : 0;
   }
 
   // For the balancer.
@@ -299,7 +297,8 @@ class ElementScope {
                std::uint32_t led_by = 0)
       : pe_(pe),
         element_(element),
-        context_{&element, action, epoch, led_by},
+        context_{&element, action, epoch, led_by,
+                 led_by == 0 ? CollectionId{} : element.collection_->id()},
         before_(pe.enter(&context_)),
         meter_(pe.meter()) {
     ++element.n_suspended_;

@@ -11,7 +11,17 @@ namespace tess::detail {
 
 std::uint64_t Collection::n_bytes_of(Element& element, PackElement pack) {
   Writer count{std::span<std::byte>()};
-  pack(element, count);
+  try {
+    pack(element, count);
+  } catch (...) {  // the report names the element, none of whose code runs
+    Pe& pe = current_pe();
+    Context writes = pe.context();
+    writes.element = &element;
+    Context* const before = pe.enter(&writes);
+    pe.note_place();
+    pe.enter(before);
+    throw;
+  }
   return count.n_bytes();
 }
 

@@ -8,9 +8,18 @@
 
 #include <cstdint>
 #include <exception>
+#include <string>
 #include <string_view>
 
 namespace tess::detail {
+
+/// serialize() threw where no entry method runs that could catch it.
+[[noreturn]] inline void refuse_reading(const std::string& what, std::size_t n_bytes,
+                                        const char* error) {
+  check_failed("read back", __FILE__, __LINE__,
+               text(what, ": serialize() threw while it read ", n_bytes, " bytes: ", error,
+                    "; does it read what it writes?"));
+}
 
 /// Calls read(body), which must read all of it. `what` returns the name for the report.
 template <class What, class Read>
@@ -21,10 +30,10 @@ auto read_all(Reader& body, const What& what, const Read& read) {
     TESS_CHECK(body.remaining() == 0, what(), ": ", body.remaining(), " of ", n_bytes,
                " bytes are left when it is read back; does serialize() read what it writes?");
     return value;
-  } catch (const std::exception& error) {  // no entry method runs that could catch it
-    check_failed("read back", __FILE__, __LINE__,
-                 text(what(), ": serialize() threw while it read ", n_bytes,
-                      " bytes: ", error.what(), "; does it read what it writes?"));
+  } catch (const std::exception& error) {
+    refuse_reading(what(), n_bytes, error.what());
+  } catch (...) {
+    refuse_reading(what(), n_bytes, "an exception that is not a std::exception");
   }
 }
 

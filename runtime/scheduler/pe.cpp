@@ -126,7 +126,11 @@ void Pe::carry(PeId to, Envelope* message) {
     pass(to, message, sizeof(Envelope));
   } else {
     ++statistics_.sent_remote;
-    outbox_->put(message);
+    try {
+      outbox_->put(message);
+    } catch (...) {  // serialize() of an argument threw; the message counts as sent already
+      keep_exception(std::current_exception());
+    }
     if (outbox_->holds()) hold();
   }
 }

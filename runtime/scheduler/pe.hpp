@@ -45,13 +45,14 @@ struct MessageFault;
 struct Waits;
 struct MessageOptions;
 
-/// The context of running code: its element, its epoch, and the broadcast of the element's
-/// collection that led to it (0: none).
+/// The context of running code: its element, its epoch, and the broadcast that led to it (0: none)
+/// with the collection of that broadcast. The collection is that of the element if there is one.
 struct Context {
   Element* element = nullptr;
   const Action* action = nullptr;
   EpochId epoch{};
   std::uint32_t led_by = 0;
+  CollectionId led_in{};
 };
 
 /// Counters of a PE since the start; printed by --stats.
@@ -241,8 +242,9 @@ class Pe {
   /// Ends with an error that says why it was destroyed, or never was there.
   [[nodiscard]] void* require_future(std::uint64_t id) const;
 
-  /// Keeps an exception that a coroutine threw after it had waited; it is rethrown at the end of
-  /// the message.
+  /// Keeps an exception that no user code may catch: of a coroutine after it has waited, or of a
+  /// message that cannot be packed, whose epoch would wait for ever. It is rethrown at the end of the
+  /// message that runs.
   void keep_exception(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();

@@ -53,6 +53,8 @@ Time after_now(Pe& pe, Time delay) {
 struct Timers::Tables {
   struct Once {
     EpochId epoch;
+    std::uint32_t led_by = 0;  // the broadcast that led to the timer, as in Context
+    CollectionId led_in;
     Time due{0};
     Call call;
   };
@@ -119,10 +121,11 @@ void Timers::on_alarm(Time at) {
 
 std::uint64_t Timers::after(Time delay, Call call) {
   TESS_CHECK(delay >= Time(0), "a timer cannot wait for ", delay.count(), " ns");
-  const EpochId epoch = pe_.context().epoch;
+  const Context& context = pe_.context();
   const Time due = after_now(pe_, delay);
-  tables_->once.emplace(++n_made_, Tables::Once{epoch, due, std::move(call)});
-  pe_.completion().sent(epoch);
+  tables_->once.emplace(
+      ++n_made_, Tables::Once{context.epoch, context.led_by, context.led_in, due, std::move(call)});
+  pe_.completion().sent(context.epoch);
   pe_.completion().hop_sent();
   wait(n_made_, due, pe_.stamp(make_message<&timer_is_due>(pe_, Due{n_made_})));
   return n_made_;
@@ -133,6 +136,8 @@ void Timers::on_due(std::uint64_t timer) {
   if (at == tables_->once.end() || pe_.stopped()) return;
   const Tables::Once due = std::move(at->second);  // moved out: the call may set timers
   tables_->once.erase(at);
+  pe_.context().led_by = due.led_by;
+  pe_.context().led_in = due.led_in;
   due.call();
   pe_.completion().processed(due.epoch);
   pe_.completion().hop_processed();

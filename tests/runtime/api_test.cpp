@@ -4,11 +4,12 @@
 #include "tests/support/catch.hpp"
 
 #include <map>
+#include <optional>
 #include <unordered_set>
 
 namespace {
 
-int run_seeded(std::uint64_t seed, const std::function<tess::Task()>& main) {
+int run_seeded(std::optional<std::uint64_t> seed, const std::function<tess::Task()>& main) {
   tess::SimulatedOptions options;
   options.n_pes = 4;
   options.pes_per_process = 2;
@@ -16,7 +17,7 @@ int run_seeded(std::uint64_t seed, const std::function<tess::Task()>& main) {
   options.cost = tess::Time(100);
   tess::Setup setup;
   setup.machine = tess::make_simulated_machine(options);
-  setup.options.seed = seed;
+  setup.options.seed = seed.value_or(0);
   return tess::run(setup, main);
 }
 void over_seeds(const std::function<tess::Task()>& main) {
@@ -85,6 +86,53 @@ class Named : public tess::Chare<Named> {
  private:
   std::string name_;
 };
+
+/// Is told to move and to end.
+class Summoned : public tess::Chare<Summoned> {
+ public:
+  void go(tess::PeId pe) { migrate_to(pe); }
+  void end() { destroy(); }
+  void count(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
+  [[nodiscard]] tess::PeId pe() { return tess::my_pe(); }
+  tess::Task rest() {
+    (void)co_await self().ask<&Summoned::pe>();
+    ++n_rests_;
+  }
+  [[nodiscard]] int n_rests() { return n_rests_; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_rests_);
+  }
+
+ private:
+  int n_rests_ = 0;
+};
+
+tess::Task call_two(bool in_any_order) {
+  const auto summoned = tess::create<Summoned>(tess::range(8));
+  co_await tess::epoch([&] {
+    summoned.local({0})->go(tess::PeId{3});
+    summoned.local({1})->end();
+  });
+  if (!in_any_order) {  // otherwise it may have gone on
+    const tess::PeId pe = co_await summoned[0].ask<&Summoned::pe>();
+    CHECK(pe == tess::PeId{3});
+  }
+  tess::Future<int> n_left;
+  summoned.broadcast<&Summoned::count>(n_left.callback());
+  const int left = co_await n_left;
+  CHECK(left == 7);
+}
+
+tess::Task call_coroutine() {
+  const auto summoned = tess::create<Summoned>(tess::range(8));
+  co_await tess::epoch([&] {
+    const tess::Task rests = summoned.local({0})->rest();
+    summoned[0].send<&Summoned::go>(tess::PeId{3});
+  });
+  const int n = co_await summoned[0].ask<&Summoned::n_rests>();
+  CHECK(n == 1);
+}
 
 class Cube : public tess::Chare<Cube, tess::Index3> {};
 
@@ -215,6 +263,15 @@ TEST_CASE("an element is found on its PE only", "[api]") {
             CHECK(tess::now() > before);
             CHECK(nodes.local({0})->value() == 9);
           }) == 0);
+}
+
+TEST_CASE("an element that other code calls as an object moves and ends", "[api]") {
+  REQUIRE(run_seeded(std::nullopt, [] { return call_two(false); }) == 0);
+  over_seeds([] { return call_two(true); });
+}
+
+TEST_CASE("an element stays while its coroutine waits that other code called", "[api]") {
+  over_seeds(&call_coroutine);
 }
 
 TEST_CASE("an element of one axis is named by an integer of any type, too", "[api]") {

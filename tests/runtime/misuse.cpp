@@ -5,6 +5,7 @@
 #include "runtime/balance.hpp"
 #include "runtime/index_map.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/when.hpp"
 
 #include <functional>
 #include <map>
@@ -49,6 +50,22 @@ struct Refused {
   friend Refused operator+(Refused a, const Refused& /*b*/) { return a; }
 };
 
+/// The same, of no std::exception.
+struct Unclear {
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    if (Ar::is_reading) throw 7;
+  }
+};
+
+/// Throws where it is written.
+struct Unwritten {
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    if (!Ar::is_reading) throw std::runtime_error("the value stays here");
+  }
+};
+
 /// A base class with a serialize() of its own, which knows nothing of what derives from it.
 struct Shape {
   int n = 0;
@@ -83,6 +100,13 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void answer(tess::Callback<int> target) { target(7); }
   void give(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
   void give_to_some() { contribute(tess::sum, 1, array()[{index().x % 2}].target<&Block::take>()); }
+  void give_different(tess::Callback<int> target) {
+    if (index().x == 0) {
+      contribute(tess::sum, 1, target);
+    } else {
+      contribute(tess::max, 1, target);
+    }
+  }
   void give_scaled(tess::Callback<int> target) { contribute(Scaled{index().x}, 1, target); }
   void take(int /*sum*/) {}
   void count(std::uint64_t /*n*/) {}
@@ -163,6 +187,19 @@ void hear_all() {
   const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::n_pes()));
   carriers.template broadcast<&Carrier<Value>::hear>(Value{});
 }
+/// The message counts as sent in the epoch that keeps the exception.
+template <class Value>
+tess::Task hear_in_epoch() {
+  co_await tess::epoch(&hear<Value>);
+}
+template <class Value>
+void hear_and_catch() {
+  try {
+    hear<Value>();
+  } catch (const std::exception&) {
+    tess::print("caught\n");
+  }
+}
 template <class Value>
 tess::Task sum_all() {
   const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::n_pes()));
@@ -186,10 +223,22 @@ tess::Task sum_of_empty_section() {
   (void)co_await sum;
 }
 
+tess::Task any_of_none() {
+  std::vector<tess::Future<int>> none;
+  (void)co_await tess::when_any(std::move(none));
+}
+
 tess::Task sum_scaled() {
   const auto blocks = tess::create<Block>(tess::range(3));
   tess::Future<int> sum;
   blocks.broadcast<&Block::give_scaled>(sum.callback());
+  (void)co_await sum;
+}
+
+tess::Task sum_different() {
+  const auto blocks = tess::create<Block>(tess::range(2));
+  tess::Future<int> sum;
+  blocks.broadcast<&Block::give_different>(sum.callback());
   (void)co_await sum;
 }
 
@@ -298,6 +347,8 @@ const std::map<std::string, std::function<void()>> misuses{
     {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
     {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
+    {"any_of_none", [] { const tess::Task task = any_of_none(); }},
+    {"different_values", [] { const tess::Task task = sum_different(); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
     {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},
     {"index_of_64_bits", [] { blocks()[std::int64_t{1} << 32U].send<&Block::nothing>(); }},
@@ -336,6 +387,11 @@ const std::map<std::string, std::function<void()>> misuses{
     {"short_sum", [] { const tess::Task task = sum_all<Short>(); }},
     {"refused_element", &carry<Refused>},
     {"refused_argument", &hear<Refused>},
+    {"unclear_argument", &hear<Unclear>},
+    {"unwritten_argument", [] { const tess::Task task = hear_in_epoch<Unwritten>(); }},
+    {"unwritten_element", &carry<Unwritten>},
+    {"unwritten_broadcast", &hear_all<Unwritten>},
+    {"unwritten_and_caught", &hear_and_catch<Unwritten>},
     {"refused_broadcast", &hear_all<Refused>},
     {"refused_sum", [] { const tess::Task task = sum_all<Refused>(); }},
     {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},

@@ -57,6 +57,8 @@ here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructo
 everywhere different_targets "contributions to one reduction have different targets: " "Block::take of Block\\[0\\]" "Block::take of Block\\[1\\]"
 everywhere insert_between_rounds "Overlap\[1\] was created after broadcast 1 and contributes to Overlap: reduction 0, to which broadcast 1 led: rounds overlap; insert elements while no round is under way"
 here different_operations "operations .*Scaled of different state"
+everywhere different_values "contributions to one reduction have different values, operations or results: .*MergedPartial<int, \\(Sum\\|Max\\), int> and "
+here any_of_none "when_any() of an empty vector has no first result: give at least one"
 here empty_proxy "a message to an empty ElementProxy<.*Block>: assign array\\[index\\] to it first"
 here index_of_64_bits "an index is 4294967296, but a coordinate has 32 bits"
 here empty_array "a broadcast of Block::nothing to an empty proxy: assign what create() returned to it first"
@@ -101,6 +103,15 @@ says simulated refused_argument "$argument"
 says simulated refused_broadcast "$thrown"
 says simulated refused_sum "$thrown"
 says processes refused_argument "$heard"
+says simulated unclear_argument "an exception that is not a std::exception"
+# What throws while it is written: the run ends also if the program keeps the exception. (With TESS_CHECKS=all it throws before it
+# counts as sent.)
+for misuse in unwritten_argument unwritten_broadcast; do
+  says simulated $misuse "uncaught exception: the value stays here" "on PE 0"
+done
+says simulated unwritten_element "uncaught exception: the value stays here" "on PE 0, .*Carrier<.*Unwritten>\\[0\\]"
+[[ $checks == all ]] || says simulated unwritten_and_caught "uncaught exception: the value stays here" "on PE 0"
+says processes unwritten_argument "uncaught exception: the value stays here" "on PE 0"
 says processes short_element "Uneven<0> \?>\[0\]\|Uneven<0>: " "serialize()"
 
 finish

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <map>
 #include <set>
 
@@ -116,7 +117,14 @@ class Cell : public Chare<Cell, Name> {
 
  private:
   /// How a contribution comes about.
-  enum class Way : std::uint8_t { at_once, coroutine, own_message, by_another, by_governor };
+  enum class Way : std::uint8_t {
+    at_once,
+    coroutine,
+    own_message,
+    by_another,
+    by_timer,
+    by_governor
+  };
 
   void give_all(const Order& order);
   void pass_to_governor(Order order);
@@ -173,7 +181,7 @@ Task Cell::step(Order order) {
   const std::vector<Name> later = inserts_first ? std::vector<Name>() : children_;
   // By a governor's message only if the first element's own message says what led to the round.
   const bool may_ask = index() != 0 && !order.targets.empty();
-  Way way = nursery->has_ways ? static_cast<Way>(random.below(may_ask ? 5 : 4)) : Way::at_once;
+  Way way = nursery->has_ways ? static_cast<Way>(random.below(may_ask ? 6 : 5)) : Way::at_once;
   if (fate == Nursery::Fate::gives_and_ends) {
     way = Way::at_once;
     destroy();
@@ -194,6 +202,10 @@ Task Cell::step(Order order) {
       break;
     case Way::by_another:
       array()[0].send<&Cell::pass_on>(std::move(order), index());
+      break;
+    case Way::by_timer:
+      self().send_after<&Cell::give_later>(std::chrono::microseconds(random.below(20)),
+                                           std::move(order));
       break;
     case Way::by_governor:
       pass_to_governor(std::move(order));

@@ -79,6 +79,9 @@ void contribute_as(const Key& /*key*/, const To& to, Op op, T value,
 template <class Key, class To, class Op, class T, class Result>
 void contribute_ordered(const Key& key, const To& to, Op op, T value,
                         const Callback<Result>& target) {
+  static_assert(
+      requires(const Key& key_) { key_ < key_; },
+      "gather and in_order are in the order of indices: give the type of index an operator<=>");
   check_target(to.element, target);
   std::vector<std::pair<Key, T>> values;
   values.emplace_back(key, std::move(value));

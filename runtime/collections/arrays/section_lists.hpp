@@ -458,9 +458,10 @@ void SectionListsOf<Index>::describe_waiting(std::vector<std::string>& lines) co
     if (roster.n_unjoined() == 0 || of.root.kept.empty()) continue;
     std::size_t missing = 0;
     while (roster.members()[missing].state != SectionRoster::State::unjoined) ++missing;
-    lines.push_back(text(of.root.kept.size(), " multicasts of a section of ", array_.name(),
-                         " wait for ", array_.name(), index_text(of.root.indices[missing]),
-                         roster.n_unjoined() > 1 ? " and others" : "", ", which does not exist"));
+    lines.push_back(text(
+        of.root.kept.size(), " multicasts of a section of ", array_.name(), " wait for ",
+        array_.name(), index_text(of.root.indices[missing]),
+        roster.n_unjoined() > 1 ? " and others, which do not exist" : ", which does not exist"));
   }
 }
 

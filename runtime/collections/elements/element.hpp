@@ -74,6 +74,12 @@ class TessElement {
   friend struct TaskAccount;
   friend std::string element_text(const TessElement& element);
 
+  /// True if none of its code runs or waits, so that code of others calls it as an object
+  /// (ArrayProxy::local).
+  [[nodiscard]] bool is_called_directly() const {
+    return collection_ != nullptr && n_suspended_ == 0;
+  }
+
   Collection* collection_ = nullptr;
   std::unique_ptr<BalanceRecord, EndRecord> balance_;  // if a balancer watches its array
   ElementState state_;

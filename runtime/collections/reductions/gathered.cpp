@@ -2,6 +2,7 @@
 
 #include "runtime/completion/completion.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/type_name.hpp"
 
 #include <utility>
 
@@ -20,8 +21,8 @@ void Gathered::merge_value(std::unique_ptr<Partial> more) {
     return;
   }
   TESS_CHECK(kind == &more->kind(),
-             "two elements contribute to one reduction with different types: ", kind->name(),
-             " and ", more->kind().name());
+             "contributions to one reduction have different values, operations or results: ",
+             plain_name(kind->name()), " and ", plain_name(more->kind().name()));
   value.held->merge(std::move(*more));
 }
 

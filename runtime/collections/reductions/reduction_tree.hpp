@@ -17,8 +17,8 @@
 // Where an element joins: an element that is created on a PE after broadcast b was applied there
 // receives b + 1, b + 2, …, and joins at the first number that this PE has not reported and that no
 // broadcast up to b led to. (A broadcast leads to the contributions of its entry method, and of the
-// coroutines and messages among the array's elements that follow from it.) The element is neither
-// ahead nor behind:
+// coroutines, timers and messages among the array's elements that follow from it. A message of
+// another collection does not carry it.) The element is neither ahead nor behind:
 //
 //     ahead    Reports and Begins carry the last broadcast that any contributor had received, and a
 //              PE reports once it has applied that one. So an element that is created after its PE

@@ -91,7 +91,7 @@ void Outbox::begin(Lane& lane) const {
 }
 
 /// Appends the message to the lane's buffer; returns its size in bytes. If it does not fit, nothing
-/// is changed.
+/// is changed. If serialize() throws, the message is gone.
 std::size_t Outbox::write(Lane& lane, Envelope* message, bool charged) {
   attached_.clear();
   const std::span<std::byte> room = lane.packed.room();
@@ -106,7 +106,12 @@ std::size_t Outbox::write(Lane& lane, Envelope* message, bool charged) {
                           (message->prioritised ? PackedHeader::prioritised : 0U)};
   Writer write(room, &attached_);
   write(header);
-  message->action->pack(*message, write);
+  try {
+    message->action->pack(*message, write);
+  } catch (...) {
+    discard(message);
+    throw;
+  }
   const std::size_t n_bytes = write.n_bytes();
   if (n_bytes <= room.size()) {
     header.n_bytes = n_bytes - sizeof header;
