@@ -14,9 +14,20 @@ namespace {
 
 constexpr std::size_t most_points = std::numeric_limits<VertexId>::max();
 
-/// The types of the cells of a piece, checked.
+/// Stands for the type of a cell that another piece has, too, or that is hidden.
+constexpr std::int64_t ghost = -1;
+
+/// The types of the cells of a piece. Ghost cells (vtkDataSetAttributes: DUPLICATECELL, REFINEDCELL,
+/// HIDDENCELL) are no part of the mesh; they would count twice.
 std::vector<std::int64_t> types_of(const VtuFile& file, const VtuPiece& piece) {
-  return file.integers(file.array(piece.cells, "types"), piece.n_cells);
+  std::vector<std::int64_t> types = file.integers(file.array(piece.cells, "types"), piece.n_cells);
+  const auto marks = std::find_if(piece.cell_data.begin(), piece.cell_data.end(),
+                                  [](const VtuArray& a) { return a.name == "vtkGhostType"; });
+  if (marks == piece.cell_data.end() || piece.n_cells == 0) return types;
+  const std::vector<std::int64_t> bits = file.integers(*marks, piece.n_cells);
+  for (std::size_t c = 0; c < types.size(); ++c)
+    if ((bits[c] & (1 | 8 | 32)) != 0) types[c] = ghost;
+  return types;
 }
 
 class VtuMeshReader {
@@ -31,6 +42,7 @@ class VtuMeshReader {
       const std::uint64_t n = n_skipped_[static_cast<std::size_t>(cell.number)];
       if (n > 0) mesh_.skipped.push_back({std::string(cell.name), n});
     }
+    if (n_ghosts_ > 0) mesh_.skipped.push_back({"ghost", n_ghosts_});
     elements_.finish();
     return std::move(mesh_);
   }
@@ -68,6 +80,10 @@ class VtuMeshReader {
 
   void add(std::int64_t type, std::size_t cell, std::span<const std::int64_t> vertices,
            std::size_t first) {
+    if (type == ghost) {
+      ++n_ghosts_;
+      return;
+    }
     const VtuCell* const known = vtu_cell(type);
     const auto volume = vtu_volume(type);
     if (known == nullptr || (known->dimension == 3 && !volume))
@@ -118,6 +134,7 @@ class VtuMeshReader {
   TetMesh mesh_;
   ElementSplitter elements_{mesh_};
   std::array<std::uint64_t, 128> n_skipped_{};  // per type number
+  std::uint64_t n_ghosts_ = 0;
 };
 
 /// PointData and CellData of all pieces, at one time.

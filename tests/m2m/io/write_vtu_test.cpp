@@ -277,6 +277,17 @@ TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields 
   CHECK(rho.values[2 * 27 + 1] == 71);
 }
 
+TEST_CASE("ghost cells of VTU are skipped, and reported", "[m2m][io]") {
+  const Scratch scratch;
+  Cells cells = cells_of(kuhn_mesh({1}));
+  cells.in_cells = {"vtkGhostType", 1, {0, 1, 0, 2, 8, 32}};  // 2 is HIGHCONNECTIVITYCELL
+  const std::string path = scratch.write("ghosts.vtu", vtu_of(cells));
+  const TetMesh mesh = read_mesh(path);
+  CHECK(mesh.n_tets() == 3);
+  CHECK(skipped_text(mesh) == "3 ghost");
+  CHECK(FieldFile(path).tet_field(mesh, "vtkGhostType", 0).values == std::vector<double>{0, 0, 2});
+}
+
 TEST_CASE("what VTU can hold and is not supported is refused by name", "[m2m][io]") {
   const Scratch scratch;
   const auto refusal = [&](const std::string& bytes) {
