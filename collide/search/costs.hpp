@@ -18,7 +18,7 @@ inline constexpr std::size_t sweep_from = 96;
 inline constexpr double per_chare = 1750;
 inline constexpr double per_grid = 3000;  ///< a grid: its choice and its memory
 
-// Objects with capsules (thin_pairs.hpp).
+// Objects with capsules (choose_pieces.hpp).
 inline constexpr double per_pair = 8;      ///< a pair of boxes: found, passed on
 inline constexpr double per_test = 50;     ///< an exact test of two triangles
 inline constexpr double per_capsule = 50;  ///< an object: its capsule

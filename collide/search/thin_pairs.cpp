@@ -1,45 +1,14 @@
 #include "collide/search/thin_pairs.hpp"
 
-#include "collide/search/choose_grid.hpp"
-#include "collide/search/costs.hpp"
+#include "collide/search/choose_pieces.hpp"
 #include "collide/search/survey.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <vector>
 
 namespace tess::collide::search {
 namespace {
-
-/// Whether pairs within a model do not count.
-bool divides(const PairOptions& options) {
-  return !options.models.empty() && !options.within_model;
-}
-
-template <class Real>
-Aabb in_double(const Box<Real, 3>& box) {
-  Aabb out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.lo[k] = box.lo[k];
-    out.hi[k] = box.hi[k];
-  }
-  return out;
-}
-
-/// Whether most capsules are much longer than thick, as far as a few of them show.
-template <class Real>
-bool seem_thin(const ObjectsWithCapsules<Real>& set) {
-  const std::size_t n = std::min<std::size_t>(set.boxes.size(), 64);
-  std::size_t n_thin = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Capsule capsule = set.capsules[scattered(i, n, set.boxes.size())];
-    double length = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      length = std::max(length, std::abs(capsule.to[k] - capsule.from[k]));
-    if (16 * capsule.radius < length) ++n_thin;
-  }
-  return 2 * n_thin > n;
-}
 
 /// Throws Error if a box is not valid.
 template <class Real>
@@ -49,69 +18,6 @@ Frame checked_frame(ThinSets<Real> sets) {
   if (sets.size() == 2)
     bounds = merged(bounds, checked_bounds(sets[1].boxes, " of the second set"));
   return frame_of(in_double(bounds));
-}
-
-/// About 2 sqrt(n) of n objects: among them are four times as many pairs as each object has in the
-/// whole set.
-template <class Real>
-struct Sample {
-  explicit Sample(const ObjectsWithCapsules<Real>& set) {
-    const std::size_t n = set.boxes.size();
-    const auto wanted = static_cast<std::size_t>(std::ceil(2 * std::sqrt(static_cast<double>(n))));
-    const std::size_t n_samples = std::min(n, wanted);
-    for (std::size_t i = 0; i < n_samples; ++i) {
-      const std::size_t at = scattered(i, n_samples, n);
-      objects.push_back(static_cast<std::uint32_t>(at));
-      boxes.push_back(set.boxes[at]);
-      capsules.push_back(set.capsules[at]);
-      bounds = merged(bounds, boxes.back());
-      are_valid = are_valid && is_valid(boxes.back());
-    }
-    share = static_cast<double>(n_samples) / static_cast<double>(n);
-  }
-
-  std::vector<std::uint32_t> objects;
-  std::vector<Box<Real, 3>> boxes;
-  std::vector<Capsule> capsules;
-  Box<Real, 3> bounds = no_box<Real, 3>();
-  bool are_valid = true;
-  double share;
-
-  [[nodiscard]] std::vector<SlimCapsule> slims(const Frame& frame) const {
-    std::vector<SlimCapsule> out;
-    for (const Capsule& capsule : capsules) out.push_back(slim(capsule, frame));
-    return out;
-  }
-};
-
-/// Positions in two samples of pairs whose boxes overlap.
-struct SampledPairs {
-  std::vector<std::uint32_t> in_a, in_b;
-
-  static void call(void* context, const std::uint32_t* objects, const std::uint32_t* partners,
-                   std::size_t n, bool swapped) {
-    auto& self = *static_cast<SampledPairs*>(context);
-    self.in_a.insert(self.in_a.end(), swapped ? partners : objects,
-                     (swapped ? partners : objects) + n);
-    self.in_b.insert(self.in_b.end(), swapped ? objects : partners,
-                     (swapped ? objects : partners) + n);
-  }
-};
-
-/// How many pairs of pieces of two objects overlap.
-template <class Real>
-double n_overlaps(const Sample<Real>& a, std::uint32_t i, const Sample<Real>& b, std::uint32_t j,
-                  double longest) {
-  std::array<Box<Real, 3>, most_pieces> of_a, of_b;
-  const auto* const end_a =
-      cut(a.boxes[i], a.capsules[i], n_pieces(a.capsules[i], longest), of_a.data());
-  const auto* const end_b =
-      cut(b.boxes[j], b.capsules[j], n_pieces(b.capsules[j], longest), of_b.data());
-  double n = 0;
-  for (const auto* p = of_a.data(); p != end_a; ++p)
-    for (const auto* q = of_b.data(); q != end_b; ++q)
-      if (overlap(*p, *q, Touching::counts)) ++n;
-  return n;
 }
 
 /// A search that is under way: passes on what is left of the pairs of boxes.
@@ -206,79 +112,6 @@ class ThinPairs {
 }  // namespace
 
 template <class Real>
-std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options) {
-  for (const auto& set : sets)
-    if (set.boxes.empty() || !seem_thin(set)) return {};
-  const bool by_model = divides(options);
-  // What is no valid search is refused by the search without capsules.
-  if (by_model && (sets.size() == 2 || options.models.size() != sets.front().boxes.size()))
-    return {};
-  const Sample<Real> a(sets.front()), b(sets.back());
-  if (!a.are_valid || !b.are_valid) return {};
-  SampledPairs sampled;
-  const detail::PairSink sink{&sampled, &SampledPairs::call};
-  const std::span<const Box<Real, 3>> boxes_a(a.boxes), boxes_b(b.boxes);
-  std::vector<std::uint32_t> models;
-  if (by_model)
-    for (const std::uint32_t object : a.objects) models.push_back(options.models[object]);
-  const PairOptions of_sample{.touching = options.touching, .models = models};
-  if (sets.size() == 2)
-    detail::search_pairs(boxes_a, boxes_b, of_sample, sink);
-  else
-    detail::search_pairs(boxes_a, of_sample, sink);
-  const auto& [in_a, in_b] = sampled;
-  constexpr std::size_t few = 16, most_measured = 32;
-  if (in_a.size() < few) return {};
-  const auto n_sampled = static_cast<double>(in_a.size());
-  std::vector<std::uint32_t> kept(in_a.size() + 8);
-  const Frame frame = frame_of(in_double(merged(a.bounds, b.bounds)));
-  const auto kept_share =
-      static_cast<double>(may_meet(a.slims(frame).data(), b.slims(frame).data(), in_a.data(),
-                                   in_b.data(), in_a.size(), kept.data())) /
-      n_sampled;
-  const double n_pairs = n_sampled / (a.share * b.share);
-  double n_objects = 0;
-  for (const auto& set : sets) n_objects += static_cast<double>(set.boxes.size());
-
-  std::optional<double> best;
-  double least = n_pairs * (costs::per_pair + costs::per_test);
-  const auto look_at = [&](double longest, double n_of_pieces, double n_overlapping) {
-    const double cost =
-        n_objects * costs::per_capsule + n_of_pieces * costs::per_piece +
-        n_overlapping * (costs::per_pair + costs::per_capsules + kept_share * costs::per_test);
-    if (cost >= least) return;
-    least = cost;
-    best = longest;
-  };
-  look_at(ThinObjects<Real>::whole, 0, n_pairs);
-  // Pieces have voxels that are chosen for them.
-  if (options.voxel_size > 0) return best;
-  double longest = 0;
-  for (const Sample<Real>* sample : {&a, &b})
-    for (const Box<Real, 3>& box : sample->boxes)
-      longest = std::max(longest, static_cast<double>(longest_extent(box)));
-  const std::size_t n_measured = std::min(in_a.size(), most_measured);
-  for (longest /= 2; longest > 0 && std::isfinite(longest); longest /= 2) {
-    double n_of_pieces = 0;
-    for (std::size_t s = 0; s < sets.size(); ++s) {
-      const Sample<Real>& sample = s == 0 ? a : b;
-      for (const Capsule& capsule : sample.capsules)
-        n_of_pieces += n_pieces(capsule, longest) / sample.share;
-    }
-    if (n_of_pieces * costs::per_piece > least ||
-        n_of_pieces > 0.5 * static_cast<double>(most_objects))
-      break;
-    double n_overlapping = 0;
-    for (std::size_t m = 0; m < n_measured; ++m) {
-      const std::size_t at = scattered(m, n_measured, in_a.size());
-      n_overlapping += n_overlaps(a, in_a[at], b, in_b[at], longest);
-    }
-    look_at(longest, n_of_pieces, n_pairs * n_overlapping / static_cast<double>(n_measured));
-  }
-  return best;
-}
-
-template <class Real>
 void search_thin(ThinSets<Real> sets, double longest, const PairOptions& options,
                  detail::PairSink sink) {
   const Frame frame = checked_frame(sets);
@@ -307,8 +140,6 @@ void search_thin(ThinSets<Real> sets, double longest, const PairOptions& options
   options.statistics->bytes += a.bytes() + (second ? b.bytes() : 0) + models.capacity() * 4;
 }
 
-template std::optional<double> choose_pieces(ThinSets<float>, const PairOptions&);
-template std::optional<double> choose_pieces(ThinSets<double>, const PairOptions&);
 template void search_thin(ThinSets<float>, double, const PairOptions&, detail::PairSink);
 template void search_thin(ThinSets<double>, double, const PairOptions&, detail::PairSink);
 

@@ -1,5 +1,4 @@
-// The pairs of objects that have capsules: whether they are so long and thin that the capsules pay,
-// and the search with them.
+// The pairs of objects that have capsules, if these pay (choose_pieces.hpp).
 //
 //     boxes of pieces, or of objects  ->  pairs of boxes  ->  capsules may meet?  ->  first of the pair?
 //
@@ -8,18 +7,9 @@
 // of the pieces of the object of the first set, or of the one with the lower position.
 #pragma once
 
-#include "collide/search/thin_objects.hpp"
+#include "collide/search/choose_pieces.hpp"
 
 namespace tess::collide::search {
-
-/// One set with itself, or two sets.
-template <class Real>
-using ThinSets = std::span<const ObjectsWithCapsules<Real>>;
-
-/// The longest extent of a piece, or ThinObjects::whole; nothing if the capsules do not pay. It is
-/// chosen by expected cost, from a sample.
-template <class Real>
-[[nodiscard]] std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options);
 
 /// Finds the pairs with capsules and pieces of the given length, whether they pay or not. Throws Error
 /// as for_each_pair() does.

@@ -1,0 +1,32 @@
+// Whether the objects of a search are so long and thin that their capsules pay, and how long pieces
+// should be: by expected cost, from a sample.
+#pragma once
+
+#include "collide/search/thin_objects.hpp"
+
+namespace tess::collide::search {
+
+/// One set with itself, or two sets.
+template <class Real>
+using ThinSets = std::span<const ObjectsWithCapsules<Real>>;
+
+/// The longest extent of a piece, or ThinObjects::whole; nothing if the capsules do not pay.
+template <class Real>
+[[nodiscard]] std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options);
+
+/// Whether pairs within a model do not count.
+[[nodiscard]] inline bool divides(const PairOptions& options) {
+  return !options.models.empty() && !options.within_model;
+}
+
+template <class Real>
+[[nodiscard]] Aabb in_double(const Box<Real, 3>& box) {
+  Aabb out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.lo[k] = box.lo[k];
+    out.hi[k] = box.hi[k];
+  }
+  return out;
+}
+
+}  // namespace tess::collide::search
