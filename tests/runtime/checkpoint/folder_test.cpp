@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 namespace {
@@ -134,6 +135,26 @@ TEST_CASE("a checksum knows the order of a file's blocks, and the length of the 
   CHECK(hash() == before);
   bytes.push_back(std::byte{0});
   CHECK(hash() != before);
+}
+
+TEST_CASE("a file that is written piece by piece has the bytes of one written at once",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  std::vector<std::byte> bytes(2'500'000);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * i >> 7U);
+  tess::detail::FileWriter writer(scratch.path(""), "pieces");
+  tess::detail::Buffer pending;
+  for (std::span<const std::byte> rest(bytes); !rest.empty();) {
+    const std::size_t n = std::min<std::size_t>(700'000, rest.size());
+    pending.append(rest.first(n));
+    writer.write_some(pending);
+    rest = rest.subspan(n);
+  }
+  const tess::detail::FileSum sum = writer.finish({pending.data(), pending.size()});
+  CHECK(sum.n_bytes == bytes.size());
+  CHECK(sum.hash == tess::detail::sum_of("pieces", bytes).hash);
+  const tess::detail::Buffer read = tess::detail::read_file(scratch.path(""), sum);
+  CHECK(std::equal(bytes.begin(), bytes.end(), read.data(), read.data() + read.size()));
 }
 
 TEST_CASE("only folders that are named as a checkpoint count as one", "[runtime][checkpoint]") {
