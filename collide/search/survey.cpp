@@ -21,6 +21,13 @@ template <class Real, std::size_t D>
        " is not valid; give finite numbers with lo <= hi");
 }
 
+/// The bytes of the processor's vectors. Wider ones are taken apart, element by element.
+#ifdef __AVX512F__
+constexpr std::size_t widest = 64;
+#else
+constexpr std::size_t widest = 32;
+#endif
+
 /// Puts the upper end of a box in place of each lower end. It changes its argument: how a function
 /// returns a vector depends on the instruction set, of which g++ warns.
 template <std::size_t D, class Eight, std::size_t... k>
@@ -41,7 +48,7 @@ Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set
   Eight least = Eight{} + std::numeric_limits<Real>::infinity(), greatest = -least;
   Bits bad{};
   constexpr std::size_t n_streams = 4;
-  const std::size_t length = (boxes.size() - 1) / n_streams;
+  const std::size_t length = sizeof(Eight) <= widest ? (boxes.size() - 1) / n_streams : 0;
   for (std::size_t i = 0; i < length; ++i)
     for (std::size_t s = 0; s < n_streams; ++s) {
       Eight x;
@@ -53,13 +60,13 @@ Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set
       bad |= ~(x <= upper);  // also for NaN
     }
   bool good = true;
-  for (std::size_t k = 0; k < D; ++k) {
+  for (std::size_t k = 0; k < D && length > 0; ++k) {
     bounds.lo[k] = least[k];
     bounds.hi[k] = greatest[k + D];
     good = good && bad[k] == 0;
   }
   for (const Box<Real, D>& box : boxes.subspan(n_streams * length)) {
-    for (std::size_t k = 0; k < D; ++k) good = good && box.lo[k] <= box.hi[k];
+    for (std::size_t k = 0; k < D; ++k) good &= box.lo[k] <= box.hi[k];
     bounds = merged(bounds, box);
   }
   if (!good || !is_valid(bounds)) refuse(boxes, set);
