@@ -74,20 +74,24 @@ struct SampledPairs {
   }
 };
 
-/// How many pairs of pieces of two objects overlap.
+/// How many pairs of pieces of two objects overlap, and how many there are.
+struct Overlaps {
+  double n = 0, of = 0;
+};
 template <class Real>
-double n_overlaps(const Sample<Real>& a, std::uint32_t i, const Sample<Real>& b, std::uint32_t j,
+Overlaps overlaps(const Sample<Real>& a, std::uint32_t i, const Sample<Real>& b, std::uint32_t j,
                   double longest) {
   std::array<Box<Real, 3>, most_pieces> of_a, of_b;
   const auto* const end_a =
       cut(a.boxes[i], a.capsules[i], n_pieces(a.capsules[i], longest), of_a.data());
   const auto* const end_b =
       cut(b.boxes[j], b.capsules[j], n_pieces(b.capsules[j], longest), of_b.data());
-  double n = 0;
+  Overlaps out;
   for (const auto* p = of_a.data(); p != end_a; ++p)
     for (const auto* q = of_b.data(); q != end_b; ++q)
-      if (overlap(*p, *q, Touching::counts)) ++n;
-  return n;
+      if (overlap(*p, *q, Touching::counts)) ++out.n;
+  out.of = static_cast<double>((end_a - of_a.data()) * (end_b - of_b.data()));
+  return out;
 }
 
 }  // namespace
@@ -145,7 +149,11 @@ std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& opti
     for (const Box<Real, 3>& box : sample->boxes)
       longest = std::max(longest, static_cast<double>(longest_extent(box)));
   const std::size_t n_measured = std::min(in_a.size(), most_measured);
-  for (longest /= 2; longest > 0 && std::isfinite(longest); longest /= 2) {
+  double n_compared = 0;
+  // The choice itself takes a small part of what it may spare.
+  for (longest /= 2;
+       longest > 0 && std::isfinite(longest) && 16 * n_compared * costs::per_overlap < least;
+       longest /= 2) {
     double n_of_pieces = 0;
     for (std::size_t s = 0; s < sets.size(); ++s) {
       const Sample<Real>& sample = s == 0 ? a : b;
@@ -158,7 +166,9 @@ std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& opti
     double n_overlapping = 0;
     for (std::size_t m = 0; m < n_measured; ++m) {
       const std::size_t at = scattered(m, n_measured, in_a.size());
-      n_overlapping += n_overlaps(a, in_a[at], b, in_b[at], longest);
+      const Overlaps found = overlaps(a, in_a[at], b, in_b[at], longest);
+      n_overlapping += found.n;
+      n_compared += found.of;
     }
     look_at(longest, n_of_pieces, n_pairs * n_overlapping / static_cast<double>(n_measured));
   }

@@ -24,5 +24,6 @@ inline constexpr double per_test = 50;     ///< an exact test of two triangles
 inline constexpr double per_capsule = 50;  ///< an object: its capsule
 inline constexpr double per_capsules = 6;  ///< a comparison of two capsules
 inline constexpr double per_piece = 100;   ///< a piece of an object: its box, sorted and compared
+inline constexpr double per_overlap = 2;   ///< two pieces that the choice compares
 
 }  // namespace tess::collide::search::costs

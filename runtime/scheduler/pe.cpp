@@ -304,11 +304,11 @@ void Pe::exception(const char* what, int exit_code) {
   // Bad input is the user's to correct: one line without a trace. Everything else is a bug, so its
   // place is reported.
   if (exit_code == 2) {
-    runtime_.error_line(text("error: ", one_line(what)));
+    runtime_.bad_input(*this, what);
   } else {
     runtime_.error_line(text("tessera: uncaught exception: ", what, "\n  ", place));
+    runtime_.exit(*this, exit_code);
   }
-  runtime_.exit(*this, exit_code);
 }
 
 std::size_t Pe::step(std::size_t most) {

@@ -208,8 +208,13 @@ std::string Runtime::describe(Pe& pe) const {
   return out;
 }
 
+void Runtime::bad_input(Pe& pe, std::string_view what) {
+  if (!said_bad_input_.exchange(true)) error_line(text("error: ", one_line(what)));
+  exit(pe, 2);
+}
+
 void Runtime::out_of_memory(Pe& pe, const std::string& place) {
-  if (!out_of_memory_.exchange(true)) {
+  if (!said_out_of_memory_.exchange(true)) {
     reserve_.reset();
     error_line(text("error: memory is exhausted ", place.empty() ? describe(pe) : place,
                     "; ask for less, or spread the run over more machines"));

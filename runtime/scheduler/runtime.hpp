@@ -80,8 +80,9 @@ class Runtime final : public Program {
   void exit(Pe& pe, int code, int signal = 0);
   /// Epoch 0 is done. Called on PE 0.
   void quiescent(Pe& pe);
-  /// Memory is exhausted: prints one line per process, however many PEs notice it; the exit code is
-  /// 2.
+  /// Ends the run with exit code 2 and one line per process, however many PEs find bad input.
+  void bad_input(Pe& pe, std::string_view what);
+  /// Memory is exhausted: the same.
   void out_of_memory(Pe& pe, const std::string& place);
   [[nodiscard]] const ElementWords& element_words() const { return element_words_; }
   [[nodiscard]] const RuntimeOptions& options() const { return options_; }
@@ -176,7 +177,7 @@ class Runtime final : public Program {
   std::mutex output_;
   std::atomic<int> exit_code_{0};
   std::atomic<bool> left_{false};
-  std::atomic<bool> out_of_memory_{false};
+  std::atomic<bool> said_bad_input_{false}, said_out_of_memory_{false};
   Waits still_;  // simulated machine: what waits if nothing can run
   std::vector<AuditRow> still_counted_;
 

@@ -65,7 +65,7 @@ class Reporter {
       const Difference wrong = difference(expected, std::move(found));
       row.lost = wrong.lost, row.doubled = wrong.doubled, row.added = wrong.added;
       // A scene that all but stops the library is a failure, too.
-      row.ok = wrong == Difference{} && row.seconds <= std::max(2.0, 20 * row.brute_seconds);
+      row.ok = wrong == Difference{} && row.seconds <= 20 * (row.brute_seconds + 1e-3);
     } catch (const tess::Error& error) {
       row.note = error.what();
     }
