@@ -6,6 +6,7 @@
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -356,7 +357,7 @@ void check_reports(Problem problem) {
 /// Runs the program of each seed on a simulated machine, then `judge`.
 void on_many_schedules(std::uint64_t n_seeds, Task (*program)(Problem&),
                        const std::function<void(Problem)>& judge) {
-  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+  test::for_seeds(1, test::n_seeds(n_seeds) + 1, [&](std::uint64_t seed) {
     // Every other machine has a PE per process, so that all messages are packed.
     const test::Machine machine{.pes = std::array{1, 2, 3, 4, 8}[seed % 5],
                                 .per_process = seed / 5 % 2 == 0 ? 1 : 0,
@@ -407,7 +408,7 @@ TEST_CASE("collisions of one collider overlap when the objects of the one before
 }
 
 TEST_CASE("objects are submitted in the epoch that creates the collider", "[collide][parallel]") {
-  test::for_seeds(1, 60, [&](std::uint64_t seed) {
+  test::for_seeds(1, 1 + test::n_seeds(60), [&](std::uint64_t seed) {
     Problem problem;
     problem.scene = {.seed = seed, .n_clients = 5, .n_boxes = 20, .n_models = 1};
     problem.options.rules.within_model = WithinModel::test;

@@ -4,6 +4,7 @@
 #include "runtime/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
@@ -99,7 +100,7 @@ TEST_CASE("each kind gives the same bits for any number of parts and any schedul
           "[m2m][kinds]") {
   for (const TransferKind kind : all_transfer_kinds) {
     const KindResult one = result_of({kind}, 1);
-    test::for_seeds(2, 11, [&](std::uint64_t seed) {
+    test::for_seeds(2, 2 + test::n_seeds(9), [&](std::uint64_t seed) {
       const KindCase c{kind, 4, static_cast<std::int32_t>(seed % 9) + 1};
       test::expect(result_of(c, seed).values == one.values, name_of(kind), " gives other bits");
     });

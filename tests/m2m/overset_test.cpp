@@ -7,6 +7,7 @@
 #include "m2m/kuhn.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -182,11 +183,7 @@ TEST_CASE("200 random overset assemblies: holes, fringes, donors and orphans as 
           "[m2m][overset]") {
   std::mt19937 random(17);
   Counts n;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int n_assemblies = 40;
-#else
-  constexpr int n_assemblies = 200;
-#endif
+  constexpr std::uint64_t n_assemblies = test::n_seeds(200);
   for (std::uint64_t k = 0; k < n_assemblies; ++k) {
     INFO("assembly " << k);
     const auto [problem, surface] = random_problem(random);

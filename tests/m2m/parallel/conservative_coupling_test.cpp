@@ -6,6 +6,7 @@
 #include "runtime/core/error.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -190,16 +191,11 @@ std::vector<double> in_order(const ValueOf& values) {
 
 TEST_CASE("own chares transfer conservatively with the same bits however they are cut and moved",
           "[m2m][conservative]") {
-#ifdef __SANITIZE_THREAD__
-  constexpr std::uint64_t last_seed = 5;
-#else
-  constexpr std::uint64_t last_seed = 25;
-#endif
   for (const double reach : {1.0, 0.55}) {
     const Transferred one = transferred({1, 1, 0, reach}, 1);
     CHECK(one.rounds == 3 + 5);
     INFO("reach " << reach);
-    test::for_seeds(2, last_seed + 1, [&](std::uint64_t seed) {
+    test::for_seeds(2, 2 + test::n_seeds(24), [&](std::uint64_t seed) {
       const auto n_source = static_cast<std::int32_t>(1 + seed % 4);
       const auto n_target = static_cast<std::int32_t>(1 + seed % 6);
       const Transferred found = transferred({n_source, n_target, 1 + (seed % 2 == 0), reach}, seed);

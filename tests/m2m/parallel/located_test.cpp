@@ -8,6 +8,7 @@
 #include "runtime/machine/simulated.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -126,10 +127,7 @@ Task transfer_case(const LocatedCase& c, std::int32_t n_parts, Located& out) {
 
 void check_on_schedules(const LocatedCase& c, std::uint64_t n_seeds = 12) {
   const Located want = by_force(c);
-#ifdef __SANITIZE_THREAD__
-  n_seeds = 2;  // the simulated machine is one thread
-#endif
-  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+  test::for_seeds(1, test::n_seeds(n_seeds) + 1, [&](std::uint64_t seed) {
     const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
     const auto n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
     INFO(n_parts << " parts");

@@ -8,6 +8,7 @@
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <algorithm>
@@ -110,10 +111,7 @@ double a_voxel(const TetMesh& mesh) {
 
 void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
   const Result want = serial(c);
-#ifdef __SANITIZE_THREAD__
-  n_seeds = 2;  // the simulated machine is one thread
-#endif
-  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+  test::for_seeds(1, test::n_seeds(n_seeds) + 1, [&](std::uint64_t seed) {
     const test::Machine machine{.pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6], .seed = seed};
     c.n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
     c.voxel.fill(seed % 3 == 0 ? a_voxel(c.source) : 0);

@@ -6,6 +6,7 @@
 #include "runtime/testing.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <array>
@@ -175,10 +176,7 @@ void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts
     run_on_machine([&]() -> Task { return check.program(&held); });
     check.judge(held);
   };
-#ifdef __SANITIZE_THREAD__
-  n_seeds = 2;  // the simulated machine is one thread
-#endif
-  test::for_seeds(1, n_seeds + 1, [&](std::uint64_t seed) {
+  test::for_seeds(1, test::n_seeds(n_seeds) + 1, [&](std::uint64_t seed) {
     const test::Machine machine{.pes = std::array{1, 2, 3, 4, 7, 8}[seed % 6], .seed = seed};
     const Parts n{static_cast<std::int32_t>(2 + seed * 5 % 7),
                   static_cast<std::int32_t>(1 + seed * 3 % 8)};
