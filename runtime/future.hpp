@@ -25,7 +25,11 @@ class Future {
   using Value = std::conditional_t<std::is_void_v<T>, NoValue, T>;
 
  public:
-  Future() : pe_(&current_pe()), id_(pe_->enter_future(this)) {}
+  Future() : pe_(&current_pe()), id_(pe_->enter_future(this)) {
+    static_assert(std::is_default_constructible_v<Value>,
+                  "the value of a future needs a default constructor: where it arrives it is made "
+                  "empty and then read");
+  }
   Future(const Future&) = delete;
   Future& operator=(const Future&) = delete;
   /// Not while a coroutine waits for it, and on its own PE only. The other can only be assigned to.

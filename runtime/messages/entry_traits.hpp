@@ -151,6 +151,10 @@ consteval bool check_ask() {
     using Result = typename EntryTraits<F>::Result;
     static_assert(std::is_void_v<Result> || std::is_same_v<Result, std::decay_t<Result>>,
                   "a reply is a value: a function that is asked returns no reference");
+    static_assert(std::is_void_v<Result> || std::is_same_v<Result, Task> ||
+                      std::is_default_constructible_v<Result>,
+                  "a reply needs a default constructor: where it arrives it is made empty and then "
+                  "read");
   }
   return check_call<C, F, Args...>();
 }
