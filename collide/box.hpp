@@ -39,6 +39,16 @@ template <class Real, std::size_t D>
   return box;
 }
 
+template <class Real>
+[[nodiscard]] Aabb in_double(const Box<Real, 3>& box) noexcept {
+  Aabb out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.lo[k] = box.lo[k];
+    out.hi[k] = box.hi[k];
+  }
+  return out;
+}
+
 /// The smallest box that contains both.
 template <class Real, std::size_t D>
 [[nodiscard]] Box<Real, D> merged(const Box<Real, D>& a, const Box<Real, D>& b) noexcept {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "collide/box.hpp"
+#include "collide/capsule.hpp"
 
 #include <optional>
 
@@ -27,6 +28,12 @@ template <class Box>
   if (!is_valid(swept.start)) return swept.start;
   if (!is_valid(swept.end)) return swept.end;
   return merged(swept.start, swept.end);
+}
+
+/// A capsule around the way of the centre: of a box that moves far it is much thinner than box_of().
+[[nodiscard]] Capsule capsule_of(const Swept<Aabb>& swept) noexcept;
+[[nodiscard]] inline Capsule capsule_of(const Swept<Box<float, 3>>& swept) noexcept {
+  return capsule_of(Swept<Aabb>{in_double(swept.start), in_double(swept.end)});
 }
 
 namespace detail {

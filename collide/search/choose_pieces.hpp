@@ -19,14 +19,4 @@ template <class Real>
   return !options.models.empty() && !options.within_model;
 }
 
-template <class Real>
-[[nodiscard]] Aabb in_double(const Box<Real, 3>& box) {
-  Aabb out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.lo[k] = box.lo[k];
-    out.hi[k] = box.hi[k];
-  }
-  return out;
-}
-
 }  // namespace tess::collide::search

@@ -2,6 +2,39 @@
 
 #include "collide/shapes/sign_of.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tess::collide {
+namespace {
+
+Point centre(const Aabb& box) noexcept {
+  Point out;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = 0.5 * box.lo[k] + 0.5 * box.hi[k];
+  return out;
+}
+
+/// Of a ball around `at` that contains the box; not less, whatever is rounded.
+double radius(const Aabb& box, const Point& at) noexcept {
+  Point half;
+  for (std::size_t k = 0; k < 3; ++k) half[k] = std::max(box.hi[k] - at[k], at[k] - box.lo[k]);
+  const double most = std::max({half[0], half[1], half[2]});
+  if (!(most > 0)) return most;
+  double squares = 0;
+  for (const double h : half) squares += (h / most) * (h / most);
+  return most * std::sqrt(squares) * (1 + 0x1p-48) + std::numeric_limits<double>::denorm_min();
+}
+
+}  // namespace
+
+Capsule capsule_of(const Swept<Aabb>& swept) noexcept {
+  const Point from = centre(swept.start), to = centre(swept.end);
+  return {from, to, std::max(radius(swept.start, from), radius(swept.end, to))};
+}
+
+}  // namespace tess::collide
+
 namespace tess::collide::detail {
 namespace {
 

@@ -1,6 +1,7 @@
 // Compares the pairs of objects in pieces of many lengths with intersect() of all pairs.
 #include "collide/search/thin_pairs.hpp"
 
+#include "collide/swept.hpp"
 #include "collide/tetrahedron.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
@@ -192,6 +193,48 @@ TEST_CASE("segments, tetrahedra and triangles of float in pieces make each pair 
     REQUIRE((found_thin(a, b, longest, false, {}) == brute_force(a, b, Touching::counts, false)));
     REQUIRE((found_thin(b, a, longest, false, {}) == brute_force(b, a, Touching::counts, false)));
   }
+}
+
+/// Cubes that move along the first edges of triangles.
+template <class TheBox>
+std::vector<Swept<TheBox>> moving_cubes(const std::vector<Triangle>& ways, double size) {
+  using Real = typename decltype(TheBox::lo)::value_type;
+  std::vector<Swept<TheBox>> out;
+  for (const Triangle& way : ways) {
+    const auto cube = [&](const Point& centre) {
+      TheBox box;
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.lo[k] = static_cast<Real>(centre[k] - size / 2);
+        box.hi[k] = static_cast<Real>(centre[k] + size / 2);
+      }
+      return box;
+    };
+    out.push_back({cube(way.corners[0]), cube(way.corners[1])});
+  }
+  return out;
+}
+
+TEST_CASE("boxes that move far in pieces of their way make each pair once", "[thin]") {
+  const std::vector<Triangle> ways = triangles(7, {.n = 150, .length = 0.5});
+  for (const double size : {0.05, 0.01, 0.0}) {
+    const auto cubes = moving_cubes<Aabb>(ways, size);
+    const std::span<const Swept<>> all(cubes);
+    REQUIRE_FALSE(brute_force(all, all, Touching::counts, true).empty());
+    check_thin(cubes, 0.5);
+    check_thin(moving_cubes<Box<float, 3>>(ways, size), 0.5);
+  }
+  // By default, too, and then capsules spare most exact tests.
+  const auto cubes =
+      moving_cubes<Aabb>(triangles(8, {.n = 3000, .length = 1, .degenerate = 0}), 0.002);
+  const std::span<const Swept<>> all(cubes);
+  std::uint64_t n_asked = 0;
+  const std::uint64_t n_found = count_pairs(all, {}, [&](std::uint32_t /*i*/, std::uint32_t /*j*/) {
+    ++n_asked;
+    return true;
+  });
+  CHECK(n_found == brute_force(all, all, Touching::counts, true).size());
+  const auto boxes = tess::collide::detail::boxes_of(all);
+  CHECK(n_asked < count_pairs(std::span<const Aabb>(boxes)) / 20);
 }
 
 TEST_CASE("pieces are chosen for long thin objects, and spare most pairs of boxes", "[thin]") {
