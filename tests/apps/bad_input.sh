@@ -85,7 +85,7 @@ refuses "a second --policy does not work with --stability" "${alone[@]}" --stabi
 refuses "policy 'perhaps' is unknown" "${alone[@]}" --stability --policy perhaps
 refuses "partition method 'perhaps'" "${alone[@]}" --stability --partition perhaps
 # Several chares find it.
-refuses "9e+99" "${alone[@]}" --pes 2 --steps 20 --move 'B:translate(9e99,0,0)'
+refuses "must be finite and at most 1e100" "${alone[@]}" --pes 2 --steps 20 --move 'B:translate(9e99,0,0)'
 refuses "--move .* does not work with --study" "${alone[@]}" --study steps --move 'translate(1,0,0)'
 refuses "--pairs B:A does not work with --study" "${alone[@]}" --study h --pairs B:A
 refuses "mesh kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
