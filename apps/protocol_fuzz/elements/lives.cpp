@@ -193,10 +193,9 @@ void lives(Trial& trial) {
   const auto n_dead =
       std::accumulate(here.dead_letters.begin(), here.dead_letters.end(), std::uint64_t{0});
   const std::string dead =
-      n_dead == 0
-          ? ""
-          : text("tessera: messages to elements that had been destroyed, not delivered: ", n_dead,
-                 "\n");
+      n_dead == 0 ? ""
+                  : text("tessera: ", n_dead,
+                         " messages to elements that had been destroyed were not delivered\n");
   trial.expect(ending.report == dead, "the report is not that of ", n_dead, ": ", ending.report);
   trial.expect(mode == 0 || n_dead == 0, "dead letters in an array that has none: ", n_dead);
   for (const int delivered : here.delivered)

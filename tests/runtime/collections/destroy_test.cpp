@@ -156,7 +156,7 @@ TEST_CASE(
     const Ending ending = run(3, [n_ends]() -> tess::Task { return send_late(n_ends); });
     CHECK(ending.exit_code == 0);
     CHECK(ending.report ==
-          "tessera: messages to elements that had been destroyed, not delivered: 3\n");
+          "tessera: 3 messages to elements that had been destroyed were not delivered\n");
   }
 }
 
