@@ -107,7 +107,7 @@ Task refused(CouplingOptions options, std::string* message) {
 }  // namespace
 
 TEST_CASE("kinds with gradients are exact for linear fields between all types of elements",
-          "[m2m][cells]") {
+          "[m2m][cells][one_thread]") {
   for (const ElementType from : test::all_element_types)
     for (const ElementType to : test::all_element_types) {
       const TetMesh source = element_mesh(from, source_bricks),
@@ -167,7 +167,7 @@ TEST_CASE("limits leave linear fields as they are inside", "[m2m][cells]") {
 }
 
 TEST_CASE("fields in elements get the same bits for any number of parts and any schedule",
-          "[m2m][cells]") {
+          "[m2m][cells][one_thread]") {
   for (const ElementType type : test::all_element_types) {
     const TetMesh source = element_mesh(type, source_bricks);
     const TetMesh target = element_mesh(ElementType::hex8, target_bricks);

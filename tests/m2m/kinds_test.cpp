@@ -97,7 +97,7 @@ std::vector<double> linear_result(const TetMesh& from, const TetMesh& to, KindCu
 }  // namespace
 
 TEST_CASE("each kind gives the same bits for any number of parts and any schedule",
-          "[m2m][kinds]") {
+          "[m2m][kinds][one_thread]") {
   for (const TransferKind kind : all_transfer_kinds) {
     const KindResult one = result_of({kind}, 1);
     test::for_seeds(2, 2 + test::n_seeds(9), [&](std::uint64_t seed) {
@@ -120,7 +120,7 @@ TEST_CASE("a vertex that no tetrahedron uses is the nearest of no point", "[m2m]
   });
 }
 
-TEST_CASE("the error falls with the order of the kind", "[m2m][kinds]") {
+TEST_CASE("the error falls with the order of the kind", "[m2m][kinds][one_thread]") {
   const auto order = [](TransferKind kind) {
     return std::log2(result_of({kind, 6, 3}, 1).error / result_of({kind, 12, 3}, 1).error);
   };
@@ -144,7 +144,7 @@ TEST_CASE("a limited transfer stays within the values of a step, a second-order 
 }
 
 TEST_CASE("every kind takes and gives values at the vertices of every type of element",
-          "[m2m][kinds]") {
+          "[m2m][kinds][one_thread]") {
   for (const ElementType from_type : test::all_element_types)
     for (const ElementType to_type : test::all_element_types) {
       const TetMesh from = test::element_mesh(from_type, 3), to = test::element_mesh(to_type, 4);

@@ -190,7 +190,7 @@ std::vector<double> in_order(const ValueOf& values) {
 }  // namespace
 
 TEST_CASE("own chares transfer conservatively with the same bits however they are cut and moved",
-          "[m2m][conservative]") {
+          "[m2m][conservative][one_thread]") {
   for (const double reach : {1.0, 0.55}) {
     const Transferred one = transferred({1, 1, 0, reach}, 1);
     CHECK(one.rounds == 3 + 5);
