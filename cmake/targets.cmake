@@ -59,7 +59,7 @@ function(tess_reuse_runtime_header name)
 endfunction()
 
 # tess_library(NAME SOURCES … HEADERS … DEPENDS … USES … USES_TO_BUILD …): headers are listed so that a test compiles
-# each alone and that they are installed. DEPENDS stand in the headers, USES in the sources only, and USES_TO_BUILD have
+# each alone (not those of programs) and that they are installed. DEPENDS stand in the headers, USES in the sources only, and USES_TO_BUILD have
 # no library that a program would link. A library of a component (TESS_COMPONENT) is installed.
 # Sanitizer builds make the libraries that a test needs.
 function(tess_library name)

@@ -39,6 +39,7 @@ template <class Real, std::size_t D>
   return box;
 }
 
+/// The same box, in double.
 template <class Real>
 [[nodiscard]] Aabb in_double(const Box<Real, 3>& box) noexcept {
   Aabb out;

@@ -22,7 +22,8 @@ struct StabilityRow {
   std::uint64_t added = 0;                ///< found, but no pairs
   double seconds = 0, brute_seconds = 0;  ///< CPU time
   std::string note{};                     ///< why the library refused the scene
-  bool ok = false;  ///< none lost, doubled or added, and at most 20 times as slow as brute force
+  /// None lost, doubled or added, and no slower than 20 times brute force and 20 ms beside.
+  bool ok = false;
 };
 
 /// The three ways in which `found` differs from `expected`, which is sorted and has each pair once.
