@@ -19,10 +19,12 @@
 // element becomes one of its interface, which can be stored, sent and used on every PE. A message
 // carries the way from the element's class to the interface, so it needs no search by type; it finds
 // the element wherever that has migrated, and calls the function that its class overrides.
-// An array has an interface as well: InterfaceArray<Shape> broadcasts to all of its elements.
+// An array has an interface as well: InterfaceArray<Shape> broadcasts to all of its elements, and
+// array[index] is one of them.
 #pragma once
 
 #include "runtime/array.hpp"
+#include "runtime/core/registered_pointer.hpp"
 #include "runtime/singleton.hpp"
 
 #include <concepts>
@@ -62,27 +64,7 @@ struct FaceOf {
 
 /// The same as a value in messages.
 template <class I>
-class FacePointer {
- public:
-  FacePointer() = default;
-  explicit FacePointer(const Face<I>& face) : face_(&face) {}
-  [[nodiscard]] bool empty() const { return face_ == nullptr; }
-  [[nodiscard]] I& operator()(Element& element) const { return face_->cast(element); }
-
-  friend bool operator==(const FacePointer&, const FacePointer&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    if constexpr (Ar::is_reading) {
-      const auto id = ar.template take<std::uint32_t>();
-      face_ = id == ~0U ? nullptr : &static_cast<const Face<I>&>(Registry::at(id));
-    } else {
-      ar(face_ == nullptr ? ~0U : face_->id());
-    }
-  }
-
- private:
-  const Face<I>* face_ = nullptr;
-};
+using FacePointer = RegisteredPointer<Face<I>>;
 
 /// Checks that elements of C can be called through I.
 template <class C, class I, class IndexType>
@@ -109,9 +91,11 @@ struct InterfaceCall final
   using Base::Base;
 
   static void invoke(Element& element, ElementMessage<IndexType>& envelope) {
-    std::apply([&element](const FacePointer<I>& face, std::int64_t /*priority*/,
-                          auto&... argument) { (void)(face(element).*F)(std::move(argument)...); },
-               static_cast<InterfaceCall&>(envelope).arguments);
+    std::apply(
+        [&element](const FacePointer<I>& face, std::int64_t /*priority*/, auto&... argument) {
+          (void)(face->cast(element).*F)(std::move(argument)...);
+        },
+        static_cast<InterfaceCall&>(envelope).arguments);
   }
   static std::int64_t priority_of(const Envelope& envelope) {
     return std::get<1>(static_cast<const InterfaceCall&>(envelope).arguments);
@@ -126,7 +110,7 @@ struct InterfacePlace : PrioritisedPlace {
   FacePointer<I> face;
   template <class>
   [[nodiscard]] I& called(Element& element) const {
-    return face(element);
+    return face->cast(element);
   }
   template <class Ar>
   void serialize(Ar& ar) {
@@ -148,7 +132,7 @@ class InterfaceCallOfAll final : public BroadcastCall {
   [[nodiscard]] const Action& action() const override { return action_; }
   [[nodiscard]] std::int64_t priority() const override { return priority_; }
   void invoke(Element& element) const override {
-    std::apply([&](const auto&... argument) { (void)(face_(element).*F)(argument...); },
+    std::apply([&](const auto&... argument) { (void)(face_->cast(element).*F)(argument...); },
                arguments_);
   }
   void pack(Writer& ar) const override { ar(face_, priority_, arguments_); }
@@ -173,6 +157,8 @@ class InterfaceCallOfAll final : public BroadcastCall {
 
 template <class I, class IndexType>
 class PrioritisedInterface;
+template <class I, class IndexType>
+class InterfaceArray;
 
 /// The proxy of an element by an interface of its class: a value that can be stored and sent. I may
 /// be any class with virtual functions; a priority in its EntryAttributes holds for its messages.
@@ -236,6 +222,10 @@ class InterfaceProxy {
 
  private:
   friend class PrioritisedInterface<I, IndexType>;
+  friend class InterfaceArray<I, IndexType>;
+
+  InterfaceProxy(CollectionId collection, const Index& index, detail::FacePointer<I> face)
+      : collection_(collection), index_(index), face_(face) {}
 
   template <auto F, class... Args>
   void send_with(Priority priority, Args&&... args) const {
@@ -354,6 +344,11 @@ class InterfaceArray {
                                 face_, detail::entry_rule<I, F>.priority,
                                 detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
+
+  [[nodiscard]] InterfaceProxy<I, IndexType> operator[](const Index& index) const {
+    return {id_, index, face_};
+  }
+  [[nodiscard]] CollectionId id() const { return id_; }
 
   friend bool operator==(const InterfaceArray&, const InterfaceArray&) = default;
   template <class Ar>

@@ -122,14 +122,16 @@ tess::Task bank(Statement& found) {
   const auto banks = tess::create<Bank>(tess::range(2));
   const std::vector<Any> all{savings[{0}], debts[{0}], savings[{1}],
                              debts[{1}],   last,       savings[{2}]};
-  found.equal =
-      all[0] == Any(savings[{0}]) && !(all[0] == Any(savings[{1}])) && !(all[0] == Any(debts[{0}]));
+  found.equal = all[0] == Any(savings[{0}]) && !(all[0] == Any(savings[{1}])) &&
+                !(all[0] == Any(debts[{0}])) &&
+                all[0] == tess::InterfaceArray<Account>(savings)[{0}];
   co_await tess::epoch([&] { banks.broadcast<&Bank::open>(all); });
   co_await tess::epoch([&] { banks.broadcast<&Bank::pay_all>(5); });
   co_await tess::epoch([&] {
     for (int i = 0; i < 6; ++i) all[static_cast<std::size_t>(i)].send<&Account::pay_twice>(i);
     const tess::InterfaceArray<Account> both[] = {savings, debts};
     for (const auto& array : both) array.broadcast<&Account::pay>(1000);
+    both[1][{1}].send<&Account::pay>(20000);
     const auto target = all[3].target<&Account::pay>();
     target(10000);
   });
@@ -152,9 +154,9 @@ tess::Task bank(Statement& found) {
 }
 
 void check_statement(const Statement& found) {
-  // Twice 5 from two banks, then twice i, and 1000 for the elements of the arrays.
+  // Twice 5 from two banks, then twice i, and 1000 for the elements of the arrays; one gets more.
   const std::vector<std::int64_t> expected{2 * 10 + 0 + 2000, -100 + 10 + 2 + 1000,
-                                           2 * 10 + 8 + 2000, -100 + 10 + 6 + 1000 + 10000,
+                                           2 * 10 + 8 + 2000, -100 + 10 + 6 + 1000 + 20000 + 10000,
                                            -7 + 10 + 8,       2 * 10 + 20 + 2000};
   tess::test::expect(found.balances == expected, "balances");
   tess::test::expect(found.error == "savings 0 have 2020", found.error);
